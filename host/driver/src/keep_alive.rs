@@ -84,7 +84,9 @@ impl KeepAlive {
         let mut input = bytes;
         let before = self.unanswered.len();
         while let Some(payload) = self.decoder.next_frame(&mut input) {
-            let Ok(Payload::FromBoard(FromBoard::Answer(answer))) = Payload::parse_from_board(payload) else { continue };
+            let Ok(Payload::FromBoard(FromBoard::Answer(answer))) = Payload::parse_from_board(payload) else {
+                continue;
+            };
             let is_of = |(index, _): &(usize, Duration)| PING_SEQUENCES.get(*index) == Some(&answer.sequence);
             if let Some(position) = self.unanswered.iter().position(is_of) {
                 // The board answers in order: a ping before this one is lost, or its answer is.

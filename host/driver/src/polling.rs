@@ -70,7 +70,13 @@ impl<S: ByteStream> PollingLink<S> {
     /// Creates a link over `stream`, without pings.
     pub fn new(stream: S) -> Self {
         let last_write = stream.now();
-        Self { stream, written: Written::default(), last_write, pings: KeepAlive::default(), shutdown_frames: Vec::new() }
+        Self {
+            stream,
+            written: Written::default(),
+            last_write,
+            pings: KeepAlive::default(),
+            shutdown_frames: Vec::new(),
+        }
     }
 
     /// The underlying stream.

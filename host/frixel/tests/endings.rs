@@ -6,7 +6,7 @@ mod processes;
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -73,9 +73,9 @@ impl Drop for Running {
 fn handles(process: &Child, signal: Signal) -> bool {
     let status = fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap_or_default();
     let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
-    caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| {
-        mask & (1 << (signal.as_raw() - 1)) != 0
-    })
+    caught
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask & (1 << (signal.as_raw() - 1)) != 0)
 }
 
 /// A simulator that waits for a line that never comes, and a play whose output is a pipe that nobody reads.
@@ -121,7 +121,8 @@ fn a_pipe_or_a_device_in_place_of_a_file_is_one_sentence() {
     fs::write(path.join("include.toml"), with("include = [\"pipe.toml\"]")).unwrap();
     fs::write(path.join("zero.toml"), with("include = [\"/dev/zero\"]")).unwrap();
     fs::write(path.join("finger.toml"), with("finger = \"pipe.toml\"")).unwrap();
-    let bitmap = "version = 2\n[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nlow_n = 0.3\nhigh_n = 0.4\n";
+    let bitmap =
+        "version = 2\n[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0.3\nwhite_n = 0.4\n";
     fs::write(path.join("picture.toml"), format!("{bitmap}picture = \"pipe\"\n")).unwrap();
     for (arguments, what) in [
         (&["play", "pipe"][..], "pipe"),
@@ -136,7 +137,7 @@ fn a_pipe_or_a_device_in_place_of_a_file_is_one_sentence() {
         (&["sim", "--stroke", "pipe"], "pipe"),
         (&["sim", "--finger", "pipe"], "pipe"),
         (&["fit", "pipe"], "pipe"),
-        (&["model", "eval", "pipe"], "pipe"),
+        (&["model", "eval", "--input", "pipe"], "pipe"),
         (&["calibrate", "--port", "sim", "--forces", "pipe", "-o", "data.csv"], "pipe"),
         (&["new", "wood", "--picture", "pipe"], "pipe"),
         (&["studio", "--no-browser", "--page", "pipe"], "pipe"),
@@ -163,7 +164,7 @@ fn a_file_of_8_gb_is_refused_with_both_numbers() {
         &["play", "scene.toml", "--stroke", "big.csv"],
         &["play", "stream.toml", "--stream", "big.wav"],
         &["fit", "big.csv"],
-        &["model", "eval", "big.csv"],
+        &["model", "eval", "--input", "big.csv"],
         &["new", "wood", "--picture", "big.png"],
     ] {
         let output = run(path, arguments);
@@ -246,6 +247,25 @@ fn the_bridge_bounds_what_a_page_does_not_read() {
     let grown = memory_bytes().saturating_sub(before);
     println!("{grown} bytes for {written} of a flood");
     assert!(grown < 24 << 20, "{grown} bytes");
+    is_over.store(true, Ordering::Relaxed);
+    server.join().unwrap();
+}
+
+#[test]
+fn the_page_comes_with_a_content_security_policy() {
+    let studio = Studio::open(0, b"page".to_vec(), None).unwrap();
+    let host = studio.url().strip_prefix("http://").unwrap().trim_end_matches('/').to_owned();
+    let is_over = Arc::new(AtomicBool::new(false));
+    let over = Arc::clone(&is_over);
+    let server = thread::spawn(move || studio.run(&|| over.load(Ordering::Relaxed)).unwrap());
+    let mut stream = TcpStream::connect(&host).unwrap();
+    write!(stream, "GET / HTTP/1.1\r\nHost: {host}\r\n\r\n").unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    let policy = answer.lines().find_map(|line| line.strip_prefix("Content-Security-Policy: ")).unwrap();
+    for part in ["default-src 'none'", "connect-src 'self'", "frame-ancestors 'none'", "worker-src blob:"] {
+        assert!(policy.split("; ").any(|found| found.trim() == part), "{part} is not in {policy}");
+    }
     is_over.store(true, Ordering::Relaxed);
     server.join().unwrap();
 }

@@ -58,7 +58,8 @@ impl CompileError {
     pub fn to_json(&self) -> String {
         let mistakes = self.mistakes.iter().map(MistakeJson::of).collect();
         // Plain numbers and texts always have a JSON form.
-        serde_json::to_string(&ErrorJson { file: &self.file, unreadable: None, mistakes, has_more: self.has_more }).unwrap_or_default()
+        serde_json::to_string(&ErrorJson { file: &self.file, unreadable: None, mistakes, has_more: self.has_more })
+            .unwrap_or_default()
     }
 }
 
@@ -83,6 +84,13 @@ struct MistakeJson<'e> {
 impl<'e> MistakeJson<'e> {
     fn of(located: &'e Located) -> Self {
         let Located { file, line, column, text, mistake } = located;
-        Self { file, line: *line, column: *column, text, nearest: mistake.nearest(), message: printable(&mistake.to_string()).into_owned() }
+        Self {
+            file,
+            line: *line,
+            column: *column,
+            text,
+            nearest: mistake.nearest(),
+            message: printable(&mistake.to_string()).into_owned(),
+        }
     }
 }

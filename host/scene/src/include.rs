@@ -71,6 +71,9 @@ impl Gathered {
         }
         let unusable =
             |reason| FileMistake::IncludedUnusable { file: file.clone(), included: included.clone(), reason };
+        if path.is_empty() {
+            return Err(unusable("it is a folder: name the files in it".to_owned()));
+        }
         let bytes = files.bytes(path).map_err(|unavailable| match unavailable {
             FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
             FileUnavailable::Missing { files, .. } => FileMistake::IncludedMissing {

@@ -13,11 +13,11 @@ mod png;
 mod strip;
 mod style;
 
+use frixel_scene::printable_lines;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 pub(crate) use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
-use frixel_scene::printable_lines;
 use thiserror::Error;
 
 pub(crate) use axis::Axis;

@@ -31,7 +31,10 @@ pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
     line("last fault", last_fault)?;
     line("last reset", hello.reset_cause.to_string())?;
     let text = device.fault_text()?;
-    line("firmware said", if text.is_empty() { "nothing before its last reset".to_owned() } else { printable(&text).into_owned() })?;
+    line(
+        "firmware said",
+        if text.is_empty() { "nothing before its last reset".to_owned() } else { printable(&text).into_owned() },
+    )?;
     let is_latched = hello.state == State::Faulted;
     line("latched", if is_latched { "yes: the output is zero until it is cleared" } else { "no" }.to_owned())?;
     if args.clear && is_latched {

@@ -52,14 +52,12 @@ pub enum FitError {
     },
     /// The voltages are samples of the carrier.
     #[error(
-        "the voltages look like samples of the carrier itself: they go through {levels} levels, and stay at each for \
-         {rows_per_level:.1} rows; give the root mean square of the drive over one carrier period"
+        "the voltages look like samples of the carrier itself, since they stay the same for {rest_rows:.1} rows only: give the \
+         root mean square of the drive over one carrier period"
     )]
     RawCarrier {
-        /// Levels that differ by more than 5 %.
-        levels: usize,
-        /// Mean number of rows at a level.
-        rows_per_level: f64,
+        /// Rows, on average, for which the voltage rests.
+        rest_rows: f64,
     },
     /// A voltage is above what any driver board has.
     #[error(

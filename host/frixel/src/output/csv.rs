@@ -114,7 +114,13 @@ impl CsvRow for EventRow {
 
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let BoardEvent { t_s, kind } = self.event;
-        write!(formatter, "{t_s:.6},{},{:.6},{}", kind.name(), self.last_frame_t_s, Cell { value: self.dropped_s, decimals: 6 })
+        write!(
+            formatter,
+            "{t_s:.6},{},{:.6},{}",
+            kind.name(),
+            self.last_frame_t_s,
+            Cell { value: self.dropped_s, decimals: 6 }
+        )
     }
 }
 

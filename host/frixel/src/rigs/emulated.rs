@@ -83,8 +83,9 @@ impl<'b> EmulatedLink<'b> {
     /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
     /// skin; without this, with the friction of the scene's finger in steady sliding.
     #[must_use]
-    pub fn referring_to_simulated_finger(self) -> Self {
-        Self { reference_finger: ReferenceFinger::simulated(), ..self }
+    pub fn referring_to_simulated_finger(mut self) -> Self {
+        self.reference_finger = ReferenceFinger::simulated();
+        self
     }
 
     /// Advances the clock with the board's. Returns whether all that was sent has arrived.

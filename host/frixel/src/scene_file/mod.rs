@@ -49,7 +49,8 @@ impl SceneFileError {
     pub fn to_json(&self) -> String {
         match self {
             Self::Unreadable { file, source } | Self::UnreadableProfile { file, source, .. } => {
-                serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [], "has_more": false }).to_string()
+                serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [], "has_more": false })
+                    .to_string()
             }
             Self::Compile(error) => error.to_json(),
         }

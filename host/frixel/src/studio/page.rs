@@ -48,5 +48,6 @@ fn build(checkout: &Path) -> Result<PathBuf, StudioError> {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, StudioError> {
-    input::read(path, input::PAGE_MAX_BYTES).map_err(|source| StudioError::Page { path: path.display().to_string(), source })
+    input::read(path, input::PAGE_MAX_BYTES)
+        .map_err(|source| StudioError::Page { path: path.display().to_string(), source })
 }

@@ -1,4 +1,5 @@
 //! What tests of `frixel` as a process share.
+#![allow(dead_code, reason = "not every test waits")]
 
 use std::process::Command;
 use std::thread::sleep;

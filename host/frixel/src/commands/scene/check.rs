@@ -30,8 +30,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     // The simulated board has the limits of the smallest board.
     let rig = RigConfig::default();
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    let compiled = scene
-        .and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
+    let compiled = scene.and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
     let program = match compiled {
         Err(error) if args.json => {
             print_line(error.to_json())?;
