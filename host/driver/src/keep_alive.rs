@@ -123,8 +123,8 @@ mod tests {
     #[test]
     fn no_ping_is_due_while_two_are_unanswered() {
         let mut pings = pinging();
-        pings.next_ping(0 * MS);
-        assert_eq!(pings.due_at(0 * MS), Some(10 * MS));
+        pings.next_ping(Duration::ZERO);
+        assert_eq!(pings.due_at(Duration::ZERO), Some(10 * MS));
         pings.next_ping(10 * MS);
         assert_eq!(pings.due_at(10 * MS), Some(10 * MS + LOST_AFTER), "both count as lost then");
         assert!(pings.hear(&answer(PING_SEQUENCES[0])));
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn answers_to_requests_settle_no_ping() {
         let mut pings = pinging();
-        pings.next_ping(0 * MS);
+        pings.next_ping(Duration::ZERO);
         pings.next_ping(10 * MS);
         assert!(!pings.hear(&answer(7)));
         assert_eq!(pings.due_at(10 * MS), Some(10 * MS + LOST_AFTER));
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn a_ping_behind_an_unanswered_one_starts_with_a_zero_byte() {
         let mut pings = pinging();
-        assert_ne!(pings.next_ping(0 * MS).first(), Some(&0));
+        assert_ne!(pings.next_ping(Duration::ZERO).first(), Some(&0));
         assert_eq!(pings.next_ping(10 * MS).first(), Some(&0));
     }
 }

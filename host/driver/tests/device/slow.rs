@@ -79,7 +79,7 @@ fn an_upload_ends_10_s_after_the_last_acknowledged_byte() {
     link.bytes_per_s = 60_000;
     let mut device = connected(link);
     let started = device.now();
-    device.link_mut().board.tells_progress = false;
+    device.link_mut().board.chunks_per_progress = None;
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
     let error = device.upload(&upload, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::UploadTooSlow { arrived_bytes: 0, .. }), "{error}");

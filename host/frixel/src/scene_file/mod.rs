@@ -193,6 +193,9 @@ pub struct SceneFolder(pub PathBuf);
 impl Files for SceneFolder {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
         let path = self.0.join(name);
+        if path.is_dir() {
+            return Err(FileUnavailable::Unreadable { reason: "it is a folder".to_owned() });
+        }
         if path.exists() {
             let max_bytes = if is_toml(&path) { input::TOML_MAX_BYTES } else { input::PICTURE_MAX_BYTES };
             return input::read(&path, max_bytes)
@@ -297,6 +300,6 @@ mod tests {
             FileUnavailable::Missing { place: textures.display().to_string(), files: vec!["brick.png".to_owned()] };
         assert_eq!(files.bytes("textures/brik.png"), Err(missing.clone()));
         let FileUnavailable::Unreadable { reason } = files.bytes("textures").unwrap_err() else { panic!() };
-        assert!(reason.contains("directory"), "{reason}");
+        assert_eq!(reason, "it is a folder");
     }
 }
