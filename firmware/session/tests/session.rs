@@ -165,7 +165,10 @@ fn a_largest_friction_without_fixed_layers_is_taken() {
     let header = Header { layers_fixed: false, electric_friction_max_n: Some(0.02), ..HEADER };
     let layer = Layer::Constant(Constant { electric_friction_n: 0.01 });
     assert_eq!(board.load(&scene(&header, &[record(layer)])).err(), None);
-    board.command(Command::SetLayer { layer: 0, on: true, gain: 10.0 }).unwrap();
+    for command in [Command::Arm, Command::Play, Command::SetLayer { layer: 0, on: true, gain: 10.0 }] {
+        board.command(command).unwrap();
+        board.ticks(4);
+    }
 }
 
 #[test]

@@ -87,19 +87,9 @@ fn a_second_signal_ends_a_process_that_is_blocked_on_a_pipe() {
     pipe(&out.join("felt.csv"));
     for command in ["play", "sim"] {
         for signal in [Signal::INT, Signal::TERM] {
-            let mut command = match command {
-                "play" => {
-                    let mut play = frixel();
-                    play.args(["play", "scene.toml", "--out", "out"]);
-                    play
-                }
-                _ => {
-                    let mut sim = frixel();
-                    sim.args(["sim", "--out", "out"]);
-                    sim
-                }
-            };
-            let mut process = Running::start(command.current_dir(folder.path()));
+            let mut process = frixel();
+            process.arg(command).args(if command == "play" { &["scene.toml"][..] } else { &[] }).args(["--out", "out"]);
+            let mut process = Running::start(process.current_dir(folder.path()));
             until("the handler is there", || handles(&process.0, signal) || process.ended().is_some());
             process.signal(signal);
             thread::sleep(Duration::from_millis(50));
