@@ -53,7 +53,7 @@ impl HostWait {
             *self = Self { answered_to, waited: 0 };
         }
         // Both counts wrap at 2^32; their difference always fits in an `i32`.
-        let is_ahead = shared::get(layout::DRIVES_WRITTEN).wrapping_sub(answered_to) as i32 >= 0;
+        let is_ahead = shared::get(layout::DRIVES_WRITTEN).wrapping_sub(answered_to).cast_signed() >= 0;
         if shared::get(layout::HOST_OPEN) == 0 || !is_ahead || self.waited >= Self::MAX {
             return false;
         }
