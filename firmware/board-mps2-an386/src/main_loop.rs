@@ -6,7 +6,7 @@ use frixel_control::{Board, Status, Ticker};
 use frixel_drivers::serial::SerialLink;
 use frixel_session::{Queues, Session, SessionEnds};
 
-use crate::tick::{self, SimulatedMonitor, Tick};
+use crate::tick::{self, HostWait, SimulatedMonitor, Tick};
 use crate::uart::{self, Uart};
 use crate::{fault, fault_injection, shared};
 
@@ -30,7 +30,13 @@ pub fn run(
         fault::never()
     };
     let (session_ends, tick_ends) = queues.split();
-    let tick = Tick { ticker, queues: tick_ends, monitor: SimulatedMonitor::new(board), count: 0 };
+    let tick = Tick {
+        ticker,
+        queues: tick_ends,
+        monitor: SimulatedMonitor::new(board),
+        count: 0,
+        host_wait: HostWait::default(),
+    };
     tick::start(tick, board.tick_hz, peripherals.SYST);
     let serial = SerialLink::new(Uart::start(bytes, &mut peripherals.NVIC));
     let mut main_loop = MainLoop { session, tick: session_ends, serial };

@@ -27,6 +27,39 @@ pub struct Tick {
     pub monitor: SimulatedMonitor,
     /// Ticks since reset.
     pub count: u32,
+    /// The wait for a host that has not answered for its slice of time.
+    pub host_wait: HostWait,
+}
+
+/// Stops the board's clock while a host is connected and has not answered for its slice of time: a busy machine would
+/// otherwise let the board run on while it does not let the host run at all.
+#[derive(Default)]
+pub struct HostWait {
+    /// [`layout::HOST_ANSWERED_TO`] as it was last read.
+    answered_to: u32,
+    /// Tick periods that the clock has stood still there.
+    waited: u32,
+}
+
+impl HostWait {
+    /// Tick periods after which the board no longer waits, 10 s: the host has hung, or was killed, and its host timeout
+    /// has to act. Virtual time is never ahead of wall time.
+    const MAX: u32 = 400_000;
+
+    /// Whether the clock stands still in this tick period.
+    fn is_needed(&mut self) -> bool {
+        let answered_to = shared::get(layout::HOST_ANSWERED_TO);
+        if answered_to != self.answered_to {
+            *self = Self { answered_to, waited: 0 };
+        }
+        // Both counts wrap at 2^32; their difference always fits in an `i32`.
+        let is_ahead = shared::get(layout::DRIVES_WRITTEN).wrapping_sub(answered_to).cast_signed() >= 0;
+        if shared::get(layout::HOST_OPEN) == 0 || !is_ahead || self.waited >= Self::MAX {
+            return false;
+        }
+        self.waited += 1;
+        true
+    }
 }
 
 /// The amplifier's monitor. There is no amplifier: the monitor follows the driven voltage as the board's amplifier is
@@ -73,6 +106,9 @@ pub fn start(tick: Tick, tick_hz: u32, mut systick: SYST) {
 fn SysTick() {
     // SAFETY: this is the handler that owns the value.
     let Some(tick) = (unsafe { TICK.get() }) else { return };
+    if tick.host_wait.is_needed() {
+        return;
+    }
     tick.run();
     if SCB::is_pendst_pending() {
         let reload = SYST::get_reload();

@@ -60,6 +60,12 @@ pub const BATCH_TICKS: usize = 13;
 /// Number of the batch of ticks that the board has finished last.
 pub const BATCH_DONE: usize = 14;
 
+/// Non-zero while a host has opened a connection and answers for slices of time in [`MODE_LINK`]: the board's clock
+/// then stands still at the tick of [`HOST_ANSWERED_TO`]. Serial port and main loop go on.
+pub const HOST_OPEN: usize = 16;
+/// Number of ticks since power-on, as [`DRIVES_WRITTEN`] counts them, up to which the host has answered.
+pub const HOST_ANSWERED_TO: usize = 17;
+
 /// Ring of touch reports, [`TOUCHES_LEN`] times [`crate::STAMPED_TOUCH_WORDS`] words.
 pub const TOUCHES: usize = 0x100;
 /// Number of reports that the ring holds.

@@ -164,6 +164,20 @@ fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
     assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (true, 0));
 }
 
+/// Nothing in it can be answered, so nothing is granted for it.
+#[test]
+fn a_window_without_a_zero_byte_leaves_credit_for_a_hello_request_alone() {
+    let mut memory = Memory::new();
+    let mut board = playing(&mut memory);
+    board.reads = true;
+    assert_eq!(count_orders(&mut board, &[0x55; WINDOW]), (false, 0));
+    assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (false, 0));
+    assert_eq!(count_orders(&mut board, &request(2, Command::Ping)), (false, 0));
+    board.send(&[0]);
+    board.hello();
+    assert_eq!(board.answer(Command::Ping).received_bytes as usize, request(1, Command::Ping).len());
+}
+
 /// The board counts bytes that noise adds to the line as the host's. It reports the count, so the loss of credit does
 /// not accumulate.
 #[test]

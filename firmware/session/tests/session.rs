@@ -143,6 +143,36 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
     );
 }
 
+/// What PROTOCOL.md says of `00 00 00 80`.
+#[test]
+fn minus_zero_is_a_zero() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let fine = Layer::Constant(Constant { electric_friction_n: 0.01 });
+    let load = |board: &mut TestBoard, header: &Header, layer| board.load(&scene(header, &[record(layer)]));
+    assert_eq!(load(&mut board, &Header { normal_load_n: -0.0, ..HEADER }, fine).err(), None);
+    let minus = Layer::Constant(Constant { electric_friction_n: -0.0 });
+    assert_eq!(load(&mut board, &HEADER, minus).err(), None);
+    let refused = load(&mut board, &Header { friction_coefficient: -0.0, ..HEADER }, fine);
+    assert!(matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == ConfigField::FrictionCoefficient));
+}
+
+/// A scene may say its largest friction although its layers may be changed: what a change makes larger is clamped.
+#[test]
+fn a_largest_friction_without_fixed_layers_is_taken() {
+    let mut memory = Memory::new();
+    let mut board = TestBoard::new(&mut memory);
+    board.hello();
+    let header = Header { layers_fixed: false, electric_friction_max_n: Some(0.02), ..HEADER };
+    let layer = Layer::Constant(Constant { electric_friction_n: 0.01 });
+    assert_eq!(board.load(&scene(&header, &[record(layer)])).err(), None);
+    for command in [Command::Arm, Command::Play, Command::SetLayer { layer: 0, on: true, gain: 10.0 }] {
+        board.command(command).unwrap();
+        board.ticks(4);
+    }
+}
+
 #[test]
 fn bytes_that_are_not_a_scene_are_refused() {
     let mut memory = Memory::new();

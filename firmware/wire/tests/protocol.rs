@@ -7,7 +7,9 @@ use std::fmt::Debug;
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
-use frixel_wire::hello::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause, feature, notice};
+use frixel_wire::hello::{
+    BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, PROTOCOL_MAJOR, PROTOCOL_MINOR, ResetCause, feature, notice,
+};
 use frixel_wire::message::{
     Accepted, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal,
     STREAM_START_LEVEL_MAX, TELEMETRY_PERIOD_MIN_TICKS,
@@ -51,6 +53,22 @@ fn examples_are_frames_and_can_be_read() {
         examples += 1;
     }
     assert!(examples > 0 && examples == PROTOCOL.matches("\n    frame ").count(), "{examples}");
+}
+
+/// Two pages of an older version had an example each.
+#[test]
+fn examples_of_the_hello_request_have_the_version_of_the_page() {
+    let title = PROTOCOL.lines().next().unwrap();
+    assert_eq!(title, format!("# The frixel serial protocol, version {PROTOCOL_MAJOR}.{PROTOCOL_MINOR}"));
+    let payload = format!("00 {PROTOCOL_MAJOR:02x} {PROTOCOL_MINOR:02x}");
+    for example in [
+        format!("the hello request of protocol {PROTOCOL_MAJOR}.{PROTOCOL_MINOR} has the payload `{payload}`"),
+        format!("payload and CRC   {payload} "),
+        format!("\n    payload {payload}\n"),
+        format!("> hello request                       payload {payload}\n"),
+    ] {
+        assert_eq!(PROTOCOL.matches(&example).count(), 1, "{example}");
+    }
 }
 
 #[test]

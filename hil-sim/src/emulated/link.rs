@@ -112,6 +112,17 @@ impl LinkBoard {
         self.machine.memory.get(layout::DRIVES_WRITTEN)
     }
 
+    /// Opens or closes a host's connection. While it is open, the board's clock stands still at the tick of
+    /// [`Self::host_answers_to`], for at most 10 s without another answer.
+    pub fn set_host_open(&self, is_open: bool) -> Result<(), EmulatorError> {
+        self.machine.memory.set(layout::HOST_OPEN, u32::from(is_open))
+    }
+
+    /// Lets the clock of a board with an open connection run up to this tick, in [`Self::ticks`].
+    pub fn host_answers_to(&self, ticks: u32) -> Result<(), EmulatorError> {
+        self.machine.memory.set(layout::HOST_ANSWERED_TO, ticks)
+    }
+
     /// Returns the number of ticks since the board's last reset.
     pub fn tick(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::TICK)

@@ -13,7 +13,7 @@ use frixel_wire::message::{Accepted, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIE
 
 use super::command::name_of;
 use super::error::DeviceError;
-use super::exchange::{ANSWER_TIMEOUT, Exchange};
+use super::exchange::{ANSWER_TIMEOUT, Exchange, Waiting};
 use super::handshake::request_hello;
 use super::link::Link;
 use super::upload::{self, Progress, Upload, UploadCounts};
@@ -34,7 +34,7 @@ const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 /// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the application's last call that sends or receives, and the
 /// board then disarms itself, so an application that hangs does not keep a board playing. A call that waits keeps the
 /// pings going while it waits. An application that plays one scene for a long time calls [`Self::wait`] or
-/// [`Self::keep_alive`] several times a second. It makes these calls in the loop that reacts to a request to stop,
+/// [`Self::keep_alive`] several times a second. While two pings are unanswered no other is sent. It makes these calls in the loop that reacts to a request to stop,
 /// never in a thread or timer that would continue without that loop.
 ///
 /// Dropping a value that has armed the board stops and disarms the board if the link still works. In any case the board
@@ -97,8 +97,17 @@ impl<L: Link> Device<L> {
         let armed = matches!(hello.state, State::Armed | State::Active);
         let uploads = UploadCounts::default();
         let mut device = Self { exchange, hello, uploads, uploaded: None, committed: None, armed, stream: None };
-        device.pace_pings()?;
+        device.pace_pings();
         Ok(device)
+    }
+
+    /// Calls `watcher` about ten times a second while a call waits for an answer, or for the board to acknowledge the
+    /// bytes of an upload. It may end the call with [`DeviceError::BrokenOff`], for a person who does not want to wait.
+    ///
+    /// A board that is in order answers within milliseconds, so a program that stops a board in the usual way on
+    /// request breaks a wait off only after a second or so.
+    pub fn while_waiting(&mut self, watcher: impl FnMut(&Waiting) -> ControlFlow<()> + Send + 'static) {
+        self.exchange.set_watcher(Box::new(watcher));
     }
 
     /// The hello that the board answered with.
@@ -148,10 +157,11 @@ impl<L: Link> Device<L> {
     pub fn commit(&mut self, scene_crc32: u32) -> Result<(), DeviceError> {
         // Until the board has answered, the host timeout of either scene may apply.
         self.committed = None;
-        self.pace_pings()?;
+        self.pace_pings();
         self.request(Command::Commit { crc32: scene_crc32 })?;
         self.committed = self.uploaded.filter(|(crc32, _)| *crc32 == scene_crc32).map(|(_, period)| period);
-        self.pace_pings()
+        self.pace_pings();
+        Ok(())
     }
 
     /// Changes the state from disarmed to armed: ready to play, output zero.
@@ -164,7 +174,8 @@ impl<L: Link> Device<L> {
     pub fn disarm(&mut self) -> Result<(), DeviceError> {
         self.request(Command::Disarm)?;
         self.armed = false;
-        self.pace_pings()
+        self.pace_pings();
+        Ok(())
     }
 
     /// Changes the state from armed to active: the committed scene plays.
@@ -301,14 +312,15 @@ impl<L: Link> Device<L> {
     fn before_arming(&mut self) -> Result<(), DeviceError> {
         self.exchange.set_shutdown_commands(&[Command::Stop, Command::Disarm])?;
         self.armed = true;
-        self.pace_pings()
+        self.pace_pings();
+        Ok(())
     }
 
     /// Sets the time between pings. If the scene of an armed board was committed elsewhere, or a commit is under way,
     /// its host timeout may be the shortest one.
-    fn pace_pings(&mut self) -> Result<(), DeviceError> {
+    fn pace_pings(&mut self) {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
-        self.exchange.ping_every(period)
+        self.exchange.ping_every(period);
     }
 
     fn request(&mut self, command: Command) -> Result<(), DeviceError> {

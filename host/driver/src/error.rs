@@ -57,6 +57,28 @@ pub enum DeviceError {
         /// How long the host waited, on the link's clock.
         waited: Duration,
     },
+    /// The board answers, but the answer to one request took too long.
+    #[error(
+        "{command} was not answered by the board on {port} for {} s, although it answers: it takes too long for each \
+         frame; disconnect what else it serves, or reset it, then start again",
+        .waited.as_secs()
+    )]
+    TooSlow {
+        /// Name of the link.
+        port: String,
+        /// The command that was not answered.
+        command: &'static str,
+        /// How long the host waited, on the link's clock.
+        waited: Duration,
+    },
+    /// The caller ended the wait for an answer; see [`Device::while_waiting`](crate::Device::while_waiting).
+    #[error("the wait for the board on {port} was interrupted during: {command}; its output goes to zero by itself")]
+    BrokenOff {
+        /// Name of the link.
+        port: String,
+        /// The command that was not answered.
+        command: &'static str,
+    },
     /// The firmware lacks a feature that the scene needs. Nothing was uploaded.
     #[error(
         "the scene needs {missing}, which the firmware of the board on {port} does not have (firmware {}.{}.{}, protocol {}.{}): \
@@ -111,6 +133,22 @@ pub enum DeviceError {
         arrived_bytes: usize,
         /// Bytes of the whole scene or bitmap.
         total_bytes: usize,
+    },
+    /// The board answers, but acknowledges no further byte of an upload.
+    #[error(
+        "the board on {port} has acknowledged no byte of an upload for {} s, and has {arrived_bytes} of {total_bytes} \
+         bytes: reset it, then start again",
+        .waited.as_secs()
+    )]
+    UploadTooSlow {
+        /// Name of the link.
+        port: String,
+        /// Bytes of the scene or bitmap that the board has.
+        arrived_bytes: usize,
+        /// Bytes of the whole scene or bitmap.
+        total_bytes: usize,
+        /// How long the host waited, on the link's clock.
+        waited: Duration,
     },
     /// The board requests an upload from its start again and again, although all of it was sent.
     #[error(

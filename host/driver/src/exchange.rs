@@ -3,6 +3,7 @@
 mod incoming;
 
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_wire::frame::Decoder;
@@ -13,21 +14,43 @@ use super::Event;
 use super::command::{frame_of, name_of, state_after};
 use super::credit::Credit;
 use super::error::{DeviceError, LinkClosed};
+use super::keep_alive::PING_SEQUENCES;
 use super::link::Link;
 pub(super) use incoming::StreamReport;
 
 /// Sequence number of requests whose answer is ignored.
-const UNAWAITED: u16 = 0;
+const UNAWAITED: u16 = PING_SEQUENCES[0];
 /// Longest time to an answer, from the time at which the request has reached the board, and longest time without any
 /// byte leaving a line on which bytes are under way.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
 /// Time after which a request without an answer is sent again, measured as [`ANSWER_TIMEOUT`] is: its frame may have
 /// been damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
+/// Longest time to the answer to a request, however much arrives meanwhile.
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
+/// Longest time between two calls of a caller who wants to know what is waited for.
+const WAITING_PERIOD: Duration = Duration::from_millis(100);
 /// Time to the next try when the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
-/// Credit that uploads leave for commands, bytes.
-const COMMAND_RESERVE_LEN: usize = 64;
+/// Credit that uploads leave for commands and pings, bytes: a dozen of them. Those that the line loses take credit until
+/// a command is answered.
+const RESERVE_LEN: usize = 256;
+/// Credit that commands leave for pings, bytes: the two that may be unanswered, and two that may be lost.
+const PING_RESERVE_LEN: usize = 64;
+
+/// What a call waits for; see [`Device::while_waiting`](crate::Device::while_waiting).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Waiting {
+    /// The command whose answer is awaited, or the upload whose bytes the board is to acknowledge.
+    pub command: &'static str,
+    /// For how long the board has not answered, or not acknowledged another byte.
+    pub waited: Duration,
+    /// Time after which the call gives up.
+    pub waited_max: Duration,
+}
+
+/// Is told what a call waits for, and may end it.
+pub(super) type Watcher = Box<dyn FnMut(&Waiting) -> ControlFlow<()> + Send>;
 
 /// The connection to a board that has answered the hello, with everything in transit in both directions.
 pub(super) struct Exchange<L> {
@@ -37,8 +60,6 @@ pub(super) struct Exchange<L> {
     rejected_before: u32,
     incoming: Vec<u8>,
     credit: Credit,
-    /// Credit that uploads leave free for commands and pings, bytes.
-    reserve: usize,
     sequence: u16,
     awaited: Vec<Awaited>,
     answer: Option<Answer>,
@@ -53,6 +74,7 @@ pub(super) struct Exchange<L> {
     telemetry_tick: Option<u32>,
     /// Time spent reading since bytes last arrived.
     quiet: Duration,
+    watcher: Option<Watcher>,
 }
 
 /// A request that waits for its answer.
@@ -67,9 +89,9 @@ impl<L: Link> Exchange<L> {
         let written = link.written().bytes;
         Self {
             credit: Credit::new(hello.limits.receive_window_bytes, written),
-            reserve: COMMAND_RESERVE_LEN,
             rejected_before: decoder.rejected(),
             quiet: Duration::ZERO,
+            watcher: None,
             link,
             decoder,
             incoming: Vec::new(),
@@ -110,13 +132,25 @@ impl<L: Link> Exchange<L> {
         self.link.now()
     }
 
-    /// Makes the link ping the board whenever nothing was sent for `period`, and reserves credit for those pings.
-    pub(super) fn ping_every(&mut self, period: Duration) -> Result<(), DeviceError> {
-        let ping = frame_of(UNAWAITED, Command::Ping)?;
-        let pings = ANSWER_TIMEOUT.as_micros().div_ceil(period.as_micros().max(1)) as usize;
-        self.reserve = COMMAND_RESERVE_LEN + pings * ping.len();
-        self.link.keep_alive(ping, period);
-        Ok(())
+    /// Makes the link ping the board whenever nothing was sent for `period`.
+    pub(super) fn ping_every(&mut self, period: Duration) {
+        self.link.keep_alive(period);
+    }
+
+    /// Calls `watcher` while a call waits.
+    pub(super) fn set_watcher(&mut self, watcher: Watcher) {
+        self.watcher = Some(watcher);
+    }
+
+    /// Tells the watcher what is waited for, and returns the time until it wants to hear of it again.
+    pub(super) fn watch(&mut self, waiting: &Waiting) -> Result<Duration, DeviceError> {
+        match self.watcher.as_mut().map(|watcher| watcher(waiting)) {
+            None => Ok(Duration::MAX),
+            Some(ControlFlow::Continue(())) => Ok(WAITING_PERIOD),
+            Some(ControlFlow::Break(())) => {
+                Err(DeviceError::BrokenOff { port: self.link.name().into(), command: waiting.command })
+            }
+        }
     }
 
     /// Sets the commands that the link sends when it is dropped.
@@ -142,6 +176,10 @@ impl<L: Link> Exchange<L> {
         DeviceError::UploadStalled { port: self.link.name().into(), arrived_bytes, total_bytes }
     }
 
+    pub(super) fn slow_upload(&self, arrived_bytes: usize, total_bytes: usize, waited: Duration) -> DeviceError {
+        DeviceError::UploadTooSlow { port: self.link.name().into(), arrived_bytes, total_bytes, waited }
+    }
+
     pub(super) fn forgotten(&self, total_bytes: usize, times: u32) -> DeviceError {
         DeviceError::UploadForgotten { port: self.link.name().into(), total_bytes, times }
     }
@@ -153,8 +191,9 @@ impl<L: Link> Exchange<L> {
     /// Sends a command and waits for its outcome. Tries again while the board is busy.
     pub(super) fn try_request(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
         let mut busy_until = None;
+        let deadline = self.link.now() + REQUEST_TIMEOUT;
         loop {
-            let outcome = self.try_request_once(command)?;
+            let outcome = self.try_request_once(command, deadline)?;
             let now = self.link.now();
             let busy_until = *busy_until.get_or_insert(now + ANSWER_TIMEOUT);
             if outcome != Err(Refusal::Busy) || now + BUSY_RETRY_AFTER >= busy_until {
@@ -164,7 +203,11 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    fn try_request_once(&mut self, command: Command) -> Result<Result<Accepted, Refusal>, DeviceError> {
+    fn try_request_once(
+        &mut self,
+        command: Command,
+        last_deadline: Duration,
+    ) -> Result<Result<Accepted, Refusal>, DeviceError> {
         let started = self.link.now();
         // When bytes last left the line towards the board, until the request itself did.
         let (mut moved_at, mut settled, mut arrived) = (started, self.credit.settled(), false);
@@ -177,17 +220,22 @@ impl<L: Link> Exchange<L> {
                 (moved_at, settled) = (now, self.credit.settled());
                 arrived = self.awaited.first().is_some_and(|first| first.end <= settled);
             }
-            let deadline = moved_at + ANSWER_TIMEOUT;
-            if now >= deadline {
-                return Err(self.silent(name_of(&command), now.saturating_sub(started)));
+            let waited = now.saturating_sub(started);
+            let deadline = last_deadline.min(moved_at + ANSWER_TIMEOUT);
+            if now >= last_deadline {
+                return Err(DeviceError::TooSlow { port: self.link.name().into(), command: name_of(&command), waited });
             }
+            if now >= deadline {
+                return Err(self.silent(name_of(&command), waited));
+            }
+            let watch_in = self.watch(&Waiting { command: name_of(&command), waited, waited_max: REQUEST_TIMEOUT })?;
             let send_at = sent_at.map_or(now, |sent_at: Duration| sent_at.max(moved_at) + REPEAT_AFTER);
             if now >= send_at && self.send(command)? {
                 sent_at = Some(now);
             }
             let send_at = sent_at.map_or(deadline, |sent_at| sent_at.max(moved_at) + REPEAT_AFTER);
             let wake_at = if send_at > now { send_at.min(deadline) } else { deadline };
-            self.receive(wake_at.saturating_sub(now), name_of(&command))?;
+            self.receive(wake_at.saturating_sub(now).min(watch_in), name_of(&command))?;
             if let Some(answer) = self.answer.take() {
                 self.repeated = self.awaited.first().is_some_and(|first| first.sequence != answer.sequence);
                 return Ok(self.outcome(command, &answer));
@@ -197,9 +245,12 @@ impl<L: Link> Exchange<L> {
 
     /// Sends a request if there is credit for it.
     fn send(&mut self, command: Command) -> Result<bool, DeviceError> {
-        let sequence = self.sequence.checked_add(1).unwrap_or(UNAWAITED + 1);
+        let mut sequence = self.sequence.wrapping_add(1);
+        while PING_SEQUENCES.contains(&sequence) {
+            sequence = sequence.wrapping_add(1);
+        }
         let frame = frame_of(sequence, command)?;
-        if !self.credit.allows(frame.len(), 0, self.link.written().bytes) {
+        if !self.credit.allows(frame.len(), PING_RESERVE_LEN, self.link.written().bytes) {
             return Ok(false);
         }
         self.sequence = sequence;
@@ -226,7 +277,7 @@ impl<L: Link> Exchange<L> {
 
     /// Sends a bulk frame if there is credit for it, and returns the position of its end.
     pub(super) fn send_bulk(&mut self, frame: &[u8], doing: &'static str) -> Result<Option<u64>, DeviceError> {
-        if !self.credit.allows(frame.len(), self.reserve, self.link.written().bytes) {
+        if !self.credit.allows(frame.len(), RESERVE_LEN, self.link.written().bytes) {
             return Ok(None);
         }
         self.write(frame, doing).map(Some)

@@ -4,7 +4,8 @@
 //! that carries bytes to one board. The output is the board's answers as `Result`s, and its telemetry as [`Event`]s.
 //!
 //! - [`Device`] runs the protocol. Each call has a deadline on the link's clock and returns the board's answer or an
-//!   error. An absent, silent or unplugged board is reported within a second.
+//!   error. An absent, silent or unplugged board is reported within a second, a board that answers too slowly within
+//!   10 s of a request or of the last byte of an upload that it has acknowledged; see [`Device::while_waiting`].
 //! - [`Link`] carries the bytes, keeps the board alive, and has the clock. [`PollingLink`] makes a link of any
 //!   [`ByteStream`]: a WebSocket, a browser's serial port, a simulated line in virtual time.
 //! - With the feature `native` (on by default) `SerialLink` is a serial port of the operating system, with a thread
@@ -44,6 +45,7 @@ mod device;
 mod error;
 mod exchange;
 mod handshake;
+mod keep_alive;
 mod link;
 #[cfg(feature = "native")]
 mod native;
@@ -53,6 +55,8 @@ mod upload;
 pub use control::{ControlError, ControlLine};
 pub use device::{Counters, Device, Event, StreamSettings, StreamStatus};
 pub use error::{DeviceError, LinkClosed};
+pub use exchange::Waiting;
+pub use keep_alive::KeepAlive;
 pub use link::{KEEP_ALIVE_TIMEOUT, Link, Written};
 #[cfg(feature = "native")]
 pub use native::{DEFAULT_BAUD, PortError, PortInfo, SerialLink, UsbDevice, ports};

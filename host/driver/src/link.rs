@@ -26,12 +26,13 @@ pub trait Link {
     /// Time on the link's clock: wall time for a serial port, virtual time for a simulated board.
     fn now(&self) -> Duration;
 
-    /// Sends `frame` from now on whenever nothing was written for `period`. Replaces the previous frame and period.
+    /// Pings the board from now on whenever nothing was written for `period` and at most one ping is unanswered.
+    /// Replaces the previous period. [`KeepAlive`](crate::KeepAlive) has the pings and these rules.
     ///
-    /// The frame reports to the board that the application is running, so a link must not send it for an application
+    /// A ping reports to the board that the application is running, so a link must not send it for an application
     /// that hangs: sending ends [`KEEP_ALIVE_TIMEOUT`] after the last [`Self::write`] or [`Self::read`], and resumes
     /// with the next of these calls. A link that sends only inside these calls needs no timeout.
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration);
+    fn keep_alive(&mut self, period: Duration);
 
     /// Sets the frames that the link sends when it is dropped, as far as that is possible without waiting. The default
     /// implementation sends nothing, which suits a link whose board ends with it.

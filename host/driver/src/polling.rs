@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::error::LinkClosed;
+use super::keep_alive::KeepAlive;
 use super::link::{Link, Written};
 
 /// A byte stream to one board, with the clock that deadlines are measured on.
@@ -24,14 +25,11 @@ pub trait ByteStream {
     fn name(&self) -> &str;
 }
 
-/// Shortest period of the keep-alive frame. Without it, a period of zero could block a call for ever.
-const PERIOD_MIN: Duration = Duration::from_millis(1);
-
-/// A [`Link`] that sends its keep-alive frames only while it is read.
+/// A [`Link`] that pings only while it is read.
 ///
 /// An application over such a link calls [`Device::wait`](crate::Device::wait) or
 /// [`Device::keep_alive`](crate::Device::keep_alive) at least as often as the board's host timeout demands. The
-/// keep-alive frames end when the application stops calling, so the link needs no
+/// pings end when the application stops calling, so the link needs no
 /// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT).
 ///
 /// ```
@@ -64,15 +62,21 @@ pub struct PollingLink<S: ByteStream> {
     stream: S,
     written: Written,
     last_write: Duration,
-    keep_alive: Option<(Vec<u8>, Duration)>,
+    pings: KeepAlive,
     shutdown_frames: Vec<u8>,
 }
 
 impl<S: ByteStream> PollingLink<S> {
-    /// Creates a link over `stream`, without a keep-alive frame.
+    /// Creates a link over `stream`, without pings.
     pub fn new(stream: S) -> Self {
         let last_write = stream.now();
-        Self { stream, written: Written::default(), last_write, keep_alive: None, shutdown_frames: Vec::new() }
+        Self {
+            stream,
+            written: Written::default(),
+            last_write,
+            pings: KeepAlive::default(),
+            shutdown_frames: Vec::new(),
+        }
     }
 
     /// The underlying stream.
@@ -87,13 +91,14 @@ impl<S: ByteStream> PollingLink<S> {
         Ok(())
     }
 
-    /// Sends the keep-alive frame if its period has passed, and returns the time at which to send the next one.
+    /// Sends a ping if one is due, and returns the time at which to send the next one.
     fn keep_board_alive(&mut self) -> Result<Option<Duration>, LinkClosed> {
-        let Some((frame, period)) = self.keep_alive.take() else { return Ok(None) };
-        let due = self.stream.now() >= self.last_write + period;
-        let sent = if due { self.send(&frame) } else { Ok(()) };
-        self.keep_alive = Some((frame, period));
-        sent.map(|()| Some(self.last_write + period))
+        let now = self.stream.now();
+        if self.pings.due_at(self.last_write).is_some_and(|due| due <= now) {
+            let ping = self.pings.next_ping(now);
+            self.send(&ping)?;
+        }
+        Ok(self.pings.due_at(self.last_write))
     }
 }
 
@@ -107,9 +112,11 @@ impl<S: ByteStream> Link for PollingLink<S> {
         let deadline = self.stream.now() + wait;
         let len_before = buffer.len();
         loop {
-            let next_frame = self.keep_board_alive()?;
-            let wake_at = next_frame.map_or(deadline, |next_frame| next_frame.min(deadline));
+            let next_ping = self.keep_board_alive()?;
+            let wake_at = next_ping.map_or(deadline, |next_ping| next_ping.min(deadline));
+            let heard = buffer.len();
             self.stream.read(buffer, wake_at.saturating_sub(self.stream.now()))?;
+            self.pings.hear(buffer.get(heard..).unwrap_or_default());
             if buffer.len() > len_before || self.stream.now() >= deadline {
                 return Ok(());
             }
@@ -120,8 +127,8 @@ impl<S: ByteStream> Link for PollingLink<S> {
         self.stream.now()
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.keep_alive = Some((frame, period.max(PERIOD_MIN)));
+    fn keep_alive(&mut self, period: Duration) {
+        self.pings.set_period(period);
     }
 
     fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
@@ -195,18 +202,21 @@ mod tests {
     }
 
     #[test]
-    fn keep_alive_frames_follow_the_last_write_by_their_period() {
+    fn pings_follow_the_last_write_by_their_period() {
         let script = Script::default();
         let written = Rc::clone(&script.written);
         let mut link = PollingLink::new(script);
-        link.keep_alive(vec![7], 10 * MS);
+        link.keep_alive(10 * MS);
         let mut buffer = Vec::new();
         link.read(&mut buffer, 4 * MS).unwrap();
         assert_eq!(link.write(&[1, 2]), Ok(2));
         link.read(&mut buffer, 25 * MS).unwrap();
         assert!(buffer.is_empty());
-        assert_eq!(*written.borrow(), [(4 * MS, vec![1, 2]), (14 * MS, vec![7]), (24 * MS, vec![7])]);
-        assert_eq!(link.written(), Written { frames: 3, bytes: 4 });
+        let mut pings = KeepAlive::default();
+        let [first, second] = [pings.next_ping(14 * MS), pings.next_ping(24 * MS)];
+        let bytes = 2 + first.len() as u64 + second.len() as u64;
+        assert_eq!(*written.borrow(), [(4 * MS, vec![1, 2]), (14 * MS, first), (24 * MS, second)]);
+        assert_eq!(link.written(), Written { frames: 3, bytes });
         assert_eq!(link.now(), 29 * MS);
     }
 
@@ -214,7 +224,7 @@ mod tests {
     fn a_read_returns_with_the_first_bytes() {
         let script = Script { arrivals: vec![(3 * MS, 9), (50 * MS, 8)], ..Script::default() };
         let mut link = PollingLink::new(script);
-        link.keep_alive(vec![7], 10 * MS);
+        link.keep_alive(10 * MS);
         let mut buffer = vec![1];
         link.read(&mut buffer, 20 * MS).unwrap();
         assert_eq!((buffer.as_slice(), link.now()), ([1, 9].as_slice(), 3 * MS));
@@ -225,7 +235,7 @@ mod tests {
     #[test]
     fn a_period_of_zero_does_not_hold_up_a_read() {
         let mut link = PollingLink::new(Script::default());
-        link.keep_alive(vec![7], Duration::ZERO);
+        link.keep_alive(Duration::ZERO);
         link.read(&mut Vec::new(), 10 * MS).unwrap();
         assert_eq!(link.now(), 10 * MS);
     }

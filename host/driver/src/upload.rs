@@ -9,11 +9,13 @@ use frixel_wire::payload::{CHUNK_LEN, chunk_frame};
 
 use super::command::name_of;
 use super::error::DeviceError;
-use super::exchange::Exchange;
+use super::exchange::{Exchange, Waiting};
 use super::link::Link;
 
 /// Time without progress after which the board's next chunk is requested.
 const STALL_AFTER: Duration = Duration::from_millis(150);
+/// Longest time in which the board acknowledges no further byte.
+const ACKNOWLEDGE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Most restarts in a row of an upload from the same chunk.
 const TRIES: u32 = 3;
 /// Most starts of an upload whose outcome stays unknown.
@@ -165,12 +167,26 @@ struct Transfer<'a, L> {
     /// Times in a row that chunks were sent again without the board getting further than before.
     tries: u32,
     lost: u64,
+    /// When the board got further than before.
+    advanced_at: Duration,
 }
 
 impl<'a, L: Link> Transfer<'a, L> {
     fn new(exchange: &'a mut Exchange<L>, doing: &'static str, bytes: &'a [u8]) -> Self {
         exchange.take_next_chunk();
-        Self { exchange, doing, bytes, expected: 0, next: 0, sent_to: Vec::new(), furthest: 0, tries: 0, lost: 0 }
+        let advanced_at = exchange.now();
+        Self {
+            exchange,
+            doing,
+            bytes,
+            expected: 0,
+            next: 0,
+            sent_to: Vec::new(),
+            furthest: 0,
+            tries: 0,
+            lost: 0,
+            advanced_at,
+        }
     }
 
     fn run(&mut self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<End, DeviceError> {
@@ -198,11 +214,21 @@ impl<'a, L: Link> Transfer<'a, L> {
             } else {
                 STALL_AFTER
             };
-            self.exchange.receive(wait, self.doing)?;
+            let watch_in = self.check_advance()?;
+            self.exchange.receive(wait.min(watch_in), self.doing)?;
             self.handle_progress()?;
             self.report(report)?;
         }
         self.report(report)
+    }
+
+    /// Ends an upload that the board has not acknowledged a byte of for too long. Returns the time until the next call.
+    fn check_advance(&mut self) -> Result<Duration, DeviceError> {
+        let waited = self.exchange.now().saturating_sub(self.advanced_at);
+        if waited >= ACKNOWLEDGE_TIMEOUT {
+            return Err(self.exchange.slow_upload(self.arrived_bytes(), self.bytes.len(), waited));
+        }
+        self.exchange.watch(&Waiting { command: self.doing, waited, waited_max: ACKNOWLEDGE_TIMEOUT })
     }
 
     /// Reports the progress, and ends the upload if the caller says so.
@@ -255,6 +281,7 @@ impl<'a, L: Link> Transfer<'a, L> {
         let chunk = usize::from(chunk).min(self.chunk_count());
         if chunk > self.furthest {
             (self.furthest, self.tries) = (chunk, 0);
+            self.advanced_at = self.exchange.now();
         }
         self.expected = chunk;
     }

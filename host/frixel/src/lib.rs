@@ -6,6 +6,7 @@ mod chart;
 mod default_stroke;
 mod finger_reference;
 pub mod fit;
+pub mod input;
 pub mod model_csv;
 pub mod output;
 pub mod player;

@@ -4,6 +4,7 @@ mod brick;
 #[path = "designer/main.rs"]
 mod designer;
 mod draft;
+mod endings;
 mod felt;
 #[path = "fit/main.rs"]
 mod fit;
@@ -20,6 +21,7 @@ mod score;
 mod server_credit;
 mod stream;
 mod studio;
+mod untrusted_text;
 mod virtual_board;
 mod watch;
 #[path = "wrong_inputs/main.rs"]

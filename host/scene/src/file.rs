@@ -128,7 +128,7 @@ impl Scene {
         }
         let scene = read(files, &mut log);
         let mistakes = log.into_mistakes();
-        let Some(mut scene) = scene else { return Err(CompileError { file: name.to_owned(), mistakes }) };
+        let Some(mut scene) = scene else { return Err(CompileError::new(name.to_owned(), mistakes)) };
         scene.mistakes = mistakes;
         Ok(scene)
     }

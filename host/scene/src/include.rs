@@ -53,7 +53,11 @@ impl Gathered {
     fn read(&mut self, number: usize, path: &str, chain: &[usize], files: &dyn Files) -> Result<usize, FileMistake> {
         let all = self.source.files();
         let file = all.get(number).map_or_else(String::new, |file| file.name.clone());
-        let included = joined(self.source.name(), path);
+        let included = match joined(self.source.name(), path) {
+            // The folder of the scene itself.
+            folder if folder.is_empty() => ".".to_owned(),
+            included => included,
+        };
         if let Some(known) = all.iter().position(|other| other.path == path) {
             if let Some(first) = chain.iter().position(|number| *number == known) {
                 let circle = chain.iter().skip(first).filter_map(|number| all.get(*number));
@@ -67,6 +71,9 @@ impl Gathered {
         }
         let unusable =
             |reason| FileMistake::IncludedUnusable { file: file.clone(), included: included.clone(), reason };
+        if path.is_empty() {
+            return Err(unusable("it is a folder: name the files in it".to_owned()));
+        }
         let bytes = files.bytes(path).map_err(|unavailable| match unavailable {
             FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
             FileUnavailable::Missing { files, .. } => FileMistake::IncludedMissing {

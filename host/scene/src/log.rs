@@ -1,6 +1,6 @@
 //! Collects mistakes while a scene is read and compiled.
 
-use super::compile_error::{CompileError, Located};
+use super::compile_error::{CompileError, Located, MISTAKES_MAX};
 use super::grammar::KnownTable;
 use super::mistake::Mistake;
 use super::source::Source;
@@ -8,7 +8,7 @@ use super::source::Source;
 /// Collects mistakes, so that a person sees all of them at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
-    /// The mistakes, each one once.
+    /// The mistakes, each one once. One more than are reported stands for all others.
     mistakes: Vec<Located>,
     /// How many mistakes were added, those that were there already included.
     added: usize,
@@ -61,6 +61,10 @@ impl<'s> Log<'s> {
     /// Adds a mistake at a byte offset of the files. A mistake that is there already is reported once, but counted
     /// again: layers that share a field share its mistakes.
     pub(super) fn add(&mut self, offset: usize, mistake: impl Into<Mistake>) {
+        if self.mistakes.len() > MISTAKES_MAX {
+            self.added += 1;
+            return;
+        }
         let (line, column) = self.source.line_and_column(offset);
         let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
         self.add_located(Located { file, line, column, text, mistake: mistake.into() });
@@ -75,7 +79,7 @@ impl<'s> Log<'s> {
 
     fn add_located(&mut self, located: Located) {
         self.added += 1;
-        if !self.mistakes.contains(&located) {
+        if self.mistakes.len() <= MISTAKES_MAX && !self.mistakes.contains(&located) {
             self.mistakes.push(located);
         }
     }
@@ -86,12 +90,13 @@ impl<'s> Log<'s> {
             Some(value) if self.mistakes.is_empty() => Ok(value),
             _ => {
                 let file = self.source.name().to_owned();
-                Err(CompileError { file, mistakes: self.into_mistakes() })
+                Err(CompileError::new(file, self.into_mistakes()))
             }
         }
     }
 
-    /// The mistakes, in the order of the scene file, then of those that it includes.
+    /// The mistakes, in the order of the scene file, then of those that it includes. There may be one more than are
+    /// reported.
     pub(super) fn into_mistakes(mut self) -> Vec<Located> {
         let files = self.source.files();
         let number = |mistake: &Located| files.iter().position(|file| file.name == mistake.file);

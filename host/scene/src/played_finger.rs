@@ -1,6 +1,7 @@
 //! The finger that a program is compiled for, and what its numbers rest on.
 
 use super::finger::{Evidence, Origin};
+use super::printable::printable;
 use super::profiles::{ProfileSource, Profiles};
 
 /// The finger that a program is compiled for.
@@ -31,7 +32,7 @@ impl PlayedFinger {
         let note = format!(
             "{title} was {} on screen \"{}\" and is played on {screen}: it counts as assumed",
             verb(evidence),
-            experiment.screen
+            printable(&experiment.screen)
         );
         (Self { title, origin: Origin::Assumed }, Some(note))
     }

@@ -11,6 +11,7 @@ use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::optimisation::Optimisation;
 use super::picture::Picture;
+use super::printable::printable;
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
 
@@ -289,7 +290,7 @@ impl Pool {
         let picture = levelled(bitmap, picture, across, down);
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
         let crc32 = compiled.crc32;
-        let (picture_name, kept) = (file_name(&bitmap.picture).to_owned(), across.samples * down.samples);
+        let (picture_name, kept) = (printable(file_name(&bitmap.picture)).into_owned(), across.samples * down.samples);
         if kept < across.whole * down.whole {
             let whole = across.whole * down.whole;
             self.optimisations.push(Optimisation::Cropped { picture: picture_name.clone(), whole, kept });
@@ -340,6 +341,6 @@ impl Pool {
                 (false, false) => format!("a sample for each pixel, {} mm", (1e4 * pitch_mm).round() / 1e4),
             });
         }
-        (!done.is_empty()).then(|| format!("{}: {}", file_name(&bitmap.picture), done.join(", ")))
+        (!done.is_empty()).then(|| format!("{}: {}", printable(file_name(&bitmap.picture)), done.join(", ")))
     }
 }

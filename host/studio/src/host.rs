@@ -217,7 +217,7 @@ impl<S: ByteStream + SceneListener> Host<S> {
         if self.state == State::Faulted {
             return Ok(());
         }
-        self.device.link_mut().keep_alive(Vec::new(), NEVER);
+        self.device.link_mut().keep_alive(NEVER);
         (self.state, self.fault) = match self.device.disarm() {
             // The board has latched a fault that this host has not heard of.
             Err(DeviceError::Refused { refusal: Refusal::Faulted(fault), .. }) => (State::Faulted, Some(fault)),

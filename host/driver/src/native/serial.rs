@@ -1,7 +1,7 @@
 //! A serial port as a [`Link`].
 //!
-//! The link has two threads. One thread reads. The other writes the queued frames in order, and sends the keep-alive
-//! frame if nothing was written for its period and the application has made a call within the keep-alive timeout. No
+//! The link has two threads. One thread reads. The other writes the queued frames in order, and sends the pings
+//! that are due if the application has made a call within the keep-alive timeout. No
 //! call waits for the operating system to accept bytes: a port whose other end does not read can block a write for
 //! ever, and then only the writing thread is blocked.
 
@@ -118,7 +118,7 @@ impl Link for SerialLink {
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let mut state = self.shared.lock();
         state.enter_call();
-        // Wake the writing thread, which may have stopped the keep-alive.
+        // Wake the writing thread, which may have stopped to ping.
         self.shared.queued.notify_one();
         let (mut state, _) = self
             .shared
@@ -138,8 +138,8 @@ impl Link for SerialLink {
         self.opened.elapsed()
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.shared.lock().keep_alive(frame, period);
+    fn keep_alive(&mut self, period: Duration) {
+        self.shared.lock().pings.set_period(period);
         self.shared.queued.notify_one();
     }
 

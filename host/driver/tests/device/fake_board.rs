@@ -31,6 +31,8 @@ pub(crate) struct FakeBoard {
     pub(crate) longest_silence: Duration,
     pub(crate) pings: u32,
     pub(crate) hellos: u32,
+    /// Chunks that go by until it says which one it expects next; `None` if it never does.
+    pub(crate) chunks_per_progress: Option<u16>,
     /// Never says a word.
     pub(crate) mute: bool,
     /// Commands that it refuses, and why.
@@ -77,6 +79,7 @@ impl FakeBoard {
             longest_silence: Duration::ZERO,
             pings: 0,
             hellos: 0,
+            chunks_per_progress: Some(CHUNKS_PER_PROGRESS),
             mute: false,
             refuse: None,
             garbage: Vec::new(),
@@ -264,7 +267,7 @@ impl FakeBoard {
             upload.bytes.extend_from_slice(bytes);
             upload.next_chunk += 1;
         }
-        if !fits || upload.next_chunk.is_multiple_of(CHUNKS_PER_PROGRESS) {
+        if self.chunks_per_progress.is_some_and(|chunks| !fits || upload.next_chunk.is_multiple_of(chunks)) {
             let next_chunk = upload.next_chunk;
             send(out, &FromBoard::Progress { next_chunk, received_bytes: self.received_bytes });
         }

@@ -9,6 +9,7 @@ mod fake_board;
 mod pty_board;
 #[cfg(unix)]
 mod serial;
+mod slow;
 mod stream;
 mod trouble;
 mod uploads;

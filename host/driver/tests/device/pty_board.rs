@@ -31,8 +31,8 @@ impl Link for Patient {
         self.0.now() / PATIENCE
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.0.keep_alive(frame, period);
+    fn keep_alive(&mut self, period: Duration) {
+        self.0.keep_alive(period);
     }
 
     fn set_shutdown_frames(&mut self, frames: Vec<u8>) {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::time::Duration;
 
-use frixel_driver::{Link, LinkClosed, Written};
+use frixel_driver::{KeepAlive, Link, LinkClosed, Written};
 
 use crate::fake_board::{FakeBoard, WINDOW};
 
@@ -34,19 +34,22 @@ pub(crate) struct VirtualLink {
     pub(crate) pulled_at: Option<Duration>,
     /// Time that the board takes before it looks at what has arrived.
     pub(crate) board_delay: Duration,
+    /// Time that the board takes for each frame, one after the other.
+    pub(crate) board_time_per_frame: Duration,
     /// From when to when the board looks at nothing, as while it erases flash.
     pub(crate) board_pause: Range<Duration>,
     /// Most bytes that were on the way to the board, or there and not looked at.
     pub(crate) most_under_way: usize,
     /// Bytes that the line takes in a second, in both directions.
     pub(crate) bytes_per_s: u32,
+    board_free_at: Duration,
     now: Duration,
     to_board: Line,
     to_host: Line,
     written: Written,
     frames_to_host: u64,
     last_write: Duration,
-    keep_alive: Option<(Vec<u8>, Duration)>,
+    pings: KeepAlive,
 }
 
 /// One direction.
@@ -82,6 +85,8 @@ impl VirtualLink {
             to_host_weather: Box::new(|_, _| Fate::Arrives),
             pulled_at: None,
             board_delay: Duration::ZERO,
+            board_time_per_frame: Duration::ZERO,
+            board_free_at: Duration::ZERO,
             board_pause: Duration::ZERO..Duration::ZERO,
             most_under_way: 0,
             bytes_per_s: BYTES_PER_S,
@@ -91,7 +96,7 @@ impl VirtualLink {
             written: Written::default(),
             frames_to_host: 0,
             last_write: Duration::ZERO,
-            keep_alive: None,
+            pings: KeepAlive::default(),
         }
     }
 
@@ -113,21 +118,19 @@ impl VirtualLink {
         }
         let unasked = self.board.poll(self.now);
         self.send_to_host(&unasked);
-        if self.keep_alive_due_at().is_some_and(|due| due <= self.now)
-            && let Some((frame, period)) = self.keep_alive.take()
-        {
-            self.write(&frame).unwrap();
-            self.keep_alive = Some((frame, period));
+        if self.ping_due_at().is_some_and(|due| due <= self.now) {
+            let ping = self.pings.next_ping(self.now);
+            self.write(&ping).unwrap();
         }
     }
 
-    fn keep_alive_due_at(&self) -> Option<Duration> {
-        self.keep_alive.as_ref().map(|(_, period)| self.last_write + *period)
+    fn ping_due_at(&self) -> Option<Duration> {
+        self.pings.due_at(self.last_write)
     }
 
     fn next_event_at(&self) -> Option<Duration> {
         let board = [self.to_board.next_arrival(), self.to_host.next_arrival(), self.board.next_poll()];
-        board.into_iter().chain([self.keep_alive_due_at(), self.pulled_at]).flatten().min()
+        board.into_iter().chain([self.ping_due_at(), self.pulled_at]).flatten().min()
     }
 
     fn check_plugged(&self) -> Result<(), LinkClosed> {
@@ -145,7 +148,8 @@ impl Link for VirtualLink {
         let bytes = weathered(frame, fate);
         let arrives = self.to_board.time_to_send(&bytes, self.now, self.bytes_per_s) + self.board_delay;
         let seen = if self.board_pause.contains(&arrives) { self.board_pause.end } else { arrives };
-        self.to_board.under_way.push_back((seen, bytes));
+        self.board_free_at = self.board_free_at.max(seen) + self.board_time_per_frame;
+        self.to_board.under_way.push_back((self.board_free_at, bytes));
         self.written.add(frame);
         self.last_write = self.now;
         let under_way: usize = self.to_board.under_way.iter().map(|(_, bytes)| bytes.len()).sum();
@@ -161,6 +165,7 @@ impl Link for VirtualLink {
             self.check_plugged()?;
             self.step();
             while let Some(bytes) = self.to_host.arrived(self.now) {
+                self.pings.hear(&bytes);
                 buffer.extend(bytes);
             }
             if buffer.len() > len_before {
@@ -180,8 +185,8 @@ impl Link for VirtualLink {
         self.now
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.keep_alive = Some((frame, period));
+    fn keep_alive(&mut self, period: Duration) {
+        self.pings.set_period(period);
     }
 
     fn written(&self) -> Written {

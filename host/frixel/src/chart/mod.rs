@@ -13,6 +13,7 @@ mod png;
 mod strip;
 mod style;
 
+use frixel_scene::printable_lines;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 pub(crate) use plotters::style::RGBColor;
@@ -157,6 +158,8 @@ impl Chart {
         }
         let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
         let drawn = size(fine(self.width), fine(layout.height));
+        // A title may be a name from a scene, and XML has no form for control characters.
+        let text = printable_lines(&text);
         Ok(text.replacen(&drawn, &size(self.width, layout.height), 1))
     }
 

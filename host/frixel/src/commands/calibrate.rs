@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use frixel::calibration::{BoardRow, CalibrationError, ForceRow, Protocol, align, read_forces, write_csv};
+use frixel::input::{self, Bounded};
 use frixel::player::Player;
 use frixel::rigs::{ForceSensor, RecordedLink, SimLink};
 use frixel::stream::Feed;
@@ -26,6 +27,7 @@ use super::experiment;
 use super::fit::screen;
 use super::interrupt::Interrupt;
 use super::terminal::{note, print_line};
+use super::waiting;
 
 /// Rows a second of the recording.
 const ROW_HZ: u32 = 1_000;
@@ -65,10 +67,8 @@ pub(super) struct CalibrateArgs {
 pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
     experiment::check_writable(&args.output)?;
-    // A file of forces that is missing, or of something else, is found before the run, not after it. A pipe can be read
-    // only once.
-    let is_pipe = |path: &Path| path.exists() && !path.is_file();
-    if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-") && !is_pipe(path)) {
+    // A file of forces that is missing, or of something else, is found before the run, not after it.
+    if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
         read(path)?;
     }
     let (board, forces) = if args.port == "sim" { on_simulator(args, &interrupt)? } else { on_port(args, &interrupt)? };
@@ -138,7 +138,7 @@ fn on_port(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded, Comm
     let hello = *device.hello();
     let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
     let from_stdin = (forces == Path::new("-")).then(StandardInput::read);
-    let mut player = plan.start(device, hello.tick_hz / ROW_HZ)?;
+    let mut player = plan.start(waiting::watch(device, interrupt), hello.tick_hz / ROW_HZ)?;
     let board = plan.play(&mut player, interrupt, Duration::from_secs_f64(plan.protocol.duration_s()))?;
     let forces = match from_stdin {
         Some(input) => read_forces(input.after(FORCES_LATE).as_slice())?,
@@ -158,9 +158,10 @@ impl StandardInput {
         let bytes = Arc::new(Mutex::new(Vec::new()));
         let shared = Arc::clone(&bytes);
         let reader = thread::spawn(move || {
+            let mut input = Bounded::new(stdin(), input::CSV_MAX_BYTES);
             let mut chunk = [0; 4096];
-            // A pipe that breaks has ended.
-            while let Ok(count @ 1..) = stdin().read(&mut chunk) {
+            // A pipe that breaks has ended, and so has one that goes on beyond the limit.
+            while let Ok(count @ 1..) = input.read(&mut chunk) {
                 let mut bytes = shared.lock().unwrap_or_else(PoisonError::into_inner);
                 bytes.extend_from_slice(chunk.get(..count).unwrap_or_default());
             }
@@ -180,9 +181,9 @@ impl StandardInput {
 
 fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
     let rows = if path == Path::new("-") {
-        read_forces(stdin())
+        read_forces(Bounded::new(stdin(), input::CSV_MAX_BYTES))
     } else {
-        read_forces(BufReader::new(File::open(path).map_err(CommandError::reading(path))?))
+        read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?))
     };
     rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
 }

@@ -91,6 +91,11 @@ pub(crate) enum CommandError {
     FingerOnBoard { port: String },
     #[error("the answers ended at trial {trial}, and nothing is written: answer each trial with 1 or 2 and Enter")]
     NoAnswer { trial: usize },
+    #[error(
+        "{count} answers to trial {trial} were neither 1 nor 2, and nothing is written: start again, and answer each \
+         trial with 1 or 2 and Enter"
+    )]
+    WrongAnswers { trial: usize, count: u32 },
     #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
     Noise { path: PathBuf, source: hound::Error },
     #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]

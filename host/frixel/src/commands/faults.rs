@@ -2,10 +2,13 @@
 
 use clap::Args;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_scene::printable;
 use frixel_wire::fault::State;
 
 use super::error::CommandError;
+use super::interrupt::Interrupt;
 use super::terminal::print_line;
+use super::waiting;
 
 #[derive(Debug, Args)]
 pub(super) struct FaultsArgs {
@@ -18,7 +21,8 @@ pub(super) struct FaultsArgs {
 }
 
 pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
-    let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let mut device = waiting::watch(device, &Interrupt::default());
     let hello = *device.hello();
     let line = |name: &str, value: String| print_line(format_args!("{name:16} {value}"));
     let last_fault = hello.last_fault.map_or("none since power-on".to_owned(), |fault| {
@@ -27,7 +31,10 @@ pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
     line("last fault", last_fault)?;
     line("last reset", hello.reset_cause.to_string())?;
     let text = device.fault_text()?;
-    line("firmware said", if text.is_empty() { "nothing before its last reset".to_owned() } else { text })?;
+    line(
+        "firmware said",
+        if text.is_empty() { "nothing before its last reset".to_owned() } else { printable(&text).into_owned() },
+    )?;
     for sentence in hello.notice_sentences() {
         line("note", sentence.to_owned())?;
     }

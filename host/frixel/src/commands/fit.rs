@@ -1,17 +1,19 @@
 //! `frixel fit`: a finger's profile from measured friction.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use frixel::fit::{self, Settings, Summary};
+use frixel::input::{self, Bounded};
 use frixel::output::write_fit_svg;
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
 
 use super::argument::positive;
 use super::error::CommandError;
+use super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
 pub(super) struct FitArgs {
@@ -68,12 +70,11 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         write_fit_svg(&residuals_path(output), &format!("{}, fitted", args.data.display()), &fit)?;
     }
     if args.json {
-        println!("{}", serde_json::json!(Summary::from(&fit)));
-        return Ok(());
+        return print_line(serde_json::json!(Summary::from(&fit)));
     }
-    print!("{}", fit::words(&fit, &screen_name));
+    print(fit::words(&fit, &screen_name))?;
     if let Some(output) = &args.output {
-        println!("  {:<22} {}, {}", "wrote", output.display(), residuals_path(output).display());
+        print_line(format_args!("  {:<22} {}, {}", "wrote", output.display(), residuals_path(output).display()))?;
     }
     Ok(())
 }
@@ -85,7 +86,7 @@ pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen), CommandErr
         return Ok((named.to_owned(), screen));
     }
     let path = Path::new(named);
-    let text = fs::read_to_string(path).map_err(CommandError::reading(path))?;
+    let text = input::read_text(path, input::TOML_MAX_BYTES).map_err(CommandError::reading(path))?;
     let screen = Screen::parse(&text, named)?;
     let name = screen.name.clone().unwrap_or_else(|| {
         path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
@@ -95,9 +96,9 @@ pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen), CommandErr
 
 fn open(path: &Path) -> Result<Box<dyn Read>, CommandError> {
     if path == Path::new("-") {
-        return Ok(Box::new(io::stdin().lock()));
+        return Ok(Box::new(Bounded::new(io::stdin().lock(), input::CSV_MAX_BYTES)));
     }
-    Ok(Box::new(BufReader::new(File::open(path).map_err(CommandError::reading(path))?)))
+    Ok(Box::new(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?)))
 }
 
 fn residuals_path(output: &Path) -> PathBuf {

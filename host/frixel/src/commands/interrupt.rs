@@ -1,7 +1,11 @@
 //! Ctrl-C, and the signal that requests a process to end.
 
+use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Exit code of a process that a second signal has ended: what shells report of one that Ctrl-C ended.
+const EXIT_CODE: i32 = 130;
 
 /// Becomes true when Ctrl-C or a signal requests the command to end.
 #[derive(Clone, Default)]
@@ -9,10 +13,17 @@ pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// Installs the handler; may be called only once.
+    ///
+    /// A second Ctrl-C or signal ends the process at once, whatever it is blocked in: a board whose host has gone sets
+    /// its output to zero by itself.
     pub(super) fn watch() -> Result<Self, ctrlc::Error> {
         let requested = Arc::new(AtomicBool::new(false));
         let handler = Arc::clone(&requested);
-        ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+        ctrlc::set_handler(move || {
+            if handler.swap(true, Ordering::Relaxed) {
+                process::exit(EXIT_CODE);
+            }
+        })?;
         Ok(Self(requested))
     }
 

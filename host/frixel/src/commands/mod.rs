@@ -27,6 +27,7 @@ mod stroke;
 mod studio;
 mod terminal;
 mod threshold;
+mod waiting;
 
 use std::path::{Path, PathBuf};
 

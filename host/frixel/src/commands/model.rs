@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
+use frixel::input::{self, Bounded};
 use frixel::model_csv::{self, CsvError, Precision, Summary};
 
 use super::error::CommandError;
@@ -88,8 +89,8 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
 
 fn open(path: Option<&Path>) -> Result<Box<dyn Read>, CommandError> {
     match path {
-        Some(path) => Ok(Box::new(File::open(path).map_err(CommandError::reading(path))?)),
-        None => Ok(Box::new(io::stdin().lock())),
+        Some(path) => Ok(Box::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?)),
+        None => Ok(Box::new(Bounded::new(io::stdin().lock(), input::CSV_MAX_BYTES))),
     }
 }
 

@@ -6,6 +6,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 
 use clap::Args;
+use frixel::input;
 use frixel_scene::{Screen, check_picture, layer_kinds};
 
 use super::error::CommandError;
@@ -66,7 +67,7 @@ fn scene_path(name: &Path) -> PathBuf {
 
 /// Width and height of a picture that can be played.
 fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
-    let bytes = fs::read(picture).map_err(CommandError::reading(picture))?;
+    let bytes = input::read(picture, input::PICTURE_MAX_BYTES).map_err(CommandError::reading(picture))?;
     check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
 }
 

@@ -25,6 +25,7 @@ use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::overwrite;
 use super::terminal::{self, note, note_refusals, print_line};
+use super::waiting;
 use live_scene::LiveScene;
 use rigs::Target;
 

@@ -13,6 +13,7 @@ use frixel_scene::recorder::Observation;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::terminal::{note, print_line};
+use super::waiting;
 
 /// Rows a second.
 const ROWS_HZ: u32 = 200;
@@ -34,7 +35,8 @@ pub(super) struct RecordArgs {
 
 pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
     let interrupt = Interrupt::watch()?;
-    let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let mut device = waiting::watch(device, &interrupt);
     let mut file = Rows::create(args, device.hello().tick_hz)?;
     device.subscribe(device.hello().tick_hz / ROWS_HZ)?;
     note("slide a finger over the screen; Ctrl-C ends the record");

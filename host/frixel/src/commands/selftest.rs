@@ -8,10 +8,13 @@ use frixel_wire::fault::State;
 use frixel_wire::message::TickTimes;
 
 use super::error::CommandError;
+use super::interrupt::Interrupt;
 use super::terminal::print_line;
+use super::waiting;
 
-/// Pings whose round trip is measured.
-const PINGS: u32 = 50;
+/// Most pings whose round trip is measured, and longest time for them.
+const PINGS_MAX: u32 = 50;
+const PINGS_TIME_MAX: Duration = Duration::from_secs(2);
 /// Duration of the telemetry, and messages a second.
 const TELEMETRY: Duration = Duration::from_secs(1);
 const MESSAGES_HZ: u32 = 500;
@@ -37,7 +40,8 @@ struct Check {
 }
 
 pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
-    let mut device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let mut device = waiting::watch(device, &Interrupt::default());
     device.disarm()?;
     let hello = *device.hello();
     let fault = Check {
@@ -60,7 +64,11 @@ pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
 
 fn round_trip(device: &mut Device<SerialLink>) -> Result<Check, CommandError> {
     let mut times = Vec::new();
-    for _ in 0..PINGS {
+    let begin = Instant::now();
+    for _ in 0..PINGS_MAX {
+        if begin.elapsed() > PINGS_TIME_MAX {
+            break;
+        }
         let started = Instant::now();
         device.ping()?;
         times.push(started.elapsed());
@@ -68,7 +76,7 @@ fn round_trip(device: &mut Device<SerialLink>) -> Result<Check, CommandError> {
     times.sort();
     let median = times.get(times.len() / 2).copied().unwrap_or_default();
     let (median_ms, longest_ms) = (in_ms(median), in_ms(times.last().copied().unwrap_or_default()));
-    let found = format!("median {median_ms:.2} ms, at most {longest_ms:.2} ms of {PINGS} pings");
+    let found = format!("median {median_ms:.2} ms, at most {longest_ms:.2} ms of {} pings", times.len());
     Ok(Check { name: "round trip", passed: median < ROUND_TRIP_MAX, found })
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use frixel::rigs::Server;
+use frixel::rigs::{Dropped, Server};
 use frixel::scene_file::ProfileNames;
 use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke, contact_of};
 use frixel_model::LoadedContact;
@@ -45,7 +45,14 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     print_line(format_args!("port: {}", server.path()))?;
     let path = server.path();
     note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
-    server.run(&mut rig, &|| interrupt.is_requested())?;
+    let dropped = server.run(&mut rig, &|| interrupt.is_requested())?;
+    if dropped.times > 0 {
+        let Dropped { seconds, times } = dropped;
+        note(format_args!(
+            "this machine was too busy {times} times: {seconds:.3} s were dropped in all, in which board and finger stood \
+             still (`time-dropped` in events.csv)"
+        ));
+    }
     note(format_args!("wrote {0}/felt.csv, {0}/forces.csv and {0}/events.csv", args.out.display()));
     Ok(())
 }

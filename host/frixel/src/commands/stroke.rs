@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use frixel::input;
 use frixel_hil_sim::{Point, Stroke, StrokeError};
 
 use super::argument::{above_zero_to, number};
@@ -132,7 +133,7 @@ fn straight_error(source: StrokeError) -> CommandError {
 }
 
 pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
-    let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
+    let text = input::read_text(path, input::CSV_MAX_BYTES).map_err(|error| match error.kind() {
         ErrorKind::InvalidData => CommandError::StrokeNotText { path: path.into() },
         _ => CommandError::reading(path)(error),
     })?;

@@ -1,17 +1,19 @@
 //! Text for people, on standard output and standard error. A reader that has closed its end is not an error.
+//!
+//! Everything that a command prints goes through this module, which escapes what would control the terminal.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
-use frixel_scene::Program;
+use frixel_scene::{Program, printable_lines};
 
 use super::error::CommandError;
 
 /// Writes text to standard output. Does nothing once its reader has gone, for example `head` at its last line.
 pub(super) fn print(text: impl Display) -> Result<(), CommandError> {
     let mut output = stdout().lock();
-    write!(output, "{text}").and_then(|()| output.flush()).or_else(unless_closed)
+    write!(output, "{}", printable_lines(&text.to_string())).and_then(|()| output.flush()).or_else(unless_closed)
 }
 
 /// Like [`print`], with a line feed at the end.
@@ -21,7 +23,7 @@ pub(super) fn print_line(text: impl Display) -> Result<(), CommandError> {
 
 /// Writes a line to standard error. Nothing can be said about a failure to do so.
 pub(super) fn note(text: impl Display) {
-    let _ = writeln!(stderr().lock(), "{text}");
+    let _ = writeln!(stderr().lock(), "{}", printable_lines(&text.to_string()));
 }
 
 /// Says on standard error why a board refuses a draft. Says nothing of other programs.

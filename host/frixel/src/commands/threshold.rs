@@ -1,15 +1,16 @@
 //! `frixel threshold`: a detection threshold for those who have no force sensor.
 
 use std::fs;
-use std::io::{BufRead, stdin};
+use std::io::stdin;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
 use clap::Args;
 use frixel::calibration::Protocol;
+use frixel::input;
 use frixel::player::Player;
 use frixel::rigs::{RecordedLink, SimLink};
 use frixel::stream::Feed;
@@ -29,6 +30,7 @@ use super::experiment;
 use super::fit::screen;
 use super::interrupt::Interrupt;
 use super::terminal::{print, print_line};
+use super::waiting;
 
 /// Duration of each of the two strokes of a trial, in seconds.
 const STROKE_S: f64 = 1.6;
@@ -44,6 +46,10 @@ const NOISE_S: u32 = 60;
 const NOISE_HZ: u32 = 44_100;
 /// Longest time without a word to the board while an answer is awaited.
 const ANSWER_POLL: Duration = Duration::from_millis(50);
+/// Lines that are read ahead of the trials that they answer.
+const LINES_AHEAD: usize = 64;
+/// Answers in a row that are neither 1 nor 2, after which the trials end.
+const WRONG_ANSWERS_MAX: u32 = 10;
 
 #[derive(Debug, Args)]
 pub(super) struct ThresholdArgs {
@@ -118,7 +124,7 @@ fn session<L: RecordedLink>(
     let scene = protocol.scene().map_err(CommandError::Finger)?;
     let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
-    let mut player = Player::new(device, Recorder::idle());
+    let mut player = Player::new(waiting::watch(device, interrupt), Recorder::idle());
     player.start(&program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
     print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
     print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
@@ -131,11 +137,20 @@ fn session<L: RecordedLink>(
         player.stream(feed).map_err(CommandError::Play)?;
         print(format_args!("  trial {trial} of {trials}: "))?;
         guide(&mut player, interrupt)?;
+        let mut wrong = 0;
         let said_second = loop {
             match answers.recv_timeout(ANSWER_POLL) {
                 Ok(line) if line.trim() == "1" => break false,
                 Ok(line) if line.trim() == "2" => break true,
-                Ok(_) => print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?,
+                Ok(_) if wrong + 1 == WRONG_ANSWERS_MAX => {
+                    player.stop().map_err(CommandError::Play)?;
+                    return Err(CommandError::WrongAnswers { trial, count: WRONG_ANSWERS_MAX });
+                }
+                Ok(_) => {
+                    wrong += 1;
+                    print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?;
+                    wait(&mut player, interrupt, 0.0)?;
+                }
                 // A board whose host is silent disarms itself: serve it while the person thinks.
                 Err(RecvTimeoutError::Timeout) => wait(&mut player, interrupt, 0.0)?,
                 Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
@@ -162,9 +177,10 @@ fn guide<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt) -> Resu
 
 /// The lines of standard input, read by a thread of their own.
 fn answers() -> Receiver<String> {
-    let (sender, receiver) = channel();
+    let (sender, receiver) = sync_channel(LINES_AHEAD);
     thread::spawn(move || {
-        for line in stdin().lock().lines().map_while(Result::ok) {
+        let mut input = stdin().lock();
+        while let Some(line) = input::next_line(&mut input) {
             if sender.send(line).is_err() {
                 return;
             }

@@ -12,6 +12,8 @@ use super::table::Row;
 const LEVEL_WIDTH: f64 = 1.05;
 /// Below this share of the highest voltage the drive is off.
 const OFF_SHARE: f64 = 0.02;
+/// A change of this share of a stroke's highest voltage is none of noise.
+const REST_SHARE: f64 = 0.2;
 /// Rows are dropped for this long after the voltage changed, in seconds: friction follows with a relaxation length of
 /// 11.5 um (arXiv 2505.11162), 0.6 ms at 20 mm/s, and clocks may differ by 1 ms.
 const SETTLING_S: f64 = 5e-3;
@@ -47,6 +49,29 @@ impl Levels {
             return None;
         }
         Some(self.levels.partition_point(|(_, high)| *high < voltage_v_rms))
+    }
+
+    /// How long the voltage rests, on average, before it changes by a fifth of the highest one of its stroke, while the
+    /// drive is on: in rows, and in seconds if the rows have times.
+    pub(super) fn rest(&self, recording: &Recording) -> (f64, Option<f64>) {
+        let (mut rows, mut rests, mut duration_s) = (0.0, 0.0, Some(0.0));
+        for stroke in &recording.strokes {
+            let highest_v_rms = stroke.rows.iter().map(|row| row.voltage_v_rms).fold(0.0, f64::max);
+            let mut rests_at_v_rms = f64::NEG_INFINITY;
+            for (row, next) in stroke.rows.iter().zip(stroke.rows.iter().skip(1)) {
+                if self.level(row.voltage_v_rms).is_none() {
+                    continue;
+                }
+                if (row.voltage_v_rms - rests_at_v_rms).abs() > REST_SHARE * highest_v_rms {
+                    rests_at_v_rms = row.voltage_v_rms;
+                    rests += 1.0;
+                }
+                rows += 1.0;
+                let interval_s = next.time_s.zip(row.time_s).map(|(next_s, time_s)| next_s - time_s);
+                duration_s = duration_s.zip(interval_s).map(|(sum_s, interval_s)| sum_s + interval_s);
+            }
+        }
+        (rows / rests, duration_s.map(|duration_s| duration_s / rests))
     }
 
     /// Lowest and highest voltage at which the drive is on, in volts rms.

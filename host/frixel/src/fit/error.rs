@@ -50,6 +50,15 @@ pub enum FitError {
         /// The voltage.
         found: f64,
     },
+    /// The voltages are samples of the carrier.
+    #[error(
+        "the voltages look like samples of the carrier itself, since they stay the same for {rest_rows:.1} rows only: give the \
+         root mean square of the drive over one carrier period"
+    )]
+    RawCarrier {
+        /// Rows, on average, for which the voltage rests.
+        rest_rows: f64,
+    },
     /// A voltage is above what any driver board has.
     #[error(
         "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not millivolts and not DAC codes"

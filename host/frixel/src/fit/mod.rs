@@ -144,6 +144,7 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
     rules::check_strokes(&recording)?;
     let levels = Levels::of(&recording);
     let voltage_range_v_rms = rules::check_levels(&levels)?;
+    rules::check_carrier(&recording, &levels)?;
     let strokes = stroke_means(&recording, &levels);
     let (load_median_n, load_range_n) = rules::check_loads(&recording)?;
     rules::check_natural(&strokes)?;

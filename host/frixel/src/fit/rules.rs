@@ -18,6 +18,11 @@ const COEFFICIENTS: core::ops::RangeInclusive<f64> = 0.05..=5.0;
 const LOAD_TOLERANCE: f64 = 0.15;
 /// Least ratio of the highest to the lowest voltage from which an exponent can be told.
 const VOLTAGE_RATIO_MIN: f64 = 1.15;
+/// Least mean time for which a voltage that was set rests: `frixel calibrate` switches every 20 to 30 ms, and the
+/// samples of a carrier of 60 Hz change by a fifth of the peak every 2 ms.
+const REST_MIN_S: f64 = 8e-3;
+/// The same in rows, where there are no times.
+const REST_MIN_ROWS: f64 = 2.0;
 /// A voltage or load this far beyond the data is still taken as measured.
 const EXTRAPOLATION: f64 = 1.05;
 /// A stroke with less friction than this part of the median did not slip all the way.
@@ -59,6 +64,13 @@ pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
 pub(super) fn check_levels(levels: &Levels) -> Result<(f64, f64), FitError> {
     let Some((low, high)) = levels.range_v_rms() else { return Err(FitError::NoVoltage) };
     if high < VOLTAGE_RATIO_MIN * low { Err(FitError::OneVoltage { found: high }) } else { Ok((low, high)) }
+}
+
+/// Whether the voltages are those of an envelope, which rests at a level for some rows, and not of the carrier itself.
+pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<(), FitError> {
+    let (rest_rows, rest_s) = levels.rest(recording);
+    let is_carrier = rest_s.map_or(rest_rows < REST_MIN_ROWS, |rest_s| rest_s < REST_MIN_S);
+    if is_carrier { Err(FitError::RawCarrier { rest_rows }) } else { Ok(()) }
 }
 
 /// Whether the strokes have like loads; returns their median, and the smallest and the largest.

@@ -50,6 +50,8 @@ pub struct EventRow {
     pub event: BoardEvent,
     /// Time at which the board had received the last complete frame from a host, s.
     pub last_frame_t_s: f64,
+    /// Time that a virtual board dropped, s.
+    pub dropped_s: Option<f64>,
 }
 
 impl<R: CsvRow> CsvFile<R> {
@@ -108,11 +110,17 @@ impl CsvRow for FeltRow {
 }
 
 impl CsvRow for EventRow {
-    const HEADER: &'static str = "t_s,event,last_frame_t_s";
+    const HEADER: &'static str = "t_s,event,last_frame_t_s,dropped_s";
 
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let BoardEvent { t_s, kind } = self.event;
-        write!(formatter, "{t_s:.6},{},{:.6}", kind.name(), self.last_frame_t_s)
+        write!(
+            formatter,
+            "{t_s:.6},{},{:.6},{}",
+            kind.name(),
+            self.last_frame_t_s,
+            Cell { value: self.dropped_s, decimals: 6 }
+        )
     }
 }
 

@@ -7,6 +7,8 @@ use thiserror::Error;
 
 use frixel_scene::recorder::FeltRow;
 
+use crate::input;
+
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
 #[error("{}: {reason}: give the felt.csv that `frixel sim` writes", path.display())]
@@ -33,7 +35,7 @@ impl FeltLog {
     /// Reads the file that `frixel sim` writes. A last row that is not complete is left out.
     pub fn read(path: &Path) -> Result<Self, FeltLogError> {
         let error = |reason: String| FeltLogError { path: path.to_owned(), reason };
-        let text = std::fs::read_to_string(path).map_err(|source| error(source.to_string()))?;
+        let text = input::read_text(path, input::CSV_MAX_BYTES).map_err(|source| error(source.to_string()))?;
         let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
         let mut reader = csv::Reader::from_reader(whole.as_bytes());
         let rows: Result<Vec<LogRow>, csv::Error> = reader.deserialize().collect();

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use frixel_driver::{DEFAULT_BAUD, Link, LinkClosed, PortError, SerialLink, Written};
+use frixel_driver::{DEFAULT_BAUD, KeepAlive, Link, LinkClosed, PortError, SerialLink, Written};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
 use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::message::Telemetry;
@@ -14,7 +14,9 @@ use super::RecordedLink;
 use super::recorded::{ReferenceFinger, finger_and_felt};
 
 /// Wall time between two readings of the board's clock.
-const POLL_PERIOD: Duration = Duration::from_millis(2);
+const POLL_PERIOD: Duration = Duration::from_millis(1);
+/// Ticks that the board may run ahead of this host: 5 ms, so that a ping is in time for every host timeout.
+const SLICE_TICKS: u32 = 200;
 /// Wall time after which a clock that does not advance counts as stopped.
 const PATIENCE: Duration = Duration::from_mins(2);
 /// Number of ticks that are held until their telemetry arrives: 0.2 s.
@@ -23,7 +25,10 @@ const HELD_TICKS: usize = 8_000;
 /// The serial port of an emulated board, with a clock that follows the board's ticks.
 ///
 /// The clock stands still while bytes are on their way to the board, because the speed at which the emulator transfers
-/// them depends on the load of the machine.
+/// them depends on the load of the machine. The board's own clock stands still while this host has not answered for its
+/// slice of time: sent the pings that are due in it, and seen all that it has sent arrive. Without that, a busy machine
+/// would let the board run into the host timeout while the host does not run. A link that is dropped lets the board
+/// run on, and the host timeout acts; so does a host that hangs for 10 s.
 ///
 /// The record has every tick of the world. The emulated serial port is too slow for telemetry in every row: values that
 /// only the board knows are in those rows for which a telemetry message arrived.
@@ -36,6 +41,9 @@ pub struct EmulatedLink<'b> {
     seen_ticks: Cell<u32>,
     /// Ticks that have passed on the link's clock.
     clock_ticks: Cell<u64>,
+    pings: KeepAlive,
+    /// Time of the last write, on the link's clock.
+    written_at: Duration,
     records: Receiver<LinkRecord>,
     /// Ticks without their telemetry yet, and telemetry without its tick yet.
     held: VecDeque<LinkRecord>,
@@ -49,40 +57,63 @@ impl<'b> EmulatedLink<'b> {
     pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, PortError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
         let counts = board.received_bytes().and_then(|received| Ok((received, board.ticks()?)));
-        let (received_before, ticks) = counts.map_err(|error| PortError::NotOpened {
+        let not_opened = |error: EmulatorError| PortError::NotOpened {
             port: board.serial_path().to_owned(),
             reason: error.to_string(),
-        })?;
-        Ok(Self {
+        };
+        let (received_before, ticks) = counts.map_err(not_opened)?;
+        let link = Self {
             serial,
             board,
             received_before,
             seen_ticks: Cell::new(ticks),
             clock_ticks: Cell::new(0),
+            pings: KeepAlive::default(),
+            written_at: Duration::ZERO,
             records,
             held: VecDeque::new(),
             telemetry: VecDeque::new(),
             recorder: Recorder::idle(),
             reference_finger: ReferenceFinger::Scene,
-        })
+        };
+        let opened = board.host_answers_to(ticks.wrapping_add(SLICE_TICKS)).and_then(|()| board.set_host_open(true));
+        opened.map(|()| link).map_err(not_opened)
     }
 
     /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
     /// skin; without this, with the friction of the scene's finger in steady sliding.
     #[must_use]
-    pub fn referring_to_simulated_finger(self) -> Self {
-        Self { reference_finger: ReferenceFinger::simulated(), ..self }
+    pub fn referring_to_simulated_finger(mut self) -> Self {
+        self.reference_finger = ReferenceFinger::simulated();
+        self
     }
 
-    /// Advances the clock with the board's.
-    fn follow(&self) -> Result<(), EmulatorError> {
+    /// Advances the clock with the board's. Returns whether all that was sent has arrived.
+    fn follow(&self) -> Result<bool, EmulatorError> {
         let ticks = self.board.ticks()?;
         let passed = ticks.wrapping_sub(self.seen_ticks.replace(ticks));
         let received = self.board.received_bytes()?.wrapping_sub(self.received_before);
         // Both counts wrap at 2^32; their difference always fits in an `i32`.
-        let under_way = (self.serial.written().bytes as u32).wrapping_sub(received) as i32;
-        if under_way <= 0 {
+        let has_arrived = (self.serial.written().bytes as u32).wrapping_sub(received) as i32 <= 0;
+        if has_arrived {
             self.clock_ticks.update(|clock| clock + u64::from(passed));
+        }
+        Ok(has_arrived)
+    }
+
+    /// Advances the clock, pings the board if a ping is due, and answers for the next slice of its time once all that
+    /// was sent has arrived.
+    fn serve(&mut self) -> Result<(), LinkClosed> {
+        let failed = |error: EmulatorError| closed(self.board, &error);
+        let has_arrived = self.follow().map_err(failed)?;
+        let now = self.now();
+        if self.pings.due_at(self.written_at).is_some_and(|due| due <= now) {
+            let ping = self.pings.next_ping(now);
+            self.serial.write(&ping)?;
+            self.written_at = now;
+        } else if has_arrived {
+            let answered_to = self.seen_ticks.get().wrapping_add(SLICE_TICKS);
+            self.board.host_answers_to(answered_to).map_err(failed)?;
         }
         Ok(())
     }
@@ -134,6 +165,7 @@ impl RecordedLink for EmulatedLink<'_> {
 impl Link for EmulatedLink<'_> {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
         self.recorder.record_sent(frame);
+        self.written_at = self.now();
         self.serial.write(frame)
     }
 
@@ -141,9 +173,11 @@ impl Link for EmulatedLink<'_> {
         let end = self.now() + wait;
         let before = buffer.len();
         let (mut moved_at, mut seen) = (Instant::now(), self.now());
+        self.serve()?;
         while buffer.len() == before && self.now() < end {
             self.serial.read(buffer, POLL_PERIOD)?;
-            self.follow().map_err(|error| closed(self.board, &error))?;
+            self.pings.hear(buffer.get(before..).unwrap_or_default());
+            self.serve()?;
             if self.now() != seen {
                 (moved_at, seen) = (Instant::now(), self.now());
             } else if moved_at.elapsed() > PATIENCE {
@@ -160,8 +194,8 @@ impl Link for EmulatedLink<'_> {
         Duration::from_secs(self.clock_ticks.get()) / BOARD.tick_hz
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.serial.keep_alive(frame, period);
+    fn keep_alive(&mut self, period: Duration) {
+        self.pings.set_period(period);
     }
 
     fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
@@ -174,6 +208,13 @@ impl Link for EmulatedLink<'_> {
 
     fn name(&self) -> &str {
         self.serial.name()
+    }
+}
+
+impl Drop for EmulatedLink<'_> {
+    fn drop(&mut self) {
+        // If the emulator has exited, there is no clock to start.
+        let _ = self.board.set_host_open(false);
     }
 }
 

@@ -28,6 +28,8 @@ pub enum EventKind {
     State(State),
     /// The board has not received a frame from its host for the scene's host timeout.
     HostSilent,
+    /// A virtual board was too far behind the wall clock, and has dropped the time beyond that.
+    TimeDropped,
 }
 
 /// Why a board stopped without a stop command.
@@ -50,6 +52,7 @@ impl EventKind {
             Self::State(State::Active) => "active",
             Self::State(State::Faulted) => "faulted",
             Self::HostSilent => "host-silent",
+            Self::TimeDropped => "time-dropped",
         }
     }
 }

@@ -11,6 +11,8 @@
 mod emulated;
 mod event_log;
 mod force_sensor;
+#[cfg(unix)]
+mod pace;
 mod port;
 mod recorded;
 #[cfg(unix)]
@@ -23,6 +25,8 @@ mod sim_link;
 pub use emulated::EmulatedLink;
 pub use event_log::{BoardEvent, EventKind, EventLog, StopReason};
 pub use force_sensor::ForceSensor;
+#[cfg(unix)]
+pub use pace::Dropped;
 pub use port::PortLink;
 pub use recorded::RecordedLink;
 #[cfg(unix)]

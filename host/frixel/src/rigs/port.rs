@@ -47,8 +47,8 @@ impl Link for PortLink {
         self.serial.now()
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.serial.keep_alive(frame, period);
+    fn keep_alive(&mut self, period: Duration) {
+        self.serial.keep_alive(period);
     }
 
     fn set_shutdown_frames(&mut self, frames: Vec<u8>) {

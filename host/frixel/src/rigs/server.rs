@@ -7,20 +7,15 @@ use std::time::{Duration, Instant};
 use frixel_hil_sim::{PseudoTerminal, Rig};
 use thiserror::Error;
 
+use super::pace::{Dropped, Pace};
 use super::server_log::ServerLog;
 use crate::output::OutputError;
 
 /// Time that the server sleeps between two readings of the clock.
 const NAP: Duration = Duration::from_millis(1);
-/// Most virtual time between two reads of the terminal, and so the largest delay of a client's bytes.
-const BATCH_MAX_S: f64 = 5e-3;
 /// Most reads of 4 KiB between two batches of ticks. This is more than a terminal buffers, and bounds the loop when a
 /// client writes as fast as the server reads.
 const READS_MAX: usize = 16;
-/// Largest lag of virtual time behind the wall clock, for example on a busy machine. The server does not catch up on a
-/// lag beyond that.
-const LAG_MAX_S: f64 = 50e-3;
-
 /// Why a virtual board stopped.
 #[derive(Debug, Error)]
 pub enum ServerError {
@@ -62,25 +57,27 @@ impl Server {
     }
 
     /// Runs `rig` at the pace of the wall clock until `interrupted` returns true. The finger starts its stroke at once.
-    /// Ticks and events are written to the files.
-    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<(), ServerError> {
+    /// Ticks and events are written to the files. Returns the time that was dropped, because the server was too far
+    /// behind the wall clock to catch up.
+    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<Dropped, ServerError> {
         let tick_period_s = 1.0 / f64::from(rig.tick_hz());
         rig.world_mut().start_stroke();
-        let mut epoch = Instant::now();
+        let (begin, mut pace) = (Instant::now(), Pace::default());
         while !interrupted() {
             self.exchange(rig).map_err(|source| ServerError::Line { path: self.path().to_owned(), source })?;
-            let mut behind_s = epoch.elapsed().as_secs_f64() - rig.tick() as f64 * tick_period_s;
-            if behind_s > LAG_MAX_S {
-                epoch += Duration::from_secs_f64(behind_s - BATCH_MAX_S);
-                behind_s = BATCH_MAX_S;
+            let virtual_s = rig.tick() as f64 * tick_period_s;
+            let batch = pace.next(begin.elapsed().as_secs_f64(), virtual_s);
+            if batch.dropped_s > 0.0 {
+                self.log.note_dropped(virtual_s, batch.dropped_s)?;
             }
-            for _ in 0..(behind_s.min(BATCH_MAX_S) / tick_period_s) as u32 {
+            for _ in 0..(batch.virtual_s / tick_period_s) as u32 {
                 let record = rig.step();
                 self.log.take(&record, rig)?;
             }
             std::thread::sleep(NAP);
         }
-        Ok(self.log.flush()?)
+        self.log.flush()?;
+        Ok(pace.dropped())
     }
 
     /// Transfers bytes between client and board.

@@ -8,7 +8,7 @@ use frixel_scene::recorder::Recorder;
 use frixel_wire::fault::State;
 
 use super::sim_link::observation;
-use super::{EventLog, ForceSensor};
+use super::{BoardEvent, EventKind, EventLog, ForceSensor};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv, OutputError};
 
 /// Virtual time between two flushes, which limits how much a killed server loses.
@@ -71,9 +71,16 @@ impl ServerLog {
         self.events.observe(t_s, status.telemetry.state, status.fault.map(|(fault, _)| fault), status.telemetry.flags);
         let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
         for event in self.events.take_events() {
-            self.events_csv.write(&EventRow { event, last_frame_t_s })?;
+            self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: None })?;
         }
         if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes that this board has dropped time, after `t_s` seconds.
+    pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<(), OutputError> {
+        let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
+        let event = BoardEvent { t_s, kind: EventKind::TimeDropped };
+        self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: Some(dropped_s) })
     }
 
     /// Writes the buffered rows to the files.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Link, LinkClosed, Written};
+use frixel_driver::{KeepAlive, Link, LinkClosed, Written};
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::fault::State;
@@ -10,12 +10,6 @@ use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;
 use super::recorded::{ReferenceFinger, finger_and_felt};
-
-/// A frame that is sent periodically without a call.
-struct KeepAlive {
-    frame: Vec<u8>,
-    period_ticks: u64,
-}
 
 /// Is called with every tick that is recorded.
 type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
@@ -29,8 +23,10 @@ pub struct SimLink<'a> {
     reference_finger: ReferenceFinger,
     recording: bool,
     written: Written,
-    written_at_tick: u64,
-    keep_alive: Option<KeepAlive>,
+    written_at: Duration,
+    pings: KeepAlive,
+    /// Tick at which the next ping is due.
+    ping_tick: Option<u64>,
     observer: Option<Observer<'a>>,
 }
 
@@ -43,8 +39,9 @@ impl<'a> SimLink<'a> {
             reference_finger: ReferenceFinger::Scene,
             recording: false,
             written: Written::default(),
-            written_at_tick: 0,
-            keep_alive: None,
+            written_at: Duration::ZERO,
+            pings: KeepAlive::default(),
+            ping_tick: None,
             observer: None,
         }
     }
@@ -72,11 +69,9 @@ impl<'a> SimLink<'a> {
     }
 
     fn step(&mut self) {
-        let ping =
-            self.keep_alive.take_if(|keep_alive| self.rig.tick() - self.written_at_tick >= keep_alive.period_ticks);
-        if let Some(keep_alive) = ping {
-            self.send(&keep_alive.frame);
-            self.keep_alive = Some(keep_alive);
+        if self.ping_tick.is_some_and(|tick| tick <= self.rig.tick()) {
+            let ping = self.pings.next_ping(self.now());
+            self.send(&ping);
         }
         let record = self.rig.step();
         if self.recording {
@@ -95,7 +90,12 @@ impl<'a> SimLink<'a> {
         self.rig.send(frame);
         self.recorder.record_sent(frame);
         self.written.add(frame);
-        self.written_at_tick = self.rig.tick();
+        self.written_at = self.now();
+        self.plan_ping();
+    }
+
+    fn plan_ping(&mut self) {
+        self.ping_tick = self.pings.due_at(self.written_at).map(|due| self.ticks(due));
     }
 }
 
@@ -132,7 +132,11 @@ impl Link for SimLink<'_> {
         while !self.rig.has_received() && self.rig.tick() < end {
             self.step();
         }
+        let len_before = buffer.len();
         self.rig.receive(buffer);
+        if self.pings.hear(buffer.get(len_before..).unwrap_or_default()) {
+            self.plan_ping();
+        }
         Ok(())
     }
 
@@ -140,8 +144,9 @@ impl Link for SimLink<'_> {
         Duration::from_secs_f64(self.rig.tick() as f64 / f64::from(self.rig.tick_hz()))
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.keep_alive = Some(KeepAlive { frame, period_ticks: self.ticks(period) });
+    fn keep_alive(&mut self, period: Duration) {
+        self.pings.set_period(period);
+        self.plan_ping();
     }
 
     fn written(&self) -> Written {

@@ -39,6 +39,19 @@ impl SceneFiles {
         self.scene.has_vanished()
     }
 
+    /// The files that the scene names outside of its own folder, also by links, as it names them from there.
+    pub fn outside(&self) -> impl Iterator<Item = &Path> {
+        let folder = match self.path().parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let folder = folder.canonicalize().ok();
+        let is_inside = move |path: &Path| {
+            folder.as_ref().zip(path.canonicalize().ok()).is_none_or(|(folder, path)| path.starts_with(folder))
+        };
+        self.named.iter().map(SavedFile::path).filter(move |path| !is_inside(path))
+    }
+
     /// Finds the file of the scene that `path` leads to, also by links; `None` if `path` leads to no file of the scene.
     pub fn find(&self, path: &Path) -> Option<&Path> {
         let found = path.canonicalize().ok()?;

@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 use frixel_scene::{CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE};
 use thiserror::Error;
 
+use crate::input;
+
 pub use files::SceneFiles;
 
 /// Why a scene file could not be loaded.
@@ -47,7 +49,8 @@ impl SceneFileError {
     pub fn to_json(&self) -> String {
         match self {
             Self::Unreadable { file, source } | Self::UnreadableProfile { file, source, .. } => {
-                serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [] }).to_string()
+                serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [], "has_more": false })
+                    .to_string()
             }
             Self::Compile(error) => error.to_json(),
         }
@@ -77,7 +80,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 pub fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
     let files = SceneFiles::new(path);
-    match fs::read(path) {
+    match input::read(path, input::TOML_MAX_BYTES) {
         Ok(bytes) => {
             let named = NamedFiles { folder: folder_of(path), files: RefCell::new(files) };
             let scene = Scene::parse_bytes(&bytes, &file, &named).map_err(SceneFileError::from);
@@ -109,7 +112,7 @@ fn folder_of(scene: &Path) -> SceneFolder {
 pub fn migrate(path: &Path) -> Result<String, SceneFileError> {
     let file = path.display().to_string();
     let folder = folder_of(path);
-    match fs::read(path) {
+    match input::read(path, input::TOML_MAX_BYTES) {
         Ok(bytes) => {
             // Report bytes that are not text in the same way as everywhere.
             Scene::parse_bytes(&bytes, &file, &folder)?;
@@ -172,7 +175,7 @@ fn profile<T>(
     if let Some(profile) = bundled(name) {
         return Ok(profile);
     }
-    match fs::read_to_string(name) {
+    match input::read_text(Path::new(name), input::TOML_MAX_BYTES) {
         Ok(text) => Ok(parse(&text, name)?),
         Err(source) => Err(SceneFileError::UnreadableProfile {
             what,
@@ -190,8 +193,13 @@ pub struct SceneFolder(pub PathBuf);
 impl Files for SceneFolder {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
         let path = self.0.join(name);
-        if path.is_file() {
-            return fs::read(&path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
+        if path.is_dir() {
+            return Err(FileUnavailable::Unreadable { reason: "it is a folder".to_owned() });
+        }
+        if path.exists() {
+            let max_bytes = if is_toml(&path) { input::TOML_MAX_BYTES } else { input::PICTURE_MAX_BYTES };
+            return input::read(&path, max_bytes)
+                .map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
         }
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -200,6 +208,10 @@ impl Files for SceneFolder {
         let place = if folder == Path::new(".") { "this folder".to_owned() } else { folder.display().to_string() };
         Err(FileUnavailable::Missing { place, files: files_in(folder) })
     }
+}
+
+fn is_toml(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
 /// The sorted names of the entries of a folder; empty when the folder cannot be read.
@@ -287,7 +299,7 @@ mod tests {
         let missing =
             FileUnavailable::Missing { place: textures.display().to_string(), files: vec!["brick.png".to_owned()] };
         assert_eq!(files.bytes("textures/brik.png"), Err(missing.clone()));
-        let FileUnavailable::Missing { files, .. } = files.bytes("textures").unwrap_err() else { panic!() };
-        assert_eq!(files, ["textures"]);
+        let FileUnavailable::Unreadable { reason } = files.bytes("textures").unwrap_err() else { panic!() };
+        assert_eq!(reason, "it is a folder");
     }
 }

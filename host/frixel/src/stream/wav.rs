@@ -1,15 +1,18 @@
 //! Reading of WAV files.
 
+use std::io::BufReader;
 use std::path::Path;
 
 use hound::{SampleFormat, WavReader};
 
 use super::FeedError;
+use crate::input;
 
 /// The sample rate, reduced to at most `max_hz`, and the samples of the first channel.
 pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), FeedError> {
     let failed = |source| FeedError::Wav { path: path.to_owned(), source };
-    let mut reader = WavReader::open(path).map_err(failed)?;
+    let file = input::open(path, input::WAV_MAX_BYTES).map_err(|error| failed(error.into()))?;
+    let mut reader = WavReader::new(BufReader::new(file)).map_err(failed)?;
     let spec = reader.spec();
     let channels = usize::from(spec.channels.max(1));
     let samples: Vec<f64> = match spec.sample_format {

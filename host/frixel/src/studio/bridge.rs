@@ -5,6 +5,7 @@
 use std::io::{self, Write};
 use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::Duration;
 
 use frixel_driver::{DEFAULT_BAUD, Link, LinkClosed, SerialLink};
@@ -65,11 +66,27 @@ fn exchange(socket: &mut WebSocket<TcpStream>, port: &mut SerialLink, bytes: &mu
             Err(_) => return Err(End::Socket),
         }
     }
+    // Nothing more is taken from the port while the page has not read what was sent: the port then drops what it has no
+    // room for, as it does for every program that does not read it.
+    if !flushed(socket.flush())? {
+        thread::sleep(WAIT);
+        return Ok(());
+    }
     bytes.clear();
     port.read(bytes, WAIT).map_err(End::Port)?;
-    let sent = if bytes.is_empty() { socket.flush() } else { socket.send(Message::binary(bytes.clone())) };
-    // What the socket does not take now stays in its buffer.
-    sent.or_else(|error| if is_pending(&error) { Ok(()) } else { Err(End::Socket) })
+    if !bytes.is_empty() {
+        flushed(socket.send(Message::binary(bytes.clone())))?;
+    }
+    Ok(())
+}
+
+/// Whether all is sent. What the socket does not take now stays in its buffer.
+fn flushed(sent: Result<(), Error>) -> Result<bool, End> {
+    match sent {
+        Ok(()) => Ok(true),
+        Err(error) if is_pending(&error) => Ok(false),
+        Err(_) => Err(End::Socket),
+    }
 }
 
 fn is_pending(error: &Error) -> bool {

@@ -1,11 +1,11 @@
 //! The page's bytes: a given file, or the one that a checkout builds.
 
 use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use super::StudioError;
+use crate::input;
 
 /// The page in the folder of build artefacts.
 const BUILT_PAGE: &str = "studio/frixel-studio.html";
@@ -48,5 +48,6 @@ fn build(checkout: &Path) -> Result<PathBuf, StudioError> {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, StudioError> {
-    fs::read(path).map_err(|source| StudioError::Page { path: path.display().to_string(), source })
+    input::read(path, input::PAGE_MAX_BYTES)
+        .map_err(|source| StudioError::Page { path: path.display().to_string(), source })
 }

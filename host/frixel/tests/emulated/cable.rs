@@ -43,8 +43,8 @@ impl Link for Cable<'_> {
         self.link.now()
     }
 
-    fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.link.keep_alive(frame, period);
+    fn keep_alive(&mut self, period: Duration) {
+        self.link.keep_alive(period);
     }
 
     fn written(&self) -> Written {

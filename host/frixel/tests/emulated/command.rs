@@ -56,6 +56,45 @@ fn a_scene_plays_on_the_emulated_board() {
     }
 }
 
+/// Processes that take all the time of the machine that they get.
+struct Busy(Vec<std::process::Child>);
+
+impl Busy {
+    fn start(count: usize) -> Self {
+        let busy = || Command::new("sh").args(["-c", "while :; do :; done"]).spawn().unwrap();
+        Self((0..count).map(|_| busy()).collect())
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        for process in &mut self.0 {
+            let _ = process.kill();
+            let _ = process.wait();
+        }
+    }
+}
+
+/// With the default host timeout: the emulated clock waits for the host, which hardly runs.
+#[test]
+fn a_scene_plays_beside_eight_busy_processes() {
+    if emulator::image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let folder = TempDir::new().unwrap();
+    let mut command = play(folder.path());
+    let scene = folder.path().join("brick.toml");
+    let text = fs::read_to_string(&scene).unwrap();
+    fs::write(&scene, text.replace("host_timeout_ms = 1000\n", "host_timeout_ms = 100\n")).unwrap();
+    let busy = Busy::start(8);
+    let output = command.args(["--seconds", "0.5"]).output().unwrap();
+    drop(busy);
+    assert!(output.status.success(), "{}", said(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["ticks"], 20_000);
+}
+
 /// Ctrl-C in a terminal goes to the emulator, too.
 #[test]
 fn an_interrupted_play_leaves_what_was_played() {

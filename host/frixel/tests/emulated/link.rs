@@ -69,3 +69,20 @@ fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
     let hello = *Device::connect(Cable::plug(&bench.board)).unwrap().hello();
     assert_eq!((hello.state, hello.last_fault), (State::Disarmed, None));
 }
+
+/// It is connected, and makes no call any more: the emulated clock waits for it for 10 s, and then runs on.
+#[test]
+fn a_host_that_hangs_puts_the_output_to_zero_after_the_wait_for_it() {
+    let Some(image) = emulator::image() else { return };
+    let bench = Bench::new(&image);
+    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
+    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    bench.until_driven(&mut device);
+    bench.until("the clock stands still", |board| {
+        let ticks = board.ticks().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        board.ticks().unwrap() == ticks
+    });
+    bench.until("the host timeout acts", |board| !board.output().unwrap().amplifier_enable);
+    assert!(device.counters().frames_sent > 0, "the host is still there");
+}

@@ -61,6 +61,21 @@ fn every_row_of_the_file_is_checked() {
     assert_eq!((rows[0].voltage_v_rms, rows[0].normal_force_n, rows[0].friction_n), (150.0, 0.5, 0.25));
 }
 
+/// A rectified carrier of 125 Hz, as a data logger samples it. Without the rule, it is fitted for a minute, or taken.
+#[test]
+fn samples_of_the_carrier_are_refused() {
+    let carrier = |row: &mut Row| {
+        let time_s = row.time_s.unwrap();
+        row.voltage_v_rms *= std::f64::consts::SQRT_2 * (std::f64::consts::TAU * 125.0 * time_s).sin().abs();
+    };
+    refused(carrier, &["look like samples of the carrier", "root mean square"]);
+    let without_times = |row: &mut Row| {
+        carrier(row);
+        row.time_s = None;
+    };
+    refused(without_times, &["look like samples of the carrier"]);
+}
+
 #[test]
 fn loads_and_units() {
     refused(|row| row.normal_force_n = 0.0, &["there are no loads", "load cell"]);

@@ -59,8 +59,7 @@ pub(super) const PICTURES: &[Case] = &[
              x_mm = 0\n\
              y_mm = 0\n\
              width_mm = 40\n",
-        says: "s.toml:4:11: picture \".\" was not found in this folder: paths start from the folder of the \
-             file that names it",
+        says: "s.toml:4:11: picture \".\" cannot be used: it cannot be read (it is a folder)",
         ..CASE
     },
     Case {

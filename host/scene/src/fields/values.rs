@@ -9,6 +9,10 @@ use crate::grammar::{Absence, Axis, FieldSpec, Holds, LengthFields, Range};
 use crate::log::Log;
 use crate::mistake::FieldMistake;
 use crate::nearest::Nearest;
+use crate::printable::{NAME_MAX_CHARS, is_printable};
+
+/// The field of a name, which may have only so many characters.
+const NAME: &str = "name";
 
 /// A table, or the name of a file that contains it.
 pub(crate) enum TableOrText<'i> {
@@ -133,14 +137,32 @@ impl<'i> Fields<'i> {
         default
     }
 
-    /// A text.
+    /// A text that names something, so that it may stand in a message as it is: all of it is seen.
     pub(crate) fn text(&mut self, log: &mut Log, field: &FieldSpec) -> Option<String> {
         let value = self.take(field)?;
         Self::text_of(log, field.name, &value)
     }
 
+    /// A text for a reader, of any characters.
+    pub(crate) fn free_text(&mut self, log: &mut Log, field: &FieldSpec) -> Option<String> {
+        let value = self.take(field)?;
+        if let DeValue::String(text) = value.get_ref() {
+            return Some(text.clone().into_owned());
+        }
+        Self::text_of(log, field.name, &value)
+    }
+
     fn text_of(log: &mut Log, field: &'static str, value: &Spanned<DeValue>) -> Option<String> {
         if let DeValue::String(text) = value.get_ref() {
+            if !is_printable(text) {
+                log.add(value.span().start, FieldMistake::Unprintable { field });
+                return None;
+            }
+            let found = text.chars().count();
+            if field == NAME && found > NAME_MAX_CHARS {
+                log.add(value.span().start, FieldMistake::NameTooLong { field, found });
+                return None;
+            }
             return Some(text.clone().into_owned());
         }
         log.add(value.span().start, wrong_type(field, "a text in quotes", value.get_ref()));
@@ -214,6 +236,10 @@ impl<'i> Fields<'i> {
         match value.into_inner() {
             DeValue::Table(values) => {
                 Some(TableOrText::Table(Box::new(self.of_field(&format!("[{name}]"), name, offset, values))))
+            }
+            DeValue::String(text) if !is_printable(&text) => {
+                log.add(offset, FieldMistake::Unprintable { field: name });
+                None
             }
             DeValue::String(text) => Some(TableOrText::Text(text.into_owned())),
             other => {
@@ -324,7 +350,12 @@ impl<'i> Fields<'i> {
 fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeValue>) -> Option<f64> {
     let offset = value.span().start;
     let found = match value.get_ref() {
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64),
+        // One of more digits than an i64 has is out of every range.
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+        DeValue::Integer(integer) => {
+            let whole = i64::from_str_radix(integer.as_str(), integer.radix());
+            Some(whole.map_or(f64::MAX, |whole| whole as f64))
+        }
         DeValue::Float(float) => float.as_str().parse().ok(),
         _ => None,
     };

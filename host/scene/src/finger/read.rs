@@ -98,7 +98,7 @@ fn date(fields: &mut Fields, log: &mut Log) -> Option<String> {
 
 fn not_empty(fields: &mut Fields, field: &FieldSpec, log: &mut Log) -> Option<String> {
     let offset = fields.place(field.name);
-    let text = fields.text(log, field)?;
+    let text = fields.free_text(log, field)?;
     if text.trim().is_empty() {
         log.add(offset, FieldMistake::EmptyText { field: field.name });
         return None;

@@ -98,7 +98,7 @@ impl Words for Bitmap {
             fields.length_mm(log, field)
         };
         let (x_mm, y_mm, width_mm) = (place(&X), place(&Y), place(&WIDTH));
-        let picture = fields.text(log, &PICTURE);
+        let picture = fields.free_text(log, &PICTURE);
         let height_mm = fields.length_mm(log, &HEIGHT);
         let pitch_mm = fields.number_or_auto(log, &PITCH);
         let levels = [("full", Levels::Full), ("stretch", Levels::Stretch)];

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::kinds::KindName;
 use crate::nearest::Nearest;
+use crate::printable::{NAME_MAX_CHARS, Shown};
 
 /// A mistake in a field, or between fields of a table.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -73,7 +74,7 @@ pub enum FieldMistake {
         found: &'static str,
     },
     /// A number is out of range, or not a number.
-    #[error("`{field} = {found}` is out of range: expected {min} to {max}{unit}")]
+    #[error("`{field} = {}` is out of range: expected {min} to {max}{unit}", Shown(*.found))]
     OutOfRange {
         /// The field.
         field: &'static str,
@@ -87,7 +88,7 @@ pub enum FieldMistake {
         unit: &'static str,
     },
     /// A time is longer than one that it is a part of.
-    #[error("`{field} = {found}` is longer than {whole}: expected at most {max_ms} ms")]
+    #[error("`{field} = {}` is longer than {whole}: expected at most {max_ms} ms", Shown(*.found))]
     TooLong {
         /// The field.
         field: &'static str,
@@ -121,7 +122,7 @@ pub enum FieldMistake {
         field: &'static str,
     },
     /// A lower limit is above its upper limit.
-    #[error("`{low_name} = {low}` is above `{high_name} = {high}`: swap them")]
+    #[error("`{low_name} = {}` is above `{high_name} = {}`: swap them", Shown(*.low), Shown(*.high))]
     LowAboveHigh {
         /// The field of the lower limit.
         low_name: &'static str,
@@ -141,7 +142,7 @@ pub enum FieldMistake {
         other: &'static str,
     },
     /// A number has a fraction and must not.
-    #[error("`{field} = {found}` has to be a whole number: round it")]
+    #[error("`{field} = {}` has to be a whole number: round it", Shown(*.found))]
     NotWhole {
         /// The field.
         field: &'static str,
@@ -149,7 +150,7 @@ pub enum FieldMistake {
         found: f64,
     },
     /// The first number of an interval is above the second one.
-    #[error("`{field} = [{low}, {high}]` falls: write the smaller number first")]
+    #[error("`{field} = [{}, {}]` falls: write the smaller number first", Shown(*.low), Shown(*.high))]
     IntervalReversed {
         /// The field.
         field: &'static str,
@@ -169,6 +170,20 @@ pub enum FieldMistake {
     EmptyText {
         /// The field.
         field: &'static str,
+    },
+    /// A text has characters that are not seen.
+    #[error("`{field}` has a character that controls a terminal, or is not seen: take it out")]
+    Unprintable {
+        /// The field.
+        field: &'static str,
+    },
+    /// A name is too long.
+    #[error("`{field}` has {found} characters: expected at most {max}", max = NAME_MAX_CHARS)]
+    NameTooLong {
+        /// The field.
+        field: &'static str,
+        /// How many characters it has.
+        found: usize,
     },
     /// A list is too short or too long.
     #[error("`{field}` has {found} {}: expected {}", if *.found == 1 { "entry" } else { "entries" }, count(*.min, *.max))]

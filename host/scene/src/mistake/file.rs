@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::TILDE_ADVICE;
 use crate::nearest::Nearest;
+use crate::printable::Shown;
 
 /// A mistake of a whole file, or between the files of a scene.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -16,7 +17,10 @@ pub enum FileMistake {
     #[error("this is not TOML: {0}")]
     Syntax(String),
     /// The scene file has another version.
-    #[error("this scene file has version {found}, and this frixel reads versions 1 and 2: use a frixel that knows it")]
+    #[error(
+        "this scene file has version {}, and this frixel reads versions 1 and 2: use a frixel that knows it",
+        Shown(*.found)
+    )]
     Version {
         /// The version, as written.
         found: f64,
@@ -55,7 +59,8 @@ pub enum FileMistake {
     },
     /// An included file has another version.
     #[error(
-        "{file} includes {included}, which has version {found} and not 2: {}",
+        "{file} includes {included}, which has version {} and not 2: {}",
+        Shown(*.found),
         version_advice(*.found, .included)
     )]
     IncludedVersion {

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use serialport::SerialPort;
 
+use crate::keep_alive::KeepAlive;
 use crate::link::{KEEP_ALIVE_TIMEOUT, Written};
 
 /// Most received bytes that are stored for a caller that does not read: 20 s of telemetry at 1 kHz. Further bytes are
@@ -17,7 +18,7 @@ pub(super) struct Shared {
     state: Mutex<State>,
     /// Signals that bytes have arrived, or that the link has closed.
     pub(super) arrived: Condvar,
-    /// Signals that bytes were queued, the keep-alive has changed, or the link is closing.
+    /// Signals that bytes were queued, the next ping may be due earlier, or the link is closing.
     pub(super) queued: Condvar,
     /// Signals that a thread has ended and closed its side of the port.
     pub(super) ended: Condvar,
@@ -27,8 +28,9 @@ pub(super) struct State {
     pub(super) receive_buffer: Vec<u8>,
     transmit_queue: Vec<u8>,
     pub(super) written: Written,
+    opened: Instant,
     last_write: Instant,
-    keep_alive: Option<(Vec<u8>, Duration)>,
+    pub(super) pings: KeepAlive,
     /// When the application's last call returned; `None` during a call that waits.
     last_call: Option<Instant>,
     /// Why the link has closed.
@@ -45,8 +47,9 @@ impl Shared {
                 receive_buffer: Vec::new(),
                 transmit_queue: Vec::new(),
                 written: Written::default(),
+                opened,
                 last_write: opened,
-                keep_alive: None,
+                pings: KeepAlive::default(),
                 last_call: Some(opened),
                 closed: None,
                 closing: false,
@@ -73,6 +76,10 @@ impl Shared {
             match outcome {
                 Ok(0) => return self.close(state, "the other end hung up".into()),
                 Ok(len) => {
+                    if state.pings.hear(bytes.get(..len).unwrap_or_default()) {
+                        // The next ping may be due earlier.
+                        self.queued.notify_one();
+                    }
                     let room = RECEIVE_BUFFER_MAX_LEN - state.receive_buffer.len();
                     state.receive_buffer.extend(bytes.iter().take(len.min(room)));
                     self.arrived.notify_one();
@@ -91,7 +98,7 @@ impl Shared {
         }
     }
 
-    /// Waits for bytes to write, keep-alive frames included. Returns `None` when the link closes and everything is
+    /// Waits for bytes to write, pings included. Returns `None` when the link closes and everything is
     /// written.
     fn next_to_write(&self) -> Option<Vec<u8>> {
         let mut state = self.lock();
@@ -105,9 +112,9 @@ impl Shared {
             if state.closing {
                 return None;
             }
-            state = match state.keep_alive_due_in(Instant::now()) {
+            state = match state.ping_due_in(Instant::now()) {
                 Some(Duration::ZERO) => {
-                    state.queue_keep_alive();
+                    state.queue_ping(Instant::now());
                     state
                 }
                 Some(wait) => {
@@ -138,10 +145,6 @@ impl State {
         self.last_write = Instant::now();
     }
 
-    pub(super) fn keep_alive(&mut self, frame: Vec<u8>, period: Duration) {
-        self.keep_alive = Some((frame, period));
-    }
-
     /// Records that the application is in a call that waits.
     pub(super) fn enter_call(&mut self) {
         self.last_call = None;
@@ -152,20 +155,22 @@ impl State {
         self.last_call = Some(now);
     }
 
-    fn queue_keep_alive(&mut self) {
-        if let Some((frame, period)) = self.keep_alive.take() {
-            self.queue(&frame);
-            self.keep_alive = Some((frame, period));
-        }
+    fn queue_ping(&mut self, now: Instant) {
+        let ping = self.pings.next_ping(self.since_opened(now));
+        self.queue(&ping);
     }
 
-    /// Time until the next keep-alive frame; `None` if no keep-alive is set, or the application has not called within
+    /// Time until the next ping; `None` if there are none, or the application has not called within
     /// [`KEEP_ALIVE_TIMEOUT`].
-    fn keep_alive_due_in(&self, now: Instant) -> Option<Duration> {
-        let (_, period) = self.keep_alive.as_ref()?;
+    fn ping_due_in(&self, now: Instant) -> Option<Duration> {
+        let due_at = self.pings.due_at(self.since_opened(self.last_write))?;
         let is_application_active =
             self.last_call.is_none_or(|last_call| now.saturating_duration_since(last_call) < KEEP_ALIVE_TIMEOUT);
-        is_application_active.then(|| period.saturating_sub(now.saturating_duration_since(self.last_write)))
+        is_application_active.then(|| due_at.saturating_sub(self.since_opened(now)))
+    }
+
+    fn since_opened(&self, now: Instant) -> Duration {
+        now.saturating_duration_since(self.opened)
     }
 }
 
@@ -180,11 +185,11 @@ mod tests {
 
     const PERIOD: Duration = Duration::from_millis(5);
 
-    /// A link with a keep-alive frame. Its last write and last call were at the returned time.
+    /// A link with pings. Its last write and last call were at the returned time.
     fn pinging() -> (Shared, Instant) {
         let opened = Instant::now();
         let shared = Shared::new(opened);
-        shared.lock().keep_alive(vec![0], PERIOD);
+        shared.lock().pings.set_period(PERIOD);
         (shared, opened)
     }
 
@@ -192,10 +197,10 @@ mod tests {
     fn the_keep_alive_ends_when_its_timeout_has_passed_since_the_last_call() {
         let (shared, opened) = pinging();
         let state = shared.lock();
-        assert_eq!(state.keep_alive_due_in(opened), Some(PERIOD));
-        assert_eq!(state.keep_alive_due_in(opened + KEEP_ALIVE_TIMEOUT.saturating_sub(PERIOD)), Some(Duration::ZERO));
+        assert_eq!(state.ping_due_in(opened), Some(PERIOD));
+        assert_eq!(state.ping_due_in(opened + KEEP_ALIVE_TIMEOUT.saturating_sub(PERIOD)), Some(Duration::ZERO));
         for late in [KEEP_ALIVE_TIMEOUT, KEEP_ALIVE_TIMEOUT + PERIOD, 1000 * KEEP_ALIVE_TIMEOUT] {
-            assert_eq!(state.keep_alive_due_in(opened + late), None, "{late:?} after the last call");
+            assert_eq!(state.ping_due_in(opened + late), None, "{late:?} after the last call");
         }
     }
 
@@ -204,12 +209,12 @@ mod tests {
         let (shared, opened) = pinging();
         let mut state = shared.lock();
         state.enter_call();
-        assert_eq!(state.keep_alive_due_in(opened + 1000 * KEEP_ALIVE_TIMEOUT), Some(Duration::ZERO));
+        assert_eq!(state.ping_due_in(opened + 1000 * KEEP_ALIVE_TIMEOUT), Some(Duration::ZERO));
         state.leave_call(opened + 1000 * KEEP_ALIVE_TIMEOUT);
         assert_eq!(
-            state.keep_alive_due_in(opened + (1001 * KEEP_ALIVE_TIMEOUT).saturating_sub(PERIOD)),
+            state.ping_due_in(opened + (1001 * KEEP_ALIVE_TIMEOUT).saturating_sub(PERIOD)),
             Some(Duration::ZERO)
         );
-        assert_eq!(state.keep_alive_due_in(opened + 1001 * KEEP_ALIVE_TIMEOUT), None);
+        assert_eq!(state.ping_due_in(opened + 1001 * KEEP_ALIVE_TIMEOUT), None);
     }
 }

@@ -1,12 +1,13 @@
 //! `--control`: lines on standard input that change the scene while it plays.
 
 use std::fmt::{self, Display};
-use std::io::{BufRead, stdin};
+use std::io::stdin;
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
+use frixel::input;
 use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel_driver::{ControlLine, DeviceError};
@@ -20,6 +21,8 @@ const LOOK_PERIOD: Duration = Duration::from_millis(5);
 const STEP_MIN: Duration = Duration::from_micros(10);
 /// Longest time between two looks for Ctrl-C while the play waits for a line.
 const INTERRUPT_PERIOD: Duration = Duration::from_millis(50);
+/// Lines that are read ahead of the play.
+const LINES_AHEAD: usize = 64;
 
 /// Carries out the lines on standard input.
 pub(super) struct Control {
@@ -62,9 +65,10 @@ pub(super) enum Next {
 impl Control {
     /// Reads standard input from now on, in a thread of its own.
     pub(super) fn start(program: &Program, waits: bool, interrupt: &Interrupt) -> Result<Self, CommandError> {
-        let (sender, lines) = channel();
+        let (sender, lines) = sync_channel(LINES_AHEAD);
         let read = move || {
-            for line in stdin().lock().lines().map_while(Result::ok) {
+            let mut input = stdin().lock();
+            while let Some(line) = input::next_line(&mut input) {
                 if sender.send(line).is_err() {
                     return;
                 }
@@ -214,7 +218,7 @@ mod tests {
         let mut player = Player::new(device, recorder);
         player.start(&playing, 0, &mut |_| ControlFlow::Continue(())).unwrap();
 
-        let (sender, lines) = channel();
+        let (sender, lines) = sync_channel(LINES_AHEAD);
         for line in ["layer ping off", "trigger ping 50", "# nothing"] {
             sender.send(line.to_owned()).unwrap();
         }

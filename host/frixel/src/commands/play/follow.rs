@@ -15,7 +15,7 @@ use super::outputs::Outputs;
 use super::plan::Plan;
 use super::progress::Bars;
 use super::rigs::Target;
-use super::{CommandError, Interrupt, PlayArgs, Played, note};
+use super::{CommandError, Interrupt, PlayArgs, Played, note, waiting};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.
 pub(super) fn follow<L: RecordedLink>(
@@ -27,7 +27,7 @@ pub(super) fn follow<L: RecordedLink>(
 ) -> Result<Played, CommandError> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     let outputs = Outputs::create(args, plan.target, is_simulated, &plan.program)?;
-    let player = Player::new(device, plan.recorder()?);
+    let player = Player::new(waiting::watch(device, interrupt), plan.recorder()?);
     let waits = plan.target == Target::Simulator;
     let control = args.control.then(|| Control::start(&plan.program, waits, interrupt)).transpose()?;
     let (bars, writing, refusals) = (Bars::default(), Duration::ZERO, sentences(&plan.program));

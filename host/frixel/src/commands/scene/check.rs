@@ -6,7 +6,7 @@ use clap::Args;
 use frixel::rehearsal::board_costs;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::check::SceneCheck;
-use frixel_scene::compile;
+use frixel_scene::{compile, printable};
 
 use super::super::error::CommandError;
 use super::super::profiles::ProfileArgs;
@@ -29,11 +29,8 @@ pub(in super::super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     // The simulated board has the limits of the smallest board.
     let rig = RigConfig::default();
-    let compiled = args
-        .profiles
-        .names()
-        .load(&args.scene)
-        .and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
+    let (scene, files) = args.profiles.names().load_with_files(&args.scene);
+    let compiled = scene.and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
     let program = match compiled {
         Err(error) if args.json => {
             print_line(error.to_json())?;
@@ -41,7 +38,11 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
         }
         compiled => compiled?,
     };
-    let check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?);
+    let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?);
+    check.notes.extend(files.outside().map(|path| {
+        let path = printable(&path.display().to_string()).into_owned();
+        format!("{path} is outside of the scene's folder: give it along with the scene")
+    }));
     let check = if args.board { check.with_board(&program) } else { check };
     if args.json { print_line(check.to_json()) } else { print(check.summary()) }
 }

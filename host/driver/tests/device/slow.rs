@@ -1,0 +1,105 @@
+//! Boards that take long for each frame: every call ends, and its caller can say what it waits for.
+
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use frixel_driver::{Bitmap, Device, DeviceError, Upload};
+use frixel_wire::frame::crc32;
+
+use crate::calls::{connected, scene};
+use crate::fake_board::FakeBoard;
+use crate::virtual_link::VirtualLink;
+
+const SECOND: Duration = Duration::from_secs(1);
+
+/// A board that takes this long for every frame, one after the other, once it has answered the hello.
+fn slow(time_per_frame: Duration) -> Device<VirtualLink> {
+    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    device.link_mut().board_time_per_frame = time_per_frame;
+    device
+}
+
+fn picture(samples: &[u8]) -> Bitmap<'_> {
+    Bitmap { crc32: crc32(samples), width: 250, height: (samples.len() / 250) as u16, samples }
+}
+
+/// Uploads a picture, and returns how that ended, with the frames, the pings among them, and the time that it took.
+fn uploaded(time_per_frame: Duration) -> (Result<(), DeviceError>, u64, u32, Duration) {
+    let samples = vec![7; 25_000];
+    let mut device = slow(time_per_frame);
+    let (frames, started) = (device.counters().frames_sent, device.now());
+    let result = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![picture(&samples)] }, &mut |_| {});
+    let (frames, took) = (device.counters().frames_sent - frames, device.now().saturating_sub(started));
+    println!("{time_per_frame:?} a frame: {frames} frames in {took:?}, {result:?}");
+    (result, frames, device.into_link().board.pings, took)
+}
+
+/// Its pings would otherwise take the time of almost all frames: 735 of 762 in 150 s.
+#[test]
+fn a_slow_board_is_not_drowned_in_pings() {
+    for ms in [50, 100, 150] {
+        let (result, frames, pings, took) = uploaded(ms * SECOND / 1000);
+        result.unwrap();
+        assert!(u64::from(pings) * 2 < frames, "{pings} of {frames} frames are pings");
+        assert!(took < 600 * ms * SECOND / 1000, "{took:?} for 137 chunks");
+    }
+}
+
+#[test]
+fn an_upload_to_a_board_that_is_too_slow_ends() {
+    for ms in [200, 300, 500, 700, 1000, 5000] {
+        let (result, .., took) = uploaded(ms * SECOND / 1000);
+        assert!(result.is_err() && took < 12 * SECOND, "{ms} ms a frame: {took:?}");
+    }
+}
+
+#[test]
+fn one_request_takes_10_s_at_most() {
+    // So slow that the requests that are sent again pile up before the board.
+    let mut device = slow(SECOND * 7 / 10);
+    let started = device.now();
+    let mut longest = Duration::ZERO;
+    for _ in 0..20 {
+        let before = device.now();
+        if let Err(error) = device.subscribe(0) {
+            assert!(matches!(error, DeviceError::TooSlow { .. } | DeviceError::Silent { .. }), "{error}");
+        }
+        longest = longest.max(device.now().saturating_sub(before));
+    }
+    println!("{:?} for 20 requests, {longest:?} for one", device.now().saturating_sub(started));
+    assert!(longest <= 10 * SECOND, "{longest:?}");
+}
+
+/// The board answers pings, and takes chunks, but does not say so.
+#[test]
+fn an_upload_ends_10_s_after_the_last_acknowledged_byte() {
+    let scene = vec![7; 2_000_000];
+    let mut link = VirtualLink::new(FakeBoard::new());
+    link.bytes_per_s = 60_000;
+    let mut device = connected(link);
+    let started = device.now();
+    device.link_mut().board.chunks_per_progress = None;
+    let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+    let error = device.upload(&upload, &mut |_| {}).unwrap_err();
+    assert!(matches!(error, DeviceError::UploadTooSlow { arrived_bytes: 0, .. }), "{error}");
+    let took = device.now().saturating_sub(started);
+    assert!(took >= 10 * SECOND && took < 11 * SECOND, "{took:?}");
+}
+
+#[test]
+fn a_caller_learns_what_is_waited_for_and_may_break_the_wait_off() {
+    let mut device = slow(SECOND * 7 / 10);
+    let told = Arc::new(Mutex::new(Vec::new()));
+    let teller = Arc::clone(&told);
+    device.while_waiting(move |waiting| {
+        teller.lock().unwrap().push((waiting.command, waiting.waited));
+        if waiting.waited >= SECOND / 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let before = device.now();
+    let error = device.subscribe(400).unwrap_err();
+    assert!(matches!(error, DeviceError::BrokenOff { command: "telemetry", .. }), "{error}");
+    assert!(device.now().saturating_sub(before) <= SECOND * 7 / 10);
+    let told = told.lock().unwrap();
+    assert!(told.len() >= 4 && told.iter().all(|(command, _)| *command == "telemetry"), "{told:?}");
+}

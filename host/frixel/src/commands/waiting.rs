@@ -1,0 +1,34 @@
+//! What a command waits for, when a board takes long to answer.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_driver::{Device, Link, Waiting};
+
+use super::interrupt::Interrupt;
+use super::terminal::note;
+
+/// A board that is in order answers within milliseconds: after this time the command says what it waits for.
+const SAID_AFTER: Duration = Duration::from_secs(2);
+/// Time for an orderly end of a wait that Ctrl-C interrupts.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// Says on standard error what a long call to `device` waits for, and breaks it off once the command is to end.
+pub(super) fn watch<L: Link>(mut device: Device<L>, interrupt: &Interrupt) -> Device<L> {
+    let interrupt = interrupt.clone();
+    let mut said = None;
+    device.while_waiting(move |waiting| {
+        let Waiting { command, waited, waited_max } = *waiting;
+        if waited < SAID_AFTER {
+            said = None;
+        } else if said.replace(command) != Some(command) {
+            note(format_args!(
+                "frixel: the board has not answered for {} s (waiting for: {command}; it has {} s)",
+                waited.as_secs(),
+                waited_max.as_secs()
+            ));
+        }
+        if interrupt.is_requested() && waited >= GRACE { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    device
+}

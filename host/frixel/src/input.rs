@@ -1,0 +1,234 @@
+//! What the command reads: regular files and standard input, each up to a stated size.
+//!
+//! A file that is a pipe or a device is not read, since it may have no end. Errors are [`io::Error`]s, for the sentences
+//! of those who read.
+
+use std::fs::{File, FileType, OpenOptions};
+use std::io::{self, BufRead, Read};
+use std::path::Path;
+
+use thiserror::Error;
+
+/// Largest scene, finger or screen, and included file: some 20,000 layers, of which a board takes 255 at most.
+pub const TOML_MAX_BYTES: u64 = 4 << 20;
+/// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
+pub const PICTURE_MAX_BYTES: u64 = 64 << 20;
+/// Largest table: an hour of felt.csv, 3.6 million rows, is 250 MB.
+pub const CSV_MAX_BYTES: u64 = 512 << 20;
+/// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
+pub const WAV_MAX_BYTES: u64 = 128 << 20;
+/// Largest page of the studio.
+pub const PAGE_MAX_BYTES: u64 = 64 << 20;
+/// Longest line of a person on standard input, in bytes; what is beyond it is dropped.
+pub const LINE_MAX_BYTES: usize = 4096;
+
+/// Why something is not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum InputError {
+    /// The file has too many bytes.
+    #[error("it has {found} bytes, and at most {max} are read")]
+    TooLarge {
+        /// Its bytes.
+        found: u64,
+        /// Most bytes that are read.
+        max: u64,
+    },
+    /// More bytes came than the file said that it has, or than are read of standard input.
+    #[error("it goes on after {max} bytes, the most that are read")]
+    TooLong {
+        /// Most bytes that are read.
+        max: u64,
+    },
+    /// It is not a regular file.
+    #[error("it is a {what}, and a regular file is expected")]
+    NotAFile {
+        /// What it is.
+        what: &'static str,
+    },
+    /// The operating system has nothing to read at this time.
+    #[error("it has no end that could be read, and a regular file is expected")]
+    Endless,
+}
+
+impl From<InputError> for io::Error {
+    fn from(error: InputError) -> Self {
+        Self::other(error)
+    }
+}
+
+/// Opens a regular file of at most `max_bytes` bytes. Reading beyond them is an error.
+pub fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        // Opening a pipe without a writer would otherwise block. Regular files ignore this flag; logs of the system,
+        // which look like regular files, obey it.
+        options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed());
+    }
+    let file = options.open(path)?;
+    let metadata = file.metadata()?;
+    if let Some(what) = irregular(metadata.file_type()) {
+        return Err(InputError::NotAFile { what }.into());
+    }
+    if metadata.len() > max_bytes {
+        return Err(InputError::TooLarge { found: metadata.len(), max: max_bytes }.into());
+    }
+    Ok(Bounded::new(file, max_bytes))
+}
+
+/// Reads a regular file of at most `max_bytes` bytes.
+pub fn read(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open(path, max_bytes)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Reads a regular file of at most `max_bytes` bytes of UTF-8 text.
+pub fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
+    let mut text = String::new();
+    open(path, max_bytes)?.read_to_string(&mut text)?;
+    Ok(text)
+}
+
+/// What a file is that is not a regular one. Reading a folder is an error already.
+fn irregular(kind: FileType) -> Option<&'static str> {
+    if kind.is_file() || kind.is_dir() {
+        return None;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return Some("pipe");
+        }
+        if kind.is_socket() {
+            return Some("socket");
+        }
+    }
+    Some("device")
+}
+
+/// A reader that fails after a number of bytes.
+#[derive(Debug)]
+pub struct Bounded<R> {
+    input: R,
+    left: u64,
+    max: u64,
+}
+
+impl<R: Read> Bounded<R> {
+    /// Creates a reader of at most `max_bytes` bytes.
+    pub fn new(input: R, max_bytes: u64) -> Self {
+        Self { input, left: max_bytes, max: max_bytes }
+    }
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let too_long = || InputError::TooLong { max: self.max }.into();
+        let outcome = if self.left == 0 && !buffer.is_empty() {
+            // Only a reader that has more is too long.
+            match self.input.read(&mut [0]) {
+                Ok(0) => Ok(0),
+                Ok(_) => Err(too_long()),
+                Err(error) => Err(error),
+            }
+        } else {
+            let len = buffer.len().min(usize::try_from(self.left).unwrap_or(usize::MAX));
+            self.input.read(buffer.get_mut(..len).unwrap_or_default())
+        };
+        match outcome {
+            Ok(count) => {
+                self.left -= count as u64;
+                Ok(count)
+            }
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Err(InputError::Endless.into()),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// The next line, without its end; `None` at the end of the input or when it breaks. Bytes beyond [`LINE_MAX_BYTES`]
+/// are dropped, and bytes that are not UTF-8 replaced.
+pub fn next_line(input: &mut impl BufRead) -> Option<String> {
+    let mut line = Vec::new();
+    let mut is_any = false;
+    loop {
+        let bytes = match input.fill_buf() {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(_) => return None,
+        };
+        if bytes.is_empty() {
+            return is_any.then(|| text(&line));
+        }
+        is_any = true;
+        let end = bytes.iter().position(|byte| *byte == b'\n');
+        let part = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or_default();
+        let room = LINE_MAX_BYTES - line.len();
+        line.extend(part.iter().take(room));
+        let used = part.len() + usize::from(end.is_some());
+        input.consume(used);
+        if end.is_some() {
+            return Some(text(&line));
+        }
+    }
+}
+
+fn text(line: &[u8]) -> String {
+    String::from_utf8_lossy(line.strip_suffix(b"\r").unwrap_or(line)).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::io::{BufReader, repeat};
+
+    use super::*;
+
+    #[test]
+    fn a_file_above_its_limit_is_refused_with_both_numbers_before_it_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sparse");
+        File::create(&path).unwrap().set_len(8 << 30).unwrap();
+        let error = read(&path, CSV_MAX_BYTES).unwrap_err().to_string();
+        assert_eq!(error, "it has 8589934592 bytes, and at most 536870912 are read");
+        fs::write(&path, b"four").unwrap();
+        assert_eq!(read(&path, 4).unwrap(), b"four");
+        assert!(read(&path, 3).is_err());
+    }
+
+    #[test]
+    fn an_input_without_end_ends_at_its_limit() {
+        let mut bytes = Vec::new();
+        let error = Bounded::new(repeat(7), 10_000).read_to_end(&mut bytes).unwrap_err();
+        assert_eq!(error.to_string(), "it goes on after 10000 bytes, the most that are read");
+        assert_eq!(bytes.len(), 10_000);
+        let mut bytes = Vec::new();
+        Bounded::new(repeat(7).take(10_000), 10_000).read_to_end(&mut bytes).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_and_a_device_are_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        let mode = rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR;
+        rustix::fs::mknodat(rustix::fs::CWD, &pipe, rustix::fs::FileType::Fifo, mode, 0).unwrap();
+        let error = read(&pipe, 1).unwrap_err().to_string();
+        assert_eq!(error, "it is a pipe, and a regular file is expected");
+        let error = read(Path::new("/dev/zero"), 1).unwrap_err().to_string();
+        assert_eq!(error, "it is a device, and a regular file is expected");
+    }
+
+    #[test]
+    fn a_line_without_end_is_not_kept() {
+        let mut input = BufReader::new(repeat(b'x').take(50_000_000).chain(&b"\r\nnext\nlast"[..]));
+        assert_eq!(next_line(&mut input).unwrap().len(), LINE_MAX_BYTES);
+        assert_eq!(next_line(&mut input).as_deref(), Some("next"));
+        assert_eq!(next_line(&mut input).as_deref(), Some("last"));
+        assert_eq!(next_line(&mut input), None);
+    }
+}

@@ -1,0 +1,259 @@
+//! Everything ends: signals, inputs without an end, and what a page does not read.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use crate::processes::{frixel, until};
+use frixel::studio::Studio;
+use frixel_hil_sim::PseudoTerminal;
+use rustix::fs::{CWD, FileType, Mode, mknodat};
+use rustix::process::{Pid, Signal, kill_process};
+use tempfile::TempDir;
+use tungstenite::client;
+use tungstenite::client::IntoClientRequest;
+
+const SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
+
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    folder
+}
+
+fn pipe(path: &Path) {
+    mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0).unwrap();
+}
+
+/// Runs a command in a folder, without any input.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    frixel().args(arguments).current_dir(folder).stdin(Stdio::null()).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A process that does not outlive the test.
+struct Running(Child);
+
+impl Running {
+    fn start(command: &mut Command) -> Self {
+        Self(command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap())
+    }
+
+    fn signal(&self, signal: Signal) {
+        kill_process(Pid::from_raw(self.0.id() as i32).unwrap(), signal).unwrap();
+    }
+
+    fn ended(&mut self) -> Option<i32> {
+        self.0.try_wait().unwrap().map(|status| status.code().unwrap_or(-1))
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Whether a process has a handler for this signal, so that a signal does not just end it.
+fn handles(process: &Child, signal: Signal) -> bool {
+    let status = fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    caught
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask & (1 << (signal.as_raw() - 1)) != 0)
+}
+
+/// A simulator that waits for a line that never comes, and a play whose output is a pipe that nobody reads.
+#[test]
+fn a_second_signal_ends_a_process_that_is_blocked_on_a_pipe() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    fs::create_dir(&out).unwrap();
+    pipe(&out.join("felt.csv"));
+    for command in ["play", "sim"] {
+        for signal in [Signal::INT, Signal::TERM] {
+            let mut process = frixel();
+            process.arg(command).args(if command == "play" { &["scene.toml"][..] } else { &[] }).args(["--out", "out"]);
+            let mut process = Running::start(process.current_dir(folder.path()));
+            until("the handler is there", || handles(&process.0, signal) || process.ended().is_some());
+            process.signal(signal);
+            thread::sleep(Duration::from_millis(50));
+            if process.ended().is_none() {
+                process.signal(signal);
+            }
+            until("the second signal ends it", || process.ended().is_some());
+        }
+    }
+}
+
+#[test]
+fn a_pipe_or_a_device_in_place_of_a_file_is_one_sentence() {
+    let folder = folder();
+    let path = folder.path();
+    pipe(&path.join("pipe"));
+    pipe(&path.join("pipe.toml"));
+    let with = |line: &str| format!("version = 2\n{line}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+    fs::write(path.join("include.toml"), with("include = [\"pipe.toml\"]")).unwrap();
+    fs::write(path.join("zero.toml"), with("include = [\"/dev/zero\"]")).unwrap();
+    fs::write(path.join("finger.toml"), with("finger = \"pipe.toml\"")).unwrap();
+    let bitmap =
+        "version = 2\n[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0.3\nwhite_n = 0.4\n";
+    fs::write(path.join("picture.toml"), format!("{bitmap}picture = \"pipe\"\n")).unwrap();
+    for (arguments, what) in [
+        (&["play", "pipe"][..], "pipe"),
+        (&["play", "/dev/zero"], "device"),
+        (&["scene", "check", "pipe"], "pipe"),
+        (&["scene", "check", "include.toml"], "pipe"),
+        (&["scene", "check", "zero.toml"], "device"),
+        (&["scene", "check", "finger.toml"], "pipe"),
+        (&["scene", "check", "picture.toml"], "pipe"),
+        (&["play", "scene.toml", "--stroke", "pipe"], "pipe"),
+        (&["play", "scene.toml", "--finger", "pipe"], "pipe"),
+        (&["sim", "--stroke", "pipe"], "pipe"),
+        (&["sim", "--finger", "pipe"], "pipe"),
+        (&["fit", "pipe"], "pipe"),
+        (&["model", "eval", "--input", "pipe"], "pipe"),
+        (&["calibrate", "--port", "sim", "--forces", "pipe", "-o", "data.csv"], "pipe"),
+        (&["new", "wood", "--picture", "pipe"], "pipe"),
+        (&["studio", "--no-browser", "--page", "pipe"], "pipe"),
+    ] {
+        let output = run(path, arguments);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(said.contains(&format!("it is a {what}, and a regular file is expected")), "{arguments:?}: {said}");
+        assert_eq!(said.trim_end().lines().count(), 1, "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn a_file_of_8_gb_is_refused_with_both_numbers() {
+    let folder = folder();
+    let path = folder.path();
+    for name in ["big.csv", "big.toml", "big.wav", "big.png"] {
+        File::create(path.join(name)).unwrap().set_len(8_000_000_000).unwrap();
+    }
+    let stream = "version = 2\n[[layer]]\nkind = \"stream\"\nlow_n = 0.3\nhigh_n = 0.4\n";
+    fs::write(path.join("stream.toml"), stream).unwrap();
+    for arguments in [
+        &["play", "big.toml"][..],
+        &["play", "scene.toml", "--stroke", "big.csv"],
+        &["play", "stream.toml", "--stream", "big.wav"],
+        &["fit", "big.csv"],
+        &["model", "eval", "--input", "big.csv"],
+        &["new", "wood", "--picture", "big.png"],
+    ] {
+        let output = run(path, arguments);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(said.contains("it has 8000000000 bytes, and at most "), "{arguments:?}: {said}");
+    }
+}
+
+/// `yes x | frixel threshold`, and a line of 200 MB.
+#[test]
+fn ten_wrong_answers_end_a_threshold() {
+    for line_len in [1, 200_000_000] {
+        let folder = folder();
+        let mut command = frixel();
+        command.args(["threshold", "--port", "sim"]).current_dir(folder.path());
+        let mut process = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut input = process.stdin.take().unwrap();
+        let writer = thread::spawn(move || {
+            let line = [vec![b'x'; line_len], b"\n".to_vec()].concat();
+            for _ in 0..12 {
+                if input.write_all(&line).is_err() {
+                    return;
+                }
+            }
+        });
+        let output = process.wait_with_output().unwrap();
+        writer.join().unwrap();
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("10 answers to trial 1 were neither 1 nor 2"), "{said}");
+    }
+}
+
+#[test]
+fn a_list_of_mistakes_stops_at_100() {
+    let folder = folder();
+    let mut scene = "version = 2\n".to_owned();
+    for layer in 0..16_000 {
+        writeln!(scene, "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nwrong_{layer} = 1").unwrap();
+    }
+    fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let said = said(&run(folder.path(), &["scene", "check", "scene.toml"]));
+    assert_eq!(said.lines().count(), 101, "{}", said.lines().take(5).collect::<String>());
+    assert!(said.lines().last().unwrap().contains("these are 100 mistakes, and there are more"), "{said}");
+    let output = run(folder.path(), &["scene", "check", "scene.toml", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((json["mistakes"].as_array().unwrap().len(), json["has_more"].as_bool()), (100, Some(true)));
+}
+
+/// Memory of this process, in bytes.
+fn memory_bytes() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    1024 * line.trim().trim_end_matches(" kB").parse::<u64>().unwrap()
+}
+
+#[test]
+fn the_bridge_bounds_what_a_page_does_not_read() {
+    let mut terminal = PseudoTerminal::open().unwrap();
+    let studio = Studio::open(0, b"page".to_vec(), Some(terminal.path().to_owned())).unwrap();
+    let url = studio.url();
+    let (host, token) = url.strip_prefix("http://").unwrap().split_once("/#bridge=").unwrap();
+    let (host, token) = (host.to_owned(), token.to_owned());
+    let is_over = Arc::new(AtomicBool::new(false));
+    let over = Arc::clone(&is_over);
+    let server = thread::spawn(move || studio.run(&|| over.load(Ordering::Relaxed)).unwrap());
+    let mut request = format!("ws://{host}/serial?token={token}").into_client_request().unwrap();
+    request.headers_mut().insert("Origin", format!("http://{host}").parse().unwrap());
+    let Ok((_socket, _)) = client(request, TcpStream::connect(&host).unwrap()) else { panic!("no bridge") };
+    let before = memory_bytes();
+    let flood = vec![7; 4096];
+    let mut written = 0;
+    until("the flood is taken", || {
+        for _ in 0..200 {
+            written += terminal.write(&flood).unwrap();
+        }
+        written > 64 << 20
+    });
+    let grown = memory_bytes().saturating_sub(before);
+    println!("{grown} bytes for {written} of a flood");
+    assert!(grown < 24 << 20, "{grown} bytes");
+    is_over.store(true, Ordering::Relaxed);
+    server.join().unwrap();
+}
+
+#[test]
+fn the_page_comes_with_a_content_security_policy() {
+    let studio = Studio::open(0, b"page".to_vec(), None).unwrap();
+    let host = studio.url().strip_prefix("http://").unwrap().trim_end_matches('/').to_owned();
+    let is_over = Arc::new(AtomicBool::new(false));
+    let over = Arc::clone(&is_over);
+    let server = thread::spawn(move || studio.run(&|| over.load(Ordering::Relaxed)).unwrap());
+    let mut stream = TcpStream::connect(&host).unwrap();
+    write!(stream, "GET / HTTP/1.1\r\nHost: {host}\r\n\r\n").unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    let policy = answer.lines().find_map(|line| line.strip_prefix("Content-Security-Policy: ")).unwrap();
+    for part in ["default-src 'none'", "connect-src 'self'", "frame-ancestors 'none'", "worker-src blob:"] {
+        assert!(policy.split("; ").any(|found| found.trim() == part), "{part} is not in {policy}");
+    }
+    is_over.store(true, Ordering::Relaxed);
+    server.join().unwrap();
+}
