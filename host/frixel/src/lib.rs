@@ -8,6 +8,7 @@ mod finger_reference;
 pub mod fit;
 pub mod model_csv;
 pub mod output;
+pub mod output_file;
 pub mod player;
 pub mod rehearsal;
 pub mod report;

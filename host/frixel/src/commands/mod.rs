@@ -12,7 +12,6 @@ mod info;
 mod interrupt;
 mod model;
 mod new;
-mod overwrite;
 mod play;
 mod ports;
 mod profiles;
@@ -116,9 +115,12 @@ struct PlayArgs {
     /// until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Output folder.
+    /// Output folder. What an earlier play has left there is replaced.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
+    /// Replace also what a finger did on a board that is not a simulator.
+    #[arg(long)]
+    overwrite: bool,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
@@ -180,7 +182,7 @@ struct SimArgs {
     #[arg(long)]
     ideal: bool,
     /// Output folder.
-    #[arg(long, default_value = "frixel-out")]
+    #[arg(long, default_value = "frixel-sim")]
     out: PathBuf,
     /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
@@ -204,6 +206,7 @@ impl PlayArgs {
             stroke: StrokeArgs::default(),
             seconds: None,
             out: "frixel-out".into(),
+            overwrite: false,
             json: false,
             seed: 1,
             ideal: true,

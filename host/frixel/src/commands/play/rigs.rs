@@ -11,6 +11,7 @@ use frixel_wire::hello::{BoardLimits, Hello};
 pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
+use super::outputs::PlayFiles;
 use super::plan::{Plan, check_measured};
 use super::simulated_world::SimulatedWorld;
 use super::{CommandError, Interrupt, PlayArgs, Played};
@@ -70,7 +71,7 @@ impl Target {
 pub(super) fn play_on_simulator(
     args: &PlayArgs,
     scene: &Scene,
-    live_scene: Option<LiveScene>,
+    outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let world = SimulatedWorld::new(args, scene)?;
@@ -91,7 +92,7 @@ pub(super) fn play_on_simulator(
     }
     plan.world = Some(world.report());
     let device = Device::connect(link)?;
-    follow(args, plan, device, live_scene, interrupt)
+    follow(args, plan, device, outputs, interrupt)
 }
 
 /// Rejects the emulator, because its serial port is a pseudo-terminal.
@@ -99,7 +100,7 @@ pub(super) fn play_on_simulator(
 pub(super) fn play_on_emulator(
     _: &PlayArgs,
     _: &Scene,
-    _: Option<LiveScene>,
+    _: (PlayFiles, Option<LiveScene>),
     _: &Interrupt,
 ) -> Result<Played, CommandError> {
     Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
@@ -109,7 +110,7 @@ pub(super) fn play_on_emulator(
 pub(super) fn play_on_port(
     args: &PlayArgs,
     scene: &Scene,
-    live_scene: Option<LiveScene>,
+    outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let device = Device::connect(PortLink::new(SerialLink::open(&args.port, DEFAULT_BAUD)?))?;
@@ -119,5 +120,5 @@ pub(super) fn play_on_port(
     }
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     check_measured(&plan.program, hello.board)?;
-    follow(args, plan, device, live_scene, interrupt)
+    follow(args, plan, device, outputs, interrupt)
 }
