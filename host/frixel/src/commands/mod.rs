@@ -270,3 +270,38 @@ pub(crate) fn with_nested_tip(mut error: clap::Error) -> clap::Error {
 pub(crate) fn report_error(error: &CommandError) {
     terminal::note(format_args!("frixel: {error}"));
 }
+
+#[cfg(test)]
+#[path = "../../tests/outputs/table.rs"]
+mod table;
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use clap::builder::ValueParser;
+
+    use super::*;
+
+    /// Every argument that is a path, with its command.
+    fn paths(command: &clap::Command, of: &str, found: &mut BTreeSet<String>) {
+        let is_path =
+            |argument: &&clap::Arg| argument.get_value_parser().type_id() == ValueParser::path_buf().type_id();
+        for argument in command.get_arguments().filter(is_path) {
+            assert!(found.insert(format!("{of}{}", argument.get_id())));
+        }
+        for nested in command.get_subcommands() {
+            paths(nested, &format!("{of}{} ", nested.get_name()), found);
+        }
+    }
+
+    /// A command with a new output stands in the table that the tests of `tests/outputs` go through.
+    #[test]
+    fn every_path_on_the_command_line_is_a_known_input_or_a_tested_output() {
+        let mut found = BTreeSet::new();
+        paths(&Cli::command(), "", &mut found);
+        let outputs = table::OUTPUTS.iter().map(|output| output.argument);
+        let known: BTreeSet<String> = table::INPUTS.into_iter().chain(outputs).map(str::to_owned).collect();
+        assert_eq!(found, known);
+    }
+}

@@ -4,7 +4,7 @@ mod answers;
 
 use std::io::{BufRead, Cursor, stdin};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;

@@ -245,7 +245,8 @@ mod tests {
             let device = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
             let mut player = Player::new(device, recorder);
             player.start(&program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
-            Self { folder, player, program, live: LiveScene::new(&args, Target::Port, files) }
+            let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
+            Self { folder, player, program, live: LiveScene::new(&args, Target::Port, files, outputs) }
         }
 
         fn write(&self, name: &str, text: &str) {

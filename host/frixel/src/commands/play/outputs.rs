@@ -271,7 +271,9 @@ mod tests {
             PlayArgs { out: folder.path().join("out"), with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref()) };
 
         let (first, second) = (program("first"), program("second"));
-        let mut outputs = Outputs::create(&args, Target::Port, true, &first).unwrap();
+        let (_, scene) = frixel::scene_file::load_with_files("a.toml".as_ref());
+        let files = PlayFiles::new(&args, Target::Port, &scene).unwrap();
+        let mut outputs = Outputs::create(&args, files, true, &first).unwrap();
         outputs.switch(0.0, Vec::new());
         outputs.write(&rows[..1_000]).unwrap();
         outputs.switch(1.0, vec![0]);

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use frixel::output_file::{FileWriter, Recording};
 use frixel::threshold::Staircase;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::CommandError;
 
 /// The answer in a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub(super) struct Answer {
     /// Number of the trial, from one.
     pub(super) trial: usize,
