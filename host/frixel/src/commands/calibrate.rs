@@ -78,12 +78,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
     let inputs = Inputs::new(&args.forces);
     let recording = Recording::new(&args.output, "-o", &inputs, args.overwrite, CUT_OFF)?;
     if args.finish {
-        let (partial, text) = recording.resume()?;
-        let board = read_board(text.as_bytes())?;
-        let copied = forces_copy(args)?.partial();
-        let forces = read(args.forces.as_deref().unwrap_or(&copied))?;
-        drop(partial);
-        return write(args, &recording, &board, &forces);
+        return finish(args, &recording).map_err(|error| experiment::cut_off(&recording, error));
     }
     let interrupt = Interrupt::watch()?;
     // A pipe is opened once.
@@ -101,6 +96,15 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
     };
     let written = recorded.and_then(|(board, forces)| write(args, &recording, &board, &forces));
     written.map_err(|error| experiment::cut_off(&recording, error))
+}
+
+/// Makes the recording of what one that was cut off has left.
+fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<(), CommandError> {
+    let (_partial, text) = recording.resume()?;
+    let board = read_board(text.as_bytes())?;
+    let copied = forces_copy(args)?.partial();
+    let forces = read(args.forces.as_deref().unwrap_or(&copied))?;
+    write(args, recording, &board, &forces)
 }
 
 /// Joins what board and sensor saw, and writes it.

@@ -54,6 +54,7 @@ impl<R: CsvRow> CsvFile<R> {
     pub fn new(writer: FileWriter) -> Result<Self, OutputFileError> {
         let mut csv = Self { writer, rows: PhantomData };
         csv.write_line(R::HEADER)?;
+        csv.flush()?;
         Ok(csv)
     }
 

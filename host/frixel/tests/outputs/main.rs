@@ -15,13 +15,13 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
 
 use table::OUTPUTS;
 use tempfile::TempDir;
 
 const SCENE: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
                      high_fraction = 0.9\n";
-const POINT: &str = "variant,radius_m,coating_m,permittivity,friction_coefficient,stiffness_pa_per_m,";
 
 /// What a threshold's person answers, more often than is asked.
 const ANSWERS: &str = "1\n2\n2\n1\n1\n1\n2\n1\n2\n2\n1\n2\n1\n1\n";
@@ -32,21 +32,17 @@ struct Folder(TempDir);
 impl Folder {
     fn new() -> Self {
         let folder = Self(TempDir::new().unwrap());
+        let points = "variant,radius_m,coating_m,permittivity,friction_coefficient,stiffness_pa_per_m";
+        let screen = "width_mm = 120\nheight_mm = 80\n[[coating]]\nthickness_um = 1\npermittivity = 3.9\n";
         folder.write("scene.toml", SCENE);
-        folder.write(
-            "old.toml",
-            &fs::read_to_string(repository().join("scenes/version-1/brick.toml")).unwrap_or_else(|_| OLD.into()),
-        );
+        folder.write("old.toml", OLD);
         folder.write("stroke.csv", "t_s,x_mm,y_mm,note\n0,10,20,a\n0.4,40,20,b\n");
-        folder.write(
-            "screen.toml",
-            "width_mm = 120\nheight_mm = 80\ncoating_thickness_um = 10\ncoating_permittivity = 1\n",
-        );
-        folder.write("points.csv", &format!("{POINT}voltage_v\nwf-upper,0.008,1e-5,1,0.5,1.8e7,100\n"));
-        folder.write("frictions.csv", &format!("{POINT}electric_friction_n\nwf-upper,0.008,1e-5,1,0.5,1.8e7,0.01\n"));
+        folder.write("screen.toml", screen);
+        folder.write("points.csv", &format!("{points},voltage_v\nwf-upper,0.008,1e-5,1,0.5,1.8e7,100\n"));
+        folder.write("frictions.csv", &format!("{points},electric_friction_n\nwf-upper,0.008,1e-5,1,0.5,1.8e7,0.01\n"));
         folder.write("forces.csv", "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n");
         folder.write("bench.json", "{}");
-        folder.write("data.csv", &friction());
+        folder.write("data.csv", friction());
         fs::copy(repository().join("scenes/textures/brick.png"), folder.path("picture.png")).unwrap();
         folder
     }
@@ -118,12 +114,7 @@ fn answered(command: &mut Command) -> Ran {
 
 fn ran(output: Output) -> Ran {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    Ran {
-        code: output.status.code(),
-        said,
-       
-        notes: String::from_utf8_lossy(&output.stderr).into_owned(),
-    }
+    Ran { code: output.status.code(), said, notes: String::from_utf8_lossy(&output.stderr).into_owned() }
 }
 
 fn repository() -> PathBuf {
@@ -135,20 +126,17 @@ const OLD: &str = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coati
                    permittivity = 1\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\n\
                    normal_load_n = 0.5\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
-/// A recording of friction that can be fitted: strokes under a drive that is switched on and off, with square law.
-fn friction() -> String {
-    let mut text = String::from("time_s,stroke,voltage_v_rms,normal_force_n,friction_n,speed_mm_s\n");
-    for sample in 0..12 * 400 {
-        let (stroke, in_stroke) = (sample / 400, sample % 400);
-        let is_on = in_stroke / 20 % 2 == 1;
-        let voltage = if is_on { [75.0, 110.0, 150.0][stroke % 3] } else { 0.0 };
-        let load = 0.5 + 0.02 * (0.05 * f64::from(sample as u32)).sin();
-        let friction =
-            0.5 * load + 0.1 * (voltage / 150.0_f64).powi(2) + 0.002 * (1.7 * f64::from(sample as u32)).sin();
-        let time = 0.0025 * f64::from(in_stroke as u32) + 1.5 * f64::from(stroke as u32);
-        text += &format!("{time:.4},{stroke},{voltage},{load:.6},{friction:.6},44\n");
-    }
-    text
+/// A recording of friction that can be fitted.
+fn friction() -> &'static str {
+    static RECORDING: OnceLock<String> = OnceLock::new();
+    RECORDING.get_or_init(|| {
+        let folder = TempDir::new().unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        command.args(["calibrate", "--strokes", "8", "-o", "data.csv"]).current_dir(folder.path());
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(folder.path().join("data.csv")).unwrap()
+    })
 }
 
 /// Every output whose command line ends by itself and writes the same each time.

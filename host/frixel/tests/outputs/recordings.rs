@@ -123,15 +123,28 @@ fn a_killed_record_leaves_its_rows_which_the_next_one_names_and_finishes() {
 fn a_recording_is_on_the_disk_up_to_the_last_second() {
     let folder = Folder::new();
     let board = VirtualBoard::start(&folder, "sim --out board --from 10,20 --to 90,20");
-    kill_at(&folder, &format!("record --port {} -o me.csv", board.port), "me.csv.partial", 600, "");
-    let (rows, log) = (folder.text("me.csv.partial"), folder.text("board/felt.csv"));
-    let time = |row: &str| row.split(',').next().unwrap().parse::<f64>().unwrap();
-    let times: Vec<f64> = rows.lines().skip(1).map(time).collect();
-    let log_s = log.lines().next_back().map_or(0.0, time);
-    // The board was there before the recording, so that its own time bounds that of the recording.
-    assert!(times.len() >= 599 && times.last().unwrap() - times[0] <= log_s, "{} rows", times.len());
-    let gaps = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-    assert!(gaps < 1.0, "no second is missing: {gaps} s");
+    let line = format!("record --port {} -o me.csv --seconds 3 --overwrite", board.port);
+    let mut sizes = vec![0];
+    for _ in 0..TRIES_MAX {
+        sizes = vec![0];
+        let mut child = folder.command(&line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        until("the end of the recording", || {
+            let rows = folder.read("me.csv.partial").unwrap_or_default();
+            assert!(rows.is_empty() || rows.ends_with(b"\n"), "whole rows at every moment");
+            let rows = rows.iter().filter(|byte| **byte == b'\n').count();
+            if rows > *sizes.last().unwrap() {
+                sizes.push(rows);
+            }
+            child.try_wait().unwrap().is_some()
+        });
+        if *sizes.last().unwrap() > 400 {
+            break;
+        }
+    }
+    let mut steps: Vec<usize> = sizes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_unstable();
+    // There are 200 rows a second. A busy machine makes single steps larger, and not half of them.
+    assert!(steps.len() > 3 && steps[steps.len() / 2] < 200, "{steps:?}");
 }
 
 #[test]

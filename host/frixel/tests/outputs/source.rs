@@ -32,7 +32,8 @@ fn only_one_module_writes_files() {
             let name = path.strip_prefix(&source).unwrap();
             if path.is_dir() {
                 folders.push(path);
-            } else if !name.starts_with("output_file")
+            } else if path.extension().is_some_and(|extension| extension == "rs")
+                && !name.starts_with("output_file")
                 && !name.components().any(|part| part.as_os_str() == "tests")
                 && !name.ends_with("tests.rs")
             {
