@@ -402,7 +402,7 @@ fn a_play_never_overwrites_a_file_of_its_scene() {
     let output = frixel(folder.path(), &["play", "out/own.toml", "--seconds", "0.1", "--out", "./out"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("scene.png is a file of the scene, and would be overwritten: give another folder to --out"));
+    assert!(said.contains("scene.png is an input as well, and would be overwritten: give another folder to --out"));
     assert!(!path("out/felt.csv").exists(), "nothing is written");
     assert!(fs::read(path("out/scene.png")).unwrap() == before);
 
@@ -415,6 +415,6 @@ fn a_play_never_overwrites_a_file_of_its_scene() {
     let mut play = command.spawn().unwrap();
     play.stdin.take().unwrap().write_all(b"replace own.toml\n").unwrap();
     let said = String::from_utf8(play.wait_with_output().unwrap().stderr).unwrap();
-    assert!(said.contains("scene.png is a file of the scene") && said.contains("own.toml is not played"), "{said}");
+    assert!(said.contains("scene.png is an input as well") && said.contains("own.toml is not played"), "{said}");
     assert!(path("felt.csv").exists());
 }
