@@ -1,12 +1,11 @@
 //! `frixel calibrate`: records the data that `frixel fit` needs.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Write, stdin};
+mod forces;
+
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args;
 use frixel::calibration::{
@@ -87,7 +86,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
     // only once.
     let is_pipe = |path: &Path| path.exists() && !path.is_file();
     if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-") && !is_pipe(path)) {
-        read(path)?;
+        forces::read(path)?;
     }
     let recorded = if args.port == "sim" {
         on_simulator(args, &recording, &interrupt)
@@ -102,8 +101,8 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
 fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<(), CommandError> {
     let (_partial, text) = recording.resume()?;
     let board = read_board(text.as_bytes())?;
-    let copied = forces_copy(args)?.partial();
-    let forces = read(args.forces.as_deref().unwrap_or(&copied))?;
+    let copied = forces::copy(args)?.partial();
+    let forces = forces::read(args.forces.as_deref().unwrap_or(&copied))?;
     write(args, recording, &board, &forces)
 }
 
@@ -119,19 +118,12 @@ fn write(
     write_csv(&mut bytes, &rows)?;
     output.write(&bytes)?;
     recording.discard_partial();
-    forces_copy(args)?.discard_partial();
+    forces::copy(args)?.discard_partial();
     let path = output.path().display();
     say(output, format_args!("  {:<16} {path}", "wrote"))?;
     let highest = rows.iter().map(|row| row.voltage_v_rms).fold(0.0, f64::max);
     let voltage = if highest < 145.0 { format!(" --voltage {highest:.0}") } else { String::new() };
     say(output, format_args!("  {:<16} frixel fit {path}{voltage} -o finger.toml", "next"))
-}
-
-/// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
-fn forces_copy(args: &CalibrateArgs) -> Result<Recording, CommandError> {
-    let mut path = args.output.clone().into_os_string();
-    path.push(".forces");
-    Ok(Recording::new(path.as_ref(), "-o", &Inputs::new(&args.forces), true, CUT_OFF)?)
 }
 
 type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
@@ -153,7 +145,7 @@ fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interru
     let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
     drop(player);
     let forces = match &args.forces {
-        Some(path) => read(path)?,
+        Some(path) => forces::read(path)?,
         None => sensor.rows().to_vec(),
     };
     Ok((board, forces))
@@ -195,9 +187,13 @@ fn on_port(
     let device = experiment::connect(&args.port, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, recording, &hello.limits, hello.tick_hz)?;
-    let is_stdin = forces == Path::new("-");
-    let from_stdin = is_stdin.then(|| Ok::<_, CommandError>(StandardInput::read(forces_copy(args)?.start()?)));
-    let from_stdin = from_stdin.transpose()?;
+    let from_stdin = if forces == Path::new("-") {
+        // What goes to a stream has no copies.
+        let copy = partial.is_some().then(|| forces::copy(args)?.start()).transpose()?;
+        Some(forces::StandardInput::read(copy))
+    } else {
+        None
+    };
     let mut player = plan.start(device, hello.tick_hz / ROW_HZ)?;
     let duration = Duration::from_secs_f64(plan.protocol.duration_s());
     let board = match &mut partial {
@@ -207,52 +203,9 @@ fn on_port(
     drop(partial);
     let forces = match from_stdin {
         Some(input) => read_forces(input.after(FORCES_LATE).as_slice())?,
-        None => read(forces)?,
+        None => forces::read(forces)?,
     };
     Ok((board, forces))
-}
-
-/// Standard input, which is read while the board plays, so that its writer does not block.
-struct StandardInput {
-    reader: JoinHandle<()>,
-    bytes: Arc<Mutex<Vec<u8>>>,
-}
-
-impl StandardInput {
-    /// Reads, and writes a copy.
-    fn read(mut copy: FileWriter) -> Self {
-        let bytes = Arc::new(Mutex::new(Vec::new()));
-        let shared = Arc::clone(&bytes);
-        let reader = thread::spawn(move || {
-            let mut chunk = [0; 4096];
-            // A pipe that breaks has ended.
-            while let Ok(count @ 1..) = stdin().read(&mut chunk) {
-                let chunk = chunk.get(..count).unwrap_or_default();
-                // The copy serves only if this process does not reach the end.
-                let _ = copy.write_all(chunk).and_then(|()| copy.flush());
-                shared.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(chunk);
-            }
-        });
-        Self { reader, bytes }
-    }
-
-    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring.
-    fn after(&self, time_max: Duration) -> Vec<u8> {
-        let begun = Instant::now();
-        while !self.reader.is_finished() && begun.elapsed() < time_max {
-            thread::sleep(Duration::from_millis(5));
-        }
-        std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
-    let rows = if path == Path::new("-") {
-        read_forces(stdin())
-    } else {
-        read_forces(BufReader::new(File::open(path).map_err(CommandError::reading(path))?))
-    };
-    rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
 }
 
 /// A protocol that is ready to play on a board.

@@ -272,6 +272,7 @@ pub(crate) fn report_error(error: &CommandError) {
 }
 
 #[cfg(test)]
+#[allow(dead_code, reason = "the tests of the files that are written read the rest")]
 #[path = "../../tests/outputs/table.rs"]
 mod table;
 

@@ -98,7 +98,8 @@ pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
     let inputs = Inputs::new(args.screen.as_ref());
     let recording = args.output.as_deref();
     let recording = recording.map(|path| Recording::new(path, "-o", &inputs, args.overwrite, CUT_OFF)).transpose()?;
-    let measured = measure(args, &interrupt, recording.as_ref());
+    let answers = Answers::open(recording.as_ref(), args.finish)?;
+    let measured = measure(args, &interrupt, answers);
     let reported = measured.and_then(|(threshold, protocol)| {
         let profile = report(args, &threshold, &protocol, screen_name)?;
         let Some(recording) = &recording else { return Ok(()) };
@@ -116,11 +117,10 @@ pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
 fn measure(
     args: &ThresholdArgs,
     interrupt: &Interrupt,
-    recording: Option<&Recording>,
+    answers: Answers,
 ) -> Result<(Threshold, Protocol), CommandError> {
     // Without a port, there is a file of noise, which ends the command before.
     let port = args.port.as_deref().unwrap_or("sim");
-    let answers = Answers::open(recording, args.finish)?;
     if port == "sim" {
         let config = RigConfig::default();
         let protocol = protocol(args, &config.board.limits)?;

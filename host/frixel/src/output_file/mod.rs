@@ -146,12 +146,12 @@ impl OutputFile {
 
     /// Whether the output has a name that other files can stand beside.
     pub fn is_file(&self) -> bool {
-        matches!(self.place, Place::File(_))
+        self.file().is_some()
     }
 
     /// Whether there is a file already.
     pub fn exists(&self) -> bool {
-        matches!(&self.place, Place::File(file) if file.exists())
+        self.file().is_some_and(Path::exists)
     }
 
     /// Rejects an output that would overwrite another one of the same command.
@@ -164,6 +164,14 @@ impl OutputFile {
             return Err(OutputFileError::Twice { path: self.path.clone(), option: self.option });
         }
         Ok(())
+    }
+
+    /// The file, unless the output is a stream.
+    fn file(&self) -> Option<&Path> {
+        match &self.place {
+            Place::File(file) => Some(file),
+            _ => None,
+        }
     }
 
     /// Every path that writing this output may change.

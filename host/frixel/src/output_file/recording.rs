@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::{FileWriter, Inputs, OutputFile, OutputFileError, Place, partial_beside};
+use super::{FileWriter, Inputs, OutputFile, OutputFileError, partial_beside};
 
 /// Bytes of the beginning of a file that say what it is.
 const HEAD: u64 = 4096;
@@ -57,13 +57,13 @@ impl Recording {
 
     /// Whether a recording that was cut off has left rows.
     pub fn is_cut_off(&self) -> bool {
-        let Place::File(file) = &self.output.place else { return false };
+        let Some(file) = self.output.file() else { return false };
         std::fs::read(partial_beside(file)).is_ok_and(|bytes| has_rows(&String::from_utf8_lossy(&bytes)))
     }
 
     /// Removes the rows of a recording that is whole.
     pub fn discard_partial(&self) {
-        if let Place::File(file) = &self.output.place {
+        if let Some(file) = self.output.file() {
             // A file that cannot be removed is named by the next recording.
             let _ = std::fs::remove_file(partial_beside(file));
         }
@@ -76,7 +76,7 @@ impl Recording {
 
     /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten.
     pub fn start(&self) -> Result<FileWriter, OutputFileError> {
-        let Place::File(file) = &self.output.place else { return self.output.create() };
+        let Some(file) = self.output.file() else { return self.output.create() };
         let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
         if has_rows(&earlier) && !self.overwrites {
             return Err(OutputFileError::CutOff { partial: self.partial(), advice: self.advice });
@@ -88,7 +88,7 @@ impl Recording {
     /// Goes on with a recording that was cut off, and returns its whole rows, header included.
     pub fn resume(&self) -> Result<(FileWriter, String), OutputFileError> {
         let nothing = || OutputFileError::NothingCutOff { partial: self.partial() };
-        let Place::File(file) = &self.output.place else { return Err(nothing()) };
+        let Some(file) = self.output.file() else { return Err(nothing()) };
         let partial = partial_beside(file);
         if !partial.exists() {
             return Err(nothing());

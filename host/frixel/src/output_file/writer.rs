@@ -256,7 +256,7 @@ pub fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Result<()
         _ => None,
     });
     // The first is replaced in one step.
-    let earlier: Vec<&Path> = stale.iter().map(OutputFile::path).chain(destinations.skip(1)).collect();
+    let earlier: Vec<&Path> = stale.iter().filter_map(OutputFile::file).chain(destinations.skip(1)).collect();
     for path in earlier {
         match fs::remove_file(path) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -291,5 +291,47 @@ pub(super) fn open_locked(path: &Path, written: &Path) -> Result<File, OutputFil
         if is_file_at(&file, written) {
             return Ok(file);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Inputs;
+    use super::*;
+
+    /// Whatever ends the renaming, no file of the run before stands beside one of this run.
+    #[test]
+    fn a_set_that_is_renamed_in_part_has_no_file_of_an_earlier_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = ["a", "b", "c", "stale"];
+        let outputs = names.map(|name| {
+            let path = folder.path().join(name);
+            fs::write(&path, "earlier").unwrap();
+            OutputFile::new(&path, "--out", &Inputs::default()).unwrap()
+        });
+        let [a, b, c, stale] = outputs;
+        let files = [&a, &b, &c].map(|output| output.filled(b"of this run").unwrap()).into();
+        fs::remove_file(folder.path().join(".b.frixel-tmp")).unwrap();
+        assert!(matches!(commit_all(files, &[stale]), Err(OutputFileError::Rename { .. })));
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).ok();
+        assert_eq!(read("a").as_deref(), Some("of this run"));
+        assert_eq!(["b", "c", "stale"].map(read), [None, None, None]);
+    }
+
+    /// Nothing is written behind a gap: rows that are missing in the middle would not be noticed.
+    #[test]
+    fn a_file_with_a_gap_takes_no_more_and_gets_no_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows");
+        let mut file = OutputFile::new(&path, "-o", &Inputs::default()).unwrap().filled(b"one\n").unwrap();
+        file.flush().unwrap();
+        let Sink::File(new) = &mut file.sink else { panic!("a file") };
+        let whole = std::mem::replace(&mut new.file, File::open(&new.written).unwrap());
+        assert!(file.write_all(b"two\n").and_then(|()| file.flush()).is_err(), "it is open for reading only");
+        let Sink::File(new) = &mut file.sink else { panic!("a file") };
+        new.file = whole;
+        assert!(file.write_all(b"three\n").and_then(|()| file.flush()).is_err());
+        assert!(file.commit().is_err() && !path.exists());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }
