@@ -81,7 +81,10 @@ impl Place {
             Ok(metadata) if metadata.is_dir() => Err(ErrorKind::IsADirectory.into()),
             Ok(metadata) if metadata.is_file() && !is_open_file => Ok(Self::File(path.canonicalize()?)),
             Ok(_) => Ok(Self::Stream),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::File(without_links(path))),
+            // Whoever creates the file or its folder says what is missing.
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                Ok(Self::File(without_links(path)))
+            }
             Err(error) => Err(error),
         }
     }

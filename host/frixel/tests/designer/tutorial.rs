@@ -72,8 +72,7 @@ impl Reader {
             process.stdout(Stdio::null()).stderr(File::create(&said).unwrap());
             self.watching = Some(Watching(process.spawn().unwrap()));
             // The first scene plays when rows of telemetry are there.
-            let rows = self.path().join("frixel-out/felt.csv");
-            fs::remove_file(&rows).unwrap();
+            let rows = self.path().join("frixel-out/.felt.csv.frixel-tmp");
             wait("the scene plays", || fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 2));
             return;
         }
