@@ -8,6 +8,7 @@
 mod align;
 mod protocol;
 
+use std::fmt::Write as _;
 use std::io::{Read, Write};
 
 use serde::{Deserialize, Serialize};
@@ -130,7 +131,8 @@ pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> Result<
         text.push_str("time_s,voltage_v_rms,speed_mm_s\n");
     }
     for BoardRow { time_s, voltage_v_rms, speed_mm_s } in rows.into_iter().flatten() {
-        text.push_str(&format!("{time_s:.6},{voltage_v_rms:.4},{speed_mm_s:.3}\n"));
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{time_s:.6},{voltage_v_rms:.4},{speed_mm_s:.3}");
     }
     output
         .write_all(text.as_bytes())

@@ -62,6 +62,7 @@ pub struct DrawingError(String);
 
 impl DrawingError {
     /// Converts an error of the drawing library, for use in `map_err`.
+    #[allow(clippy::needless_pass_by_value, reason = "`map_err` passes values")]
     pub(crate) fn new(error: impl ToString) -> Self {
         Self(error.to_string())
     }

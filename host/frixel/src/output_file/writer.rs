@@ -269,7 +269,7 @@ pub fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Result<()
 }
 
 fn count_lines(bytes: &[u8]) -> u64 {
-    bytes.iter().filter(|byte| **byte == b'\n').count() as u64
+    bytes.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n")).count() as u64
 }
 
 /// Opens the file that will become the file at `path`, for this process alone.

@@ -109,10 +109,10 @@ fn answered(command: &mut Command) -> Ran {
     let mut child = command.spawn().unwrap();
     // A command that has ended already reads nothing.
     let _ = child.stdin.take().unwrap().write_all(ANSWERS.as_bytes());
-    ran(child.wait_with_output().unwrap())
+    ran(&child.wait_with_output().unwrap())
 }
 
-fn ran(output: Output) -> Ran {
+fn ran(output: &Output) -> Ran {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     Ran { code: output.status.code(), said, notes: String::from_utf8_lossy(&output.stderr).into_owned() }
 }

@@ -117,6 +117,6 @@ fn a_reader_that_goes_away_ends_a_stream_of_rows() {
     let mut child = command.stdin(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     drop(child.stdin.take());
-    let output = ran(child.wait_with_output().unwrap());
+    let output = ran(&child.wait_with_output().unwrap());
     assert!(!output.notes.contains("panicked"), "{}", output.notes);
 }
