@@ -103,7 +103,7 @@ fn a_killed_record_leaves_its_rows_which_the_next_one_names_and_finishes() {
     let rows = folder.text("me.csv.partial");
     assert!(rows.ends_with('\n') && rows.lines().all(|row| row.split(',').count() == 3), "whole rows");
 
-    let ran = folder.run(&line);
+    let ran = folder.run(&format!("{line} --seconds 0.3"));
     let says = "me.csv.partial has the rows of a recording that was cut off: add --finish to keep them, or record anew \
                 with --overwrite";
     assert!(ran.code == Some(1) && ran.notes.contains(says), "{}", ran.notes);
