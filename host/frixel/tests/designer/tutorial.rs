@@ -57,6 +57,10 @@ impl Reader {
             self.board = Some(VirtualBoard::start(self.path(), &arguments));
             return;
         }
+        // Ctrl-C ends the play that follows its file, which has the folder to itself.
+        if line.starts_with("play") {
+            self.watching = None;
+        }
         let port = self.board.as_ref().map_or(PORT, |board| &board.port);
         let arguments: Vec<&str> = line.split_whitespace().map(|word| if word == PORT { port } else { word }).collect();
         let mut process = command(self.path(), &arguments);
