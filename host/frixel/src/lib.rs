@@ -9,6 +9,7 @@ pub mod fit;
 pub mod input;
 pub mod model_csv;
 pub mod output;
+pub mod output_file;
 pub mod player;
 pub mod rehearsal;
 pub mod report;

@@ -10,7 +10,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use frixel::default_stroke;
-use frixel::output::write_preview_png;
+use frixel::output::draw_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
@@ -252,7 +252,7 @@ fn the_gallery_in_the_docs_shows_these_scenes() {
         let file = format!("{name}.png");
         let (drawn, held) = (drawn_in.path().join(&file), held_in.join(&file));
         let preview = Preview { map_max: (400, 400), ..Preview::default() };
-        write_preview_png(&drawn, &format!("{name}.toml"), program, &preview).unwrap();
+        fs::write(&drawn, draw_preview_png(&format!("{name}.toml"), program, &preview).unwrap()).unwrap();
         if bless {
             fs::copy(&drawn, &held).unwrap();
         }

@@ -13,6 +13,8 @@ mod handover;
 #[path = "kinds/main.rs"]
 mod kinds;
 mod model_command;
+#[path = "outputs/main.rs"]
+mod outputs;
 mod play_command;
 mod processes;
 mod report;

@@ -431,7 +431,11 @@ fn files_are_read_and_written_and_never_the_same_one() {
     assert_eq!(std::fs::read(path("out.csv")).unwrap(), frixel(&["eval"], &text).stdout);
     let refused = run("in.csv", "./in.csv");
     assert!(!refused.status.success());
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("is the input as well"));
+    assert!(
+        String::from_utf8(refused.stderr)
+            .unwrap()
+            .contains("is an input as well, and would be overwritten: give another name to --output")
+    );
     assert_eq!(std::fs::read_to_string(path("in.csv")).unwrap(), text);
     // What was longer is gone, and what is refused as a whole leaves what was there.
     std::fs::write(path("long.csv"), text.repeat(100)).unwrap();

@@ -373,7 +373,9 @@ fn an_interrupted_play_leaves_what_was_played() {
         .spawn()
         .unwrap();
     let felt = folder.path().join("frixel-out/felt.csv");
-    while fs::metadata(&felt).map_or(0, |file| file.len()) < 100_000 {
+    // The rows before the end.
+    let rows = folder.path().join("frixel-out/.felt.csv.frixel-tmp");
+    while fs::metadata(&rows).map_or(0, |file| file.len()) < 100_000 {
         assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
         sleep(Duration::from_millis(5));
     }
@@ -402,7 +404,7 @@ fn a_play_never_overwrites_a_file_of_its_scene() {
     let output = frixel(folder.path(), &["play", "out/own.toml", "--seconds", "0.1", "--out", "./out"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("scene.png is a file of the scene, and would be overwritten: give another folder to --out"));
+    assert!(said.contains("scene.png is an input as well, and would be overwritten: give another folder to --out"));
     assert!(!path("out/felt.csv").exists(), "nothing is written");
     assert!(fs::read(path("out/scene.png")).unwrap() == before);
 
@@ -415,6 +417,6 @@ fn a_play_never_overwrites_a_file_of_its_scene() {
     let mut play = command.spawn().unwrap();
     play.stdin.take().unwrap().write_all(b"replace own.toml\n").unwrap();
     let said = String::from_utf8(play.wait_with_output().unwrap().stderr).unwrap();
-    assert!(said.contains("scene.png is a file of the scene") && said.contains("own.toml is not played"), "{said}");
+    assert!(said.contains("scene.png is an input as well") && said.contains("own.toml is not played"), "{said}");
     assert!(path("felt.csv").exists());
 }

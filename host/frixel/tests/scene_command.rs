@@ -388,7 +388,7 @@ fn a_preview_never_replaces_a_picture_of_the_scene() {
     let before = fs::read(&picture).unwrap();
     let output = frixel(&["scene", "preview", scene.to_str().unwrap(), "-o", picture.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("brick.png is a file of the scene"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("brick.png is an input as well"));
     assert!(fs::read(&picture).unwrap() == before);
 }
 

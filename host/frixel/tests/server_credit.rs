@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
 use std::time::Duration;
 
+use frixel::output_file::Inputs;
 use frixel::rigs::Server;
 use frixel::scene_file;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
@@ -102,7 +103,7 @@ fn with_board(talk: impl FnOnce(&Path, &Path) + Send) {
     let mut memory = BoardMemory::new();
     let stroke = Stroke::sweep(0.12, 0.11, 60.0).unwrap();
     let mut rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
-    let server = Server::open(folder.path(), config.board.tick_hz, 40).unwrap();
+    let server = Server::open(folder.path(), &Inputs::default(), config.board.tick_hz, 40).unwrap();
     let port = server.path().to_owned();
     let ended = AtomicBool::new(false);
     thread::scope(|scope| {

@@ -20,7 +20,7 @@ use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, SerialLink};
 use frixel_scene::compile;
 use frixel_testkit::Random;
 use hound::{SampleFormat, WavSpec, WavWriter};
-use processes::{frixel, until};
+use processes::{frixel, rows_so_far, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
@@ -200,8 +200,7 @@ fn felt_cells(folder: &Path) -> Vec<Vec<String>> {
 
 /// Rows of a felt.csv so far; none before it is there.
 fn rows_in(folder: &Path) -> usize {
-    let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
-    text.lines().count().saturating_sub(1)
+    rows_so_far(folder).lines().count().saturating_sub(1)
 }
 
 /// What happened to the board. How often it dropped time depends on how busy the machine is.

@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Stdio};
 
-use processes::{frixel, until};
+use processes::{frixel, rows_so_far, until};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
@@ -77,7 +77,7 @@ fn scene(friction: &str) -> String {
 
 /// The column `asked_n`, a row a millisecond, without a row that is half written.
 fn asked_n(folder: &Path) -> Vec<f64> {
-    let text = fs::read_to_string(folder.join("felt.csv")).unwrap_or_default();
+    let text = rows_so_far(folder);
     let Some((rows, _)) = text.rsplit_once('\n') else { return Vec::new() };
     rows.lines().skip(1).filter_map(|row| row.split(',').nth(5)?.parse().ok()).collect()
 }

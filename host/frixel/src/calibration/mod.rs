@@ -8,6 +8,7 @@
 mod align;
 mod protocol;
 
+use std::fmt::Write as _;
 use std::io::{Read, Write};
 
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,9 @@ pub enum CalibrationError {
          newtons"
     )]
     Forces(csv::Error),
+    /// What the board reported cannot be read.
+    #[error("what the board reported cannot be read ({0}): it was changed")]
+    Board(csv::Error),
     /// A force is not a number, or time goes backwards.
     #[error("row {row} of the forces {found}: give finite numbers, sorted by time")]
     Row {
@@ -118,6 +122,27 @@ struct Written<'r> {
     normal_force_n: f64,
     friction_n: f64,
     speed_mm_s: f64,
+}
+
+/// Writes what a board reported as CSV, which [`read_board`] reads: the column names, or rows behind them.
+pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> Result<(), CalibrationError> {
+    let mut text = String::new();
+    if rows.is_none() {
+        text.push_str("time_s,voltage_v_rms,speed_mm_s\n");
+    }
+    for BoardRow { time_s, voltage_v_rms, speed_mm_s } in rows.into_iter().flatten() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{time_s:.6},{voltage_v_rms:.4},{speed_mm_s:.3}");
+    }
+    output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+        .map_err(|error| CalibrationError::Write(error.into()))
+}
+
+/// Reads what [`write_board`] wrote.
+pub fn read_board(input: impl Read) -> Result<Vec<BoardRow>, CalibrationError> {
+    csv::Reader::from_reader(input).deserialize().collect::<Result<_, _>>().map_err(CalibrationError::Board)
 }
 
 /// Writes a recording as CSV.

@@ -1,23 +1,24 @@
 //! `frixel calibrate`: records the data that `frixel fit` needs.
 
-use std::fs::File;
-use std::io::{BufReader, Read, stdin};
+mod forces;
+
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args;
-use frixel::calibration::{BoardRow, CalibrationError, ForceRow, Protocol, align, read_forces, write_csv};
-use frixel::input::{self, Bounded};
+use frixel::calibration::{
+    BoardRow, CalibrationError, ForceRow, Protocol, align, read_board, read_forces, write_board, write_csv,
+};
+use frixel::output_file::{FileWriter, Inputs, Recording};
 use frixel::player::Player;
 use frixel::rigs::{ForceSensor, RecordedLink, SimLink};
 use frixel::stream::Feed;
 use frixel_driver::Device;
 use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig, Stroke};
 use frixel_model::{Contact, Finger, LoadedContact};
-use frixel_scene::recorder::Recorder;
+use frixel_scene::recorder::{FeltRow, Recorder};
 use frixel_scene::{Elasticity, FingerProfile, Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -26,22 +27,31 @@ use super::error::CommandError;
 use super::experiment;
 use super::fit::screen;
 use super::interrupt::Interrupt;
-use super::terminal::{note, print_line};
+use super::terminal::{note, say};
 use super::waiting;
 
 /// Rows a second of the recording.
 const ROW_HZ: u32 = 1_000;
 /// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
 const FORCES_LATE: Duration = Duration::from_millis(500);
+/// How to keep what a board reported until the recording was cut off.
+const CUT_OFF: &str = "add --finish, and the --forces of that run unless they came on standard input, to keep it";
 
 #[derive(Debug, Args)]
 pub(super) struct CalibrateArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// The recording, for `frixel fit`.
+    /// The recording, for `frixel fit`. Until the end, what a board reports is in a file of the same name and
+    /// `.partial`.
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
+    /// Replace an earlier recording.
+    #[arg(long)]
+    overwrite: bool,
+    /// Play nothing, and join the strokes of a recording that was cut off with their forces.
+    #[arg(long)]
+    finish: bool,
     /// Forces of a sensor during the run: CSV with the columns `time_s,normal_force_n,friction_n`, on any clock; `-`
     /// for standard input. A file is there when the run begins, and is read when it is over. The simulator has a sensor
     /// of its own, and `frixel sim` writes what one under its screen measures, forces.csv.
@@ -65,31 +75,64 @@ pub(super) struct CalibrateArgs {
 }
 
 pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
+    let inputs = Inputs::new(&args.forces);
+    let recording = Recording::new(&args.output, "-o", &inputs, args.overwrite, CUT_OFF)?;
+    if args.finish {
+        return finish(args, &recording).map_err(|error| experiment::cut_off(&recording, error));
+    }
     let interrupt = Interrupt::watch()?;
-    experiment::check_writable(&args.output)?;
+    // A pipe is opened once.
+    let partial = recording.output().is_file().then(|| recording.start()).transpose()?;
     // A file of forces that is missing, or of something else, is found before the run, not after it.
     if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
-        read(path)?;
+        forces::read(path)?;
     }
-    let (board, forces) = if args.port == "sim" { on_simulator(args, &interrupt)? } else { on_port(args, &interrupt)? };
-    let rows = align(&board, &forces)?;
-    let file = File::create(&args.output).map_err(CommandError::writing(&args.output))?;
-    write_csv(file, &rows)?;
-    let path = args.output.display();
-    print_line(format_args!("  {:<16} {path}", "wrote"))?;
+    let recorded = if args.port == "sim" {
+        on_simulator(args, &recording, &interrupt)
+    } else {
+        on_port(args, &recording, &interrupt, partial)
+    };
+    let written = recorded.and_then(|(board, forces)| write(args, &recording, &board, &forces));
+    written.map_err(|error| experiment::cut_off(&recording, error))
+}
+
+/// Makes the recording of what one that was cut off has left.
+fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<(), CommandError> {
+    let (_partial, text) = recording.resume()?;
+    let board = read_board(text.as_bytes())?;
+    let copied = forces::copy(args)?.partial();
+    let forces = forces::read(args.forces.as_deref().unwrap_or(&copied))?;
+    write(args, recording, &board, &forces)
+}
+
+/// Joins what board and sensor saw, and writes it.
+fn write(
+    args: &CalibrateArgs,
+    recording: &Recording,
+    board: &[BoardRow],
+    forces: &[ForceRow],
+) -> Result<(), CommandError> {
+    let rows = align(board, forces)?;
+    let (output, mut bytes) = (recording.output(), Vec::new());
+    write_csv(&mut bytes, &rows)?;
+    output.write(&bytes)?;
+    recording.discard_partial();
+    forces::copy(args)?.discard_partial();
+    let path = output.path().display();
+    say(output, format_args!("  {:<16} {path}", "wrote"))?;
     let highest = rows.iter().map(|row| row.voltage_v_rms).fold(0.0, f64::max);
     let voltage = if highest < 145.0 { format!(" --voltage {highest:.0}") } else { String::new() };
-    print_line(format_args!("  {:<16} frixel fit {path}{voltage} -o finger.toml", "next"))
+    say(output, format_args!("  {:<16} frixel fit {path}{voltage} -o finger.toml", "next"))
 }
 
 type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
 
-fn on_simulator(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
+fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
     let (contact, fingertip) = simulated_finger(args.finger_seed)?;
     let rig = RigConfig::default();
     let mut config = RigConfig { world: rig.world.realistic(), ..rig };
     config.world.fingertip = fingertip;
-    let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
+    let plan = Plan::new(args, recording, &config.board.limits, config.board.tick_hz)?;
     let stroke = Stroke::from_csv(&plan.protocol.stroke_csv()).map_err(CommandError::GeneratedStroke)?;
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
@@ -97,10 +140,11 @@ fn on_simulator(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded,
     let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
     let link = SimLink::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
     let mut player = plan.start(Device::connect(link)?, 0)?;
-    let board = plan.play(&mut player, interrupt, Duration::MAX)?;
+    // What is simulated needs no file until it is whole.
+    let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
     drop(player);
     let forces = match &args.forces {
-        Some(path) => read(path)?,
+        Some(path) => forces::read(path)?,
         None => sensor.rows().to_vec(),
     };
     Ok((board, forces))
@@ -129,63 +173,38 @@ fn simulated_finger(seed: Option<u64>) -> Result<(LoadedContact<f64>, FingertipC
     Ok((contact.map_err(CommandError::Finger)?, FingertipConfig::REALISTIC))
 }
 
-fn on_port(args: &CalibrateArgs, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
+fn on_port(
+    args: &CalibrateArgs,
+    recording: &Recording,
+    interrupt: &Interrupt,
+    mut partial: Option<FileWriter>,
+) -> Result<Recorded, CommandError> {
     let Some(forces) = &args.forces else { return Err(CommandError::NoForces { port: args.port.clone() }) };
     if args.finger_seed.is_some() {
         return Err(CommandError::FingerOnBoard { port: args.port.clone() });
     }
     let device = experiment::connect(&args.port, args.arm)?;
     let hello = *device.hello();
-    let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
-    let from_stdin = (forces == Path::new("-")).then(StandardInput::read);
+    let plan = Plan::new(args, recording, &hello.limits, hello.tick_hz)?;
+    let from_stdin = if forces == Path::new("-") {
+        // What goes to a stream has no copies.
+        let copy = partial.is_some().then(|| forces::copy(args)?.start()).transpose()?;
+        Some(forces::StandardInput::read(copy))
+    } else {
+        None
+    };
     let mut player = plan.start(waiting::watch(device, interrupt), hello.tick_hz / ROW_HZ)?;
-    let board = plan.play(&mut player, interrupt, Duration::from_secs_f64(plan.protocol.duration_s()))?;
+    let duration = Duration::from_secs_f64(plan.protocol.duration_s());
+    let board = match &mut partial {
+        Some(partial) => plan.play(&mut player, interrupt, duration, partial)?,
+        None => plan.play(&mut player, interrupt, duration, &mut std::io::sink())?,
+    };
+    drop(partial);
     let forces = match from_stdin {
         Some(input) => read_forces(input.after(FORCES_LATE).as_slice())?,
-        None => read(forces)?,
+        None => forces::read(forces)?,
     };
     Ok((board, forces))
-}
-
-/// Standard input, which is read while the board plays, so that its writer does not block.
-struct StandardInput {
-    reader: JoinHandle<()>,
-    bytes: Arc<Mutex<Vec<u8>>>,
-}
-
-impl StandardInput {
-    fn read() -> Self {
-        let bytes = Arc::new(Mutex::new(Vec::new()));
-        let shared = Arc::clone(&bytes);
-        let reader = thread::spawn(move || {
-            let mut input = Bounded::new(stdin(), input::CSV_MAX_BYTES);
-            let mut chunk = [0; 4096];
-            // A pipe that breaks has ended, and so has one that goes on beyond the limit.
-            while let Ok(count @ 1..) = input.read(&mut chunk) {
-                let mut bytes = shared.lock().unwrap_or_else(PoisonError::into_inner);
-                bytes.extend_from_slice(chunk.get(..count).unwrap_or_default());
-            }
-        });
-        Self { reader, bytes }
-    }
-
-    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring.
-    fn after(&self, time_max: Duration) -> Vec<u8> {
-        let begun = Instant::now();
-        while !self.reader.is_finished() && begun.elapsed() < time_max {
-            thread::sleep(Duration::from_millis(5));
-        }
-        std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
-    let rows = if path == Path::new("-") {
-        read_forces(Bounded::new(stdin(), input::CSV_MAX_BYTES))
-    } else {
-        read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?))
-    };
-    rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
 }
 
 /// A protocol that is ready to play on a board.
@@ -197,11 +216,16 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self, CommandError> {
+    fn new(
+        args: &CalibrateArgs,
+        recording: &Recording,
+        limits: &BoardLimits,
+        tick_hz: u32,
+    ) -> Result<Self, CommandError> {
         let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits)?;
         let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
         for line in protocol.words().lines() {
-            print_line(format_args!("  {:<16} {line}", "plan"))?;
+            say(recording.output(), format_args!("  {:<16} {line}", "plan"))?;
         }
         let scene = protocol.scene().map_err(CommandError::Finger)?;
         let scene = Scene::parse(&scene, "calibration", &std::collections::BTreeMap::new())?;
@@ -219,13 +243,16 @@ impl Plan {
         Ok(player)
     }
 
-    /// Plays to the end, and returns what the board reported.
+    /// Plays to the end, and returns what the board reported, which is written to `partial` in the meantime.
     fn play<L: RecordedLink>(
         &self,
         player: &mut Player<L>,
         interrupt: &Interrupt,
         time_max: Duration,
+        partial: &mut dyn Write,
     ) -> Result<Vec<BoardRow>, CommandError> {
+        let mut rows = Vec::new();
+        write_board(&mut *partial, None)?;
         let bar = ProgressBar::new(self.protocol.strokes as u64);
         let style = ProgressStyle::with_template("  stroke {pos} of {len}: {msg}  {bar:30}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -235,7 +262,11 @@ impl Plan {
                 player.stop().map_err(CommandError::Play)?;
                 return Err(CommandError::ExperimentInterrupted);
             }
-            left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);
+            let stepped = player.step(left);
+            let seen = rows.len();
+            rows.extend(board_rows(player));
+            write_board(&mut *partial, rows.get(seen..))?;
+            left = left.saturating_sub(stepped.map_err(CommandError::Play)?);
             let stroke = (player.recorder_mut().t_s() / (self.protocol.stroke_s + self.protocol.pause_s)) as u64;
             bar.set_position((stroke + 1).min(self.protocol.strokes as u64));
             bar.set_message(if stroke.is_multiple_of(2) { "to the right" } else { "to the left" });
@@ -249,18 +280,18 @@ impl Plan {
                 status.underruns
             ));
         }
-        let rows = player.recorder_mut().take_rows();
-        Ok(rows
-            .iter()
-            .filter_map(|row| {
-                Some(BoardRow {
-                    time_s: row.t_s,
-                    voltage_v_rms: row.voltage_v_rms?,
-                    speed_mm_s: row.speed_mm_s.unwrap_or(0.0),
-                })
-            })
-            .collect())
+        rows.extend(board_rows(player));
+        Ok(rows)
     }
+}
+
+/// What the board has reported since the last call.
+fn board_rows<L: RecordedLink>(player: &mut Player<L>) -> impl Iterator<Item = BoardRow> {
+    let row = |row: FeltRow| {
+        let (time_s, speed_mm_s) = (row.t_s, row.speed_mm_s.unwrap_or(0.0));
+        Some(BoardRow { time_s, voltage_v_rms: row.voltage_v_rms?, speed_mm_s })
+    };
+    player.recorder_mut().take_rows().into_iter().filter_map(row)
 }
 
 impl From<CalibrationError> for CommandError {

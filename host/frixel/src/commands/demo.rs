@@ -1,7 +1,8 @@
 //! `frixel demo`: the bundled brick texture on the simulator.
 
-use std::io::ErrorKind;
 use std::path::Path;
+
+use frixel::output_file::{Inputs, OutputFile};
 
 use super::error::CommandError;
 use super::terminal::print_line;
@@ -35,10 +36,5 @@ fn create(path: &Path, bytes: &[u8]) -> Result<bool, CommandError> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
     }
-    let created = std::fs::File::create_new(path);
-    match created.and_then(|mut file| std::io::Write::write_all(&mut file, bytes)) {
-        Ok(()) => Ok(true),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(false),
-        Err(error) => Err(CommandError::writing(path)(error)),
-    }
+    Ok(OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)?)
 }

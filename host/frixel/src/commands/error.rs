@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use frixel::calibration::CalibrationError;
 use frixel::fit::FitError;
 use frixel::model_csv::CsvError;
-use frixel::output::{FeltLogError, OutputError};
+use frixel::output::{DrawingError, FeltLogError};
+use frixel::output_file::OutputFileError;
 use frixel::player::PlayError;
 use frixel::rehearsal::RehearsalError;
 use frixel::report::ReportError;
@@ -40,7 +41,9 @@ pub(crate) enum CommandError {
     #[error(transparent)]
     Server(#[from] ServerError),
     #[error(transparent)]
-    Output(#[from] OutputError),
+    Output(#[from] OutputFileError),
+    #[error(transparent)]
+    Drawing(#[from] DrawingError),
     #[error(transparent)]
     Studio(#[from] StudioError),
     #[error(transparent)]
@@ -78,7 +81,7 @@ pub(crate) enum CommandError {
     Calibration(CalibrationError),
     #[error("{}: {source}", path.display())]
     Forces { path: PathBuf, source: CalibrationError },
-    #[error("the run was interrupted, and nothing is written: start it again")]
+    #[error("the run was interrupted: start it again")]
     ExperimentInterrupted,
     #[error(
         "--voltage {found} is above what this board drives, {limit_v_rms:.0} V rms: give at most that, or leave \
@@ -89,21 +92,20 @@ pub(crate) enum CommandError {
         "--finger-seed draws the finger of --port sim only; the finger on {port} is its own: leave --finger-seed out"
     )]
     FingerOnBoard { port: String },
-    #[error("the answers ended at trial {trial}, and nothing is written: answer each trial with 1 or 2 and Enter")]
+    #[error("the answers ended at trial {trial}: answer each trial with 1 or 2 and Enter")]
     NoAnswer { trial: usize },
-    #[error(
-        "{count} answers to trial {trial} were neither 1 nor 2, and nothing is written: start again, and answer each \
-         trial with 1 or 2 and Enter"
-    )]
+    #[error("{count} answers to trial {trial} were neither 1 nor 2: answer each trial with 1 or 2 and Enter")]
     WrongAnswers { trial: usize, count: u32 },
-    #[error("{} cannot be written ({source}): check the folder and its free space", path.display())]
-    Noise { path: PathBuf, source: hound::Error },
+    #[error("the noise cannot be made ({0})")]
+    Noise(hound::Error),
+    #[error("{source}; what was recorded until then is in {}: {advice}", partial.display())]
+    RecordingCutOff { source: Box<CommandError>, partial: PathBuf, advice: &'static str },
+    #[error("{}: row {row} {reason}: give the options of the session that was cut off, or begin a new one with --overwrite", partial.display())]
+    OtherSession { partial: PathBuf, row: usize, reason: String },
     #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
     NoForces { port: String },
     #[error("{rows} no answer; the column `status` says why")]
     InvalidRows { rows: String },
-    #[error("{} is the input as well: writing it would destroy it; give --output another name", path.display())]
-    OutputIsInput { path: PathBuf },
     #[error("{} cannot be read ({source}): {}", path.display(), check_path(path, "check the path"))]
     Read { path: PathBuf, source: io::Error },
     #[error(
@@ -144,8 +146,10 @@ pub(crate) enum CommandError {
         "a real board plays only what was measured on this finger: {warning}; fit the finger again up to this voltage and load, or lower the scene's"
     )]
     NotMeasured { warning: Warning },
-    #[error("{} has no row: the board saw no finger; slide one over its screen while `frixel record` runs", path.display())]
-    NothingRecorded { path: PathBuf },
+    #[error(
+        "nothing is recorded, because the board saw no finger: slide one over its screen while `frixel record` runs"
+    )]
+    NothingRecorded,
     #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
     SelftestFailed { port: String, failed: usize },
     #[error("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", name.display())]
@@ -169,8 +173,6 @@ pub(crate) enum CommandError {
         path.display()
     )]
     LogTooShort { path: PathBuf, behind_s: f64 },
-    #[error("{} is a file of the scene, and would be overwritten: {advice}", path.display())]
-    WouldReplace { path: PathBuf, advice: &'static str },
     #[error(transparent)]
     Feed(#[from] FeedError),
     #[error(

@@ -1,9 +1,7 @@
 //! What plays and experiments on a board have in common. Experiments take minutes of a person's time, so whatever can
 //! be wrong is found before they begin.
 
-use std::fs::{OpenOptions, remove_file};
-use std::path::Path;
-
+use frixel::output_file::Recording;
 use frixel::rigs::PortLink;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_wire::hello::BoardLimits;
@@ -47,9 +45,11 @@ pub(super) fn voltage(text: &str) -> Result<f64, String> {
     number(text, above_zero_to(VOLTAGE_MAX_V_RMS), "a voltage above 0, at most 150 V rms")
 }
 
-/// Fails if a file cannot be written later. Leaves what is in it.
-pub(super) fn check_writable(path: &Path) -> Result<(), CommandError> {
-    let is_new = !path.exists();
-    OpenOptions::new().append(true).create(true).open(path).map_err(CommandError::writing(path))?;
-    if is_new { remove_file(path).map_err(CommandError::writing(path)) } else { Ok(()) }
+/// Adds to an error that ended a recording where its rows are, if it has any.
+pub(super) fn cut_off(recording: &Recording, error: CommandError) -> CommandError {
+    if recording.is_cut_off() {
+        let (partial, advice) = (recording.partial(), recording.advice());
+        return CommandError::RecordingCutOff { source: error.into(), partial, advice };
+    }
+    error
 }

@@ -1,19 +1,19 @@
 //! `frixel fit`: a finger's profile from measured friction.
 
-use std::fs;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use frixel::fit::{self, Settings, Summary};
+use frixel::fit::{self, Fit, Settings, Summary};
 use frixel::input::{self, Bounded};
-use frixel::output::write_fit_svg;
+use frixel::output::draw_fit_svg;
+use frixel::output_file::{Inputs, OutputFile, commit_all};
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
 
 use super::argument::positive;
 use super::error::CommandError;
-use super::terminal::{print, print_line};
+use super::terminal::{print_line, say};
 
 #[derive(Debug, Args)]
 pub(super) struct FitArgs {
@@ -54,6 +54,7 @@ pub(super) struct FitArgs {
 
 pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     let (screen_name, screen) = screen(args.screen.as_deref())?;
+    let outputs = args.output.as_deref().map(|path| Outputs::new(args, path)).transpose()?;
     let settings = Settings {
         voltage_v_rms: args.voltage,
         normal_load_n: args.load,
@@ -63,20 +64,52 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     };
     let refused = |source| CommandError::Fit { path: args.data.clone(), source };
     let fit = fit::fit(fit::rows(open(&args.data)?).map_err(refused)?, &settings).map_err(refused)?;
-    if let Some(output) = &args.output {
+    if let Some(outputs) = &outputs {
+        outputs.write(args, &fit, &screen_name)?;
+    }
+    let text =
+        if args.json { serde_json::json!(Summary::from(&fit)).to_string() } else { fit::words(&fit, &screen_name) };
+    let text = text.trim_end_matches('\n');
+    match &outputs {
+        Some(outputs) if args.json => say(&outputs.profile, text),
+        Some(outputs) => say(&outputs.profile, format_args!("{text}\n  {:<22} {}", "wrote", outputs.names())),
+        None => print_line(text),
+    }
+}
+
+/// The profile, and the residual plots beside it if it is a file.
+struct Outputs {
+    profile: OutputFile,
+    plots: Option<OutputFile>,
+}
+
+impl Outputs {
+    fn new(args: &FitArgs, path: &Path) -> Result<Self, CommandError> {
+        let inputs = Inputs::new([&args.data].into_iter().chain(args.screen.as_ref().map(PathBuf::from).as_ref()));
+        let profile = OutputFile::new(path, "-o", &inputs)?;
+        if !profile.is_file() {
+            return Ok(Self { profile, plots: None });
+        }
+        let plots = OutputFile::new(&path.with_extension("svg"), "-o", &inputs)?;
+        plots.check_apart_from(&profile)?;
+        Ok(Self { profile, plots: Some(plots) })
+    }
+
+    fn write(&self, args: &FitArgs, fit: &Fit, screen: &str) -> Result<(), CommandError> {
         let date = OffsetDateTime::now_utc().date().to_string();
-        let experiment = Experiment { date, method: args.method.clone(), screen: screen_name.clone() };
-        fs::write(output, fit::profile(&fit, experiment).to_toml()).map_err(CommandError::writing(output))?;
-        write_fit_svg(&residuals_path(output), &format!("{}, fitted", args.data.display()), &fit)?;
+        let experiment = Experiment { date, method: args.method.clone(), screen: screen.to_owned() };
+        let mut written = vec![self.profile.filled(fit::profile(fit, experiment).to_toml().as_bytes())?];
+        if let Some(plots) = &self.plots {
+            let drawn = draw_fit_svg(&format!("{}, fitted", args.data.display()), fit)?;
+            written.push(plots.filled(drawn.as_bytes())?);
+        }
+        Ok(commit_all(written, &[])?)
     }
-    if args.json {
-        return print_line(serde_json::json!(Summary::from(&fit)));
+
+    fn names(&self) -> String {
+        let files = [Some(&self.profile), self.plots.as_ref()].into_iter().flatten();
+        files.map(|file| file.path().display().to_string()).collect::<Vec<_>>().join(", ")
     }
-    print(fit::words(&fit, &screen_name))?;
-    if let Some(output) = &args.output {
-        print_line(format_args!("  {:<22} {}, {}", "wrote", output.display(), residuals_path(output).display()))?;
-    }
-    Ok(())
 }
 
 /// The screen of the experiment and the name by which profiles refer to it.
@@ -99,8 +132,4 @@ fn open(path: &Path) -> Result<Box<dyn Read>, CommandError> {
         return Ok(Box::new(Bounded::new(io::stdin().lock(), input::CSV_MAX_BYTES)));
     }
     Ok(Box::new(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?)))
-}
-
-fn residuals_path(output: &Path) -> PathBuf {
-    output.with_extension("svg")
 }

@@ -12,7 +12,6 @@ mod info;
 mod interrupt;
 mod model;
 mod new;
-mod overwrite;
 mod play;
 mod ports;
 mod profiles;
@@ -117,9 +116,12 @@ struct PlayArgs {
     /// until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Output folder.
+    /// Output folder. What an earlier play has left there is replaced.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
+    /// Replace also what a finger did on a board that is not a simulator.
+    #[arg(long)]
+    overwrite: bool,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
@@ -181,7 +183,7 @@ struct SimArgs {
     #[arg(long)]
     ideal: bool,
     /// Output folder.
-    #[arg(long, default_value = "frixel-out")]
+    #[arg(long, default_value = "frixel-sim")]
     out: PathBuf,
     /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
@@ -205,6 +207,7 @@ impl PlayArgs {
             stroke: StrokeArgs::default(),
             seconds: None,
             out: "frixel-out".into(),
+            overwrite: false,
             json: false,
             seed: 1,
             ideal: true,
@@ -267,4 +270,40 @@ pub(crate) fn with_nested_tip(mut error: clap::Error) -> clap::Error {
 /// Prints the error that ended a command.
 pub(crate) fn report_error(error: &CommandError) {
     terminal::note(format_args!("frixel: {error}"));
+}
+
+#[cfg(test)]
+#[allow(dead_code, reason = "the tests of the files that are written read the rest")]
+#[path = "../../tests/outputs/table.rs"]
+mod table;
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use clap::builder::ValueParser;
+
+    use super::*;
+
+    /// Every argument that is a path, with its command.
+    fn paths(command: &clap::Command, of: &str, found: &mut BTreeSet<String>) {
+        let is_path =
+            |argument: &&clap::Arg| argument.get_value_parser().type_id() == ValueParser::path_buf().type_id();
+        for argument in command.get_arguments().filter(is_path) {
+            assert!(found.insert(format!("{of}{}", argument.get_id())));
+        }
+        for nested in command.get_subcommands() {
+            paths(nested, &format!("{of}{} ", nested.get_name()), found);
+        }
+    }
+
+    /// A command with a new output stands in the table that the tests of `tests/outputs` go through.
+    #[test]
+    fn every_path_on_the_command_line_is_a_known_input_or_a_tested_output() {
+        let mut found = BTreeSet::new();
+        paths(&Cli::command(), "", &mut found);
+        let outputs = table::OUTPUTS.iter().map(|output| output.argument);
+        let known: BTreeSet<String> = table::INPUTS.into_iter().chain(outputs).map(str::to_owned).collect();
+        assert_eq!(found, known);
+    }
 }

@@ -1,12 +1,12 @@
 //! `frixel model`: evaluates the contact model over rows of CSV.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use frixel::input::{self, Bounded};
 use frixel::model_csv::{self, CsvError, Precision, Summary};
+use frixel::output_file::{Inputs, OutputFile};
 
 use super::error::CommandError;
 use super::terminal::note;
@@ -64,15 +64,22 @@ impl From<PrecisionName> for Precision {
 }
 
 pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
-    type Transform = fn(Precision, Box<dyn Read>, Box<dyn Write>) -> Result<Summary, CsvError>;
-    let (args, transform): (_, Transform) = match command {
-        ModelCommand::Eval(args) => (args, model_csv::eval),
-        ModelCommand::Invert(args) => (args, model_csv::invert),
-    };
+    let (ModelCommand::Eval(args) | ModelCommand::Invert(args)) = command;
     let input = open(args.input.as_deref())?;
-    let output = create(args)?;
-    match transform(args.precision.into(), input, output) {
-        Ok(summary) => return judge(&summary),
+    let output = args.output.as_deref().unwrap_or(Path::new("-"));
+    let output = OutputFile::new(output, "--output", &Inputs::new(&args.input))?;
+    let mut writer = output.create()?;
+    let precision = args.precision.into();
+    let transformed = match command {
+        ModelCommand::Eval(_) => model_csv::eval(precision, input, &mut writer),
+        ModelCommand::Invert(_) => model_csv::invert(precision, input, &mut writer),
+    };
+    match transformed {
+        Ok(summary) => {
+            writer.commit()?;
+            return judge(&summary);
+        }
+        Err(CsvError::Write(error)) if output.is_file() => return Err(writer.error(error).into()),
         // Ignore a closed standard output.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {
@@ -91,41 +98,6 @@ fn open(path: Option<&Path>) -> Result<Box<dyn Read>, CommandError> {
     match path {
         Some(path) => Ok(Box::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?)),
         None => Ok(Box::new(Bounded::new(io::stdin().lock(), input::CSV_MAX_BYTES))),
-    }
-}
-
-fn create(args: &FileArgs) -> Result<Box<dyn Write>, CommandError> {
-    let Some(path) = &args.output else { return Ok(Box::new(io::stdout().lock())) };
-    let same_file = |input: &PathBuf| {
-        input.canonicalize().is_ok_and(|input| path.canonicalize().is_ok_and(|output| input == output))
-    };
-    if args.input.as_ref().is_some_and(same_file) {
-        return Err(CommandError::OutputIsInput { path: path.clone() });
-    }
-    let file = File::options().write(true).create(true).truncate(false).open(path);
-    Ok(Box::new(Kept { file: file.map_err(CommandError::writing(path))?, begun: false }))
-}
-
-/// A file that is truncated only at the first write, so that rejected input does not destroy its contents.
-struct Kept {
-    file: File,
-    begun: bool,
-}
-
-impl Write for Kept {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if !self.begun {
-            // Only regular files have a length to truncate; devices and pipes do not.
-            if self.file.metadata()?.is_file() {
-                self.file.set_len(0)?;
-            }
-            self.begun = true;
-        }
-        self.file.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
     }
 }
 

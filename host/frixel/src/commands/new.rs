@@ -1,12 +1,13 @@
 //! `frixel new`: a first scene, with a comment for every line.
 
 use std::ffi::OsStr;
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Write};
+use std::fs;
+use std::io;
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 
 use clap::Args;
 use frixel::input;
+use frixel::output_file::{Inputs, OutputFile};
 use frixel_scene::{Screen, check_picture, layer_kinds};
 
 use super::error::CommandError;
@@ -42,11 +43,8 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
         }
         None => with_stripes(),
     };
-    let created = File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes()));
-    match created {
-        Ok(()) => {}
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(CommandError::SceneExists { path }),
-        Err(error) => return Err(CommandError::writing(&path)(error)),
+    if path.exists() || !OutputFile::new(&path, "the scene", &Inputs::new(&args.picture))?.write_new(text.as_bytes())? {
+        return Err(CommandError::SceneExists { path });
     }
     let (name, path) = (path.display(), quoted(&path));
     print_line(format_args!(

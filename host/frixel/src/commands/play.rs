@@ -23,10 +23,10 @@ use frixel::output::Report;
 use super::PlayArgs;
 use super::error::CommandError;
 use super::interrupt::Interrupt;
-use super::overwrite;
 use super::terminal::{self, note, note_refusals, print_line};
 use super::waiting;
 use live_scene::LiveScene;
+use outputs::PlayFiles;
 use rigs::Target;
 
 /// Results of a play.
@@ -45,13 +45,13 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
         return watch::play_on_simulator(args, &interrupt);
     }
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    outputs::check_play_outputs(&files, &outputs::output_paths(args, target))?;
+    let outputs = PlayFiles::new(args, target, &files)?;
     let scene = scene?;
-    let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files));
+    let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files, outputs.clone()));
     let played = match target {
-        Target::Simulator => rigs::play_on_simulator(args, &scene, live_scene, &interrupt),
-        Target::Emulator => rigs::play_on_emulator(args, &scene, live_scene, &interrupt),
-        Target::Port => rigs::play_on_port(args, &scene, live_scene, &interrupt),
+        Target::Simulator => rigs::play_on_simulator(args, &scene, (outputs, live_scene), &interrupt),
+        Target::Emulator => rigs::play_on_emulator(args, &scene, (outputs, live_scene), &interrupt),
+        Target::Port => rigs::play_on_port(args, &scene, (outputs, live_scene), &interrupt),
     }?;
     finish(args, played)
 }

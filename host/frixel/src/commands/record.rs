@@ -1,63 +1,106 @@
 //! `frixel record`: the way of a finger on a board, as a stroke file.
 
 use std::fmt::Display;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use frixel_driver::{DEFAULT_BAUD, Device, Event, SerialLink};
+use frixel::output_file::{FileWriter, Inputs, Recording};
+use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
 use frixel_scene::recorder::Observation;
 
 use super::error::CommandError;
+use super::experiment::cut_off;
 use super::interrupt::Interrupt;
-use super::terminal::{note, print_line};
+use super::terminal::{note, say};
 use super::waiting;
 
 /// Rows a second.
 const ROWS_HZ: u32 = 200;
-/// Longest time between two looks for Ctrl-C.
+/// Longest time between two looks for Ctrl-C, and between two writes of rows to the file.
 const STEP: Duration = Duration::from_millis(50);
+const HEADER: &str = "t_s,x_mm,y_mm";
+/// How to keep the rows of a recording that was cut off.
+const CUT_OFF: &str = "add --finish to keep them";
 
 #[derive(Debug, Args)]
 pub(super) struct RecordArgs {
     /// Path of the board's serial port.
-    #[arg(long)]
-    port: String,
-    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`.
+    #[arg(long, required_unless_present = "finish")]
+    port: Option<String>,
+    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`. Until the end, its rows are
+    /// in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
+    /// Replace an earlier recording.
+    #[arg(long)]
+    overwrite: bool,
+    /// Record nothing, and keep the rows of a recording that was cut off.
+    #[arg(long)]
+    finish: bool,
     /// How long to record. Without it, until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = super::argument::seconds)]
     seconds: Option<f64>,
 }
 
 pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
+    let recording = Recording::new(&args.output, "-o", &Inputs::default(), args.overwrite, CUT_OFF)?;
+    if args.finish {
+        let (writer, text) = recording.resume()?;
+        let touched = text.lines().skip(1).filter(|row| !row.ends_with(",,")).count() as u64;
+        return finish(&recording, writer, touched);
+    }
+    // Without a port, the recording is finished above.
+    let port = args.port.as_deref().unwrap_or_default();
     let interrupt = Interrupt::watch()?;
-    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let writer = recording.start()?;
+    let device = Device::connect(SerialLink::open(port, DEFAULT_BAUD)?)?;
     let mut device = waiting::watch(device, &interrupt);
-    let mut file = Rows::create(args, device.hello().tick_hz)?;
+    let mut rows = Rows::new(writer, device.hello().tick_hz)?;
+    match record(args, &mut device, &interrupt, &mut rows) {
+        Ok(()) => finish(&recording, rows.writer, rows.touched),
+        Err(error) => {
+            drop(rows);
+            Err(cut_off(&recording, error))
+        }
+    }
+}
+
+fn record<L: Link>(
+    args: &RecordArgs,
+    device: &mut Device<L>,
+    interrupt: &Interrupt,
+    rows: &mut Rows,
+) -> Result<(), CommandError> {
     device.subscribe(device.hello().tick_hz / ROWS_HZ)?;
     note("slide a finger over the screen; Ctrl-C ends the record");
     let end = args.seconds.map(|seconds| device.now() + Duration::from_secs_f64(seconds));
-    let mut written = Ok(());
-    while !interrupt.is_requested() && end.is_none_or(|end| device.now() < end) && written.is_ok() {
+    while !interrupt.is_requested() && end.is_none_or(|end| device.now() < end) {
+        let mut written = Ok(());
         device.wait(STEP, &mut |event| {
             if let (Event::Telemetry(telemetry), Ok(())) = (event, &written) {
-                written = file.add(&Observation::from_telemetry(&telemetry));
+                written = rows.add(&Observation::from_telemetry(&telemetry));
             }
         })?;
+        written.and_then(|()| rows.flush())?;
     }
-    device.subscribe(0)?;
-    written?;
-    file.finish()
+    Ok(device.subscribe(0)?)
 }
 
-/// The file, from the first touch on.
+/// Gives the file its name.
+fn finish(recording: &Recording, writer: FileWriter, touched: u64) -> Result<(), CommandError> {
+    if touched == 0 {
+        return Err(CommandError::NothingRecorded);
+    }
+    writer.commit()?;
+    let (output, seconds) = (recording.output(), touched as f64 / f64::from(ROWS_HZ));
+    say(output, format_args!("  {:<16} {}, {seconds:.1} s of touch", "wrote", output.path().display()))
+}
+
+/// The rows, from the first touch on.
 struct Rows {
-    path: PathBuf,
-    writer: BufWriter<File>,
+    writer: FileWriter,
     tick_hz: f64,
     first_tick: Option<u32>,
     is_down: bool,
@@ -65,12 +108,9 @@ struct Rows {
 }
 
 impl Rows {
-    fn create(args: &RecordArgs, tick_hz: u32) -> Result<Self, CommandError> {
-        let path = args.output.clone();
-        let file = File::create(&path).map_err(CommandError::writing(&path))?;
-        let writer = BufWriter::new(file);
-        let mut rows = Self { path, writer, tick_hz: f64::from(tick_hz), first_tick: None, is_down: false, touched: 0 };
-        rows.write("t_s,x_mm,y_mm")?;
+    fn new(writer: FileWriter, tick_hz: u32) -> Result<Self, CommandError> {
+        let mut rows = Self { writer, tick_hz: f64::from(tick_hz), first_tick: None, is_down: false, touched: 0 };
+        rows.write(HEADER)?;
         Ok(rows)
     }
 
@@ -93,15 +133,10 @@ impl Rows {
     }
 
     fn write(&mut self, line: impl Display) -> Result<(), CommandError> {
-        writeln!(self.writer, "{line}").map_err(CommandError::writing(&self.path))
+        Ok(writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))?)
     }
 
-    fn finish(mut self) -> Result<(), CommandError> {
-        self.writer.flush().map_err(CommandError::writing(&self.path))?;
-        if self.touched == 0 {
-            return Err(CommandError::NothingRecorded { path: self.path });
-        }
-        let seconds = self.touched as f64 / f64::from(ROWS_HZ);
-        print_line(format_args!("  {:<16} {}, {seconds:.1} s of touch", "wrote", self.path.display()))
+    fn flush(&mut self) -> Result<(), CommandError> {
+        Ok(self.writer.flush().map_err(|source| self.writer.error(source))?)
     }
 }

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use frixel::score::{Score, Trial, TrialFinger, write_score_svg};
+use frixel::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
+use frixel::score::{Score, Trial, TrialFinger, draw_score_svg};
 use frixel_hil_sim::{Person, RigConfig, Stroke};
 use frixel_scene::{Program, Scene, compile};
 
@@ -80,7 +81,11 @@ impl TouchSource {
 
 pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let rig = rig(args);
-    let scene = args.profiles.names().load(&args.scene)?;
+    let (scene, files) = args.profiles.names().load_with_files(&args.scene);
+    let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]));
+    let file = |name: &str| OutputFile::new(&args.out.join(name), "--out", &inputs);
+    let (csv, svg) = (file("score.csv")?, file("score.svg")?);
+    let scene = scene?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let trials = match args.people {
         None => trials(args, &program, None)?,
@@ -89,12 +94,11 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
             (1..=people).map(of_person).collect::<Result<Vec<_>, CommandError>>()?.concat()
         }
     };
+    let _folder = OutputFolder::open(&args.out)?;
     let score = Score::of(&program, &rig, &trials).map_err(|error| CommandError::of_play("sim", error))?;
-    std::fs::create_dir_all(&args.out).map_err(CommandError::writing(&args.out))?;
-    let (csv, svg) = (args.out.join("score.csv"), args.out.join("score.svg"));
-    std::fs::write(&csv, score.to_csv()).map_err(CommandError::writing(&csv))?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
-    write_score_svg(&svg, &format!("{scene}, simulated: {} plays", trials.len()), &score)?;
+    let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
+    commit_all(vec![csv.filled(score.to_csv().as_bytes())?, svg.filled(drawn.as_bytes())?], &[])?;
     if args.json {
         return print_line(format_args!("{}", score.to_json()));
     }
@@ -102,7 +106,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
         print_line(format_args!("{line}"))?;
     }
     for file in [csv, svg] {
-        print_line(format_args!("  {:<30} {}", "wrote", file.display()))?;
+        print_line(format_args!("  {:<30} {}", "wrote", file.path().display()))?;
     }
     Ok(())
 }

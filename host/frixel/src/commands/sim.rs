@@ -1,7 +1,9 @@
 //! `frixel sim`.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
+use frixel::output_file::Inputs;
 use frixel::rigs::{Dropped, Server};
 use frixel::scene_file::ProfileNames;
 use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke, contact_of};
@@ -41,7 +43,9 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
         rig.world_mut().set_own_finger(contact);
     }
     let tick_hz = config.board.tick_hz;
-    let server = Server::open(&args.out, tick_hz, tick_hz / ROWS_HZ)?;
+    let profiles = [&args.finger, &args.screen].into_iter().flatten().map(Path::new);
+    let inputs = Inputs::new(args.stroke.file().into_iter().chain(profiles));
+    let server = Server::open(&args.out, &inputs, tick_hz, tick_hz / ROWS_HZ)?;
     print_line(format_args!("port: {}", server.path()))?;
     let path = server.path();
     note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));

@@ -71,6 +71,11 @@ impl StrokeArgs {
         self.stroke.is_some() || self.from.is_some()
     }
 
+    /// The file of the stroke.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.stroke.as_deref().filter(|path| *path != Path::new(HUMAN))
+    }
+
     /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width
     /// and height, in m, for `seconds` seconds.
     pub(super) fn stroke(

@@ -6,6 +6,7 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
+use frixel::output_file::OutputFile;
 use frixel_scene::{Program, printable_lines};
 
 use super::error::CommandError;
@@ -19,6 +20,15 @@ pub(super) fn print(text: impl Display) -> Result<(), CommandError> {
 /// Like [`print`], with a line feed at the end.
 pub(super) fn print_line(text: impl Display) -> Result<(), CommandError> {
     print(format_args!("{text}\n"))
+}
+
+/// Writes a line for people: to standard error if `output` is standard output.
+pub(super) fn say(output: &OutputFile, text: impl Display) -> Result<(), CommandError> {
+    if output.is_standard_output() {
+        note(text);
+        return Ok(());
+    }
+    print_line(text)
 }
 
 /// Writes a line to standard error. Nothing can be said about a failure to do so.

@@ -1,9 +1,10 @@
 //! `frixel threshold`: a detection threshold for those who have no force sensor.
 
-use std::fs;
-use std::io::stdin;
+mod answers;
+
+use std::io::{Cursor, stdin};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
@@ -11,6 +12,7 @@ use std::time::Duration;
 use clap::Args;
 use frixel::calibration::Protocol;
 use frixel::input;
+use frixel::output_file::{Inputs, OutputFile, Recording};
 use frixel::player::Player;
 use frixel::rigs::{RecordedLink, SimLink};
 use frixel::stream::Feed;
@@ -29,8 +31,9 @@ use super::error::CommandError;
 use super::experiment;
 use super::fit::screen;
 use super::interrupt::Interrupt;
-use super::terminal::{print, print_line};
+use super::terminal::{print, print_line, say};
 use super::waiting;
+use answers::{Answer, Answers};
 
 /// Duration of each of the two strokes of a trial, in seconds.
 const STROKE_S: f64 = 1.6;
@@ -50,15 +53,24 @@ const ANSWER_POLL: Duration = Duration::from_millis(50);
 const LINES_AHEAD: usize = 64;
 /// Answers in a row that are neither 1 nor 2, after which the trials end.
 const WRONG_ANSWERS_MAX: u32 = 10;
+/// How to keep the answers of a session that was cut off.
+const CUT_OFF: &str = "add --finish to go on with it";
 
 #[derive(Debug, Args)]
 pub(super) struct ThresholdArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
     #[arg(long, required_unless_present = "noise")]
     port: Option<String>,
-    /// The finger profile to write: how far a level is above threshold, and no newtons.
+    /// The finger profile to write: how far a level is above threshold, and no newtons. Until the end, the answers are
+    /// in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
+    /// Replace an earlier profile.
+    #[arg(long, requires = "output")]
+    overwrite: bool,
+    /// Go on with a session that was cut off, after its last answer. It takes the options of that session.
+    #[arg(long, requires = "output")]
+    finish: bool,
     /// Number of trials, 12 to 40: 12 find the threshold to a factor of 1.7 in amplitude, 40 to a factor of 1.25 (root
     /// mean square over simulated observers).
     #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u8).range(12..=40))]
@@ -83,27 +95,50 @@ pub(super) struct ThresholdArgs {
 
 pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
     if let Some(path) = &args.noise {
-        write_noise(path, args.seed)?;
-        return print_line(format_args!("  {:<16} {}", "wrote", path.display()));
+        let output = OutputFile::new(path, "--noise", &Inputs::default())?;
+        output.write(&noise(args.seed)?)?;
+        return say(&output, format_args!("  {:<16} {}", "wrote", path.display()));
     }
     let interrupt = Interrupt::watch()?;
-    // Without a port, there is a file of noise, which ends the command above.
-    let port = args.port.as_deref().unwrap_or("sim");
     let (screen_name, _) = screen(args.screen.as_deref())?;
-    args.output.as_deref().map_or(Ok(()), experiment::check_writable)?;
-    let (threshold, protocol) = if port == "sim" {
+    let inputs = Inputs::new(args.screen.as_ref());
+    let recording = args.output.as_deref();
+    let recording = recording.map(|path| Recording::new(path, "-o", &inputs, args.overwrite, CUT_OFF)).transpose()?;
+    let answers = Answers::open(recording.as_ref(), args.finish)?;
+    let measured = measure(args, &interrupt, answers);
+    let reported = measured.and_then(|(threshold, protocol)| {
+        let profile = report(args, &threshold, &protocol, screen_name)?;
+        let Some(recording) = &recording else { return Ok(()) };
+        recording.output().write(profile.to_toml().as_bytes())?;
+        recording.discard_partial();
+        say(recording.output(), format_args!("  {:<16} {}", "wrote", recording.output().path().display()))
+    });
+    reported.map_err(|error| match &recording {
+        Some(recording) => experiment::cut_off(recording, error),
+        None => error,
+    })
+}
+
+/// Plays the trials on the board of the options.
+fn measure(
+    args: &ThresholdArgs,
+    interrupt: &Interrupt,
+    answers: Answers,
+) -> Result<(Threshold, Protocol), CommandError> {
+    // Without a port, there is a file of noise, which ends the command before.
+    let port = args.port.as_deref().unwrap_or("sim");
+    if port == "sim" {
         let config = RigConfig::default();
         let protocol = protocol(args, &config.board.limits)?;
         let stroke = Stroke::from_csv(&protocol.stroke_csv()).and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
-        session(args, &interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol)?
+        session(args, interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol, answers)
     } else {
         let device = experiment::connect(port, args.arm)?;
         let protocol = protocol(args, &device.hello().limits)?;
-        session(args, &interrupt, device, protocol)?
-    };
-    report(args, &threshold, &protocol, screen_name)
+        session(args, interrupt, device, protocol, answers)
+    }
 }
 
 fn protocol(args: &ThresholdArgs, limits: &BoardLimits) -> Result<Protocol, CommandError> {
@@ -116,10 +151,17 @@ fn session<L: RecordedLink>(
     interrupt: &Interrupt,
     device: Device<L>,
     protocol: Protocol,
+    mut recorded: Answers,
 ) -> Result<(Threshold, Protocol), CommandError> {
     let Some(mut staircase) = Staircase::new(usize::from(args.trials)) else {
         return Err(CommandError::NoAnswer { trial: 0 });
     };
+    let mut random = Pcg64::seed_from_u64(args.seed);
+    let highest_v_rms = protocol.voltage_max_v_rms();
+    for _ in 0..recorded.repeat(highest_v_rms, &mut staircase)? {
+        // As in the session that was cut off.
+        let _ = random.next_u64();
+    }
     let hello = *device.hello();
     let scene = protocol.scene().map_err(CommandError::Finger)?;
     let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
@@ -128,7 +170,6 @@ fn session<L: RecordedLink>(
     player.start(&program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
     print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
     print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
-    let mut random = Pcg64::seed_from_u64(args.seed);
     let answers = answers();
     while let Some(level_db) = staircase.next_level_db() {
         let (trial, trials) = staircase.progress();
@@ -156,7 +197,9 @@ fn session<L: RecordedLink>(
                 Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
             }
         };
-        staircase.answer(level_db, said_second == is_second);
+        let is_right = said_second == is_second;
+        staircase.answer(level_db, is_right);
+        recorded.add(Answer { trial, highest_v_rms, level_db, is_right })?;
     }
     player.stop().map_err(CommandError::Play)?;
     Ok((staircase.threshold(), protocol))
@@ -222,12 +265,13 @@ fn samples(protocol: &Protocol, level_db: f64, is_second: bool) -> Vec<u16> {
         .collect()
 }
 
+/// Prints the threshold, and returns the profile of the finger.
 fn report(
     args: &ThresholdArgs,
     threshold: &Threshold,
     protocol: &Protocol,
     screen_name: String,
-) -> Result<(), CommandError> {
+) -> Result<FingerProfile, CommandError> {
     let volts =
         |level_db: f64| protocol.voltage_of_share_v_rms(libm::pow(10.0, level_db / 20.0)).map_err(CommandError::Finger);
     let Threshold { level_db, interval_db: (low_db, high_db) } = *threshold;
@@ -242,27 +286,25 @@ fn report(
         "  {:<16} this gives no newtons: write scenes in fractions of what can be reached",
         "note"
     ))?;
-    let Some(output) = &args.output else { return Ok(()) };
     let experiment = Experiment {
         date: OffsetDateTime::now_utc().date().to_string(),
         method: format!("two-alternative staircase, {} trials, {STIMULUS_HZ} Hz", args.trials),
         screen: screen_name,
     };
     let evidence = Evidence::Perceptual { experiment, threshold_v_rms, threshold_interval_v_rms: interval_v_rms };
-    let profile = FingerProfile { evidence, ..FingerProfile::example() };
-    fs::write(output, profile.to_toml()).map_err(CommandError::writing(output))?;
-    print_line(format_args!("  {:<16} {}", "wrote", output.display()))
+    Ok(FingerProfile { evidence, ..FingerProfile::example() })
 }
 
-/// Writes white noise, which masks what the electrode sounds like.
-fn write_noise(path: &Path, seed: u64) -> Result<(), CommandError> {
-    let failed = |source| CommandError::Noise { path: path.to_owned(), source };
+/// White noise, which masks what the electrode sounds like, as a WAV file.
+fn noise(seed: u64) -> Result<Vec<u8>, CommandError> {
     let spec = WavSpec { channels: 1, sample_rate: NOISE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
-    let mut writer = WavWriter::create(path, spec).map_err(failed)?;
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = WavWriter::new(&mut bytes, spec).map_err(CommandError::Noise)?;
     let mut random = Pcg64::seed_from_u64(seed);
     for _ in 0..NOISE_S * NOISE_HZ {
         // A quarter of full scale, which leaves room for any player's volume.
-        writer.write_sample((random.next_u64() >> 48) as u16 as i16 / 4).map_err(failed)?;
+        writer.write_sample((random.next_u64() >> 48) as u16 as i16 / 4).map_err(CommandError::Noise)?;
     }
-    writer.finalize().map_err(failed)
+    writer.finalize().map_err(CommandError::Noise)?;
+    Ok(bytes.into_inner())
 }

@@ -2,16 +2,14 @@
 //! under the screen measured, and `events.csv` the events of the board.
 
 use std::fmt::{self, Display};
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
 
 use frixel_scene::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
-use super::OutputError;
 use crate::calibration::ForceRow;
+use crate::output_file::{FileWriter, OutputFileError};
 use crate::rigs::BoardEvent;
 
 /// A row of a CSV file. `docs/outputs.md` describes the columns.
@@ -26,8 +24,7 @@ pub trait CsvRow {
 /// A CSV file that is written row by row. Lines end in a line feed.
 #[derive(Debug)]
 pub struct CsvFile<R> {
-    path: PathBuf,
-    writer: BufWriter<File>,
+    writer: FileWriter,
     rows: PhantomData<R>,
 }
 
@@ -55,31 +52,37 @@ pub struct EventRow {
 }
 
 impl<R: CsvRow> CsvFile<R> {
-    /// Creates the file, truncates it if it exists, and writes the header row.
-    pub fn create(path: &Path) -> Result<Self, OutputError> {
-        let file = File::create(path).map_err(|source| OutputError::File { path: path.to_owned(), source })?;
-        let mut csv = Self { path: path.to_owned(), writer: BufWriter::new(file), rows: PhantomData };
+    /// Writes the header row into a file.
+    pub fn new(writer: FileWriter) -> Result<Self, OutputFileError> {
+        let mut csv = Self { writer, rows: PhantomData };
         csv.write_line(R::HEADER)?;
+        csv.flush()?;
         Ok(csv)
     }
 
     /// Writes one row.
-    pub fn write(&mut self, row: &R) -> Result<(), OutputError> {
+    pub fn write(&mut self, row: &R) -> Result<(), OutputFileError> {
         self.write_line(Cells(row))
     }
 
     /// Writes the buffered rows to the file.
-    pub fn flush(&mut self) -> Result<(), OutputError> {
-        self.writer.flush().map_err(|source| OutputError::File { path: self.path.clone(), source })
+    pub fn flush(&mut self) -> Result<(), OutputFileError> {
+        self.writer.flush().map_err(|source| self.writer.error(source))
     }
 
-    /// Writes the buffered rows and closes the file. Dropping a `CsvFile` writes them too, but ignores errors.
-    pub fn finish(mut self) -> Result<(), OutputError> {
-        self.flush()
+    /// Writes the header row again in place of everything.
+    pub fn restart(&mut self) -> Result<(), OutputFileError> {
+        self.writer.clear()?;
+        self.write_line(R::HEADER)
     }
 
-    fn write_line(&mut self, line: impl Display) -> Result<(), OutputError> {
-        writeln!(self.writer, "{line}").map_err(|source| OutputError::File { path: self.path.clone(), source })
+    /// The file, which the caller commits.
+    pub fn into_writer(self) -> FileWriter {
+        self.writer
+    }
+
+    fn write_line(&mut self, line: impl Display) -> Result<(), OutputFileError> {
+        writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))
     }
 }
 

@@ -1,11 +1,8 @@
 //! `felt.svg`: friction and voltage over time.
 
-use std::fs;
-use std::path::Path;
-
 use super::off_strip;
 use super::trace::{Extremes, Span, Trace, TracedLayer};
-use super::{OutputError, Subject};
+use super::{DrawingError, Subject};
 use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
 use frixel_scene::Reach;
 
@@ -38,9 +35,8 @@ type Part = fn(&Span) -> Option<Extremes>;
 /// felt friction is unknown, as on a real board, the commanded friction is drawn instead. Signals that change too fast
 /// for a line are drawn as their envelope. The way of the finger, the layer under it, and the reasons for which the
 /// output is off stand below the time.
-pub fn write_felt_svg(path: &Path, subject: &Subject, trace: &Trace, reach: &Reach) -> Result<(), OutputError> {
-    let text = chart(subject, trace, reach).svg().map_err(OutputError::drawing(path))?;
-    fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
+pub fn draw_felt_svg(subject: &Subject, trace: &Trace, reach: &Reach) -> Result<String, DrawingError> {
+    chart(subject, trace, reach).svg().map_err(DrawingError::new)
 }
 
 fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {

@@ -1,9 +1,6 @@
 //! The residual plots of a fit.
 
-use std::fs;
-use std::path::Path;
-
-use super::OutputError;
+use super::DrawingError;
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::fit::Fit;
 
@@ -12,9 +9,8 @@ const CURVE_POINTS: u32 = 100;
 
 /// Draws what was measured beside the fit: electric friction over voltage with the fitted law and a square law, what is
 /// left over per stroke, and the friction coefficient per stroke.
-pub fn write_fit_svg(path: &Path, title: &str, fit: &Fit) -> Result<(), OutputError> {
-    let text = chart(title, fit).svg().map_err(OutputError::drawing(path))?;
-    fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
+pub fn draw_fit_svg(title: &str, fit: &Fit) -> Result<String, DrawingError> {
+    chart(title, fit).svg().map_err(DrawingError::new)
 }
 
 fn chart(title: &str, fit: &Fit) -> Chart {

@@ -1,12 +1,12 @@
-//! The output files of a play.
+//! What the output files of a play have in them.
 //!
 //! - [`FeltCsv`], [`ForcesCsv`] and [`EventCsv`]: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene
 //!   plays.
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
-//! - [`write_felt_svg`]: friction and voltage over time.
-//! - [`write_fit_svg`]: the residual plots of a fit.
-//! - [`write_scene_png`]: the friction map of a program with the stroke over it.
-//! - [`write_preview_png`]: the friction map of a program before it is played.
+//! - [`draw_felt_svg`]: friction and voltage over time.
+//! - [`draw_fit_svg`]: the residual plots of a fit.
+//! - [`draw_scene_png`]: the friction map of a program with the stroke over it.
+//! - [`draw_preview_png`]: the friction map of a program before it is played.
 //! - [`FeltLog`]: the log of a virtual board, which joins what its finger felt to the rows of a client.
 //! - [`Report`]: the results of a run, as JSON and as a short text.
 //!
@@ -25,20 +25,15 @@ mod scene_png;
 mod tests;
 mod trace;
 
-use std::io;
-use std::path::{Path, PathBuf};
-
 use thiserror::Error;
-
-use crate::chart::Chart;
 
 pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv, ForcesCsv};
 pub use felt_log::{FeltLog, FeltLogError};
-pub use felt_svg::write_felt_svg;
-pub use fit_svg::write_fit_svg;
-pub use preview_png::write_preview_png;
+pub use felt_svg::draw_felt_svg;
+pub use fit_svg::draw_fit_svg;
+pub use preview_png::draw_preview_png;
 pub use report::{Report, WorldReport, draft_line};
-pub use scene_png::write_scene_png;
+pub use scene_png::draw_scene_png;
 pub use trace::{Trace, TracedLayer};
 
 /// The subject of a picture, from which its title is made.
@@ -60,36 +55,15 @@ impl Subject {
     }
 }
 
-/// Why a file could not be written.
+/// Why a picture could not be drawn: the message of the drawing library.
 #[derive(Debug, Error)]
-pub enum OutputError {
-    /// The operating system could not write the file.
-    #[error("{} cannot be written ({source}): check the folder and its free space", .path.display())]
-    File {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// A picture could not be drawn.
-    #[error("{} cannot be drawn ({reason})", .path.display())]
-    Drawing {
-        /// Path of the picture.
-        path: PathBuf,
-        /// Error message of the drawing library.
-        reason: String,
-    },
-}
+#[error("a picture cannot be drawn ({0})")]
+pub struct DrawingError(String);
 
-impl OutputError {
+impl DrawingError {
     /// Converts an error of the drawing library, for use in `map_err`.
-    fn drawing<E: ToString>(path: &Path) -> impl FnOnce(E) -> Self {
-        move |error| Self::Drawing { path: path.to_owned(), reason: error.to_string() }
+    #[allow(clippy::needless_pass_by_value, reason = "`map_err` passes values")]
+    pub(crate) fn new(error: impl ToString) -> Self {
+        Self(error.to_string())
     }
-}
-
-/// Draws a chart into an SVG file.
-pub(crate) fn write_chart(path: &Path, chart: &Chart) -> Result<(), OutputError> {
-    let text = chart.svg().map_err(OutputError::drawing(path))?;
-    std::fs::write(path, text).map_err(|source| OutputError::File { path: path.to_owned(), source })
 }

@@ -17,6 +17,8 @@ pub struct Report {
     pub draft: bool,
     /// Why a board refuses it, a sentence each with line and column in the scene's file.
     pub board_refuses: Vec<String>,
+    /// Whether finger or board is simulated.
+    pub simulated: bool,
     /// The simulated world, `realistic` or `ideal`.
     pub world: Option<&'static str>,
     /// Seed of the simulated person whose finger the board does not know.
@@ -111,6 +113,7 @@ impl Report {
             rig: rig.to_owned(),
             draft: false,
             board_refuses: Vec::new(),
+            simulated: true,
             world: None,
             finger_seed: None,
             ticks: metrics.ticks,
@@ -146,6 +149,12 @@ impl Report {
     #[must_use]
     pub fn with_origin(self, origin: Origin) -> Self {
         Self { finger_origin: origin.word(), ..self }
+    }
+
+    /// Says whether finger or board is simulated; without this, they are.
+    #[must_use]
+    pub fn with_simulated(self, simulated: bool) -> Self {
+        Self { simulated, ..self }
     }
 
     /// Says which world was simulated, if one was. The newtons of a random person are assumed, whatever those of the

@@ -1,11 +1,8 @@
 //! `scene.png`: the friction map of a program, with the stroke over it.
 
-use std::fs;
-use std::path::Path;
-
 use super::map::chart;
 use super::trace::Trace;
-use super::{OutputError, Subject};
+use super::{DrawingError, Subject};
 use crate::chart::{Line, Look, Mark, RGBColor};
 use frixel_layers::Layer;
 use frixel_scene::{Preview, Program};
@@ -18,7 +15,7 @@ const CASING: RGBColor = RGBColor(255, 255, 255);
 ///
 /// Friction that depends on the finger's speed is drawn at the stroke's median speed, and vibrations and streams at
 /// their largest; the caption says so.
-pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace: &Trace) -> Result<(), OutputError> {
+pub fn draw_scene_png(subject: &Subject, program: &Program, trace: &Trace) -> Result<Vec<u8>, DrawingError> {
     let default = Preview::default();
     let median_m_per_s = trace.median_speed_mm_s().map(|speed_mm_s| 1e-3 * speed_mm_s);
     let preview = Preview { speed_m_per_s: median_m_per_s.unwrap_or(default.speed_m_per_s), ..default };
@@ -44,6 +41,5 @@ pub fn write_scene_png(path: &Path, subject: &Subject, program: &Program, trace:
             panel.add("stroke, from its dot", Look { line: Line::Solid, ..Look::mark(STROKE, Mark::Disc) }, Vec::new());
         }
     }
-    let bytes = chart.png().map_err(OutputError::drawing(path))?;
-    fs::write(path, bytes).map_err(|source| OutputError::File { path: path.to_owned(), source })
+    chart.png().map_err(DrawingError::new)
 }

@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use super::trace::Extremes;
 use super::*;
 use crate::chart::{RGBColor, colour};
+use crate::output_file::{Inputs, OutputFile};
 use crate::scene_file;
 use frixel_control::Board;
 use frixel_driver::Counters;
@@ -71,7 +72,8 @@ fn trace(rows: &[FeltRow]) -> Trace {
 fn csv_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("felt.csv");
-    let mut csv = FeltCsv::create(&path).expect("a file");
+    let output = OutputFile::new(&path, "--out", &Inputs::default()).expect("a place");
+    let mut csv = FeltCsv::new(output.create().expect("a file")).expect("a header");
     let rows = [
         FeltRow {
             t_s: 0.001,
@@ -92,7 +94,7 @@ fn csv_bytes() {
     for row in &rows {
         csv.write(row).expect("a row");
     }
-    csv.finish().expect("the end");
+    csv.into_writer().commit().expect("the end");
     assert_eq!(
         fs::read_to_string(&path).expect("the file"),
         "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags\n\
@@ -107,10 +109,8 @@ fn csv_bytes() {
 fn files_that_cannot_be_written_are_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("missing").join("felt.csv");
-    let error = FeltCsv::create(&path).expect_err("no folder").to_string();
-    assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
-    let program = brick();
-    let error = write_scene_png(&path, &subject(""), &program, &Trace::new()).expect_err("no folder").to_string();
+    let output = OutputFile::new(&path, "--out", &Inputs::default()).expect("a place");
+    let error = output.create().expect_err("no folder").to_string();
     assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
 }
 
@@ -147,10 +147,7 @@ fn a_long_trace_stays_small_and_keeps_its_extremes() {
     let ends = (trace.spans()[0].start_s, trace.spans()[trace.spans().len() - 1].end_s);
     assert_eq!(ends, (0.0, 299_999.0 * 25e-6));
 
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("felt.svg");
-    write_felt_svg(&path, &subject("noise"), &trace, &brick().reach).expect("a picture");
-    let bytes = fs::metadata(&path).expect("the file").len();
+    let bytes = draw_felt_svg(&subject("noise"), &trace, &brick().reach).expect("a picture").len();
     assert!(bytes < 1_000_000, "{bytes} bytes");
 }
 
@@ -191,15 +188,11 @@ proptest! {
 
 #[test]
 fn felt_svg_has_axes_units_and_legend() {
-    let folder = tempfile::tempdir().expect("a folder");
     let program = brick();
-    let draw = |name: &str, rows: &[FeltRow]| {
-        let path = folder.path().join(name);
-        write_felt_svg(&path, &subject("a < b & c"), &trace(rows), &program.reach).expect("a picture");
-        fs::read_to_string(&path).expect("the file")
-    };
+    let draw =
+        |rows: &[FeltRow]| draw_felt_svg(&subject("a < b & c"), &trace(rows), &program.reach).expect("a picture");
     let mut rows = stroke(&program, 1.0);
-    let svg = draw("felt.svg", &rows);
+    let svg = draw(&rows);
     for text in
         ["a &lt; b &amp; c, simulated", "friction, mN", "voltage, V rms", "time, s", "reference", "felt", "reachable"]
     {
@@ -207,16 +200,16 @@ fn felt_svg_has_axes_units_and_legend() {
     }
     assert!(svg.starts_with("<svg width=\"1000\" height="));
     assert!(!svg.contains("envelope"));
-    assert_eq!(svg, draw("again.svg", &rows));
+    assert_eq!(svg, draw(&rows));
     // A board that cannot tell what was felt.
     for row in &mut rows {
         row.felt_n = None;
     }
-    let svg = draw("asked.svg", &rows);
+    let svg = draw(&rows);
     assert!(svg.lines().any(|line| line == "commanded") && !svg.lines().any(|line| line == "felt"));
     // Nothing at all is an empty picture, not an error.
-    draw("empty.svg", &[]);
-    draw("one.svg", &rows[..1]);
+    draw(&[]);
+    draw(&rows[..1]);
 }
 
 /// The colour of a part of the scale, as a pixel has it.
@@ -225,8 +218,8 @@ fn part_colour(part: f64) -> [u8; 3] {
     [red, green, blue]
 }
 
-fn read_png(path: &Path) -> (usize, Vec<u8>) {
-    let mut decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).expect("a file")));
+fn read_png(bytes: &[u8]) -> (usize, Vec<u8>) {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
     // A picture of few colours has a palette.
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().expect("a picture");
@@ -238,15 +231,12 @@ fn read_png(path: &Path) -> (usize, Vec<u8>) {
 
 #[test]
 fn scene_png_shows_friction_and_stroke_where_they_are() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("scene.png");
     let program = brick();
     let rows = stroke(&program, 1.0);
-    write_scene_png(&path, &subject("brick"), &program, &trace(&rows)).expect("a picture");
-    let (width, bytes) = read_png(&path);
-    let again = folder.path().join("again.png");
-    write_scene_png(&again, &subject("brick"), &program, &trace(&rows)).expect("a picture");
-    assert_eq!(fs::read(&path).expect("a file"), fs::read(again).expect("a file"));
+    let drawn = draw_scene_png(&subject("brick"), &program, &trace(&rows)).expect("a picture");
+    let (width, bytes) = read_png(&drawn);
+    let again = draw_scene_png(&subject("brick"), &program, &trace(&rows)).expect("a picture");
+    assert_eq!(drawn, again);
     // 110 mm are 800 pixels, from the map's corner at (84, 60).
     let pixel = |x_mm: f64, y_mm: f64| {
         let at = |mm: f64| (mm * 800.0 / 110.0) as usize;
@@ -268,13 +258,11 @@ fn scene_png_shows_friction_and_stroke_where_they_are() {
 
 #[test]
 fn screens_of_any_shape_are_drawn() {
-    let folder = tempfile::tempdir().expect("a folder");
     let mut program = brick();
     for (width_m, height_m) in [(2.0, 0.005), (0.005, 2.0), (0.005, 0.005), (2.0, 2.0)] {
         (program.header.screen_width_m, program.header.screen_height_m) = (width_m, height_m);
-        let path = folder.path().join("scene.png");
-        write_scene_png(&path, &subject("any shape"), &program, &Trace::new()).expect("a picture");
-        let (width, bytes) = read_png(&path);
+        let drawn = draw_scene_png(&subject("any shape"), &program, &Trace::new()).expect("a picture");
+        let (width, bytes) = read_png(&drawn);
         assert!(width < 1_300 && bytes.len() / 3 / width < 1_000);
     }
 }
@@ -300,12 +288,9 @@ fn vibration(frequency_hz: f64, between_s: std::ops::Range<f64>) -> Vec<FeltRow>
 
 #[test]
 fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("felt.svg");
     let drawn = |frequency_hz: f64| {
         let rows = vibration(frequency_hz, 1.0..2.0);
-        write_felt_svg(&path, &subject(""), &trace(&rows), &brick().reach).expect("a picture");
-        fs::read_to_string(&path).expect("the file")
+        draw_felt_svg(&subject(""), &trace(&rows), &brick().reach).expect("a picture")
     };
     let (slow, fast) = (drawn(20.0), drawn(150.0));
     let named = "felt, envelope, minimum to maximum";
@@ -328,8 +313,6 @@ fn every_flag_of_the_rows_is_documented() {
 
 #[test]
 fn a_voltage_that_is_off_has_its_reason() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("felt.svg");
     let program = brick();
     let rows = stroke(&program, 1.0);
     let drawn = |flags: Flags, voltage_v_rms: f64| {
@@ -337,8 +320,7 @@ fn a_voltage_that_is_off_has_its_reason() {
         for row in &mut rows[200..400] {
             (row.voltage_v_rms, row.flags) = (Some(voltage_v_rms), Some(flags));
         }
-        write_felt_svg(&path, &subject(""), &trace(&rows), &program.reach).expect("a picture");
-        fs::read_to_string(&path).expect("the file")
+        draw_felt_svg(&subject(""), &trace(&rows), &program.reach).expect("a picture")
     };
     let still = drawn(Flags::STILL, 0.0);
     assert!(still.lines().any(|line| line == "output off: the finger stands still"), "{still}");
@@ -347,8 +329,7 @@ fn a_voltage_that_is_off_has_its_reason() {
     for row in &mut rows_of_moment[200..201] {
         (row.voltage_v_rms, row.flags) = (Some(0.0), Some(Flags::TOUCH_STALE));
     }
-    write_felt_svg(&path, &subject(""), &trace(&rows_of_moment), &program.reach).expect("a picture");
-    let moment = fs::read_to_string(&path).expect("the file");
+    let moment = draw_felt_svg(&subject(""), &trace(&rows_of_moment), &program.reach).expect("a picture");
     assert!(moment.contains("output off: the touch") && !moment.contains("width=\"0\""), "a moment is drawn");
     let lost = drawn(Flags::STILL.with(Flags::TOUCH_STALE), 0.0);
     assert!(lost.contains("output off: the touch reports are too old") && !lost.contains("stands still"));
@@ -387,8 +368,6 @@ fn a_moment_at_each_turn_does_not_fill_the_strip_of_a_long_play() {
 /// Rows that become one span: the strongest reason is that of the strip, whichever comes first.
 #[test]
 fn the_strongest_reason_of_a_span_is_shown() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("felt.svg");
     let program = brick();
     for flags in [[Flags::STILL, Flags::HOST_SILENT], [Flags::HOST_SILENT, Flags::STILL]] {
         let row = |row: usize| FeltRow {
@@ -399,8 +378,7 @@ fn the_strongest_reason_of_a_span_is_shown() {
             ..FeltRow::default()
         };
         let rows: Vec<FeltRow> = (0..4_000).map(row).collect();
-        write_felt_svg(&path, &subject(""), &trace(&rows), &program.reach).expect("a picture");
-        let svg = fs::read_to_string(&path).expect("the file");
+        let svg = draw_felt_svg(&subject(""), &trace(&rows), &program.reach).expect("a picture");
         assert!(svg.contains("output off: the host is silent") && !svg.contains("stands still"), "{flags:?}");
     }
 }
@@ -441,7 +419,7 @@ fn report_as_json() {
     };
     assert_eq!(
         report(&known).to_json(),
-        "{\"rig\":\"simulator\",\"draft\":false,\"board_refuses\":[],\"world\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
+        "{\"rig\":\"simulator\",\"draft\":false,\"board_refuses\":[],\"simulated\":true,\"world\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
          \"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"slewing_ticks\":9,\
          \"load_mismatch_rms_n\":0.012,\"load_mismatch_max_n\":0.05,\"carrier_ripple_rms_n\":0.0005,\

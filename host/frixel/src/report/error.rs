@@ -8,20 +8,19 @@ use frixel_model::{InverseError, ParameterError, StateError, TableError};
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
+use crate::output_file::OutputFileError;
 use crate::player::PlayError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.
 #[derive(Debug, Error)]
 pub enum ReportError {
-    /// The folder or a file in it could not be written.
-    #[error("{} cannot be written ({source}): check the folder and its free space", .path.display())]
-    Write {
-        /// Path of the file or folder.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputFileError),
+    /// The picture of the scenes that are measured could not be encoded.
+    #[error("the picture of a scene: {0}")]
+    Picture(#[from] png::EncodingError),
     /// The file with instruction counts could not be read.
     #[error("{} cannot be read ({source}): `cargo xtask bench` writes such a file", .path.display())]
     ReadBench {

@@ -14,12 +14,13 @@ mod reference;
 mod touch;
 mod wire;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use error::ReportError;
 
 use counts::Counts;
+
+use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 
 /// Writes the report into a folder, creating it if necessary, and returns the paths of the files.
 ///
@@ -27,23 +28,23 @@ use counts::Counts;
 /// and of a tick. The run times are measured anew; everything else is equal in every run.
 pub fn write(folder: &Path, bench: Option<&Path>) -> Result<Vec<PathBuf>, ReportError> {
     let counts = bench.map(Counts::read).transpose()?;
-    fs::create_dir_all(folder).map_err(|source| ReportError::Write { path: folder.to_owned(), source })?;
+    let _locked = OutputFolder::open(folder)?;
+    let inputs = Inputs::new(bench);
     let figures = figures::all(counts.as_ref())?;
+    let mut paths = Vec::new();
     let mut files = Vec::new();
+    let mut put = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        files.push(OutputFile::new(&path, "--out", &inputs)?.filled(bytes)?);
+        Ok::<PathBuf, ReportError>(path)
+    };
     let mut drawn = Vec::new();
     for figure in &figures {
         let drawing = |reason: String| ReportError::Drawing { name: figure.name, reason };
         drawn.push((figure, figure.chart.svg().map_err(|error| drawing(error.to_string()))?));
-        files.push(put(folder, &format!("{}.csv", figure.name), &figure.csv)?);
+        paths.push(put(&format!("{}.csv", figure.name), &figure.csv)?);
     }
-    files.insert(0, put(folder, "index.html", page::html(&drawn).as_bytes())?);
-    Ok(files)
-}
-
-fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, ReportError> {
-    let path = folder.join(name);
-    match fs::write(&path, bytes) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    }
+    paths.insert(0, put("index.html", page::html(&drawn).as_bytes())?);
+    commit_all(files, &[])?;
+    Ok(paths)
 }

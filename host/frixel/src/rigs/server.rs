@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::pace::{Dropped, Pace};
 use super::server_log::ServerLog;
-use crate::output::OutputError;
+use crate::output_file::{Inputs, OutputFileError};
 
 /// Time that the server sleeps between two readings of the clock.
 const NAP: Duration = Duration::from_millis(1);
@@ -32,7 +32,7 @@ pub enum ServerError {
     },
     /// A file could not be written.
     #[error(transparent)]
-    Output(#[from] OutputError),
+    Output(#[from] OutputFileError),
 }
 
 /// A virtual board on a pseudo-terminal.
@@ -44,10 +44,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, `forces.csv` and `events.csv` in `folder`; then
-    /// creates the pseudo-terminal.
-    pub fn open(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
-        let log = ServerLog::create(folder, tick_hz, ticks_per_row)?;
+    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, `forces.csv` and `events.csv` in `folder`, where they
+    /// overwrite none of the inputs; then creates the pseudo-terminal.
+    pub fn open(folder: &Path, inputs: &Inputs, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
+        let log = ServerLog::create(folder, inputs, tick_hz, ticks_per_row)?;
         Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })
     }
 

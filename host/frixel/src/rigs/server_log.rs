@@ -1,7 +1,6 @@
 //! The output files of a virtual board: felt friction, forces and events.
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_scene::recorder::Recorder;
@@ -9,7 +8,8 @@ use frixel_wire::fault::State;
 
 use super::sim_link::observation;
 use super::{BoardEvent, EventKind, EventLog, ForceSensor};
-use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv, OutputError};
+use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
+use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder};
 
 /// Virtual time between two flushes, which limits how much a killed server loses.
 const FLUSH_PERIOD_S: f64 = 0.1;
@@ -19,6 +19,7 @@ const FORCES_HZ: u32 = 1_000;
 /// `felt.csv`, `forces.csv` and `events.csv` of a virtual board. The reference is unknown because only the client has
 /// the scene file.
 pub(super) struct ServerLog {
+    _folder: OutputFolder,
     felt_csv: FeltCsv,
     forces_csv: ForcesCsv,
     sensor: ForceSensor,
@@ -32,16 +33,24 @@ pub(super) struct ServerLog {
 }
 
 impl ServerLog {
-    /// Creates the three files in `folder`. Creates the folder if necessary.
-    pub(super) fn create(folder: &Path, tick_hz: u32, ticks_per_row: u32) -> Result<Self, OutputError> {
-        std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    /// Creates the three files in `folder`, where they overwrite none of the inputs. Creates the folder if necessary.
+    pub(super) fn create(
+        folder: &Path,
+        inputs: &Inputs,
+        tick_hz: u32,
+        ticks_per_row: u32,
+    ) -> Result<Self, OutputFileError> {
+        let output = |name: &str| OutputFile::new(&folder.join(name), "--out", inputs);
+        let [felt, forces, events] = [output("felt.csv")?, output("forces.csv")?, output("events.csv")?];
+        let locked = OutputFolder::open(folder)?;
         let mut recorder = Recorder::without_reference(tick_hz, ticks_per_row);
         recorder.start(0);
         Ok(Self {
-            felt_csv: FeltCsv::create(&folder.join("felt.csv"))?,
-            forces_csv: ForcesCsv::create(&folder.join("forces.csv"))?,
+            _folder: locked,
+            felt_csv: FeltCsv::new(felt.create_live()?)?,
+            forces_csv: ForcesCsv::new(forces.create_live()?)?,
             sensor: ForceSensor::new(FORCES_HZ, tick_hz),
-            events_csv: EventCsv::create(&folder.join("events.csv"))?,
+            events_csv: EventCsv::new(events.create_live()?)?,
             recorder,
             events: EventLog::new(State::Disarmed),
             tick_period_s: 1.0 / f64::from(tick_hz),
@@ -52,7 +61,7 @@ impl ServerLog {
     }
 
     /// Records one tick of `rig`.
-    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), OutputError> {
+    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), OutputFileError> {
         let (frames, _) = rig.frame_counts();
         if frames != self.frames {
             self.frames = frames;
@@ -77,21 +86,16 @@ impl ServerLog {
     }
 
     /// Writes that this board has dropped time, after `t_s` seconds.
-    pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<(), OutputError> {
+    pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<(), OutputFileError> {
         let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
         let event = BoardEvent { t_s, kind: EventKind::TimeDropped };
         self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: Some(dropped_s) })
     }
 
     /// Writes the buffered rows to the files.
-    pub(super) fn flush(&mut self) -> Result<(), OutputError> {
+    pub(super) fn flush(&mut self) -> Result<(), OutputFileError> {
         self.felt_csv.flush()?;
         self.forces_csv.flush()?;
         self.events_csv.flush()
     }
-}
-
-fn failed(path: &Path) -> impl FnOnce(io::Error) -> OutputError {
-    let path: PathBuf = path.to_owned();
-    move |source| OutputError::File { path, source }
 }

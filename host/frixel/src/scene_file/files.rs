@@ -52,10 +52,8 @@ impl SceneFiles {
         self.named.iter().map(SavedFile::path).filter(move |path| !is_inside(path))
     }
 
-    /// Finds the file of the scene that `path` leads to, also by links; `None` if `path` leads to no file of the scene.
-    pub fn find(&self, path: &Path) -> Option<&Path> {
-        let found = path.canonicalize().ok()?;
-        let is_it = |path: &&Path| path.canonicalize().is_ok_and(|path| path == found);
-        once(&self.scene).chain(&self.named).map(SavedFile::path).find(is_it)
+    /// The paths of the files.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        once(&self.scene).chain(&self.named).map(SavedFile::path)
     }
 }

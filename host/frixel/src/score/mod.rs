@@ -16,7 +16,7 @@ use serde::Serialize;
 use crate::player::PlayError;
 use metric::METRICS;
 pub use metric::MetricScore;
-pub use output::write_score_svg;
+pub use output::draw_score_svg;
 
 /// One play to score.
 #[derive(Clone, Debug)]

@@ -1,12 +1,11 @@
 //! A score as text, JSON, CSV and a picture.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use super::metric::{Human, METRICS, Metric};
 use super::{MetricScore, Score};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
-use crate::output::{OutputError, write_chart};
+use crate::output::DrawingError;
 
 impl Score {
     /// The score as a table, a line for each number.
@@ -41,8 +40,8 @@ impl Score {
     }
 }
 
-/// Writes a picture of the numbers that a person notices, each over the value from which it is noticed.
-pub fn write_score_svg(path: &Path, title: &str, score: &Score) -> Result<(), OutputError> {
+/// Draws a picture of the numbers that a person notices, each over the value from which it is noticed.
+pub fn draw_score_svg(title: &str, score: &Score) -> Result<String, DrawingError> {
     let noticed: Vec<(&MetricScore, Human)> =
         score.metrics.iter().filter_map(|metric| metric.human.map(|human| (metric, human))).collect();
     let rows = noticed.len() as f64;
@@ -69,7 +68,7 @@ pub fn write_score_svg(path: &Path, title: &str, score: &Score) -> Result<(), Ou
     panel.add("mean over the plays, simulated", mean, means);
     let mut chart = Chart::new(vec![panel], 1);
     title.clone_into(&mut chart.title);
-    write_chart(path, &chart)
+    chart.svg().map_err(DrawingError::new)
 }
 
 fn value_text(metric: &MetricScore) -> String {

@@ -42,7 +42,7 @@ fn fail(folder: &Path, arguments: &[&str]) -> String {
 /// virtual board's time falls behind that of the client.
 fn calibrate(folder: &Path, arguments: &[&str], run: fn(&Path, &[&str]) -> Output) {
     let said = (0..TRIES_MAX).find_map(|_| {
-        let output = run(folder, &[&["calibrate", "-o", "data.csv"], &FEW[..], arguments].concat());
+        let output = run(folder, &[&["calibrate", "-o", "data.csv", "--overwrite"], &FEW[..], arguments].concat());
         let notes = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success() || was_too_late(&notes) || notes.contains("the forces last"), "{notes}");
         (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
@@ -178,7 +178,10 @@ fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
         let said = fail(folder.path(), &[&["calibrate"], &port[..], arguments].concat());
         assert!(said.contains(words), "{words}: {said}");
     }
-    let said = fail(folder.path(), &["calibrate", "-o", "mine.csv", "--port", "nowhere", "--forces", "back.csv"]);
+    let said = fail(
+        folder.path(),
+        &["calibrate", "-o", "mine.csv", "--overwrite", "--port", "nowhere", "--forces", "back.csv"],
+    );
     assert!(said.contains("back.csv: row 3 of the forces"), "{said}");
     assert_eq!(fs::read_to_string(folder.path().join("mine.csv")).unwrap(), "old", "a run that fails leaves the file");
     assert!(!folder.path().join("d.csv").exists());
@@ -233,7 +236,7 @@ fn a_threshold_is_asked_for_at_a_port() {
 fn a_threshold_is_found_at_a_port() {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &STROKES);
-    let threshold = ["threshold", "--trials", "12", "-o", "person.toml", "--port", &board.port];
+    let threshold = ["threshold", "--trials", "12", "-o", "person.toml", "--overwrite", "--port", &board.port];
     let said = (0..TRIES_MAX).find_map(|_| {
         let mut command = command(folder.path(), &threshold);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -120,7 +120,7 @@ fn a_finger_on_a_board_is_recorded_as_a_stroke() {
     let folder = TempDir::new().unwrap();
     let stroke = ["--from", "10,20", "--to", "90,20", "--speed", "80"];
     let board = VirtualBoard::start(folder.path(), &stroke);
-    let record = ["record", "--port", &board.port, "-o", "mine.csv", "--seconds", "3"];
+    let record = ["record", "--port", &board.port, "-o", "mine.csv", "--overwrite", "--seconds", "3"];
     let (said, _) = succeed_in_time(folder.path(), &record);
     assert!(said.contains("mine.csv"), "{said}");
     drop(board);

@@ -57,6 +57,10 @@ impl Reader {
             self.board = Some(VirtualBoard::start(self.path(), &arguments));
             return;
         }
+        // Ctrl-C ends the play that follows its file, which has the folder to itself.
+        if line.starts_with("play") {
+            self.watching = None;
+        }
         let port = self.board.as_ref().map_or(PORT, |board| &board.port);
         let arguments: Vec<&str> = line.split_whitespace().map(|word| if word == PORT { port } else { word }).collect();
         let mut process = command(self.path(), &arguments);
@@ -72,8 +76,7 @@ impl Reader {
             process.stdout(Stdio::null()).stderr(File::create(&said).unwrap());
             self.watching = Some(Watching(process.spawn().unwrap()));
             // The first scene plays when rows of telemetry are there.
-            let rows = self.path().join("frixel-out/felt.csv");
-            fs::remove_file(&rows).unwrap();
+            let rows = self.path().join("frixel-out/.felt.csv.frixel-tmp");
             wait("the scene plays", || fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 2));
             return;
         }

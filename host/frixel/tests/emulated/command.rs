@@ -112,7 +112,9 @@ fn an_interrupted_play_leaves_what_was_played() {
         .spawn()
         .unwrap();
     let felt = folder.path().join("frixel-out/felt.csv");
-    while fs::metadata(&felt).map_or(0, |file| file.len()) < 20_000 {
+    // The rows before the end.
+    let rows = folder.path().join("frixel-out/.felt.csv.frixel-tmp");
+    while fs::metadata(&rows).map_or(0, |file| file.len()) < 20_000 {
         assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
         sleep(Duration::from_millis(5));
     }

@@ -101,9 +101,10 @@ fn a_board_at_a_port_needs_forces() {
 #[test]
 fn a_threshold_is_found_by_answers_and_is_no_force() {
     let folder = TempDir::new().unwrap();
-    let run = |answers: &str| {
+    let run = |answers: &str, more: &[&str]| {
         let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
             .args(["threshold", "--port", "sim", "--trials", "12", "-o", "person.toml"])
+            .args(more)
             .current_dir(folder.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -113,9 +114,10 @@ fn a_threshold_is_found_by_answers_and_is_no_force() {
         child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
         child.wait_with_output().unwrap()
     };
-    let short = run("1\n2\n");
-    assert!(String::from_utf8(short.stderr).unwrap().contains("the answers ended at trial 3"));
-    let output = run(&"1\nperhaps\n2\n".repeat(6));
+    let short = run("1\n2\n", &[]);
+    let said = String::from_utf8(short.stderr).unwrap();
+    assert!(said.contains("the answers ended at trial 3") && said.contains("is in person.toml.partial"), "{said}");
+    let output = run(&"1\nperhaps\n2\n".repeat(6), &["--overwrite"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("trial 12 of 12") && said.contains("this gives no newtons"), "{said}");

@@ -1,6 +1,8 @@
 //! What tests of `frixel` as a process share.
 #![allow(clippy::panic, reason = "part of a test, which may fail")]
 
+use std::fs;
+use std::path::Path;
 use std::process::Command;
 use std::thread::sleep;
 use std::time::Duration;
@@ -21,4 +23,10 @@ pub(crate) fn until(what: &str, mut done: impl FnMut() -> bool) {
         sleep(NAP);
     }
     panic!("hung: {what}");
+}
+
+/// The felt.csv of a play that goes on, of one that is over, or of a virtual board.
+pub(crate) fn rows_so_far(folder: &Path) -> String {
+    let of_a_play = fs::read_to_string(folder.join(".felt.csv.frixel-tmp"));
+    of_a_play.or_else(|_| fs::read_to_string(folder.join("felt.csv"))).unwrap_or_default()
 }

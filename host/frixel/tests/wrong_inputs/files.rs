@@ -597,7 +597,7 @@ pub(super) const DATA: &[Case] = &[
              1,1,1\n",
             ),
         )],
-        run: "fit d.csv -o d.csv",
+        run: "fit d.csv -o f.toml",
         says: "d.csv: 1 row without a column stroke is too few: record at least 120 rows, or number the \
              strokes in a column stroke",
         ..CASE

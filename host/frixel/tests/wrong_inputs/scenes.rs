@@ -298,7 +298,7 @@ pub(super) const SCENES: &[Case] = &[
              low_n = 0\n\
              high_n = 0.001\n",
         says: "s.toml:30:1: layer 1 (noise) and layer 2 (noise) and layer 3 (noise) and layer 4 (noise) and \
-             layer 5 (noise) meet at x 3.7 mm, y 2.5 mm: a tick there is estimated at 3463 cycles, and the \
+             layer 5 (noise) meet at x 3.7 mm, y 2.5 mm: a tick there is estimated at 3553 cycles, and the \
              board has time for 2550: move layers apart, or leave some out",
         ..CASE
     },

@@ -10,6 +10,7 @@ use frixel_scene::{Program, Scene};
 
 use super::follow::follow;
 use super::live_scene::LiveScene;
+use super::outputs::PlayFiles;
 use super::plan::Plan;
 use super::rigs::Target;
 use super::simulated_world::SimulatedWorld;
@@ -19,7 +20,7 @@ use super::{CommandError, Interrupt, PlayArgs, Played};
 pub(super) fn play_on_emulator(
     args: &PlayArgs,
     scene: &Scene,
-    live_scene: Option<LiveScene>,
+    outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
@@ -39,7 +40,7 @@ pub(super) fn play_on_emulator(
         link = link.referring_to_simulated_finger();
     }
     let device = Device::connect(link)?;
-    let mut played = follow(args, plan, device, live_scene, interrupt)?;
+    let mut played = follow(args, plan, device, outputs, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(CommandError::from));
     }

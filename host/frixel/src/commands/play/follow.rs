@@ -11,7 +11,7 @@ use frixel_scene::Program;
 
 use super::control::{Control, Next};
 use super::live_scene::LiveScene;
-use super::outputs::Outputs;
+use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
 use super::rigs::Target;
@@ -22,11 +22,11 @@ pub(super) fn follow<L: RecordedLink>(
     args: &PlayArgs,
     plan: Plan,
     device: Device<L>,
-    live_scene: Option<LiveScene>,
+    (files, live_scene): (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
-    let outputs = Outputs::create(args, plan.target, is_simulated, &plan.program)?;
+    let outputs = Outputs::create(args, files, is_simulated, &plan.program)?;
     let player = Player::new(waiting::watch(device, interrupt), plan.recorder()?);
     let waits = plan.target == Target::Simulator;
     let control = args.control.then(|| Control::start(&plan.program, waits, interrupt)).transpose()?;
@@ -156,6 +156,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
             .with_origin(program.finger.origin)
             .with_world(self.plan.world)
+            .with_simulated(self.outputs.is_simulated())
             .with_stream(stream)
             .with_refusals(self.refusals);
         let written = self.outputs.write(&recorder.take_rows());

@@ -12,7 +12,7 @@ use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Refusal;
 
-use super::outputs::{check_play_outputs, output_paths};
+use super::outputs::PlayFiles;
 use super::plan::{check_measured, print_notes};
 use super::rigs::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
@@ -56,23 +56,23 @@ struct Loader {
     profiles: ProfileNames,
     target: Target,
     /// The files that the play writes.
-    outputs: [PathBuf; 4],
+    outputs: PlayFiles,
 }
 
 impl Loader {
     fn compile(&self, path: &Path, limits: &BoardLimits, tick_hz: u32) -> Compiled {
         let (scene, files) = self.profiles.load_with_files(path);
-        let program = check_play_outputs(&files, &self.outputs)
-            .and_then(|()| Ok(scene?))
-            .and_then(|scene| Ok(self.target.compile(&scene, limits, tick_hz)?));
+        let checked = self.outputs.check(&files);
+        let program =
+            checked.and_then(|()| Ok(scene?)).and_then(|scene| Ok(self.target.compile(&scene, limits, tick_hz)?));
         Compiled { program, files }
     }
 }
 
 impl LiveScene {
     /// `files` are those of the first scene.
-    pub(super) fn new(args: &PlayArgs, target: Target, files: SceneFiles) -> Self {
-        let loader = Loader { profiles: args.profiles.names(), target, outputs: output_paths(args, target) };
+    pub(super) fn new(args: &PlayArgs, target: Target, files: SceneFiles, outputs: PlayFiles) -> Self {
+        let loader = Loader { profiles: args.profiles.names(), target, outputs };
         Self { loader, files, watches: args.watch, next: None }
     }
 
@@ -245,7 +245,8 @@ mod tests {
             let device = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
             let mut player = Player::new(device, recorder);
             player.start(&program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
-            Self { folder, player, program, live: LiveScene::new(&args, Target::Port, files) }
+            let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
+            Self { folder, player, program, live: LiveScene::new(&args, Target::Port, files, outputs) }
         }
 
         fn write(&self, name: &str, text: &str) {

@@ -1,33 +1,90 @@
 //! The output files of a play.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use frixel::output::{FeltCsv, Report, Subject, Trace, TracedLayer, write_felt_svg, write_scene_png};
+use frixel::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
+use frixel::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all};
 use frixel::scene_file::SceneFiles;
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, TouchedLayers};
 
 use super::rigs::Target;
 use super::with_log::joined;
-use super::{CommandError, PlayArgs, overwrite};
+use super::{CommandError, PlayArgs};
 
-/// The paths of the files of a play: `felt.csv`, `summary.json`, `felt.svg`, or `commanded.svg` where nobody knows what
-/// is felt, and `scene.png`.
-pub(super) fn output_paths(args: &PlayArgs, target: Target) -> [PathBuf; 4] {
-    // Without a finger that is simulated beside the board, what was felt is unknown.
-    let is_felt = target.is_virtual_time() || args.with_log.is_some();
-    let svg = if is_felt { "felt.svg" } else { "commanded.svg" };
-    ["felt.csv", "summary.json", svg, "scene.png"].map(|name| args.out.join(name))
+/// The option that names the folder.
+const OPTION: &str = "--out";
+/// How to keep what a finger did on a board until the play was cut off.
+const CUT_OFF: &str = "rename it to keep it";
+
+/// The files of a play.
+#[derive(Clone)]
+pub(super) struct PlayFiles {
+    felt: OutputFile,
+    summary: OutputFile,
+    /// `felt.svg`, or `commanded.svg` where nobody knows what is felt.
+    svg: OutputFile,
+    /// The other one of the two, which an earlier play may have left.
+    other_svg: OutputFile,
+    png: OutputFile,
 }
 
-/// Rejects a play whose files would overwrite a file of its scene.
-pub(super) fn check_play_outputs(files: &SceneFiles, outputs: &[PathBuf]) -> Result<(), CommandError> {
-    overwrite::check_outputs(files, outputs, "give another folder to --out")
+impl PlayFiles {
+    /// Rejects a play whose files would overwrite an input, or what a person's finger did on a board.
+    pub(super) fn new(args: &PlayArgs, target: Target, scene: &SceneFiles) -> Result<Self, CommandError> {
+        // Without a finger that is simulated beside the board, what was felt is unknown.
+        let is_felt = target.is_virtual_time() || args.with_log.is_some();
+        let (svg, other_svg) = if is_felt { ("felt.svg", "commanded.svg") } else { ("commanded.svg", "felt.svg") };
+        let others = [args.stroke.file(), args.stream.as_deref(), args.with_log.as_deref()];
+        let inputs = Inputs::new(scene.paths().chain(others.into_iter().flatten()));
+        let file = |name: &str| OutputFile::new(&args.out.join(name), OPTION, &inputs);
+        let files = Self {
+            felt: file("felt.csv")?,
+            summary: file("summary.json")?,
+            svg: file(svg)?,
+            other_svg: file(other_svg)?,
+            png: file("scene.png")?,
+        };
+        if !args.overwrite && files.are_of_a_real_board() {
+            return Err(OutputFileError::OverPlay { path: args.out.clone(), option: OPTION }.into());
+        }
+        Ok(files)
+    }
+
+    /// Rejects files that would overwrite one of another scene.
+    pub(super) fn check(&self, scene: &SceneFiles) -> Result<(), CommandError> {
+        let inputs = Inputs::new(scene.paths());
+        for file in [&self.felt, &self.summary, &self.svg, &self.other_svg, &self.png] {
+            inputs.check(file)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the files there are of a play without a simulation, by the summary.
+    fn are_of_a_real_board(&self) -> bool {
+        let summary = fs::read(self.summary.path()).unwrap_or_default();
+        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+        summary.get("simulated") == Some(&serde_json::Value::Bool(false))
+    }
+
+    /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
+    fn start(&self, is_simulated: bool, overwrites: bool) -> Result<FileWriter, CommandError> {
+        if is_simulated {
+            return Ok(self.felt.create()?);
+        }
+        Ok(Recording::of(self.felt.clone(), overwrites, CUT_OFF).start()?)
+    }
+
+    fn paths(&self) -> Vec<PathBuf> {
+        [&self.felt, &self.summary, &self.svg, &self.png].map(|file| file.path().to_owned()).into()
+    }
 }
 
 /// Writes `felt.csv` while the scene plays, and the pictures at the end.
 pub(super) struct Outputs {
-    paths: [PathBuf; 4],
+    _folder: OutputFolder,
+    files: PlayFiles,
     title: String,
     csv: FeltCsv,
     trace: Trace,
@@ -45,20 +102,20 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Creates `felt.csv`, and its folder if necessary.
+    /// Starts to write `felt.csv`. Creates the folder if necessary.
     pub(super) fn create(
         args: &PlayArgs,
-        target: Target,
+        files: PlayFiles,
         is_simulated: bool,
         program: &Program,
     ) -> Result<Self, CommandError> {
-        std::fs::create_dir_all(&args.out).map_err(CommandError::writing(&args.out))?;
-        let paths = output_paths(args, target);
-        let csv = FeltCsv::create(&paths[0])?;
+        let folder = OutputFolder::open(&args.out)?;
+        let csv = FeltCsv::new(files.start(is_simulated, args.overwrite)?)?;
         let log = args.with_log.clone();
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
         Ok(Self {
-            paths,
+            _folder: folder,
+            files,
             title,
             csv,
             trace: Trace::new(),
@@ -108,6 +165,11 @@ impl Outputs {
         self.off.clear();
     }
 
+    /// Whether finger or board is simulated.
+    pub(super) fn is_simulated(&self) -> bool {
+        self.is_simulated
+    }
+
     /// When the scene of [`Self::untouched_layers`] replaced the one before, s.
     pub(super) fn replaced_at_s(&self) -> Option<f64> {
         self.replaced_at_s
@@ -123,7 +185,7 @@ impl Outputs {
         let (rows, layers): (Vec<FeltRow>, Vec<Option<TracedLayer>>) =
             std::mem::take(&mut self.rows).into_iter().unzip();
         let joined = joined(log, &rows, start_s)?;
-        self.csv = FeltCsv::create(&self.paths[0])?;
+        self.csv.restart()?;
         for (row, layer) in joined.iter().zip(layers) {
             self.csv.write(row)?;
             self.trace.push(row, layer);
@@ -131,8 +193,8 @@ impl Outputs {
         Ok(())
     }
 
-    /// Closes `felt.csv`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
-    /// `scene.png`. Returns the paths of the files.
+    /// Completes `felt.csv`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
+    /// `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv` stands alone.
     ///
     /// `start_s` is the time from the power-on of the board to time zero of the rows.
     pub(super) fn finish(
@@ -141,18 +203,34 @@ impl Outputs {
         report: &Report,
         start_s: f64,
     ) -> Result<Vec<PathBuf>, CommandError> {
-        if let Some(log) = self.log.take() {
-            self.write_joined(&log, start_s)?;
+        let log = self.log.take();
+        let joined = log.map_or(Ok(()), |log| self.write_joined(&log, start_s));
+        let others = joined.and_then(|()| self.write_others(program, report));
+        let Self { files, csv, .. } = self;
+        match others {
+            Ok(others) => {
+                let written = [csv.into_writer()].into_iter().chain(others).collect();
+                commit_all(written, std::slice::from_ref(&files.other_svg))?;
+                Ok(files.paths())
+            }
+            Err(error) => {
+                let PlayFiles { summary, svg, other_svg, png, .. } = files;
+                commit_all(vec![csv.into_writer()], &[summary, svg, other_svg, png])?;
+                Err(error)
+            }
         }
-        self.csv.finish()?;
-        let [_, summary, svg, png] = &self.paths;
+    }
+
+    /// Writes the files beside `felt.csv`, which have no names yet.
+    fn write_others(&self, program: &Program, report: &Report) -> Result<[FileWriter; 3], CommandError> {
         // The speed of the simulation is another one each time, and equal plays give equal files.
         let reproducible = Report { realtime_factor: None, ..report.clone() };
-        std::fs::write(summary, reproducible.to_json() + "\n").map_err(CommandError::writing(summary))?;
-        let subject = Subject { name: self.title, simulated: self.is_simulated, draft: report.draft };
-        write_felt_svg(svg, &subject, &self.trace, &program.reach)?;
-        write_scene_png(png, &subject, program, &self.trace)?;
-        Ok(self.paths.into())
+        let subject = Subject { name: self.title.clone(), simulated: self.is_simulated, draft: report.draft };
+        let summary = reproducible.to_json() + "\n";
+        let svg = draw_felt_svg(&subject, &self.trace, &program.reach)?;
+        let png = draw_scene_png(&subject, program, &self.trace)?;
+        let PlayFiles { summary: summary_file, svg: svg_file, png: png_file, .. } = &self.files;
+        Ok([summary_file.filled(summary.as_bytes())?, svg_file.filled(svg.as_bytes())?, png_file.filled(&png)?])
     }
 }
 
@@ -193,7 +271,9 @@ mod tests {
             PlayArgs { out: folder.path().join("out"), with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref()) };
 
         let (first, second) = (program("first"), program("second"));
-        let mut outputs = Outputs::create(&args, Target::Port, true, &first).unwrap();
+        let (_, scene) = frixel::scene_file::load_with_files("a.toml".as_ref());
+        let files = PlayFiles::new(&args, Target::Port, &scene).unwrap();
+        let mut outputs = Outputs::create(&args, files, true, &first).unwrap();
         outputs.switch(0.0, Vec::new());
         outputs.write(&rows[..1_000]).unwrap();
         outputs.switch(1.0, vec![0]);

@@ -12,6 +12,7 @@ use super::super::experiment;
 pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
+use super::outputs::PlayFiles;
 use super::plan::{Plan, check_measured};
 use super::simulated_world::SimulatedWorld;
 use super::{CommandError, Interrupt, PlayArgs, Played};
@@ -71,7 +72,7 @@ impl Target {
 pub(super) fn play_on_simulator(
     args: &PlayArgs,
     scene: &Scene,
-    live_scene: Option<LiveScene>,
+    outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let world = SimulatedWorld::new(args, scene)?;
@@ -92,7 +93,7 @@ pub(super) fn play_on_simulator(
     }
     plan.world = Some(world.report());
     let device = Device::connect(link)?;
-    follow(args, plan, device, live_scene, interrupt)
+    follow(args, plan, device, outputs, interrupt)
 }
 
 /// Rejects the emulator, because its serial port is a pseudo-terminal.
@@ -100,7 +101,7 @@ pub(super) fn play_on_simulator(
 pub(super) fn play_on_emulator(
     _: &PlayArgs,
     _: &Scene,
-    _: Option<LiveScene>,
+    _: (PlayFiles, Option<LiveScene>),
     _: &Interrupt,
 ) -> Result<Played, CommandError> {
     Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
@@ -110,12 +111,12 @@ pub(super) fn play_on_emulator(
 pub(super) fn play_on_port(
     args: &PlayArgs,
     scene: &Scene,
-    live_scene: Option<LiveScene>,
+    outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let device = experiment::connect(&args.port, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     check_measured(&plan.program, hello.board)?;
-    follow(args, plan, device, live_scene, interrupt)
+    follow(args, plan, device, outputs, interrupt)
 }

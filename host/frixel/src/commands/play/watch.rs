@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use frixel::scene_file::SceneFiles;
 
-use super::outputs::{check_play_outputs, output_paths};
+use super::outputs::PlayFiles;
 use super::rigs::{self, Target};
 use super::{CommandError, Interrupt, PlayArgs, finish, note};
 
@@ -42,9 +42,8 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
 /// Loads the scene and plays it. Returns the files that it was read from as well.
 fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<(), CommandError>, SceneFiles) {
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    let checked = check_play_outputs(&files, &output_paths(args, Target::Simulator));
-    let played = checked.and_then(|()| Ok(scene?)).and_then(|scene| {
-        let played = rigs::play_on_simulator(args, &scene, None, interrupt)?;
+    let played = PlayFiles::new(args, Target::Simulator, &files).and_then(|outputs| {
+        let played = rigs::play_on_simulator(args, &scene?, (outputs, None), interrupt)?;
         finish(args, played)
     });
     (played, files)

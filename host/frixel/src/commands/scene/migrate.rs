@@ -1,9 +1,9 @@
 //! `frixel scene migrate`: a scene of version 1 as version 2.
 
-use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use frixel::output_file::{Inputs, OutputFile};
 use frixel::scene_file;
 
 use super::super::error::CommandError;
@@ -18,15 +18,8 @@ pub(in super::super) struct MigrateArgs {
 }
 
 pub(super) fn run(args: &MigrateArgs) -> Result<(), CommandError> {
-    let text = scene_file::migrate(&args.scene)?;
-    if let Some(path) = &args.output {
-        return std::fs::write(path, text).map_err(CommandError::writing(path));
-    }
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        // Ignore a closed standard output.
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(CommandError::writing(Path::new("standard output"))(error))
-        }
-        _ => Ok(()),
-    }
+    let (_, files) = scene_file::load_with_files(&args.scene);
+    let output = args.output.as_deref().unwrap_or(Path::new("-"));
+    let output = OutputFile::new(output, "-o", &Inputs::new(files.paths()))?;
+    Ok(output.write(scene_file::migrate(&args.scene)?.as_bytes())?)
 }

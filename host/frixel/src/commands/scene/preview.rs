@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use frixel::output::{draft_line, write_preview_png};
+use frixel::output::{draft_line, draw_preview_png};
+use frixel::output_file::{Inputs, OutputFile};
 use frixel_hil_sim::RigConfig;
 use frixel_scene::check::feel;
 use frixel_scene::perception::Perception;
@@ -11,7 +12,6 @@ use frixel_scene::{Preview, compile_draft};
 
 use super::super::argument::number;
 use super::super::error::CommandError;
-use super::super::overwrite::check_outputs;
 use super::super::profiles::ProfileArgs;
 use super::super::terminal::{note_refusals, print_line};
 
@@ -38,13 +38,13 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     }
     let board = RigConfig::default().board;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    check_outputs(&files, std::slice::from_ref(&args.output), "give another name to -o")?;
+    let output = OutputFile::new(&args.output, "-o", &Inputs::new(files.paths()))?;
     let program = compile_draft(&scene?, &board.limits, board.tick_hz)?;
     note_refusals(&args.scene, &program);
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let map_max = (args.map_width, args.map_width * 4 / 5);
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
-    write_preview_png(&args.output, &title, &program, &preview)?;
+    output.write(&draw_preview_png(&title, &program, &preview)?)?;
     if program.is_draft() {
         print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals.len())))?;
     }

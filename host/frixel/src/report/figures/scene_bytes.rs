@@ -1,10 +1,8 @@
 //! Bytes on the wire, and of the inverse table, against the content of a scene.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::fs::File;
-use std::io;
 use std::ops::RangeInclusive;
-use std::path::Path;
 
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
@@ -15,7 +13,6 @@ use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::data::Data;
 use crate::report::wire::OnTheWire;
-use crate::scene_file::SceneFolder;
 use frixel_scene::{CompileError, Program, Scene, compile};
 
 /// The beginning of every scene.
@@ -85,34 +82,31 @@ fn one_friction(percent: usize) -> String {
     format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
 }
 
-/// Writes a picture with all grey levels, which each scene resamples to its own size.
-fn write_picture(folder: &Path) -> Result<(), ReportError> {
+/// The files of the scenes.
+type Pictures = BTreeMap<String, Vec<u8>>;
+
+/// A picture with all grey levels, which each scene resamples to its own size.
+fn pictures() -> Result<Pictures, ReportError> {
     const SIDE: u8 = 64;
-    let path = folder.join(PICTURE);
     let greys: Vec<u8> = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| 2 * (row + column))).collect();
-    let written = File::create(&path).and_then(|file| {
-        let mut encoder = png::Encoder::new(file, SIDE.into(), SIDE.into());
-        encoder.set_color(png::ColorType::Grayscale);
-        encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header().map_err(io::Error::other)?;
-        writer.write_image_data(&greys).map_err(io::Error::other)?;
-        writer.finish().map_err(io::Error::other)
-    });
-    written.map_err(|source| ReportError::Write { path, source })
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, SIDE.into(), SIDE.into());
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&greys)?;
+    writer.finish()?;
+    Ok(BTreeMap::from([(PICTURE.to_owned(), bytes)]))
 }
 
-fn compiled(text: &str, folder: &Path) -> Result<Program, CompileError> {
+fn compiled(text: &str, pictures: &Pictures) -> Result<Program, CompileError> {
     let board = RigConfig::default().board;
-    compile(
-        &Scene::parse(text, "a scene of the report", &SceneFolder(folder.to_owned()))?,
-        &board.limits,
-        board.tick_hz,
-    )
+    compile(&Scene::parse(text, "a scene of the report", pictures)?, &board.limits, board.tick_hz)
 }
 
 /// Largest number of polygon vertices that fits into a tick.
-fn vertices_max(folder: &Path) -> usize {
-    let fits = |vertices: &usize| compiled(&polygons(1, *vertices), folder).is_ok();
+fn vertices_max(pictures: &Pictures) -> usize {
+    let fits = |vertices: &usize| compiled(&polygons(1, *vertices), pictures).is_ok();
     (VERTICES_MIN..=POLYGON_POINTS_MAX).rev().find(fits).unwrap_or(VERTICES_MIN)
 }
 
@@ -144,11 +138,11 @@ impl Family {
     fn new(
         name: &str,
         colour: RGBColor,
-        folder: &Path,
+        pictures: &Pictures,
         scenes: impl Iterator<Item = (usize, String)>,
     ) -> Result<Self, ReportError> {
         let measured = |(amount, text): (usize, String)| {
-            let program = compiled(&text, folder)?;
+            let program = compiled(&text, pictures)?;
             Ok(Measured { amount, wire: OnTheWire::of(&program)?, table_bytes: table_bytes(&program) })
         };
         Ok(Self { name: name.to_owned(), colour, scenes: scenes.map(measured).collect::<Result<_, ReportError>>()? })
@@ -192,18 +186,16 @@ impl Family {
 
 /// All scenes: gratings, polygons with few and with many vertices, pictures, and uniform frictions.
 fn families() -> Result<[Family; 5], ReportError> {
-    let folder = tempfile::tempdir().map_err(|source| ReportError::Write { path: std::env::temp_dir(), source })?;
-    let folder = folder.path();
-    write_picture(folder)?;
-    let many = vertices_max(folder);
+    let files = &pictures()?;
+    let many = vertices_max(files);
     let of_polygons =
         |vertices: usize| (1..=POINTS_MAX / vertices).map(move |count| (count * vertices, polygons(count, vertices)));
     Ok([
-        Family::new("gratings", PALETTE[0], folder, (1..=RECORDS_MAX).map(|count| (count, gratings(count))))?,
-        Family::new("triangles", PALETTE[2], folder, of_polygons(VERTICES_MIN))?,
-        Family::new(&format!("polygons of {many} vertices"), PALETTE[1], folder, of_polygons(many))?,
-        Family::new("a picture", PALETTE[3], folder, SIDES.into_iter().map(|side| (side, picture(side))))?,
-        Family::new("a friction", PALETTE[4], folder, PERCENTS.map(|percent| (percent, one_friction(percent))))?,
+        Family::new("gratings", PALETTE[0], files, (1..=RECORDS_MAX).map(|count| (count, gratings(count))))?,
+        Family::new("triangles", PALETTE[2], files, of_polygons(VERTICES_MIN))?,
+        Family::new(&format!("polygons of {many} vertices"), PALETTE[1], files, of_polygons(many))?,
+        Family::new("a picture", PALETTE[3], files, SIDES.into_iter().map(|side| (side, picture(side))))?,
+        Family::new("a friction", PALETTE[4], files, PERCENTS.map(|percent| (percent, one_friction(percent))))?,
     ])
 }
 
@@ -317,10 +309,9 @@ mod tests {
 
     #[test]
     fn the_driver_sends_as_much() {
-        let folder = tempfile::tempdir().expect("a folder");
-        write_picture(folder.path()).expect("a picture");
+        let files = pictures().expect("a picture");
         for text in [HEAD.to_owned(), gratings(1), gratings(64), polygons(42, 3), picture(50), picture(250)] {
-            let program = compiled(&text, folder.path()).expect("it compiles");
+            let program = compiled(&text, &files).expect("it compiles");
             let wire = OnTheWire::of(&program).expect("frames");
             assert_eq!((wire.frames as u64, wire.wire_bytes as u64), sent(&program));
         }

@@ -1,0 +1,65 @@
+//! The forces of a sensor: from a file, or from standard input while the board plays.
+
+use std::io::{BufReader, Read, Write, stdin};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use frixel::calibration::{ForceRow, read_forces};
+use frixel::input::{self, Bounded};
+use frixel::output_file::{FileWriter, Inputs, OutputFileError, Recording};
+
+use super::{CUT_OFF, CalibrateArgs, CommandError};
+
+/// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
+pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording, OutputFileError> {
+    let mut path = args.output.clone().into_os_string();
+    path.push(".forces");
+    Recording::new(path.as_ref(), "-o", &Inputs::new(&args.forces), true, CUT_OFF)
+}
+
+/// Standard input, which is read while the board plays, so that its writer does not block.
+pub(super) struct StandardInput {
+    reader: JoinHandle<()>,
+    bytes: Arc<Mutex<Vec<u8>>>,
+}
+
+impl StandardInput {
+    /// Reads, and writes a copy.
+    pub(super) fn read(mut copy: Option<FileWriter>) -> Self {
+        let bytes = Arc::new(Mutex::new(Vec::new()));
+        let shared = Arc::clone(&bytes);
+        let reader = thread::spawn(move || {
+            let mut input = Bounded::new(stdin(), input::CSV_MAX_BYTES);
+            let mut chunk = [0; 4096];
+            // A pipe that breaks has ended, and so has one that goes on beyond the limit.
+            while let Ok(count @ 1..) = input.read(&mut chunk) {
+                let chunk = chunk.get(..count).unwrap_or_default();
+                // The copy serves only if this process does not reach the end.
+                let _ = copy.as_mut().map(|copy| copy.write_all(chunk).and_then(|()| copy.flush()));
+                shared.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(chunk);
+            }
+        });
+        Self { reader, bytes }
+    }
+
+    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring.
+    pub(super) fn after(&self, time_max: Duration) -> Vec<u8> {
+        let begun = Instant::now();
+        while !self.reader.is_finished() && begun.elapsed() < time_max {
+            thread::sleep(Duration::from_millis(5));
+        }
+        std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// The forces in a file; `-` is standard input.
+pub(super) fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
+    let rows = if path == Path::new("-") {
+        read_forces(Bounded::new(stdin(), input::CSV_MAX_BYTES))
+    } else {
+        read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?))
+    };
+    rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
+}

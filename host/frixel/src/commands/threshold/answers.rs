@@ -1,0 +1,82 @@
+//! The answers of a session, which are kept while it lasts.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use frixel::output_file::{FileWriter, Recording};
+use frixel::threshold::Staircase;
+use serde::Deserialize;
+
+use super::CommandError;
+
+/// The answer in a trial.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub(super) struct Answer {
+    /// Number of the trial, from one.
+    pub(super) trial: usize,
+    /// Highest voltage of the session, to which levels refer.
+    pub(super) highest_v_rms: f64,
+    pub(super) level_db: f64,
+    pub(super) is_right: bool,
+}
+
+const HEADER: &str = "trial,highest_v_rms,level_db,is_right\n";
+
+/// The answers so far, and the file that keeps them if there is one.
+pub(super) struct Answers {
+    partial: PathBuf,
+    writer: Option<FileWriter>,
+    earlier: Vec<Answer>,
+}
+
+impl Answers {
+    /// Begins a session, or goes on with one that was cut off if it `resumes`.
+    pub(super) fn open(recording: Option<&Recording>, resumes: bool) -> Result<Self, CommandError> {
+        // A stream has no other file for what is not whole yet.
+        let Some(recording) = recording.filter(|recording| recording.output().is_file()) else {
+            return Ok(Self { partial: PathBuf::new(), writer: None, earlier: Vec::new() });
+        };
+        let partial = recording.partial();
+        if !resumes {
+            let mut answers = Self { partial, writer: Some(recording.start()?), earlier: Vec::new() };
+            answers.write(HEADER)?;
+            return Ok(answers);
+        }
+        let (writer, text) = recording.resume()?;
+        let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize().zip(2..);
+        let changed = |row, error: csv::Error| CommandError::OtherSession {
+            partial: partial.clone(),
+            row,
+            reason: error.to_string(),
+        };
+        let earlier =
+            rows.map(|(answer, row)| answer.map_err(|error| changed(row, error))).collect::<Result<_, _>>()?;
+        Ok(Self { partial, writer: Some(writer), earlier })
+    }
+
+    /// Gives the staircase the answers of the session that was cut off. Returns their number.
+    pub(super) fn repeat(&self, highest_v_rms: f64, staircase: &mut Staircase) -> Result<usize, CommandError> {
+        for (Answer { trial, highest_v_rms: found, level_db, is_right }, row) in self.earlier.iter().zip(2..) {
+            let expected = (staircase.progress().0, highest_v_rms, staircase.next_level_db());
+            if (*trial, *found, Some(*level_db)) != expected {
+                let reason =
+                    format!("is trial {trial} at {level_db:.2} dB below {found} V rms, which this one would not ask");
+                return Err(CommandError::OtherSession { partial: self.partial.clone(), row, reason });
+            }
+            staircase.answer(*level_db, *is_right);
+        }
+        Ok(self.earlier.len())
+    }
+
+    /// Keeps an answer.
+    pub(super) fn add(&mut self, answer: Answer) -> Result<(), CommandError> {
+        let Answer { trial, highest_v_rms, level_db, is_right } = answer;
+        self.write(&format!("{trial},{highest_v_rms},{level_db},{is_right}\n"))
+    }
+
+    fn write(&mut self, line: &str) -> Result<(), CommandError> {
+        let Some(writer) = &mut self.writer else { return Ok(()) };
+        let written = writer.write_all(line.as_bytes()).and_then(|()| writer.flush());
+        Ok(written.map_err(|source| writer.error(source))?)
+    }
+}

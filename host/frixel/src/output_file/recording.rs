@@ -1,0 +1,122 @@
+//! Recordings of people, which take a person's time and cannot be computed again.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::{FileWriter, Inputs, OutputFile, OutputFileError, partial_beside};
+
+/// Bytes of the beginning of a file that say what it is.
+const HEAD: u64 = 4096;
+/// The columns of a recorded stroke, and of a recording of friction.
+const STROKE_COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
+const FRICTION_COLUMNS: [&str; 3] = ["voltage_v_rms", "normal_force_n", "friction_n"];
+/// The line of a profile that rests on what a person felt.
+const PERCEPTUAL: &str = "origin = \"perceptual\"";
+
+/// A recording that is about to be made. Its rows go to `FILE.partial`, which becomes `FILE` at the end.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    output: OutputFile,
+    overwrites: bool,
+    advice: &'static str,
+}
+
+impl Recording {
+    /// A recording by the name that the user gave to `option`. It replaces an earlier one only if `overwrites`. `advice`
+    /// says how to keep the rows of a recording that was cut off.
+    pub fn new(
+        path: &Path,
+        option: &'static str,
+        inputs: &Inputs,
+        overwrites: bool,
+        advice: &'static str,
+    ) -> Result<Self, OutputFileError> {
+        let output = OutputFile::of_person(path, option, inputs)?;
+        if output.exists() && !overwrites {
+            return Err(OutputFileError::Exists { path: path.to_owned(), option });
+        }
+        Ok(Self::of(output, overwrites, advice))
+    }
+
+    /// A recording whose file may be replaced. It replaces the rows of one that was cut off only if `overwrites`.
+    pub fn of(output: OutputFile, overwrites: bool, advice: &'static str) -> Self {
+        Self { output, overwrites, advice }
+    }
+
+    /// The file that the recording becomes.
+    pub fn output(&self) -> &OutputFile {
+        &self.output
+    }
+
+    /// Where the rows are until the recording is whole, as the user would name it.
+    pub fn partial(&self) -> PathBuf {
+        partial_beside(self.output.path())
+    }
+
+    /// Whether a recording that was cut off has left rows.
+    pub fn is_cut_off(&self) -> bool {
+        let Some(file) = self.output.file() else { return false };
+        std::fs::read(partial_beside(file)).is_ok_and(|bytes| has_rows(&String::from_utf8_lossy(&bytes)))
+    }
+
+    /// Removes the rows of a recording that is whole.
+    pub fn discard_partial(&self) {
+        if let Some(file) = self.output.file() {
+            // A file that cannot be removed is named by the next recording.
+            let _ = std::fs::remove_file(partial_beside(file));
+        }
+    }
+
+    /// How to keep the rows of a recording that was cut off.
+    pub fn advice(&self) -> &'static str {
+        self.advice
+    }
+
+    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten.
+    pub fn start(&self) -> Result<FileWriter, OutputFileError> {
+        let Some(file) = self.output.file() else { return self.output.create() };
+        let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
+        if has_rows(&earlier) && !self.overwrites {
+            return Err(OutputFileError::CutOff { partial: self.partial(), advice: self.advice });
+        }
+        writer.clear()?;
+        Ok(writer)
+    }
+
+    /// Goes on with a recording that was cut off, and returns its whole rows, header included.
+    pub fn resume(&self) -> Result<(FileWriter, String), OutputFileError> {
+        let nothing = || OutputFileError::NothingCutOff { partial: self.partial() };
+        let Some(file) = self.output.file() else { return Err(nothing()) };
+        let partial = partial_beside(file);
+        if !partial.exists() {
+            return Err(nothing());
+        }
+        let (mut writer, rows) = FileWriter::recording(self.output.path(), file, &partial)?;
+        writer.cut()?;
+        if has_rows(&rows) { Ok((writer, rows)) } else { Err(nothing()) }
+    }
+}
+
+/// Whether there is a row below the header.
+fn has_rows(text: &str) -> bool {
+    text.bytes().filter(|byte| *byte == b'\n').count() > 1
+}
+
+/// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit` reads
+/// it, or a profile of `frixel threshold`.
+pub fn is_recording(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    if read.is_err() {
+        return false;
+    }
+    let text = String::from_utf8_lossy(&head);
+    let columns: BTreeSet<&str> =
+        text.lines().next().unwrap_or_default().split([',', ';']).map(|cell| cell.trim_matches(['"', ' '])).collect();
+    let has = |names: [&str; 3]| names.iter().all(|name| columns.contains(name));
+    let is_stroke =
+        has(STROKE_COLUMNS) && columns.iter().all(|name| [&STROKE_COLUMNS[..], &["force_n"]].concat().contains(name));
+    is_stroke || has(FRICTION_COLUMNS) || text.lines().any(|line| line.trim() == PERCEPTUAL)
+}
