@@ -1,7 +1,9 @@
 //! Fault injection, for tests of the board's reaction to faults.
 
 use core::hint::black_box;
+use core::mem::MaybeUninit;
 
+use cortex_m::interrupt;
 use frixel_exchange::layout;
 
 use crate::shared;
@@ -11,6 +13,9 @@ const OVERRUN_LOOPS: u32 = 10_000;
 
 /// An address without memory.
 const NOWHERE: *const u32 = 0x6000_0000 as *const u32;
+
+/// Words of a frame that is larger than the stack.
+const FRAME_WORDS: usize = 20 * 1024 / 4;
 
 /// Called by the main loop: injects the fault that the simulator requests.
 pub fn in_main() {
@@ -26,7 +31,8 @@ pub fn in_main() {
         }
         layout::INJECT_STACK_OVERFLOW => {
             shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
-            black_box(without_end(0));
+            // Without interrupts, whose entry would fault where this function does not.
+            interrupt::free(|_| overflow());
         }
         _ => {}
     }
@@ -43,9 +49,11 @@ pub fn in_tick() {
     }
 }
 
-#[allow(unconditional_recursion, reason = "that is the point")]
+/// A function whose frame is larger than the stack. It uses only the lowest word of the frame, and calls nothing:
+/// without a guard it returns as if nothing had happened.
 #[inline(never)]
-fn without_end(depth: u32) -> u32 {
-    let here = black_box([depth; 16]);
-    without_end(depth + 1) + here.iter().sum::<u32>()
+fn overflow() {
+    let mut frame = MaybeUninit::<[u32; FRAME_WORDS]>::uninit();
+    // SAFETY: the word is part of the frame, if there were a stack for it. The write causes the fault that is intended.
+    unsafe { black_box(&mut frame).as_mut_ptr().cast::<u32>().write_volatile(0) };
 }

@@ -150,6 +150,7 @@ impl Write for Uart {
 }
 
 /// Handles a received byte.
+#[unsafe(export_name = "UART0_RX")]
 extern "C" fn receive() {
     write(INTCLEAR, INT_RX);
     // SAFETY: this is the handler that owns the value.
@@ -163,6 +164,7 @@ extern "C" fn receive() {
 }
 
 /// Sends bytes from the queue while the UART has room. Runs after each sent byte, and when software pends it.
+#[unsafe(export_name = "UART0_TX")]
 extern "C" fn transmit() {
     write(INTCLEAR, INT_TX);
     // SAFETY: this is the handler that owns the value.

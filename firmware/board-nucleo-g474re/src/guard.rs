@@ -1,13 +1,14 @@
 //! A guard region below the stack, set up in the memory protection unit.
 //!
-//! Below RAM lie unused addresses, and the option bytes of the flash, where a write may not fault. With the guard, an
-//! overflow faults whatever the size of the frame. The guard is disabled in the hard fault's handler, which has a
-//! stack of its own (PM0214, "Memory protection unit").
+//! Below the STM32's RAM lie unused addresses, and the option bytes of the flash, where a write may not fault; on the
+//! emulated board, which has this file too, nothing below RAM faults. With the guard, an overflow faults whatever the
+//! size of the frame. The guard is disabled in the hard fault's handler, which has a stack of its own (PM0214, "Memory
+//! protection unit").
 
 use cortex_m::asm;
 use cortex_m::peripheral::MPU;
 
-/// First byte of the guard. The processor's unique number lies below it.
+/// First byte of the guard. The STM32's unique number lies below it.
 const START: u32 = 0x1fff_8000;
 /// Length of the guard, up to the start of RAM; more than any stack frame.
 const LEN: u32 = 0x8000;

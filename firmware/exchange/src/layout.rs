@@ -27,7 +27,7 @@ pub const INJECT_PANIC: u32 = 1;
 pub const INJECT_HARD_FAULT: u32 = 2;
 /// A tick takes longer than the tick period.
 pub const INJECT_OVERRUN: u32 = 3;
-/// A function calls itself without end.
+/// A function's frame is larger than the stack.
 pub const INJECT_STACK_OVERFLOW: u32 = 4;
 
 /// The amplifier's fault line: raised when non-zero.
@@ -52,6 +52,11 @@ pub const TOUCHES_READ: usize = 10;
 
 /// The output at the last start of the firmware. It must be zero, whatever ended the previous run.
 pub const OUTPUT_AT_START: usize = 11;
+
+/// Number of the fault that ended the previous run; 0 if none did.
+pub const LAST_FAULT: usize = 16;
+/// That fault's detail.
+pub const LAST_FAULT_DETAIL: usize = 17;
 
 /// Number of the batch of ticks that the simulator has sent last, from 1.
 pub const BATCH_GIVEN: usize = 12;

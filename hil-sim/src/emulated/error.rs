@@ -2,6 +2,7 @@
 
 use std::io;
 
+use frixel_wire::fault::Fault;
 use thiserror::Error;
 
 /// Why there is no emulated board, or why it has stopped.
@@ -60,6 +61,15 @@ pub enum EmulatorError {
         what: &'static str,
         /// Wall time since the request.
         seconds: u64,
+    },
+    /// The firmware ended with a fault and started again, where it must not.
+    #[error("the emulated board ended and started again: {fault} (detail {detail:#x})")]
+    Restarted {
+        /// The fault.
+        fault: Fault,
+        /// The fault's detail: of a hard fault the program counter, of a stack overflow the address below the stack, of
+        /// a panic the line.
+        detail: u32,
     },
     /// The simulator was too slow to follow the board's output.
     #[error(

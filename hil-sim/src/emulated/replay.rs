@@ -4,6 +4,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use frixel_exchange::{OUTPUT_WORDS_MAX, TickOutput, layout};
+use frixel_wire::fault::Fault;
 use thiserror::Error;
 
 use super::machine::Machine;
@@ -65,12 +66,23 @@ fn run(machine: &mut Machine, batch: u32, inputs: &[u32], ticks: usize) -> Resul
     let begin = Instant::now();
     while machine.memory.get(layout::BATCH_DONE)? != batch {
         machine.check()?;
+        check_starts(machine)?;
         if begin.elapsed() > WALL_TIMEOUT {
             return Err(EmulatorError::Silent { what: "a batch of ticks", seconds: WALL_TIMEOUT.as_secs() });
         }
         thread::sleep(POLL_PERIOD);
     }
     Ok(())
+}
+
+/// Returns an error when the firmware has ended and started again: it then waits for the first batch.
+fn check_starts(machine: &Machine) -> Result<(), EmulatorError> {
+    if machine.memory.get(layout::STARTS)? <= 1 {
+        return Ok(());
+    }
+    let number = machine.memory.get(layout::LAST_FAULT)? as u8;
+    let detail = machine.memory.get(layout::LAST_FAULT_DETAIL)?;
+    Err(EmulatorError::Restarted { fault: Fault::try_from(number).unwrap_or(Fault::Other(number)), detail })
 }
 
 /// Compares one batch.

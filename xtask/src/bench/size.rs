@@ -1,7 +1,7 @@
 //! Sizes of images, and the depth of their stacks.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use object::Endianness;
 use object::elf::{FileHeader32, PT_LOAD};
@@ -20,44 +20,56 @@ struct Build {
 
 /// Folder of the real board, and the name of its image.
 const G474: (&str, &str) = ("firmware/board-nucleo-g474re", "board-nucleo-g474re");
-const G474_BUILDS: [Build; 2] = [
-    Build { name: "full", features: &[] },
-    Build { name: "grating_only", features: &["--no-default-features", "--features", "grating"] },
-];
+const FULL: Build = Build { name: "full", features: &[] };
+const G474_BUILDS: [Build; 2] =
+    [FULL, Build { name: "grating_only", features: &["--no-default-features", "--features", "grating"] }];
 /// The main program and the exceptions that can interrupt each other: the tick, and the fault of unreadable flash.
 const MAIN: &str = "main";
 const TICK: &str = "TIM3";
 const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];
+/// Folder of the emulated board, which is the name of its image, too.
+const AN386: (&str, &str) = ("firmware/board-mps2-an386", "board-mps2-an386");
+/// The serial port's interrupts, of one priority, are counted as if one could interrupt the other.
+const AN386_EXCEPTIONS: [&str; 3] = ["UART0_RX", "UART0_TX", "SysTick"];
 /// Where RAM begins on every Cortex-M.
 const RAM: u64 = 0x2000_0000;
 const PERIPHERALS: u64 = 0x4000_0000;
 
-/// Measures the images of the real board, if its folder exists.
+/// Measures the images of the real board, if its folder exists, and the stack of the emulated board.
 pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
-    let (folder, image) = G474;
-    if !root().join(folder).is_dir() {
-        return Ok(());
-    }
-    for build in &G474_BUILDS {
-        let mut command = cargo_in(folder);
-        command
-            .args(["build", "--release", "--locked", "--quiet", "--target-dir", IMAGES_TARGET_FOLDER])
-            .args(build.features);
-        run(&format!("image of {folder}, {}", build.name), &mut command)?;
-        // The image of the next set of features takes its place.
-        let path = root().join(folder).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(image);
-        let (flash, ram) = sizes(&path)?;
-        figures.put(format!("g474.flash_{}", build.name), flash);
-        figures.put(format!("g474.ram_{}", build.name), ram);
-        let functions = Functions::read(&path)?;
-        // If a tick panicked, the voltage would remain on the electrode until the one-shot expires.
-        functions.never_ends(TICK)?;
-        match functions.depth(MAIN, &EXCEPTIONS) {
-            Ok(bytes) => figures.put(format!("g474.stack_{}", build.name), bytes),
-            Err(why) => eprintln!("the depth of the stack is not known: {why}"),
+    if root().join(G474.0).is_dir() {
+        for build in &G474_BUILDS {
+            let path = image(G474, build)?;
+            let (flash, ram) = sizes(&path)?;
+            figures.put(format!("g474.flash_{}", build.name), flash);
+            figures.put(format!("g474.ram_{}", build.name), ram);
+            let functions = Functions::read(&path)?;
+            // If a tick panicked, the voltage would remain on the electrode until the one-shot expires.
+            functions.never_ends(TICK)?;
+            measure_stack(figures, format!("g474.stack_{}", build.name), &functions, &EXCEPTIONS);
         }
     }
+    let functions = Functions::read(&image(AN386, &FULL)?)?;
+    measure_stack(figures, "an386.stack".to_owned(), &functions, &AN386_EXCEPTIONS);
     Ok(())
+}
+
+/// Builds an image. The next build of the same image takes its place.
+fn image((folder, image): (&str, &str), build: &Build) -> Result<PathBuf, String> {
+    let mut command = cargo_in(folder);
+    command
+        .args(["build", "--release", "--locked", "--quiet", "--target-dir", IMAGES_TARGET_FOLDER])
+        .args(build.features);
+    run(&format!("image of {folder}, {}", build.name), &mut command)?;
+    Ok(root().join(folder).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(image))
+}
+
+/// Measures the depth of the stack. Without the figure, its limit fails.
+fn measure_stack(figures: &mut Figures, name: String, functions: &Functions, exceptions: &[&str]) {
+    match functions.depth(MAIN, exceptions) {
+        Ok(bytes) => figures.put(name, bytes),
+        Err(why) => eprintln!("{name}: the depth of the stack is not known: {why}"),
+    }
 }
 
 /// Bytes of flash and of RAM in an image, without its stacks.

@@ -17,8 +17,8 @@ use super::thumb::{Instruction, decode};
 /// Bytes that an exception puts on the stack, with floating-point state and alignment (Armv7-M architecture reference,
 /// B1.5.6).
 const EXCEPTION_BYTES: u64 = 27 * 4;
-/// Parts of the names of functions that end the program.
-const ENDS: [&str; 3] = ["panic", "rust_begin_unwind", "5fault"];
+/// Parts of the names of functions that end the program; the last one overflows the stack for a test.
+const ENDS: [&str; 5] = ["panic", "rust_begin_unwind", "5fault3end", "5fault5never", "15fault_injection8overflow"];
 
 /// Prefix of the names of functions that the linker outlined from several functions.
 const OUTLINED: &str = "OUTLINED_FUNCTION";
@@ -228,6 +228,16 @@ mod tests {
         let functions = Functions(functions);
         assert_eq!(functions.depth("loads", &[]), Ok(8 + 100 + 108));
         assert!(functions.depth("stranger", &[]).is_err());
+    }
+
+    #[test]
+    fn only_what_ends_the_program_does_not_count() {
+        let depth = |called: &str| {
+            let main = function("main", 8, &[0x20]);
+            Functions(BTreeMap::from([(0x10, main), (0x20, function(called, 100, &[]))])).depth("main", &[])
+        };
+        assert_eq!(depth("_ZN5board5fault3end17h0E"), Ok(8 + 108));
+        assert_eq!(depth("_ZN12frixel_wire5fault1_9serialize17h0E"), Ok(8 + 100 + 108));
     }
 
     #[test]
