@@ -205,7 +205,7 @@ fn a_switch_let_go_faults() {
 fn a_monitor_that_does_not_follow_faults_within_a_millisecond() {
     let mut memory = Memory::new();
     let mut board = playing(&mut memory);
-    board.sense.monitor_v = 60.0; // more than a fifth of 250 V beside what it should read
+    board.sense.monitor_v = 60.0; // beside what it should read, of which 10 V and a quarter of the driven voltage are tolerated
     assert_faults(&mut board, Fault::Monitor, 40);
 }
 
