@@ -259,7 +259,7 @@ impl Bench for TestBench {
         }
     }
 
-    fn may_store(&self, limits: &BoardLimits) -> bool {
+    fn may_store(&mut self, limits: &BoardLimits) -> bool {
         limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
     }
 

@@ -84,8 +84,8 @@ pub trait Bench {
     /// [`Check::Ticks`].
     fn drive(&mut self, pressed: Pressed, peak_v: f32) -> Result<Reading, DriveError>;
 
-    /// Whether limits are within what the board may store.
-    fn may_store(&self, limits: &BoardLimits) -> bool;
+    /// Whether limits are within what the board may store. Says what is not.
+    fn may_store(&mut self, limits: &BoardLimits) -> bool;
 
     /// Stores limits while the tick runs, and reads them back; `false` if that failed or made a tick late.
     fn store(&mut self, limits: &BoardLimits) -> bool;

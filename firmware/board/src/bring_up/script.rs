@@ -49,7 +49,7 @@ const AMPLIFIER_MIN_US: f32 = 0.1;
 /// Why bring-up has ended. The output is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// The limits of this build cannot be stored.
+    /// The limits, built in or measured, cannot be stored.
     Limits,
     /// A check has failed.
     Check(Check),
@@ -80,7 +80,7 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Limits => f.write_str("the limits that were built in are beyond what a board may store"),
+            Self::Limits => f.write_str("a limit, built in or measured, is beyond what the board may store; build bring-up with another"),
             Self::Check(check) => write!(f, "the check of {check:?} has failed"),
             Self::Reading { what, found, expected: (min, max) } => {
                 write!(f, "{what} is {found}; it must be from {min} to {max}")
