@@ -18,6 +18,11 @@ const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
+/// Time constant of the edges over the electrode's capacitance, from half to twice the series resistor of
+/// `docs/hardware.md`, 68 kOhm. The firmware computes currents from both: with a capacitance in a wrong unit, it would
+/// take a thousand times the current that it allows.
+const SERIES_KOHM: (f32, f32) = (34.0, 136.0);
+
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
 const DAC_TOLERANCE_V: f32 = 0.15;
@@ -80,7 +85,9 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Limits => f.write_str("a limit, built in or measured, is beyond what the board may store; build bring-up with another"),
+            Self::Limits => f.write_str(
+                "a limit, built in or measured, is beyond what the board may store; build bring-up with another",
+            ),
             Self::Check(check) => write!(f, "the check of {check:?} has failed"),
             Self::Reading { what, found, expected: (min, max) } => {
                 write!(f, "{what} is {found}; it must be from {min} to {max}")
@@ -126,6 +133,8 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
     if !bench.may_store(built_in) {
         return Err(Stop::Limits);
     }
+    let series_ohm = built_in.edge_time_constant_s / built_in.electrode_capacitance_max_f;
+    expect("the series resistance, kOhm: edge over electrode's capacitance", 1e-3 * series_ohm, SERIES_KOHM)?;
     greet(bench);
     check_processor(bench)?;
     check_dac(bench)?;
