@@ -167,8 +167,8 @@ fn check_processor(bench: &mut impl Bench) -> Result<(), Stop> {
     check(bench, Check::Storage)?;
     check(bench, Check::OneShot)?;
     check(bench, Check::FaultsAreStored)?;
-    ask(bench, "with USB pulled: PB6 (enable) to ground, kOhm", PULL_DOWN_KOHM)?;
-    ask(bench, "with USB pulled: PB7 (CLEAR) to ground, kOhm", PULL_DOWN_KOHM)?;
+    ask(bench, "PB6 (enable) to ground, as measured with USB pulled, kOhm", PULL_DOWN_KOHM)?;
+    ask(bench, "PB7 (CLEAR) to ground, as measured with USB pulled, kOhm", PULL_DOWN_KOHM)?;
     Ok(())
 }
 
@@ -230,7 +230,7 @@ fn check_amplifier(bench: &mut impl Bench) -> Result<(), Stop> {
     expect_inputs(bench, IDLE, "amplifier off, switch released")?;
     ask(
         bench,
-        "USB in its isolator: GND to protective earth, MOhm (999 for no reading)",
+        "GND to protective earth, all supplies off and USB in its isolator, MOhm (999 for no reading)",
         (ISOLATION_MIN_MOHM, f32::MAX),
     )?;
     await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
@@ -256,7 +256,8 @@ fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32,
     Ok(full_scale_v_peak)
 }
 
-/// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the last.
+/// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the
+/// last.
 fn next_voltage(passed_v_peak: Option<f32>, max_v_peak: f32) -> Option<f32> {
     match passed_v_peak {
         None => Some(FIRST_V_PEAK.min(max_v_peak)),
