@@ -230,7 +230,7 @@ fn check_amplifier(bench: &mut impl Bench) -> Result<(), Stop> {
     expect_inputs(bench, IDLE, "amplifier off, switch released")?;
     ask(
         bench,
-        "GND to protective earth, all supplies off and USB in its isolator, MOhm (999 for no reading)",
+        "GND to protective earth, with USB in its isolator, MOhm (999 for no reading)",
         (ISOLATION_MIN_MOHM, f32::MAX),
     )?;
     await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
