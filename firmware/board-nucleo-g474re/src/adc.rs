@@ -2,7 +2,7 @@
 //!
 //! | pin | function | |
 //! |---|---|---|
-//! | PA0 | ADC12_IN1 | monitor, 1.65 V for 0 V on the electrode |
+//! | PA0 | ADC12_IN1 | monitor, 1.65 V for 0 V at the amplifier's output |
 
 use cortex_m::asm;
 use frixel_drivers::monitor::MonitorScale;
@@ -57,7 +57,7 @@ impl Adc {
         Self { monitor: MONITOR }
     }
 
-    /// Volts on the electrode, at most 2.5 us ago.
+    /// Volts at the amplifier's output, before the series resistor, at most 2.5 us ago.
     #[inline]
     pub fn monitor_v(&self) -> f32 {
         self.monitor.volts(ADC1.dr().read().rdata())

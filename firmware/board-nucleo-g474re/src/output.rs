@@ -42,7 +42,7 @@ impl Output {
         TIM4.ccr(0).write(|w| w.set_ccr(1));
         TIM4.ccr(1).write(|w| w.set_ccr(1));
         let output = Self(());
-        mode(Ocm::FORCE_INACTIVE);
+        mode(Ocm::FORCE_INACTIVE, Ocm::FORCE_INACTIVE);
         // Loads the prescaler. The counter does not run.
         TIM4.egr().write(|w| w.set_ug(true));
         TIM4.ccer().write(|w| {
@@ -57,22 +57,19 @@ impl Output {
     /// Kicks the timer: enables the output for another [`LIFE_US`].
     #[inline]
     pub fn kick(&mut self) {
-        if TIM4.cr1().read().cen() && TIM4.cnt().read().cnt() >= 1 {
-            TIM4.cnt().write(|w| w.set_cnt(1));
-        } else {
-            // Start from zero: the pins rise when the counter passes 1, because only a change of the comparison moves
-            // them.
-            TIM4.cnt().write(|w| w.set_cnt(0));
-            mode(Ocm::PWM_MODE2);
-        }
-        // Always: if the counter has just reached its end and stopped, it must not stay at 1 with the pins high.
-        TIM4.cr1().modify(|w| w.set_cen(true));
+        restart(Ocm::PWM_MODE2);
+    }
+
+    /// Lets the DAC put out its codes for another [`LIFE_US`], with the amplifier disabled, whatever was kicked before.
+    pub fn kick_dac_alone(&mut self) {
+        TIM4.ccmr_output(0).modify(|w| w.set_ocm(0, Ocm::FORCE_INACTIVE));
+        restart(Ocm::FORCE_INACTIVE);
     }
 
     /// Sets the output to zero at once.
     #[inline]
     pub fn zero(&mut self) {
-        mode(Ocm::FORCE_INACTIVE);
+        mode(Ocm::FORCE_INACTIVE, Ocm::FORCE_INACTIVE);
         TIM4.cr1().modify(|w| w.set_cen(false));
         TIM4.cnt().write(|w| w.set_cnt(0));
     }
@@ -95,11 +92,27 @@ impl KickedEnable for Output {
     }
 }
 
-/// Sets the output mode of both channels.
-fn mode(mode: Ocm) {
+/// Starts the timer anew. If it does not run, amplifier enable has this output mode from now on, and CLEAR is a one-shot.
+#[inline]
+fn restart(enable: Ocm) {
+    if TIM4.cr1().read().cen() && TIM4.cnt().read().cnt() >= 1 {
+        TIM4.cnt().write(|w| w.set_cnt(1));
+    } else {
+        // Start from zero: the pins rise when the counter passes 1, because only a change of the comparison moves
+        // them.
+        TIM4.cnt().write(|w| w.set_cnt(0));
+        mode(enable, Ocm::PWM_MODE2);
+    }
+    // Always: if the counter has just reached its end and stopped, it must not stay at 1 with the pins high.
+    TIM4.cr1().modify(|w| w.set_cen(true));
+}
+
+/// Sets the output modes of both channels.
+#[inline]
+fn mode(enable: Ocm, clear: Ocm) {
     TIM4.ccmr_output(0).write(|w| {
-        w.set_ocm(0, mode);
-        w.set_ocm(1, mode);
+        w.set_ocm(0, enable);
+        w.set_ocm(1, clear);
     });
 }
 

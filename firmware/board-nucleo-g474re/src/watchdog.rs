@@ -47,6 +47,8 @@ impl Watchdog {
     }
 }
 
-fn feed() {
+/// Feeds the watchdog whether there are ticks or not, for a program that has not started them. One that runs from the
+/// reset on (option byte `IWDG_SW`) would reset it after half a second. Without effect as long as none runs.
+pub fn feed() {
     IWDG.kr().write(|w| w.set_key(Key::RESET));
 }

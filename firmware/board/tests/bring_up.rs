@@ -13,7 +13,7 @@ use frixel_wire::hello::BoardLimits;
 const LIMITS: BoardLimits = BoardLimits {
     voltage_max_v_peak: 50.0,
     full_scale_v_peak: 200.0,
-    edge_time_constant_s: 36e-6,
+    edge_time_constant_s: 37.5e-6,
     current_max_a_rms: 0.5e-3,
     current_max_a_peak: 1.8e-3,
     ..Board::SIMULATOR.limits
@@ -257,7 +257,7 @@ impl Bench for TestBench {
         }
     }
 
-    fn may_store(&self, limits: &BoardLimits) -> bool {
+    fn may_store(&mut self, limits: &BoardLimits) -> bool {
         limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
     }
 
@@ -368,6 +368,21 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
     let mut bench = TestBench { limits, ..TestBench::new() };
     assert_eq!(bench.bring_up().unwrap(), Err(Stop::Limits));
     assert_eq!(bench.events, [Event::Start]);
+}
+
+/// A capacitance in another unit would make every current a thousandth.
+#[test]
+fn edges_and_electrode_that_stand_for_another_series_resistor_stop_before_anything_else() {
+    let Board { limits, .. } = support::firmware::BOARD;
+    for (electrode_nf, stops) in
+        [(0.53e-3, true), (0.27, true), (0.28, false), (0.53, false), (1.1, false), (1.2, true)]
+    {
+        let limits = BoardLimits { electrode_capacitance_max_f: 1e-9 * electrode_nf, ..limits };
+        let mut bench = TestBench { limits, ..TestBench::new() };
+        let end = bench.bring_up().unwrap();
+        assert_eq!(matches!(end, Err(Stop::Reading { .. })), stops, "{electrode_nf} nF: {end:?}");
+        assert_eq!(bench.events == [Event::Start], stops, "{electrode_nf} nF");
+    }
 }
 
 /// The checks without voltage and the test of the switch come between each start and the first voltage, whenever the

@@ -153,7 +153,7 @@ impl Bench for WholeBench<'_> {
         }
     }
 
-    fn may_store(&self, limits: &BoardLimits) -> bool {
+    fn may_store(&mut self, limits: &BoardLimits) -> bool {
         limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
     }
 

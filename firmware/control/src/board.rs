@@ -32,7 +32,7 @@ pub struct Board {
     pub reset_text: &'static [u8],
     /// Number of starts in a row before this one that ended in a fault: a panic, a hard fault or the watchdog. 0 after
     /// power-on and after any reset that was not a fault. A start that has run for a minute ends the row: its own fault
-    /// is the first of the next. At most 255. Boards that keep nothing over a reset say 0.
+    /// is the first of the next. At most 255. Boards that do not count say 0.
     pub reset_fault_starts: u8,
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,

@@ -64,11 +64,6 @@ impl<P: InputPin> ArmSwitch<P> {
         }
         self.state == State::Held
     }
-
-    /// The contact's pin.
-    pub fn contact_mut(&mut self) -> &mut P {
-        &mut self.contact
-    }
 }
 
 /// The whole ticks in a time.
@@ -102,7 +97,7 @@ mod tests {
 
     /// Runs for some ticks and returns whether the switch is held at the last.
     fn run(switch: &mut ArmSwitch<Contact>, closed: bool, ticks: u32) -> bool {
-        switch.contact_mut().0 = closed;
+        switch.contact.0 = closed;
         (0..ticks).map(|_| switch.is_held()).last().unwrap()
     }
 

@@ -1,6 +1,6 @@
 //! The amplifier's monitor output, read by an ADC through a level shifter.
 
-/// Conversion of ADC codes to volts on the electrode.
+/// Conversion of ADC codes to volts at the amplifier's output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonitorScale {
     /// Code at 0 V.
@@ -9,14 +9,14 @@ pub struct MonitorScale {
 }
 
 impl MonitorScale {
-    /// An ADC of `bits` bits with the range 0 to `reference_v`. 0 V on the electrode is the middle of the range, and
-    /// each volt on the electrode changes the ADC's input by `input_v_per_v`.
+    /// An ADC of `bits` bits with the range 0 to `reference_v`. 0 V at the amplifier's output is the middle of the
+    /// range, and each volt there changes the ADC's input by `input_v_per_v`.
     pub const fn new(bits: u32, reference_v: f32, input_v_per_v: f32) -> Self {
         let codes = (1_u32 << bits) as f32;
         Self { zero_code: 0.5 * codes, volts_per_code: reference_v / codes / input_v_per_v }
     }
 
-    /// Volts on the electrode.
+    /// Volts at the amplifier's output.
     #[inline]
     pub fn volts(&self, code: u16) -> f32 {
         (f32::from(code) - self.zero_code) * self.volts_per_code
@@ -32,10 +32,10 @@ mod tests {
         // 3.3 V over 4,096 codes; 200 V move the input by 1.5 V.
         let monitor = MonitorScale::new(12, 3.3, 1.5 / 200.0);
         assert!(monitor.volts(2048).abs() < 1e-6);
-        let code_of = |electrode_v: f32| ((1.65 + electrode_v * 1.5 / 200.0) / 3.3 * 4096.0) as u16;
-        for electrode_v in [-200.0, -50.0, 1.0, 120.0, 200.0] {
-            let found = monitor.volts(code_of(electrode_v));
-            assert!((found - electrode_v).abs() < 0.12, "{found} is not {electrode_v}");
+        let code_of = |output_v: f32| ((1.65 + output_v * 1.5 / 200.0) / 3.3 * 4096.0) as u16;
+        for output_v in [-200.0, -50.0, 1.0, 120.0, 200.0] {
+            let found = monitor.volts(code_of(output_v));
+            assert!((found - output_v).abs() < 0.12, "{found} is not {output_v}");
         }
     }
 }

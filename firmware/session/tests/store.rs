@@ -269,13 +269,14 @@ fn the_last_scene_plays_after_power_off() {
     assert!(played(&mut board) == before);
 }
 
-/// Starts a board with this flash after so many starts that ended in a fault.
+/// Starts a board with this flash after so many starts that ended in a fault, each of which has reset it.
 fn start_after_faults<'a>(
     memory: &'a mut Memory,
     flash: &SimulatedFlash,
     fault_starts: u8,
 ) -> (TestBoard<'a>, SceneStore) {
-    let board = Board { reset_fault_starts: fault_starts, ..Board::SIMULATOR };
+    let reset_cause = if fault_starts > 0 { ResetCause::Software } else { ResetCause::PowerOn };
+    let board = Board { reset_cause, reset_fault_starts: fault_starts, ..Board::SIMULATOR };
     let mut board = TestBoard::of(board, memory);
     let store = SceneStore::new(SCENE_SLOT, 40_000, flash, &mut board.session);
     (board, store)
@@ -326,7 +327,10 @@ fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
     board.load(&fine).unwrap();
     let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
-    finish_writing(&mut store, &mut flash, &board, 0);
+    store.step(&mut flash, &board.session, 0);
+    finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
+    assert_eq!(store.stored_crc32(), None, "a fault has reset the board: its first write waits");
+    finish_writing(&mut store, &mut flash, &board, 45 * 60 * 40_000);
     assert_eq!(store.stored_crc32(), Some(crc32(&fine)));
 
     let mut memory = Memory::new();

@@ -59,7 +59,8 @@ impl fmt::Display for State {
 pub enum Fault {
     /// The amplifier reports a fault.
     Amplifier,
-    /// The voltage at the monitor input differs from the driven voltage.
+    /// The amplifier's monitor shows another voltage than the driven one, or one that rises or stays while the amplifier
+    /// is disabled.
     Monitor,
     /// A tick missed its deadline.
     Deadline,
@@ -137,8 +138,8 @@ impl fmt::Display for Fault {
                 "the amplifier signals a fault; check its supply, wiring and temperature, then clear the fault"
             }
             Self::Monitor => {
-                "the electrode's voltage differs from the commanded voltage; check amplifier, electrode and \
-                 monitor, then clear the fault"
+                "the amplifier's output is not what was driven, or was not at zero in time; check amplifier, series \
+                 resistor and the monitor's wire, then clear the fault"
             }
             Self::Deadline => "a tick missed its deadline; clear the fault and play a scene with fewer layers",
             Self::Panic => "the firmware panicked; report it with the output of `frixel info`, then clear the fault",

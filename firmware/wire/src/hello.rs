@@ -77,8 +77,8 @@ pub mod notice {
         (
             STORED_SCENE_SKIPPED,
             "the board did not load its stored scene, because its last starts ended in faults: look at the last \
-             fault, then play another scene, which is stored in its place, or switch the board off and on to try the \
-             stored one again",
+             fault, then play another scene, which is stored in its place after 45 minutes, or switch the board off \
+             and on to try the stored one again",
         ),
         (
             STORED_LIMITS_REFUSED,

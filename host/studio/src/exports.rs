@@ -11,6 +11,7 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;
 use serde_json::{Value, json};
 
@@ -266,15 +267,19 @@ pub extern "C" fn state_words(state: u32, fault: u32) -> i32 {
 
 fn driving<S: frixel_driver::ByteStream + crate::host::SceneListener>(host: &Host<S>) -> Value {
     let hello = host.hello();
-    let voltage_v = hello.limits.voltage_max_v_peak;
-    let is_simulated = hello.board.is_simulated();
+    let (is_simulated, voltage_v) = (hello.board.is_simulated(), hello.limits.voltage_max_v_peak);
+    json!({ "driving": driven_board(hello), "isSimulated": is_simulated, "voltageMaxV": voltage_v })
+}
+
+/// What Arm drives, in words that stand on its button: with the board's notices, which a person reads before the press.
+fn driven_board(hello: &Hello) -> String {
     let board = hello.board;
-    let sentence = if is_simulated {
+    let sentence = if board.is_simulated() {
         format!("{board}, which has no electrode")
     } else {
-        format!("{board} with an electrode, up to {voltage_v} V peak")
+        format!("{board} with an electrode, up to {} V peak", hello.limits.voltage_max_v_peak)
     };
-    json!({ "driving": sentence, "isSimulated": is_simulated, "voltageMaxV": voltage_v })
+    hello.notice_sentences().fold(sentence, |sentence, notice| sentence + "; note: " + notice)
 }
 
 fn state_word(state: State) -> &'static str {
@@ -334,4 +339,36 @@ fn respond_bytes(act: impl FnOnce() -> Result<Vec<u8>, HostError>) -> i32 {
     };
     OUTPUT.set(bytes);
     code
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause, notice};
+
+    use super::*;
+
+    #[test]
+    fn the_words_on_the_button_that_arms_a_board_hold_its_notices() {
+        let mut hello = Hello {
+            protocol: (1, 4),
+            firmware: (0, 1, 0),
+            board: BoardKind::NucleoG474re,
+            id: [0; 12],
+            tick_hz: 40_000,
+            frame_max_len: 192,
+            features: 0,
+            scene_crc32: 0,
+            reset_cause: ResetCause::PowerOn,
+            last_fault: None,
+            fault_detail: 0,
+            state: State::Disarmed,
+            limits: BoardLimits { voltage_max_v_peak: 300.0, ..BoardLimits::UNSTATED },
+            notices: 0,
+        };
+        assert_eq!(driven_board(&hello), "NUCLEO-G474RE with an electrode, up to 300 V peak");
+        hello.notices = notice::LIMITS_ABOVE_CEILINGS | notice::STORED_SCENE_SKIPPED;
+        let said = driven_board(&hello);
+        assert!(said.contains("300 V peak; note: ") && said.contains("above the ceilings"), "{said}");
+        assert!(said.contains("stored scene"), "{said}");
+    }
 }

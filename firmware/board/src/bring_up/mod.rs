@@ -67,7 +67,7 @@ pub trait Bench {
     fn say(&mut self, text: fmt::Arguments<'_>);
 
     /// Waits for a line from the person, without its end. Before [`Check::Ticks`], meanwhile the DAC puts out `dac_v`,
-    /// in V at the DAC, and the amplifier is enabled, but only as long as it is not ready; `None` keeps both at zero.
+    /// in V at the DAC, as long as the amplifier is not ready; `None` keeps it at zero. The amplifier is disabled.
     fn read_line(&mut self, dac_v: Option<f32>) -> Line;
 
     /// Does a check; `false` if it failed. Says what was wrong.
@@ -84,8 +84,8 @@ pub trait Bench {
     /// [`Check::Ticks`].
     fn drive(&mut self, pressed: Pressed, peak_v: f32) -> Result<Reading, DriveError>;
 
-    /// Whether limits are within what the board may store.
-    fn may_store(&self, limits: &BoardLimits) -> bool;
+    /// Whether limits are within what the board may store. Says what is not.
+    fn may_store(&mut self, limits: &BoardLimits) -> bool;
 
     /// Stores limits while the tick runs, and reads them back; `false` if that failed or made a tick late.
     fn store(&mut self, limits: &BoardLimits) -> bool;

@@ -18,6 +18,11 @@ const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
+/// Time constant of the edges over the electrode's capacitance, from half to twice the series resistor of
+/// `docs/hardware.md`, 68 kOhm. The firmware computes currents from both: with a capacitance in a wrong unit, it would
+/// take a thousand times the current that it allows.
+const SERIES_KOHM: (f32, f32) = (34.0, 136.0);
+
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
 const DAC_TOLERANCE_V: f32 = 0.15;
@@ -49,7 +54,7 @@ const AMPLIFIER_MIN_US: f32 = 0.1;
 /// Why bring-up has ended. The output is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// The limits of this build cannot be stored.
+    /// The limits, built in or measured, cannot be stored.
     Limits,
     /// A check has failed.
     Check(Check),
@@ -80,7 +85,9 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Limits => f.write_str("the limits that were built in are beyond what a board may store"),
+            Self::Limits => f.write_str(
+                "a limit, built in or measured, is beyond what the board may store; build bring-up with another",
+            ),
             Self::Check(check) => write!(f, "the check of {check:?} has failed"),
             Self::Reading { what, found, expected: (min, max) } => {
                 write!(f, "{what} is {found}; it must be from {min} to {max}")
@@ -126,6 +133,8 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
     if !bench.may_store(built_in) {
         return Err(Stop::Limits);
     }
+    let series_ohm = built_in.edge_time_constant_s / built_in.electrode_capacitance_max_f;
+    expect("the series resistance, kOhm: edge over electrode's capacitance", 1e-3 * series_ohm, SERIES_KOHM)?;
     greet(bench);
     check_processor(bench)?;
     check_dac(bench)?;
@@ -158,8 +167,8 @@ fn check_processor(bench: &mut impl Bench) -> Result<(), Stop> {
     check(bench, Check::Storage)?;
     check(bench, Check::OneShot)?;
     check(bench, Check::FaultsAreStored)?;
-    ask(bench, "with USB pulled: PB6 (enable) to ground, kOhm", PULL_DOWN_KOHM)?;
-    ask(bench, "with USB pulled: PB7 (CLEAR) to ground, kOhm", PULL_DOWN_KOHM)?;
+    ask(bench, "PB6 (enable) to ground, as measured with USB pulled, kOhm", PULL_DOWN_KOHM)?;
+    ask(bench, "PB7 (CLEAR) to ground, as measured with USB pulled, kOhm", PULL_DOWN_KOHM)?;
     Ok(())
 }
 
@@ -221,7 +230,7 @@ fn check_amplifier(bench: &mut impl Bench) -> Result<(), Stop> {
     expect_inputs(bench, IDLE, "amplifier off, switch released")?;
     ask(
         bench,
-        "USB in its isolator: GND to protective earth, MOhm (999 for no reading)",
+        "GND to protective earth, with USB in its isolator, MOhm (999 for no reading)",
         (ISOLATION_MIN_MOHM, f32::MAX),
     )?;
     await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
@@ -247,7 +256,8 @@ fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32,
     Ok(full_scale_v_peak)
 }
 
-/// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the last.
+/// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the
+/// last.
 fn next_voltage(passed_v_peak: Option<f32>, max_v_peak: f32) -> Option<f32> {
     match passed_v_peak {
         None => Some(FIRST_V_PEAK.min(max_v_peak)),

@@ -10,7 +10,7 @@ pub(crate) const BOARD: Board = Board {
     limits: BoardLimits {
         voltage_max_v_peak: 50.0,
         full_scale_v_peak: 200.0,
-        edge_time_constant_s: 36e-6,
+        edge_time_constant_s: 37.5e-6,
         current_max_a_rms: 0.5e-3,
         current_max_a_peak: 1.8e-3,
         ..Board::SIMULATOR.limits

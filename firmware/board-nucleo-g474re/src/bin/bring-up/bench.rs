@@ -146,8 +146,12 @@ impl Bench for NucleoBench {
         }
     }
 
-    fn may_store(&self, limits: &BoardLimits) -> bool {
-        limits::may_store(limits)
+    fn may_store(&mut self, limits: &BoardLimits) -> bool {
+        let written = limits::written(limits);
+        if let Err(error) = &written {
+            self.terminal.say(format_args!("Of the limits: {error}."));
+        }
+        written.is_ok()
     }
 
     fn store(&mut self, limits: &BoardLimits) -> bool {

@@ -2,7 +2,7 @@
 
 use board_nucleo_g474re::board::{CEILINGS, LIMITS, LIMITS_SLOT};
 use board_nucleo_g474re::flash::BankTwo;
-use frixel_session::store::{LIMITS_LEN, WORD_LEN, Writer, Writing, load_limits, write_limits};
+use frixel_session::store::{LIMITS_LEN, LimitsError, WORD_LEN, Writer, Writing, load_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 /// The limits of `src/board.rs`, with what the environment of the build says instead. `None` if something there is not
@@ -27,15 +27,15 @@ pub(crate) fn built_in() -> Option<BoardLimits> {
     })
 }
 
-/// Whether limits are within what this board may store.
-pub(crate) fn may_store(limits: &BoardLimits) -> bool {
-    write_limits(limits, CEILINGS).is_ok()
+/// Limits as they are stored, if they are within what this board may store.
+pub(crate) fn written(limits: &BoardLimits) -> Result<[u8; LIMITS_LEN], LimitsError> {
+    write_limits(limits, CEILINGS)
 }
 
 /// Stores limits and reads them back; `meanwhile` is called between two operations of the flash. `false` if that
 /// failed.
 pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut meanwhile: impl FnMut()) -> bool {
-    let Ok(bytes) = write_limits(limits, CEILINGS) else { return false };
+    let Ok(bytes) = written(limits) else { return false };
     let found = LIMITS_SLOT.find(flash);
     let Some(mut writer) = Writer::new::<BankTwo>(LIMITS_SLOT, found.as_ref(), LIMITS_LEN as u32) else { return false };
     let word = |offset: u32| {

@@ -16,7 +16,7 @@ use board_nucleo_g474re::fault::{self, LastReset};
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::{board, clock, dac, guard, output, period, tick};
+use board_nucleo_g474re::{board, clock, dac, guard, output, period, tick, watchdog};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
@@ -95,6 +95,6 @@ fn main() -> ! {
 fn stop() -> ! {
     output::zero_for_good();
     loop {
-        cortex_m::asm::wfi();
+        watchdog::feed();
     }
 }

@@ -1,11 +1,11 @@
-//! The board before the tick runs: kicks the one-shot, and sends codes to the DAC by itself. No voltage: it enables
-//! the amplifier only while that is not ready.
+//! The board before the tick runs: kicks the one-shot, and sends codes to the DAC by itself. No voltage: while the DAC
+//! puts out a code, the amplifier is disabled. Only the one-shot's test enables it, with the DAC at zero.
 
 use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{Dac, DacFrames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
-use board_nucleo_g474re::{period, tick};
+use board_nucleo_g474re::{period, tick, watchdog};
 use cortex_m::peripheral::DWT;
 use frixel_wire::dac_code::DacCode;
 
@@ -25,13 +25,15 @@ pub(crate) struct Still {
 }
 
 impl Still {
-    /// Waits for the next period, and puts out a voltage of the DAC at its end, or zero.
+    /// Waits for the next period, and puts out a voltage of the DAC at its end, or zero. The amplifier stays disabled;
+    /// as long as it is ready, the DAC stays at zero, too.
     pub(crate) fn next_period(&mut self, dac_v: Option<f32>) {
+        watchdog::feed();
         let _ = period::has_begun();
         while !period::has_begun() {}
         let may_drive = !tick::inputs().0;
         match dac_v {
-            Some(volts) if may_drive && self.frames.send(code(volts)) => self.output.kick(),
+            Some(volts) if may_drive && self.frames.send(code(volts)) => self.output.kick_dac_alone(),
             _ => self.output.zero(),
         }
     }
