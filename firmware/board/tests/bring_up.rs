@@ -373,7 +373,7 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
 /// A capacitance in another unit would make every current a thousandth.
 #[test]
 fn edges_and_electrode_that_stand_for_another_series_resistor_stop_before_anything_else() {
-    let Board { limits, .. } = support::firmware::BOARD;
+    let Board { limits, .. } = crate::support::firmware::BOARD;
     for (electrode_nf, stops) in
         [(0.53e-3, true), (0.27, true), (0.28, false), (0.53, false), (1.1, false), (1.2, true)]
     {
