@@ -101,7 +101,7 @@ function assertOnlyDisarmed({ ms, first, sent, arrived }) {
 /** Time without telemetry that means that the host compiles, ms. */
 const PAUSE_MS = 150;
 /** Pixels along a side of a picture that takes long to compile. */
-const SLOW_PX = 3000;
+const SLOW_PX = 5000;
 const PICTURE_SCENE = `version = 2
 [drive]
 host_timeout_ms = 1000
