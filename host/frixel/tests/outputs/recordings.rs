@@ -225,6 +225,7 @@ fn a_killed_threshold_session_goes_on_after_its_last_answer() {
     assert!(ran.code == Some(1) && ran.notes.contains("add --finish to go on with it"), "{}", ran.notes);
     let other = folder.run(&format!("{line} --finish --voltage 100"));
     assert!(other.code == Some(1) && other.notes.contains("give the options of the session"), "{}", other.notes);
+    assert!(!other.notes.contains("add --finish"), "it is there already: {}", other.notes);
 
     let mut command = folder.command(&format!("{line} --finish"));
     let mut child = command.spawn().unwrap();
