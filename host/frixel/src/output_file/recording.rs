@@ -99,6 +99,13 @@ impl Recording {
     }
 }
 
+/// Whether the play in a folder is of a person's finger on a board that is not a simulator, by its `summary.json`.
+pub fn is_play_of_person(folder: &Path) -> bool {
+    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+    summary.get("simulated") == Some(&serde_json::Value::Bool(false))
+}
+
 /// Whether there is a row below the header.
 fn has_rows(text: &str) -> bool {
     text.bytes().filter(|byte| *byte == b'\n').count() > 1

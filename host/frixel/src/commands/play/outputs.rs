@@ -1,10 +1,11 @@
 //! The output files of a play.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use frixel::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
-use frixel::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all};
+use frixel::output_file::{
+    FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
+};
 use frixel::scene_file::SceneFiles;
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, TouchedLayers};
@@ -47,13 +48,13 @@ impl PlayFiles {
             other_svg: file(other_svg)?,
             png: file("scene.png")?,
         };
-        files.check_earlier(args)?;
+        Self::check_earlier(args)?;
         Ok(files)
     }
 
     /// Rejects a play that would replace what a person's finger did on a board.
-    fn check_earlier(&self, args: &PlayArgs) -> Result<(), CommandError> {
-        if !args.overwrite && self.are_of_a_real_board() {
+    fn check_earlier(args: &PlayArgs) -> Result<(), CommandError> {
+        if !args.overwrite && is_play_of_person(&args.out) {
             return Err(OutputFileError::OverPlay { path: args.out.clone(), option: OPTION }.into());
         }
         Ok(())
@@ -66,13 +67,6 @@ impl PlayFiles {
             inputs.check(file)?;
         }
         Ok(())
-    }
-
-    /// Whether the files there are of a play without a simulation, by the summary.
-    fn are_of_a_real_board(&self) -> bool {
-        let summary = fs::read(self.summary.path()).unwrap_or_default();
-        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
-        summary.get("simulated") == Some(&serde_json::Value::Bool(false))
     }
 
     /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
@@ -123,7 +117,7 @@ impl Outputs {
     ) -> Result<Self, CommandError> {
         let folder = OutputFolder::open(&args.out)?;
         // The play that wrote into the folder until now may have been of a person.
-        files.check_earlier(args)?;
+        PlayFiles::check_earlier(args)?;
         let csv = FeltCsv::new(files.start(is_simulated, args.overwrite)?)?;
         let log = args.with_log.clone();
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
