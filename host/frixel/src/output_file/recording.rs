@@ -74,14 +74,15 @@ impl Recording {
         self.advice
     }
 
-    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten.
+    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten: its rows then stay until
+    /// the first ones of this recording.
     pub fn start(&self) -> Result<FileWriter, OutputFileError> {
         let Some(file) = self.output.file() else { return self.output.create() };
         let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
         if has_rows(&earlier) && !self.overwrites {
             return Err(OutputFileError::CutOff { partial: self.partial(), advice: self.advice });
         }
-        writer.clear()?;
+        writer.begin_anew();
         Ok(writer)
     }
 

@@ -164,6 +164,20 @@ fn a_second_recorder_of_a_file_is_told_of_the_first() {
     let _ = first.wait();
 }
 
+/// A port that is mistyped costs no rows, even with leave to replace them.
+#[test]
+fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
+    let folder = Folder::new();
+    let rows = "t_s,x_mm,y_mm\n0.000000,1.0000,2.0000\n0.005000,1.1000,2.0000\n";
+    for line in ["record --port nowhere", "threshold --port nowhere", "calibrate --port nowhere --forces forces.csv"] {
+        folder.write("cut.csv.partial", rows);
+        let ran = folder.run(&format!("{line} -o cut.csv --overwrite"));
+        assert_eq!(ran.code, Some(1), "{}", ran.notes);
+        assert_eq!(folder.text("cut.csv.partial"), rows, "{line}: {}", ran.notes);
+        fs::remove_file(folder.path("cut.csv.partial")).unwrap();
+    }
+}
+
 /// A board that goes away in the middle of a recording: the message says where the rows are.
 #[test]
 fn a_recording_whose_board_goes_away_is_named() {

@@ -18,8 +18,8 @@ export function zipOf({ name, entry, text, files, profiles }) {
 }
 
 /**
- * A project from a zip; throws a sentence where it holds none. A zip that `isOwn` was packed by this browser from what it
- * had open, and has no limits.
+ * A project from a zip; throws a sentence where it holds none. A zip that `isOwn` was packed by this browser from what
+ * it had open, and has no limits.
  */
 export function projectOf(bytes, { isOwn = false } = {}) {
   const entries = unpacked(bytes, isOwn);
