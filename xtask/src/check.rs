@@ -14,8 +14,20 @@ use crate::{bench, budgets, fuzz, portability, results, stamps, studio_tests};
 const FIRMWARE_INPUTS: [&str; 8] =
     ["budgets.toml", "Cargo.lock", "Cargo.toml", "clippy.toml", "firmware", "model", "rustfmt.toml", "xtask"];
 /// Inputs of everything that is made of the crates of the page and of the command.
-pub(crate) const HOST_INPUTS: [&str; 10] =
-    ["Cargo.lock", "Cargo.toml", "clippy.toml", "docs", "firmware", "hil-sim", "host", "model", "scenes", "xtask"];
+pub(crate) const HOST_INPUTS: [&str; 12] = [
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "clippy.toml",
+    "docs",
+    "firmware",
+    "hil-sim",
+    "host",
+    "model",
+    "scenes",
+    "xtask",
+];
 /// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
 
@@ -170,13 +182,13 @@ fn check_feature_sets() -> Result<(), String> {
 }
 
 /// A firmware image outside the workspace.
-struct Image {
-    folder: &'static str,
+pub(crate) struct Image {
+    pub(crate) folder: &'static str,
     /// Further sets of features to check: additional ones, and replacements of the default ones.
     more: &'static [&'static [&'static str]],
 }
 
-const IMAGES: [Image; 4] = [
+pub(crate) const IMAGES: [Image; 4] = [
     Image {
         folder: "firmware/board-nucleo-g474re",
         more: &[
@@ -228,7 +240,7 @@ fn cargo(name: &str, folder: &str, arguments: &[&str], variables: &[(&str, &str)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio;
+    use crate::{licences, studio};
 
     fn manifest(folder: &str, name: &str) -> toml::Table {
         toml::from_str(&fs::read_to_string(root().join(folder).join(name)).unwrap()).unwrap()
@@ -236,9 +248,10 @@ mod tests {
 
     #[test]
     fn every_file_that_the_page_carries_is_among_the_inputs_of_its_tests() {
-        for (folder, _, _) in studio::CARRIED {
-            let is_input = HOST_INPUTS.iter().any(|input| std::path::Path::new(folder).starts_with(input));
-            assert!(is_input, "{folder} is no input of the tests of the studio");
+        let folders = studio::CARRIED.map(|(folder, _, _)| folder);
+        for path in folders.into_iter().chain(licences::FILES) {
+            let is_input = HOST_INPUTS.iter().any(|input| std::path::Path::new(path).starts_with(input));
+            assert!(is_input, "{path} is no input of the tests of the studio");
         }
     }
 

@@ -9,6 +9,8 @@ use crate::command::{WASM, cargo_in, root, text_of};
 
 /// The crate that the module is made of.
 const MODULE: &str = "frixel-studio";
+/// frixel's own licences, and those of the vendored scripts.
+pub(crate) const FILES: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "host/studio/vendor/LICENCES.txt"];
 /// A line between two licences.
 const RULE: &str = "------------------------------------------------------------------------------";
 /// How the names of licence files begin, in lower case.
@@ -16,12 +18,10 @@ const FILE_STARTS: [&str; 5] = ["license", "licence", "copying", "unlicense", "n
 
 /// All licences as one text.
 pub(crate) fn text() -> Result<String, String> {
-    let own = ["LICENSE-MIT", "LICENSE-APACHE"].map(|name| read(&root().join(name)));
-    let [mit, apache] = own;
-    let vendored = read(&root().join("host/studio/vendor/LICENCES.txt"))?;
+    let [mit, apache, vendored] = FILES.map(|name| read(&root().join(name)));
     let parts = [
         format!("frixel (MIT OR Apache-2.0)\n\n{}\n{RULE}\n{}", mit?, apache?),
-        format!("SCRIPTS IN THE PAGE\n\n{vendored}"),
+        format!("SCRIPTS IN THE PAGE\n\n{}", vendored?),
         format!("CRATES IN THE MODULE\n\nRust's standard library (MIT OR Apache-2.0)\n\n{}", crates()?),
     ];
     Ok(parts.join(&format!("\n{RULE}\n\n")))

@@ -23,12 +23,14 @@ pub(crate) enum Programs {
 }
 
 /// Inputs of tests besides the folders of their package and of its dependencies.
-const MORE_INPUTS: [(&str, &[&str]); 5] = [
+const MORE_INPUTS: [(&str, &[&str]); 6] = [
     ("frixel", &["README.md", "docs", "firmware", "scenes"]),
     ("frixel-fuzz", &["scenes"]),
     ("frixel-scene", &["docs", "scenes"]),
     ("frixel-studio", &["scenes"]),
     ("frixel-hil-sim", &["firmware"]),
+    // They read the manifests, lock files and sources of every package, and the licences in the page.
+    ("xtask", &["LICENSE-APACHE", "LICENSE-MIT", "firmware", "fuzz", "hil-sim", "host", "model"]),
 ];
 
 /// Inputs of the tests of every package.
@@ -167,6 +169,7 @@ mod tests {
     use std::fs;
 
     use super::*;
+    use crate::{check, licences};
 
     #[test]
     fn the_inputs_of_a_package_are_those_of_all_that_it_depends_on() {
@@ -245,6 +248,18 @@ mod tests {
     #[test]
     fn the_scenes_are_inputs_of_the_studios_tests() {
         assert!(inputs("frixel-studio", &packages().unwrap()).contains(&"scenes".to_owned()));
+    }
+
+    /// This program's own tests look into every package, and at the licences in the page.
+    #[test]
+    fn what_the_tests_of_xtask_read_is_among_their_inputs() {
+        let packages = packages().unwrap();
+        let inputs = inputs("xtask", &packages);
+        let folders = packages.values().map(|package| package.folder.as_str());
+        for path in folders.chain(licences::FILES).chain(check::IMAGES.iter().map(|image| image.folder)) {
+            let is_input = inputs.iter().any(|input| Path::new(path).starts_with(input));
+            assert!(is_input, "{path} is no input of the tests of xtask");
+        }
     }
 
     /// The files of `tests` are modules of few programs, which cargo does not look for by itself.

@@ -120,7 +120,41 @@ test("two tabs never write the same piece of work", async () => {
   assert.deepEqual(errors, []);
 });
 
-test("a browser that keeps nothing says so at the first change", async () => {
+test("a page that closes while a scene is being opened does not lose the one before", async () => {
+  const { page, errors } = await openStudio();
+  await change(page, WHOLE_SCREEN_GRATING);
+  const close = () => {
+    LockManager.prototype.request = () => new Promise(() => {});
+    document.getElementById("new").click();
+    return new Promise((resolve) => {
+      const look = () => {
+        if (document.getElementById("scene-name").value !== "untitled") return setTimeout(look);
+        dispatchEvent(new Event("pagehide"));
+        return resolve();
+      };
+      look();
+    });
+  };
+  await page.evaluate(close);
+  assert.deepEqual(await recent(page), ["brick"]);
+  assert.deepEqual(errors, []);
+});
+
+test("a piece of work with more files than a zip may have comes back", async () => {
+  const { page } = await openStudio();
+  const [begin, end] = [Buffer.from([0x89, 0x50, 0x4e, 0x47]), Buffer.from("IEND")];
+  const picture = (number) => ({ name: `p${number}.png`, mimeType: "image/png", buffer: Buffer.concat([begin, end]) });
+  await page.setInputFiles("#files", Array.from({ length: 101 }, (_, number) => picture(number)));
+  await page.locator("#notice", { hasText: "p100.png" }).waitFor();
+  await page.click("#save");
+  await page.locator("#notice", { hasText: /unpacks to 10\d files/ }).waitFor();
+  await page.click("#new");
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
+  await reopen(page, "brick");
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "brick");
+});
+
+test("a browser that keeps nothing says so at the first change of each scene", async () => {
   const init = () => {
     IDBObjectStore.prototype.put = () => {
       throw new DOMException("full", "QuotaExceededError");
@@ -131,6 +165,10 @@ test("a browser that keeps nothing says so at the first change", async () => {
   assert.equal(await notice.count(), 0, "nothing is lost yet");
   await change(page, WHOLE_SCREEN_GRATING);
   await notice.filter({ hasText: /does not keep brick: its store is full\. Save it before you close/ }).waitFor();
+  await page.click("#new");
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
+  await change(page, GRATING_OF_3_MM);
+  await notice.filter({ hasText: "does not keep untitled" }).waitFor();
   assert.deepEqual(errors, []);
 });
 

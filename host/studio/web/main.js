@@ -2,7 +2,7 @@
 
 import { createEngine } from "./engine/engine.js";
 import { makeAbout } from "./page/about.js";
-import { zipOf } from "./page/archive.js";
+import { projectOf, zipOf } from "./page/archive.js";
 import { Autosave } from "./page/autosave.js";
 import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
@@ -246,7 +246,10 @@ async function start() {
   byId("save").onclick = () =>
     attempt(async () => {
       const files = await project.filesForZip(editor.text);
-      download(`${project.name}.zip`, zipOf({ ...current(), files }), "application/zip");
+      const zip = zipOf({ ...current(), files });
+      download(`${project.name}.zip`, zip, "application/zip");
+      // Throws what a person is told where the studio would not open the zip again.
+      projectOf(zip);
     });
   byId("share").onclick = () =>
     attempt(async () => {

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 pub use error::OutputFileError;
 pub use folder::OutputFolder;
-pub use recording::{Recording, is_recording};
+pub use recording::{Recording, is_play_of_person, is_recording};
 pub use writer::{FileWriter, commit_all};
 
 use identity::{is_same_file, is_standard_input, is_standard_output};

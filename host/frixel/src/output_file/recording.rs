@@ -74,14 +74,15 @@ impl Recording {
         self.advice
     }
 
-    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten.
+    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten: its rows then stay until
+    /// the first ones of this recording.
     pub fn start(&self) -> Result<FileWriter, OutputFileError> {
         let Some(file) = self.output.file() else { return self.output.create() };
         let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
         if has_rows(&earlier) && !self.overwrites {
             return Err(OutputFileError::CutOff { partial: self.partial(), advice: self.advice });
         }
-        writer.clear()?;
+        writer.begin_anew();
         Ok(writer)
     }
 
@@ -97,6 +98,13 @@ impl Recording {
         writer.cut()?;
         if has_rows(&rows) { Ok((writer, rows)) } else { Err(nothing()) }
     }
+}
+
+/// Whether the play in a folder is of a person's finger on a board that is not a simulator, by its `summary.json`.
+pub fn is_play_of_person(folder: &Path) -> bool {
+    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+    summary.get("simulated") == Some(&serde_json::Value::Bool(false))
 }
 
 /// Whether there is a row below the header.

@@ -49,6 +49,8 @@ struct NewFile {
     /// Why bytes are missing at the end. Nothing is written behind a gap.
     failed: Option<ErrorKind>,
     unfinished: Unfinished,
+    /// The first write replaces what is there.
+    begins_anew: bool,
 }
 
 impl FileWriter {
@@ -108,6 +110,13 @@ impl FileWriter {
         self.cut()
     }
 
+    /// Lets the first write replace the rows of a process before: without one, they stay.
+    pub(super) fn begin_anew(&mut self) {
+        if let Sink::File(new) = &mut self.sink {
+            new.begins_anew = true;
+        }
+    }
+
     /// Removes the part of a row at the end.
     pub(super) fn cut(&mut self) -> Result<(), OutputFileError> {
         let Sink::File(new) = &mut self.sink else { return Ok(()) };
@@ -117,7 +126,8 @@ impl FileWriter {
 
     fn new(path: &Path, destination: &Path, written: &Path, file: File, unfinished: Unfinished) -> Self {
         let (written, destination) = (written.to_owned(), destination.to_owned());
-        let new = NewFile { file, written, destination, len: 0, lines: 0, failed: None, unfinished };
+        let new =
+            NewFile { file, written, destination, len: 0, lines: 0, failed: None, unfinished, begins_anew: false };
         Self { path: path.to_owned(), sink: Sink::File(new), pending: Vec::new() }
     }
 
@@ -216,6 +226,10 @@ impl NewFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         if let Some(kind) = self.failed {
             return Err(kind.into());
+        }
+        if std::mem::take(&mut self.begins_anew) {
+            (self.len, self.lines) = (0, 0);
+            self.file.set_len(0).and_then(|()| self.file.seek(SeekFrom::Start(0)))?;
         }
         if let Err(error) = self.file.write_all(bytes) {
             self.failed = Some(error.kind());

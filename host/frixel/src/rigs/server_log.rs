@@ -9,8 +9,10 @@ use frixel_wire::fault::State;
 use super::sim_link::observation;
 use super::{BoardEvent, EventKind, EventLog, ForceSensor};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
-use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder};
+use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, is_play_of_person};
 
+/// The option that names the folder.
+const OPTION: &str = "--out";
 /// Virtual time between two flushes, which limits how much a killed server loses.
 const FLUSH_PERIOD_S: f64 = 0.1;
 /// Rows a second of the force sensor under the screen.
@@ -40,9 +42,12 @@ impl ServerLog {
         tick_hz: u32,
         ticks_per_row: u32,
     ) -> Result<Self, OutputFileError> {
-        let output = |name: &str| OutputFile::new(&folder.join(name), "--out", inputs);
+        let output = |name: &str| OutputFile::new(&folder.join(name), OPTION, inputs);
         let [felt, forces, events] = [output("felt.csv")?, output("forces.csv")?, output("events.csv")?];
         let locked = OutputFolder::open(folder)?;
+        if is_play_of_person(folder) {
+            return Err(OutputFileError::OverRecording { path: felt.path().to_owned(), option: OPTION });
+        }
         let mut recorder = Recorder::without_reference(tick_hz, ticks_per_row);
         recorder.start(0);
         Ok(Self {
@@ -97,5 +102,21 @@ impl ServerLog {
         self.felt_csv.flush()?;
         self.forces_csv.flush()?;
         self.events_csv.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_virtual_board_does_not_replace_what_a_finger_did_on_a_board() {
+        let folder = tempfile::tempdir().unwrap();
+        let felt = folder.path().join("felt.csv");
+        std::fs::write(&felt, "rows").unwrap();
+        std::fs::write(folder.path().join("summary.json"), "{\"simulated\": false}").unwrap();
+        let error = ServerLog::create(folder.path(), &Inputs::default(), 40_000, 40).err().unwrap().to_string();
+        assert!(error.contains("felt.csv is a recording of a person") && error.contains("--out"), "{error}");
+        assert_eq!(std::fs::read_to_string(felt).unwrap(), "rows");
     }
 }

@@ -17,9 +17,12 @@ export function zipOf({ name, entry, text, files, profiles }) {
   return zipSync(entries, { level: 6 });
 }
 
-/** A project from a zip; throws a sentence where it holds none. */
-export function projectOf(bytes) {
-  const entries = unpacked(bytes);
+/**
+ * A project from a zip; throws a sentence where it holds none. A zip that `isOwn` was packed by this browser from what
+ * it had open, and has no limits.
+ */
+export function projectOf(bytes, { isOwn = false } = {}) {
+  const entries = unpacked(bytes, isOwn);
   const { [SETTINGS]: chosen, ...all } = entries;
   let settings = {};
   try {
@@ -38,9 +41,9 @@ export function projectOf(bytes) {
 }
 
 /** The files of a zip by their names; throws a sentence where there are too many or they are too big. */
-function unpacked(bytes) {
+function unpacked(bytes, isOwn) {
   let [files, size] = [0, 0];
-  const hasRoom = () => files <= FILES_MAX && size <= UNPACKED_MAX_BYTES;
+  const hasRoom = () => isOwn || (files <= FILES_MAX && size <= UNPACKED_MAX_BYTES);
   // The sizes are those that the zip states; a file is unpacked into no more than its stated size.
   const filter = ({ name, originalSize }) => {
     files += 1;

@@ -74,18 +74,30 @@ export class Autosave {
   }
 
   /** Another scene is open; with `id`, a piece of work that is kept, unless another page has it. */
-  async opened({ id = newId(), isEdited = false, changedMs = Date.now() }) {
-    this.#id = (await this.#claim(id)) ? id : newId();
-    await this.#claim(this.#id);
-    this.isEdited = isEdited;
-    this.#changedMs = changedMs;
-    this.#picture = null;
+  async opened({ id, isEdited = false, changedMs = Date.now() }) {
+    this.#begin({ isEdited, changedMs });
+    if (id !== undefined && (await this.#claim(id))) this.#id = id;
+    else await this.#claim(this.#id);
     try {
       sessionStorage.setItem(OWN, this.#id);
     } catch {
       // Without a session's store, a reload finds the newest piece of work.
     }
     this.#later();
+  }
+
+  /**
+   * From here on nothing is written to the entry of the scene before, and until a claim is answered nothing to one that
+   * another page may have.
+   */
+  #begin({ isEdited, changedMs }) {
+    clearTimeout(this.#timer);
+    this.#timer = undefined;
+    this.#id = newId();
+    this.isEdited = isEdited;
+    this.#changedMs = changedMs;
+    this.#picture = null;
+    this.#problem = undefined;
   }
 
   #claim(id) {
@@ -103,9 +115,9 @@ export class Autosave {
     this.#timer = setTimeout(() => this.#keep(), PAUSE_MS);
   }
 
-  /** Keeps what waits to be kept. */
+  /** Keeps what waits to be kept, or could not be. */
   async #keepNow() {
-    if (this.#timer !== undefined) await this.#keep();
+    if (this.#timer !== undefined || this.#problem !== undefined) await this.#keep();
   }
 
   async #keep() {
@@ -120,7 +132,7 @@ export class Autosave {
     }
   }
 
-  /** Says once that the scene is not kept, and why. */
+  /** Says once for each scene that it is not kept, and why. */
   #isNotKept(error) {
     const why = error?.name === "QuotaExceededError" ? "its store is full" : "it keeps nothing for this page";
     if (this.isEdited && this.#problem !== why) {
@@ -132,7 +144,7 @@ export class Autosave {
 }
 
 function sceneOf({ id, isEdited, changedMs, zip }) {
-  return { ...projectOf(zip), id, isEdited, changedMs };
+  return { ...projectOf(zip, { isOwn: true }), id, isEdited, changedMs };
 }
 
 function newId() {

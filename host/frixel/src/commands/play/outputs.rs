@@ -1,14 +1,16 @@
 //! The output files of a play.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use frixel::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
-use frixel::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all};
+use frixel::output_file::{
+    FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
+};
 use frixel::scene_file::SceneFiles;
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, TouchedLayers};
 
+use super::super::experiment::cut_off;
 use super::rigs::Target;
 use super::with_log::joined;
 use super::{CommandError, PlayArgs};
@@ -46,10 +48,16 @@ impl PlayFiles {
             other_svg: file(other_svg)?,
             png: file("scene.png")?,
         };
-        if !args.overwrite && files.are_of_a_real_board() {
+        Self::check_earlier(args)?;
+        Ok(files)
+    }
+
+    /// Rejects a play that would replace what a person's finger did on a board.
+    fn check_earlier(args: &PlayArgs) -> Result<(), CommandError> {
+        if !args.overwrite && is_play_of_person(&args.out) {
             return Err(OutputFileError::OverPlay { path: args.out.clone(), option: OPTION }.into());
         }
-        Ok(files)
+        Ok(())
     }
 
     /// Rejects files that would overwrite one of another scene.
@@ -61,19 +69,17 @@ impl PlayFiles {
         Ok(())
     }
 
-    /// Whether the files there are of a play without a simulation, by the summary.
-    fn are_of_a_real_board(&self) -> bool {
-        let summary = fs::read(self.summary.path()).unwrap_or_default();
-        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
-        summary.get("simulated") == Some(&serde_json::Value::Bool(false))
-    }
-
     /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
     fn start(&self, is_simulated: bool, overwrites: bool) -> Result<FileWriter, CommandError> {
         if is_simulated {
             return Ok(self.felt.create()?);
         }
-        Ok(Recording::of(self.felt.clone(), overwrites, CUT_OFF).start()?)
+        Ok(self.recording(overwrites).start()?)
+    }
+
+    /// `felt.csv` as a recording of a person.
+    fn recording(&self, overwrites: bool) -> Recording {
+        Recording::of(self.felt.clone(), overwrites, CUT_OFF)
     }
 
     fn paths(&self) -> Vec<PathBuf> {
@@ -110,6 +116,8 @@ impl Outputs {
         program: &Program,
     ) -> Result<Self, CommandError> {
         let folder = OutputFolder::open(&args.out)?;
+        // The play that wrote into the folder until now may have been of a person.
+        PlayFiles::check_earlier(args)?;
         let csv = FeltCsv::new(files.start(is_simulated, args.overwrite)?)?;
         let log = args.with_log.clone();
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
@@ -194,7 +202,8 @@ impl Outputs {
     }
 
     /// Completes `felt.csv`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
-    /// `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv` stands alone.
+    /// `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv` stands alone; what a person's
+    /// finger did stays in `felt.csv.partial`, because without the summary nothing says that it is of a person.
     ///
     /// `start_s` is the time from the power-on of the board to time zero of the rows.
     pub(super) fn finish(
@@ -206,12 +215,16 @@ impl Outputs {
         let log = self.log.take();
         let joined = log.map_or(Ok(()), |log| self.write_joined(&log, start_s));
         let others = joined.and_then(|()| self.write_others(program, report));
-        let Self { files, csv, .. } = self;
+        let Self { files, csv, is_simulated, .. } = self;
         match others {
             Ok(others) => {
                 let written = [csv.into_writer()].into_iter().chain(others).collect();
                 commit_all(written, std::slice::from_ref(&files.other_svg))?;
                 Ok(files.paths())
+            }
+            Err(error) if !is_simulated => {
+                drop(csv);
+                Err(cut_off(&files.recording(false), error))
             }
             Err(error) => {
                 let PlayFiles { summary, svg, other_svg, png, .. } = files;
@@ -255,6 +268,42 @@ mod tests {
         compile(&scene, &board.limits, board.tick_hz).unwrap()
     }
 
+    fn report(program: &Program) -> Report {
+        let link = Counters { frames_sent: 0, frames_rejected: 0, payload_bytes: 0, wire_bytes: 0 };
+        Report::new("board", &Recorder::idle().summary(), &program.reach, &link, None)
+    }
+
+    fn files(args: &PlayArgs) -> PlayFiles {
+        let (_, scene) = frixel::scene_file::load_with_files("a.toml".as_ref());
+        PlayFiles::new(args, Target::Port, &scene).unwrap()
+    }
+
+    /// The summary is written at the end: a play that begins before it sees nothing of the person.
+    #[test]
+    fn a_play_of_a_person_that_ends_while_another_one_begins_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let args = PlayArgs { out: folder.path().to_owned(), ..PlayArgs::ideal("a.toml".as_ref()) };
+        let files = files(&args);
+        fs::write(folder.path().join("summary.json"), "{\"simulated\": false}").unwrap();
+        let error = Outputs::create(&args, files, true, &program("plate")).err().unwrap().to_string();
+        assert!(error.contains("which no other play replaces"), "{error}");
+    }
+
+    #[test]
+    fn what_a_person_did_stays_as_a_recording_where_the_other_files_fail() {
+        let folder = tempfile::tempdir().unwrap();
+        let (out, log) = (folder.path().to_owned(), Some(folder.path().join("no-log.csv")));
+        let args = PlayArgs { out, with_log: log, ..PlayArgs::ideal("a.toml".as_ref()) };
+        let plate = program("plate");
+        let mut outputs = Outputs::create(&args, files(&args), false, &plate).unwrap();
+        outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }]).unwrap();
+        let error = outputs.finish(&plate, &report(&plate), 0.0).unwrap_err().to_string();
+        assert!(error.contains("felt.csv.partial: rename it to keep it"), "{error}");
+        assert!(!folder.path().join("felt.csv").exists(), "the next play would replace it");
+        let kept = fs::read_to_string(folder.path().join("felt.csv.partial")).unwrap();
+        assert_eq!(kept.lines().count(), 2);
+    }
+
     #[test]
     fn each_row_that_is_joined_with_a_log_has_the_layer_that_played() {
         let folder = tempfile::tempdir().unwrap();
@@ -271,18 +320,14 @@ mod tests {
             PlayArgs { out: folder.path().join("out"), with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref()) };
 
         let (first, second) = (program("first"), program("second"));
-        let (_, scene) = frixel::scene_file::load_with_files("a.toml".as_ref());
-        let files = PlayFiles::new(&args, Target::Port, &scene).unwrap();
-        let mut outputs = Outputs::create(&args, files, true, &first).unwrap();
+        let mut outputs = Outputs::create(&args, files(&args), true, &first).unwrap();
         outputs.switch(0.0, Vec::new());
         outputs.write(&rows[..1_000]).unwrap();
         outputs.switch(1.0, vec![0]);
         outputs.write(&rows[1_000..1_500]).unwrap();
         outputs.replace(1.5, &second);
         outputs.write(&rows[1_500..]).unwrap();
-        let link = Counters { frames_sent: 0, frames_rejected: 0, payload_bytes: 0, wire_bytes: 0 };
-        let report = Report::new("board", &Recorder::idle().summary(), &second.reach, &link, None);
-        let files = outputs.finish(&second, &report, 0.0).unwrap();
+        let files = outputs.finish(&second, &report(&second), 0.0).unwrap();
         let svg = fs::read_to_string(&files[2]).unwrap();
         let shown: Vec<&str> = svg.lines().filter(|line| ["first", "first off", "second"].contains(line)).collect();
         assert_eq!(shown, ["first", "first off", "second"]);

@@ -38,9 +38,7 @@ impl Answers {
         };
         let partial = recording.partial();
         if !resumes {
-            let mut answers = Self { partial, writer: Some(recording.start()?), earlier: Vec::new() };
-            answers.write(HEADER)?;
-            return Ok(answers);
+            return Ok(Self { partial, writer: Some(recording.start()?), earlier: Vec::new() });
         }
         let (writer, text) = recording.resume()?;
         let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize().zip(2..);
@@ -71,7 +69,8 @@ impl Answers {
     /// Keeps an answer.
     pub(super) fn add(&mut self, answer: Answer) -> Result<(), CommandError> {
         let Answer { trial, highest_v_rms, level_db, is_right } = answer;
-        self.write(&format!("{trial},{highest_v_rms},{level_db},{is_right}\n"))
+        let header = if trial == 1 { HEADER } else { "" };
+        self.write(&format!("{header}{trial},{highest_v_rms},{level_db},{is_right}\n"))
     }
 
     fn write(&mut self, line: &str) -> Result<(), CommandError> {
