@@ -135,3 +135,33 @@ fn check_notes_the_files_outside_of_the_scene_s_folder() {
     let notes: Vec<&str> = printed.lines().filter(|line| line.contains("outside of the scene's folder")).collect();
     assert!(matches!(notes[..], [note] if note.contains("../outer.toml")), "{printed}");
 }
+
+/// 1e308 and 1e-300 have 309 and 302 characters otherwise.
+#[test]
+fn absurd_times_have_few_digits() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("scene.toml"), layer("")).unwrap();
+    fs::write(folder.path().join("long.csv"), "t_s,x_mm,y_mm\n0,10,10\n1e308,20,20\n").unwrap();
+    for (arguments, says) in [
+        (["play", "scene.toml", "--stroke", "long.csv"], "long.csv lasts 1e308 s, longer than a day"),
+        (["play", "scene.toml", "--seconds", "1e-300"], "1e-300 s is shorter than one tick"),
+    ] {
+        let output = run(folder.path(), &arguments);
+        let printed = clean(&output);
+        assert!(output.status.code() == Some(1) && printed.contains(says), "{printed}");
+    }
+}
+
+/// As a spreadsheet saves a table where the decimal sign is a comma.
+#[test]
+fn other_separators_than_commas_are_named() {
+    let folder = TempDir::new().unwrap();
+    for (separator, name) in [(";", "semicolons"), ("\t", "tabs")] {
+        let header = ["voltage_v_rms", "normal_force_n", "friction_n"].join(separator);
+        fs::write(folder.path().join("data.csv"), format!("{header}\n")).unwrap();
+        let output = run(folder.path(), &["fit", "data.csv"]);
+        let printed = clean(&output);
+        let says = format!("data.csv: {name} separate the columns of the header");
+        assert!(output.status.code() == Some(1) && printed.contains(&says), "{printed}");
+    }
+}

@@ -109,7 +109,7 @@ pub use optimisation::Optimisation;
 pub use picture::check_picture;
 pub use played_finger::PlayedFinger;
 pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
-pub use printable::{NAME_MAX_CHARS, is_printable, printable, printable_lines};
+pub use printable::{NAME_MAX_CHARS, Shown, is_printable, printable, printable_lines};
 pub use profiles::ProfileSource;
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};

@@ -54,7 +54,7 @@ fn escaped(text: &str, is_kept: impl Fn(char) -> bool) -> String {
 }
 
 /// A number in a sentence: with an exponent where it would have many digits.
-pub(super) struct Shown(pub(super) f64);
+pub struct Shown(pub f64);
 
 impl Display for Shown {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -22,7 +22,7 @@ use frixel_driver::{DeviceError, PortError};
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_model::ParameterError;
-use frixel_scene::{CompileError, Warning};
+use frixel_scene::{CompileError, Shown, Warning};
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -102,6 +102,11 @@ pub(crate) enum CommandError {
     RecordingCutOff { source: Box<CommandError>, partial: PathBuf, advice: &'static str },
     #[error("{}: row {row} {reason}: give the options of the session that was cut off, or begin a new one with --overwrite", partial.display())]
     OtherSession { partial: PathBuf, row: usize, reason: String },
+    #[error(
+        "{}: row {row} is no row of a recorded stroke, which has t_s,x_mm,y_mm: correct or delete it, or record anew with \
+         --overwrite", partial.display()
+    )]
+    OtherRow { partial: PathBuf, row: usize },
     #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
     NoForces { port: String },
     #[error("{rows} no answer; the column `status` says why")]
@@ -116,7 +121,9 @@ pub(crate) enum CommandError {
     Picture { path: PathBuf, reason: String },
     #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
     StrokeNotText { path: PathBuf },
-    #[error("{name} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds")]
+    #[error(
+        "{name} lasts {} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds", Shown(*.seconds)
+    )]
     StrokeTooLong { name: String, seconds: f64 },
     #[error(
         "{name} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top left corner"
@@ -136,7 +143,7 @@ pub(crate) enum CommandError {
     CsvTooFast { port: String, found: u32, max: u32 },
     #[error("--csv-hz {found} does not divide the board's {tick_hz} ticks a second; give {nearest}")]
     CsvUneven { found: u32, tick_hz: u32, nearest: String },
-    #[error("{seconds} s is shorter than one tick of the board, {tick_s} s: play for longer")]
+    #[error("{} s is shorter than one tick of the board, {tick_s} s: play for longer", Shown(*.seconds))]
     TooShort { seconds: f64, tick_s: f64 },
     #[error(
         "{port} is a board with an electrode: add --arm, and hold the board's arm switch, to let it drive hundreds of volts"

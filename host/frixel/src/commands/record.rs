@@ -48,6 +48,9 @@ pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
     let recording = Recording::new(&args.output, "-o", &Inputs::default(), args.overwrite, CUT_OFF)?;
     if args.finish {
         let (writer, text) = recording.resume()?;
+        if let Some(row) = other_row(&text) {
+            return Err(CommandError::OtherRow { partial: recording.partial(), row });
+        }
         let touched = text.lines().skip(1).filter(|row| !row.ends_with(",,")).count() as u64;
         return finish(&recording, writer, touched);
     }
@@ -86,6 +89,21 @@ fn record<L: Link>(
         written.and_then(|()| rows.flush())?;
     }
     Ok(device.subscribe(0)?)
+}
+
+/// The number of the first row, the header included, that no record writes: another command has, or a crash of the
+/// machine has left zeros in its place.
+fn other_row(text: &str) -> Option<usize> {
+    let is_number = |cell: &str| cell.parse::<f64>().is_ok_and(f64::is_finite);
+    let is_row = |row: &str| match row.split(',').collect::<Vec<_>>()[..] {
+        [t_s, "", ""] => is_number(t_s),
+        [t_s, x_mm, y_mm] => [t_s, x_mm, y_mm].into_iter().all(is_number),
+        _ => false,
+    };
+    text.lines()
+        .enumerate()
+        .position(|(index, row)| if index == 0 { row != HEADER } else { !is_row(row) })
+        .map(|at| at + 1)
 }
 
 /// Gives the file its name.

@@ -153,6 +153,7 @@ pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
 
 /// Names the columns of a stroke file that are not read.
 fn note_ignored_columns(path: &Path, text: &str) {
+    let text = text.trim_start_matches('\u{feff}');
     let header = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
     let names = header.split(',').map(|name| name.trim().trim_matches('"'));
     let ignored: Vec<&str> = names.filter(|name| !KNOWN_COLUMNS.contains(name)).collect();

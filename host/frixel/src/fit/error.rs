@@ -10,6 +10,14 @@ pub enum FitError {
     /// The file cannot be read.
     #[error("the data cannot be read ({0}): give a CSV file with a header row")]
     Read(io::Error),
+    /// The header has other separators than commas.
+    #[error(
+        "{found} separate the columns of the header: save the file with commas between columns, and points in numbers"
+    )]
+    Separator {
+        /// Name of the separator.
+        found: &'static str,
+    },
     /// The header has no column that is needed.
     #[error(
         "the header has no column {column}{}: name the column so, in {unit}",

@@ -13,6 +13,9 @@ const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
 /// Number of characters of a cell that a message quotes.
 const QUOTED_CHARS: usize = 40;
 
+/// What stands between columns where the decimal sign is a comma, with its name.
+const OTHER_SEPARATORS: [(char, &str); 2] = [(';', "semicolons"), ('\t', "tabs")];
+
 const VOLTAGE: &str = "voltage_v_rms";
 const LOAD: &str = "normal_force_n";
 const FRICTION: &str = "friction_n";
@@ -77,6 +80,11 @@ impl Columns {
             .iter()
             .map(|cell| String::from_utf8_lossy(cell).trim().trim_start_matches('\u{feff}').to_owned())
             .collect();
+        if let [only] = &names[..]
+            && let Some((_, found)) = OTHER_SEPARATORS.into_iter().find(|(separator, _)| only.contains(*separator))
+        {
+            return Err(FitError::Separator { found });
+        }
         let find = |column: &'static str| {
             let mut places = names.iter().enumerate().filter(|(_, name)| *name == column).map(|(place, _)| place);
             let place = places.next();

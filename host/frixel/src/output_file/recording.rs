@@ -121,6 +121,8 @@ pub fn is_recording(path: &Path) -> bool {
         return false;
     }
     let text = String::from_utf8_lossy(&head);
+    // Spreadsheets begin a file with a byte order mark.
+    let text = text.trim_start_matches('\u{feff}');
     let columns: BTreeSet<&str> =
         text.lines().next().unwrap_or_default().split([',', ';']).map(|cell| cell.trim_matches(['"', ' '])).collect();
     let has = |names: [&str; 3]| names.iter().all(|name| columns.contains(name));

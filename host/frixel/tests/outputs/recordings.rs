@@ -274,3 +274,43 @@ fn a_play_does_not_replace_what_a_finger_did_on_a_board() {
     assert!(folder.read("frixel-out/felt.csv").unwrap() == before);
     assert_eq!(folder.run("play scene.toml --seconds 0.2 --overwrite").code, Some(0));
 }
+
+/// Another command's rows, and the zeros that a crash of the machine leaves in the place of rows.
+#[test]
+fn a_record_is_not_finished_with_rows_that_no_record_writes() {
+    let whole = "t_s,x_mm,y_mm\n0.000000,1.0000,2.0000\n0.005000,1.5000,2.0000\n0.010000,,\n";
+    for (text, row) in [
+        ("time_s,speed_mm_s,voltage_v_rms\n0,1,2\n".to_owned(), 1),
+        (format!("{whole}\0\0\0\0\0\0\n0.020000,2.0000,2.0000\n"), 5),
+        (format!("{whole}0.015000,nan,2.0000\n"), 5),
+        (format!("{whole}0.015000,2.0000\n"), 5),
+    ] {
+        let folder = Folder::new();
+        folder.write("me.csv.partial", &text);
+        let before = folder.names();
+        let ran = folder.run("record --finish -o me.csv");
+        let says = format!("me.csv.partial: row {row} is no row of a recorded stroke");
+        assert!(ran.code == Some(1) && ran.notes.contains(&says), "{text:?}: {}", ran.notes);
+        assert_eq!(folder.names(), before, "{text:?}");
+        assert_eq!(folder.text("me.csv.partial"), text);
+    }
+    let folder = Folder::new();
+    folder.write("me.csv.partial", &format!("{whole}\0\0\0"));
+    let ran = folder.run("record --finish -o me.csv");
+    assert_eq!(ran.code, Some(0), "zeros in place of an unfinished row: {}", ran.notes);
+    assert_eq!(folder.text("me.csv"), whole);
+}
+
+/// Spreadsheets save a table with a byte order mark.
+#[test]
+fn a_recording_that_a_spreadsheet_saved_is_a_recording() {
+    let folder = Folder::new();
+    let recording = "\u{feff}t_s,x_mm,y_mm\r\n0.0,1.0,2.0\r\n0.1,9.0,2.0\r\n";
+    folder.write("me.csv", recording);
+    let ran = folder.run("model eval --input points.csv --output me.csv");
+    assert!(ran.code == Some(1) && ran.notes.contains("is a recording of a person"), "{}", ran.notes);
+    assert_eq!(folder.text("me.csv"), recording);
+    folder.write("scene.toml", "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+    let ran = folder.run("play scene.toml --stroke me.csv");
+    assert!(ran.code == Some(0) && !ran.notes.contains("ignored column"), "{}", ran.notes);
+}
