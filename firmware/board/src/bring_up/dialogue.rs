@@ -1,4 +1,4 @@
-//! What the script asks of the person, and how it judges the answers.
+//! The questions that the script asks the person, and how it judges the answers.
 
 use core::fmt;
 

@@ -30,7 +30,7 @@ const PING_S: f32 = HOST_TIMEOUT_S / 5.0;
 const FINGER_SPEED_M_PER_S: f32 = 0.02;
 const FINGER_Y_M: f32 = 0.05;
 
-/// What was driven and what the amplifier's monitor showed meanwhile, in V.
+/// The driven voltage, and the voltage that the amplifier's monitor showed meanwhile, in V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Driven peak, from the DAC code and the board's full scale.

@@ -5,7 +5,7 @@ use frixel_wire::fault::Fault;
 /// The faults that bring-up injects, in this order.
 pub const FAULTS: [Fault; 4] = [Fault::Panic, Fault::HardFault, Fault::StackOverflow, Fault::Watchdog];
 
-/// What follows a reset, as far as injected faults go.
+/// How far the injection of faults has come at a start of the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Injection {
     /// No fault had been injected, or something else has reset the board: all of them are still to come.
@@ -19,8 +19,8 @@ pub enum Injection {
 }
 
 impl Injection {
-    /// What follows a reset, before which `injected` of [`FAULTS`] had been injected. The board has stored `found` as
-    /// the reason of the reset. The board forgets `injected` when it calls this: only the start directly after the last
+    /// Returns how far the injection has come after a reset, before which the board had injected `injected` of
+    /// [`FAULTS`]; it has stored `found` as the reason of the reset. The board forgets `injected` when it calls this: only the start directly after the last
     /// injected fault has passed.
     pub fn after_reset(injected: usize, found: Option<Fault>) -> Self {
         let Some(expected) = injected.checked_sub(1).and_then(|index| FAULTS.get(index)) else { return Self::NotBegun };

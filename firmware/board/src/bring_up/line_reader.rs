@@ -13,7 +13,7 @@ pub struct LineReader {
     returned: bool,
 }
 
-/// What the terminal shows of a byte.
+/// The characters that the terminal shows for a byte.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Typed {
     /// Nothing.

@@ -43,7 +43,7 @@ pub struct Inputs {
     pub switch_closed: bool,
 }
 
-/// What a board checks by itself. None of them drives anything behind the DAC.
+/// The checks that a board makes by itself. None of them drives anything behind the DAC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
     /// The memory in which limits and scene are stored can be written while the firmware runs.

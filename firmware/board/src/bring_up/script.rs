@@ -7,9 +7,9 @@ use frixel_wire::hello::BoardLimits;
 use super::dialogue::{ask, ask_while, await_inputs, confirm, expect, expect_inputs};
 use super::{Bench, Check, DriveError, Inputs, Reading};
 
-/// What the person types when a step without a reading is done.
+/// The word that the person types when a step without a reading is done.
 const DONE: &str = "done";
-/// What the person types first, which shows that the board receives.
+/// The word that the person types first, which shows that the board receives.
 const GREETING: &str = "frixel";
 
 /// The pull-downs of amplifier enable and DAC clear are 10 kOhm; a meter that supplies the processor through its
