@@ -7,10 +7,10 @@ mod metric;
 mod output;
 mod play;
 
+use frixel_felt::fidelity::Fidelity;
 use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::Program;
-use frixel_scene::fidelity::Fidelity;
 use serde::Serialize;
 
 use crate::player::PlayError;

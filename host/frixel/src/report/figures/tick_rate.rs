@@ -8,7 +8,7 @@ use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
 use crate::player::{Simulation, simulate};
 use crate::report::data::Data;
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 use frixel_scene::{Scene, compile};
 
 /// Tick rates in Hz, each with a whole number of ticks per window.
