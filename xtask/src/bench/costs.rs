@@ -10,7 +10,7 @@ use super::Figures;
 use super::figures::CYCLES;
 use crate::command::root;
 
-const PATH: &str = "firmware/layers/src/cost/measured.rs";
+const PATH: &str = "firmware/layers/src/measured.rs";
 
 /// Numbers of curve points in the shorter and the longer of the two measured cases; the same for polygon vertices
 /// below.

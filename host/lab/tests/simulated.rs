@@ -1,8 +1,8 @@
 //! Recordings of the simulator's people, with every effect of its plant.
 
-use frixel::fit::Row;
 use frixel_control::Drive;
 use frixel_hil_sim::{FingerState, FingertipConfig, Person, Point, Stroke, World, WorldConfig};
+use frixel_lab::fit::Row;
 use frixel_model::{Contact, Finger};
 use frixel_wire::dac_code::DacCode;
 
@@ -89,6 +89,7 @@ pub(super) struct Steady {
     pub(super) friction_coefficient: f64,
     pub(super) electric_friction_n: f64,
     /// Voltage on the electrode, behind the amplifier.
+    #[allow(dead_code, reason = "the test of the command reads it")]
     pub(super) electrode_v_rms: f64,
 }
 

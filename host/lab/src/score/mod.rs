@@ -1,22 +1,18 @@
 //! Scores a scene: how faithfully simulated fingers feel it, over strokes and seeds.
 //!
-//! The input is a program, a simulated board with its world, and strokes with their seeds. The output is the
-//! [`Fidelity`] of each play, and of each of its numbers the mean, the interval, and what a person notices.
+//! The input is strokes with their seeds, and what the finger felt on each. The output is the [`Fidelity`] of each play,
+//! and of each of its numbers the mean, the interval, and what a person notices.
 
 mod metric;
-mod output;
-mod play;
+mod text;
 
-use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
+use frixel_hil_sim::{FingertipConfig, Stroke, WorldConfig};
 use frixel_model::LoadedContact;
-use frixel_scene::Program;
-use frixel_scene::fidelity::Fidelity;
+use frixel_scene::fidelity::{Fidelity, FidelitySample};
 use serde::Serialize;
 
-use crate::player::PlayError;
 use metric::METRICS;
-pub use metric::MetricScore;
-pub use output::draw_score_svg;
+pub use metric::{Human, MetricScore};
 
 /// One play to score.
 #[derive(Clone, Debug)]
@@ -43,8 +39,8 @@ pub struct TrialFinger {
 }
 
 impl Trial {
-    /// The world of this trial.
-    fn world(&self, world: WorldConfig) -> WorldConfig {
+    /// The world of this trial: `world` with the finger's skin.
+    pub fn world(&self, world: WorldConfig) -> WorldConfig {
         let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(world.fingertip);
         WorldConfig { fingertip, ..world }
     }
@@ -73,23 +69,17 @@ pub struct Score {
 }
 
 impl Score {
-    /// Plays a program on a simulated board once for each trial, and scores it.
-    pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, PlayError> {
-        let play = |trial: &Trial| {
+    /// Scores trials. `play` plays one, and returns what was felt and the reference for every quarter of a millisecond.
+    pub fn of<E>(trials: &[Trial], mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>) -> Result<Self, E> {
+        let score = |trial: &Trial| {
             let person = trial.finger.map(|finger| finger.person);
-            let fidelity = fidelity(program, rig, trial)?;
+            let fidelity = Fidelity::of(&play(trial)?);
             Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
         };
-        let plays: Vec<TrialScore> = trials.iter().map(play).collect::<Result<_, PlayError>>()?;
+        let plays: Vec<TrialScore> = trials.iter().map(score).collect::<Result<_, E>>()?;
         let groups = independent(&plays);
         Ok(Self { metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(), plays })
     }
-}
-
-/// Plays a program on a simulated board, and scores it; `None` if the finger was down for less than a quarter of a
-/// second.
-pub fn fidelity(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Option<Fidelity>, PlayError> {
-    Ok(Fidelity::of(&play::samples(program, rig, trial)?))
 }
 
 /// The plays in groups that are independent of one another: those of a person, or else those of a stroke. Seeds of the

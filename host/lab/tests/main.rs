@@ -1,13 +1,12 @@
 //! Fits recover people: what is recovered, how often intervals are right, and what is refused.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod command;
 mod coverage;
 mod person;
 mod refusals;
 mod simulated;
 
-use frixel::fit::Settings;
+use frixel_lab::fit::Settings;
 
 fn settings() -> Settings {
     Settings {

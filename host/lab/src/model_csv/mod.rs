@@ -67,7 +67,7 @@ pub struct Summary {
 /// Evaluates the model row by row: voltage to friction.
 ///
 /// ```
-/// use frixel::model_csv::{Precision, eval};
+/// use frixel_lab::model_csv::{Precision, eval};
 /// let input = "variant,radius_m,stiffness_pa_per_m,coating_m,permittivity,friction_coefficient,voltage_v\n\
 ///              wf-upper,8e-3,1.8e7,1e-5,1,0.5,150\n";
 /// let mut output = Vec::new();

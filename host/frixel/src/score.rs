@@ -1,17 +1,18 @@
 //! Plays a trial, and records what was felt and what the reference was.
 
 use frixel_hil_sim::{RigConfig, TickRecord};
+use frixel_lab::score::Trial;
 use frixel_scene::Program;
 use frixel_scene::fidelity::{FidelitySample, SAMPLE_HZ};
 use frixel_scene::recorder::FingerState;
 use frixel_wire::fault::Flags;
 
-use super::Trial;
 use crate::finger_reference::FingerReference;
 use crate::player::{PlayError, Simulation, simulate_observed};
 
-/// Plays a trial; returns a sample for every quarter of a millisecond.
-pub(super) fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<FidelitySample>, PlayError> {
+/// Plays a trial on a simulated board, for [`Score::of`](frixel_lab::score::Score::of); returns a sample for every
+/// quarter of a millisecond.
+pub fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<FidelitySample>, PlayError> {
     let simulation = Simulation {
         rig: *rig,
         stroke: trial.stroke.clone(),

@@ -8,8 +8,7 @@
 //! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
 //! least squares (`search`, `least_squares`), intervals come from a bootstrap over strokes (`intervals`, `bootstrap`),
-//! and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it). Files and options are in
-//! `commands::fit`.
+//! and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it).
 //!
 //! # What is estimated
 //!

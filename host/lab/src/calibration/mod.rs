@@ -2,10 +2,10 @@
 //! force sensor watches.
 //!
 //! [`Protocol`] says what is driven when, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes
-//! the
-//! recording. Ports, progress and options are in `commands::calibrate`.
+//! the recording. [`ForceSensor`] is the sensor under a simulated screen.
 
 mod align;
+mod force_sensor;
 mod protocol;
 
 use std::fmt::Write as _;
@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use align::{BoardRow, align};
+pub use force_sensor::ForceSensor;
 pub use protocol::Protocol;
 
 use crate::fit::Row;

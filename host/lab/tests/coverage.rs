@@ -4,8 +4,8 @@
 //! under
 //! the median load of the recording, without noise: the simulator measures it on each person, apart from the recording.
 
-use frixel::fit::{Estimate, Fit, FitError, fit};
 use frixel_hil_sim::Person;
+use frixel_lab::fit::{Estimate, Fit, FitError, fit};
 
 use super::person::{self, Law, Protocol};
 use super::{settings, simulated};

@@ -1,7 +1,7 @@
 //! Each rule of refusal: good data are accepted, and one thing wrong with them is refused in a sentence that says what
 //! was found and what to do.
 
-use frixel::fit::{self, Fit, FitError, Row, Settings, Verdict};
+use frixel_lab::fit::{self, Fit, FitError, Row, Settings, Verdict};
 
 use super::person::{Person, Protocol};
 use super::settings;

@@ -2,7 +2,7 @@
 
 use frixel_hil_sim::TickRecord;
 
-use crate::calibration::ForceRow;
+use super::ForceRow;
 
 /// A load cell that averages over a number of ticks.
 #[derive(Clone, Debug)]
@@ -33,9 +33,8 @@ impl ForceSensor {
         &self.rows
     }
 
-    /// Removes what was measured, and returns it. Only a virtual board does, which needs a pseudo-terminal.
-    #[cfg(unix)]
-    pub(super) fn take_rows(&mut self) -> Vec<ForceRow> {
+    /// Removes what was measured, and returns it.
+    pub fn take_rows(&mut self) -> Vec<ForceRow> {
         std::mem::take(&mut self.rows)
     }
 

@@ -1,4 +1,5 @@
 //! From a board to a profile: `frixel calibrate` on the in-process simulator, then `frixel fit` on what it wrote.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
 use std::io::Write;
@@ -10,7 +11,14 @@ use frixel_scene::{Evidence, FingerProfile};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::simulated;
+use self::simulated::steady;
+
+#[allow(dead_code, unused_imports, reason = "the tests of the fit use the rest")]
+#[path = "../../lab/tests/person.rs"]
+mod person;
+#[allow(dead_code, reason = "the tests of the fit use the rest")]
+#[path = "../../lab/tests/simulated.rs"]
+mod simulated;
 
 fn frixel(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder).output().unwrap()
@@ -47,8 +55,8 @@ fn a_calibrated_person_is_recovered() {
     // V rms
     // and that of 150 V rms on the electrode.
     let load_n = number("normal_load_n");
-    let drive = simulated::steady(&person, load_n, 150.0);
-    let electrode = simulated::steady(&person, load_n, 150.0 * 150.0 / drive.electrode_v_rms);
+    let drive = steady(&person, load_n, 150.0);
+    let electrode = steady(&person, load_n, 150.0 * 150.0 / drive.electrode_v_rms);
     let between_n = 0.98 * drive.electric_friction_n..1.02 * electrode.electric_friction_n;
     assert!((number("friction_coefficient") / drive.friction_coefficient - 1.0).abs() < 0.02, "{json}");
     assert!(between_n.contains(&number("electric_friction_150_v_n")), "{between_n:?}: {json}");

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use frixel::fit::Row;
+use frixel_lab::fit::Row;
 use frixel_model::{Contact, Finger};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
