@@ -1,5 +1,5 @@
-//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `cargo xtask bench --bless`; `cargo xtask
-//! test` measures again and fails when it finds others.
+//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `FRIXEL_BLESS=1 cargo xtask bench`;
+//! `cargo xtask test` measures again and fails when it finds others.
 #![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
 
 // A tick that looks at layers and finds none.
