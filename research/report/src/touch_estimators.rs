@@ -1,9 +1,10 @@
 //! Error of a felt texture against the run time of the estimator that follows the finger.
+use std::error::Error;
 
-use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
-use crate::report::data::Data;
-use crate::report::touch::{Class, Recording, best_of_grid, methods};
+use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use frixel::report::{Data, Figure};
+
+use super::touch::{Class, Recording, best_of_grid, methods};
 
 /// Classes of touch sources, as in `docs/touch.md`.
 const CLASSES: [Class; 3] = [
@@ -21,7 +22,7 @@ fn rms(recordings: &[Recording], error: impl Fn(&Recording) -> f64) -> f64 {
     (recordings.iter().map(|recording| error(recording).powi(2)).sum::<f64>() / recordings.len() as f64).sqrt()
 }
 
-fn panel(class: Class, data: &mut Data<4>) -> Result<Panel, ReportError> {
+fn panel(class: Class, data: &mut Data<4>) -> Result<Panel, Box<dyn Error>> {
     let recordings =
         SEEDS.iter().map(|seed| Recording::new(class, MEDIAN_M_PER_S, *seed)).collect::<Result<Vec<_>, _>>()?;
     let title = format!(
@@ -58,7 +59,7 @@ fn panel(class: Class, data: &mut Data<4>) -> Result<Panel, ReportError> {
     Ok(panel)
 }
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
+pub(super) fn figure() -> Result<Figure, Box<dyn Error>> {
     let mut data = Data::new(["method", "report_rate_hz", "measured_run_time_ns", "error_over_swing"]);
     let panels = CLASSES.iter().map(|class| panel(*class, &mut data)).collect::<Result<Vec<_>, _>>()?;
     Ok(Figure {

@@ -1,17 +1,18 @@
 //! Upper and lower bound of the model, and a finger of finite size.
+use std::error::Error;
 
+use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
+use frixel::report::{Data, Figure, example};
 use frixel_model::ContactModel;
 
-use super::{EXAMPLE, Figure, ReportError, example, geometric};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
-use crate::report::data::Data;
+use super::geometric;
 
 /// Outer radii of the attraction, in metres.
 const OUTER_RADII_M: [f64; 3] = [1e-3, 0.5e-3, 0.2e-3];
 const LOADS_N: [f64; 5] = [0.0, 1e-4, 1e-2, 0.1, 0.5];
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
-    let contact = example::<f64>()?;
+pub(super) fn figure() -> Result<Figure, Box<dyn Error>> {
+    let contact = example::contact::<f64>()?;
     let voltages = geometric(1.0, 1e3, 121);
     let mut data = Data::new(["bound", "normal_force_n", "outer_radius_m", "voltage_v_rms", "electric_friction_n"]);
     let mut left =
@@ -64,7 +65,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             "Right: under a load the contact is large, what surrounds it hardly matters, and the bounds nearly \
              coincide: at 0.5 N they are 1 % apart at any voltage that a screen has."
                 .to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         chart: Chart::new(vec![left, right], 2),
         csv: data.csv()?,

@@ -1,12 +1,12 @@
 //! The soft finger of Xydas and Kao compared with Winkler-Fuss springs.
-
 use core::f64::consts::PI;
+use std::error::Error;
 
+use frixel::chart::{Axis, Chart, Line, Look, PALETTE, Panel, graded};
+use frixel::report::{Data, Figure, example};
 use frixel_model::{ContactModel, ParameterError, SoftContact, SoftFinger, contact_exponent};
 
-use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger, geometric};
-use crate::chart::{Axis, Chart, Line, Look, PALETTE, Panel, graded};
-use crate::report::data::Data;
+use super::geometric;
 
 /// Stress exponents; at 0.5 the stiffness is constant.
 const STRESS_EXPONENTS: [f64; 5] = [0.1, 0.3, 0.5, 0.75, 1.0];
@@ -15,11 +15,11 @@ const SHAPE_CONSTANT: f64 = 4.5;
 
 /// A soft finger with the stiffness of the example finger at the example load: Eq. (26) solved for the modulus.
 pub(super) fn alike(stress_exponent: f64) -> Result<SoftFinger<f64>, ParameterError> {
-    let springs = example_finger();
+    let springs = example::FINGER;
     let (radius, stiffness) = (springs.radius_m, springs.stiffness_pa_per_m);
     let four_gamma = 4.0 * contact_exponent(stress_exponent)?;
     // k = S/(pi R^3) (P/S)^(1 - 4 gamma) with S = B E R^2.
-    let scale_n = (PI * radius.powi(3) * stiffness * LOAD_N.powf(four_gamma - 1.0)).powf(1.0 / four_gamma);
+    let scale_n = (PI * radius.powi(3) * stiffness * example::LOAD_N.powf(four_gamma - 1.0)).powf(1.0 / four_gamma);
     Ok(SoftFinger {
         radius_m: radius,
         modulus_pa: scale_n / (SHAPE_CONSTANT * radius * radius),
@@ -29,7 +29,7 @@ pub(super) fn alike(stress_exponent: f64) -> Result<SoftFinger<f64>, ParameterEr
     })
 }
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
+pub(super) fn figure() -> Result<Figure, Box<dyn Error>> {
     let volts = || Axis::log("voltage, V rms", 1.0..1e3);
     let mut unloaded = Panel::new("No load", volts(), Axis::log("friction, mN", 1e-7..1e5));
     let mut loaded = Panel::new(
@@ -61,22 +61,30 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
                 state.stiffness_pa_per_m.into(),
             ]);
         }
-        Ok::<_, ReportError>(points)
+        Ok::<_, Box<dyn Error>>(points)
     };
     for (index, stress_exponent) in STRESS_EXPONENTS.into_iter().enumerate() {
         let finger = alike(stress_exponent)?;
-        let contact = SoftContact::new(&finger, GAP_M)?;
+        let contact = SoftContact::new(&finger, example::GAP_M)?;
         let colour = graded(index, STRESS_EXPONENTS.len());
         let name = format!("soft, stress exponent {stress_exponent}");
         let solid = Look::line(colour, Line::Solid);
         unloaded.add(&name, solid, curve("soft-upper", Some(&finger), 0.0, &contact.under_load(0.0)?)?);
         let lower = curve("soft-lower", Some(&finger), 0.0, &contact.lower_bound())?;
         unloaded.add("", Look::line(colour, Line::Dashed), lower);
-        loaded.add(&name, solid, curve("soft-loaded", Some(&finger), LOAD_N, &contact.under_load(LOAD_N)?)?);
+        loaded.add(
+            &name,
+            solid,
+            curve("soft-loaded", Some(&finger), example::LOAD_N, &contact.under_load(example::LOAD_N)?)?,
+        );
     }
     let springs = Look::line(PALETTE[1], Line::Dashed);
-    let contact = example::<f64>()?;
-    loaded.add("Winkler-Fuss", springs, curve("wf-loaded", None, LOAD_N, &contact.under_load(LOAD_N)?)?);
+    let contact = example::contact::<f64>()?;
+    loaded.add(
+        "Winkler-Fuss",
+        springs,
+        curve("wf-loaded", None, example::LOAD_N, &contact.under_load(example::LOAD_N)?)?,
+    );
     unloaded.add("Winkler-Fuss", springs, curve("wf-upper", None, 0.0, &contact.under_load(0.0)?)?);
     unloaded.add("lower bound, Eq. (40)", Look::line(PALETTE[6], Line::Dashed), Vec::new());
     Ok(Figure {
@@ -90,7 +98,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
              the load."
                 .to_owned(),
             "A stress exponent of 0.5 has a constant stiffness, and falls on the Winkler-Fuss finger.".to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         chart: Chart::new(vec![unloaded, loaded], 2).with_shared_legend(),
         csv: data.csv()?,

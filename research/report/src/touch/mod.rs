@@ -1,7 +1,7 @@
 //! Comparison of estimators that follow a finger from touch reports: a recording in, places and errors out.
 
 mod filters;
-
+use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -9,7 +9,6 @@ use frixel_hil_sim::{Stroke, TouchConfig, TouchReport, World, WorldConfig};
 use frixel_scene::fidelity::{self, Fidelity, FidelitySample};
 use frixel_scene::recorder::FingerState;
 
-use super::ReportError;
 pub(super) use filters::{Filter, Path, best_of_grid, methods};
 
 /// Ticks a second of the recorded world. A report's time is as exact as a tick.
@@ -42,7 +41,7 @@ pub(super) struct Recording {
 
 impl Recording {
     /// Records the stroke of a person with a median speed. One report in eight is lost, one in thirty is bunched.
-    pub(super) fn new(class: Class, median_m_per_s: f64, seed: u64) -> Result<Self, ReportError> {
+    pub(super) fn new(class: Class, median_m_per_s: f64, seed: u64) -> Result<Self, Box<dyn Error>> {
         let touch = TouchConfig {
             rate_hz: class.rate_hz,
             latency_s: class.latency_s,
@@ -54,7 +53,7 @@ impl Recording {
         let seconds = SAMPLES as f64 / f64::from(SAMPLE_HZ) + SETTLING_S;
         let stroke = Stroke::human(0.12, 0.08, seconds + 0.5, Some(median_m_per_s), seed)?;
         let config = WorldConfig { tick_hz: TICK_HZ, touch, ..WorldConfig::IDEAL };
-        let mut world = World::new(config, stroke, seed).map_err(crate::player::PlayError::from)?;
+        let mut world = World::new(config, stroke, seed)?;
         world.start_stroke();
         let (mut places_m, mut reports) = (Vec::new(), Vec::new());
         for tick in 0..(seconds * f64::from(TICK_HZ)) as u32 {

@@ -1,10 +1,11 @@
 //! Fig. 3 of the paper: contact radius and friction over voltage without a load, on one core line.
+use std::error::Error;
 
+use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use frixel::report::{Data, Figure, example};
 use frixel_model::{Contact, ContactModel, Finger};
 
-use super::{EXAMPLE, Figure, GAP_M, ReportError, even, example_finger, geometric};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
-use crate::report::data::Data;
+use super::{even, geometric};
 
 /// A finger to plot on the core line, with its name in the legend.
 struct Example {
@@ -20,8 +21,8 @@ fn examples() -> [Example; 3] {
     [
         Example {
             name: "R 8 mm, k 1.8e7 Pa/m, gap 10 µm, µ 0.5",
-            finger: example_finger(),
-            gap_m: GAP_M,
+            finger: example::FINGER,
+            gap_m: example::GAP_M,
             look: Look::mark(PALETTE[1], Mark::Ring),
         },
         Example {
@@ -49,7 +50,7 @@ struct Point {
     scaled_friction: f64,
 }
 
-fn points(example: &Example, voltages: impl Iterator<Item = f64>, scaled: bool) -> Result<Vec<Point>, ReportError> {
+fn points(example: &Example, voltages: impl Iterator<Item = f64>, scaled: bool) -> Result<Vec<Point>, Box<dyn Error>> {
     let contact = Contact::new(&example.finger, example.gap_m)?;
     let upper = contact.under_load(0.0)?;
     let voltage_unit = if scaled { contact.voltage_scale_v_rms() } else { 1.0 };
@@ -73,7 +74,7 @@ const LINE: Look = Look::line(PALETTE[0], Line::Solid);
 const LIMIT: Look = Look::line(PALETTE[6], Line::Dashed);
 
 /// The core lines with their asymptotes, and the fingers as points on them.
-fn scaled_panels(curve: &[Point], data: &mut Data<7>) -> Result<[Panel; 2], ReportError> {
+fn scaled_panels(curve: &[Point], data: &mut Data<7>) -> Result<[Panel; 2], Box<dyn Error>> {
     let voltage = || Axis::log("voltage V / V*", 1e-2..1e2);
     let radius_axis = Axis::log("contact radius a / √(2 R g)", 0.1..200.0);
     let mut radius = Panel::new("Core line: contact radius", voltage(), radius_axis);
@@ -112,7 +113,7 @@ fn example_panels(curve: &[Point]) -> [Panel; 2] {
     [radius, friction]
 }
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
+pub(super) fn figure() -> Result<Figure, Box<dyn Error>> {
     let mut data = Data::new([
         "finger",
         "voltage_v_rms",
@@ -140,7 +141,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
              very different fingers, computed in their own units, stand on the lines. At small voltages friction grows \
              with σ₀ ∝ V², at large ones with σ₀² ∝ V⁴, the lower bound of Eq. (42): dashed."
                 .to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         chart: Chart::new(panels, 2),
         csv: data.csv()?,

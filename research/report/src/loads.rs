@@ -1,12 +1,12 @@
 //! Figs. 4 and 5 of the paper: contact radius and friction over voltage for normal loads of both signs.
-
 use core::f64::consts::PI;
+use std::error::Error;
 
+use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
+use frixel::report::{Data, Figure, example};
 use frixel_model::{Contact, ContactModel, ContactState};
 
-use super::{EXAMPLE, Figure, ReportError, even, example};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
-use crate::report::data::Data;
+use super::even;
 
 /// The paper's relative normal force `f_N = F_N/(k R h0^2)`, Eq. (44), for a coating of permittivity one.
 const RELATIVE_LOADS: [f64; 9] = [-20.0, -10.0, -5.0, -1.0, 0.0, 1.0, 5.0, 10.0, 20.0];
@@ -23,7 +23,7 @@ struct Curve {
     pulled: bool,
 }
 
-fn curve(contact: Contact<f64>, relative_load: f64, voltage_max: f64) -> Result<Curve, ReportError> {
+fn curve(contact: Contact<f64>, relative_load: f64, voltage_max: f64) -> Result<Curve, Box<dyn Error>> {
     let normal_load_n = relative_load / PI * contact.load_scale_n();
     let pulled = normal_load_n < 0.0;
     let (model, first): (Box<dyn ContactModel<f64>>, f64) = if pulled {
@@ -42,11 +42,11 @@ fn curve(contact: Contact<f64>, relative_load: f64, voltage_max: f64) -> Result<
     Ok(Curve { relative_load, normal_load_n, points, pulled })
 }
 
-fn relative_curves(contact: Contact<f64>) -> Result<Vec<Curve>, ReportError> {
+fn relative_curves(contact: Contact<f64>) -> Result<Vec<Curve>, Box<dyn Error>> {
     RELATIVE_LOADS.iter().map(|load| curve(contact, *load, 1.8 * contact.voltage_scale_v_rms())).collect()
 }
 
-fn load_curves(contact: Contact<f64>) -> Result<Vec<Curve>, ReportError> {
+fn load_curves(contact: Contact<f64>) -> Result<Vec<Curve>, Box<dyn Error>> {
     LOADS_N.iter().map(|load| curve(contact, PI * load / contact.load_scale_n(), 200.0)).collect()
 }
 
@@ -78,7 +78,7 @@ fn data(
     quantity: [&'static str; 2],
     contact: &Contact<f64>,
     values: impl Fn(&ContactState<f64>) -> [f64; 2],
-) -> Result<Vec<u8>, ReportError> {
+) -> Result<Vec<u8>, Box<dyn Error>> {
     let [in_unit, scaled] = quantity;
     let mut data = Data::new([
         "panel",
@@ -116,8 +116,8 @@ fn load_name(curve: &Curve) -> String {
     format!("F_N = {:.1} N", curve.normal_load_n)
 }
 
-pub(super) fn contact_radius() -> Result<Figure, ReportError> {
-    let contact = example::<f64>()?;
+pub(super) fn contact_radius() -> Result<Figure, Box<dyn Error>> {
+    let contact = example::contact::<f64>()?;
     let (relative, loaded) = (relative_curves(contact)?, load_curves(contact)?);
     let mut left = Panel::new(
         "Relative loads of Eq. (44)",
@@ -144,7 +144,7 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
             "Real loads are far beyond the paper's range: 0.5 N is f_N = 35,000 for the example finger, and voltage \
              hardly changes its contact radius."
                 .to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         csv: data([&relative, &loaded], ["contact_radius_m", "radius_over_scale"], &contact, |state| {
             [state.contact_radius_m, contact.area(state.contact_radius_m).sqrt()]
@@ -153,8 +153,8 @@ pub(super) fn contact_radius() -> Result<Figure, ReportError> {
     })
 }
 
-pub(super) fn friction() -> Result<Figure, ReportError> {
-    let contact = example::<f64>()?;
+pub(super) fn friction() -> Result<Figure, Box<dyn Error>> {
+    let contact = example::contact::<f64>()?;
     let (relative, loaded) = (relative_curves(contact)?, load_curves(contact)?);
     let mut left = Panel::new(
         "Relative loads of Eq. (44)",
@@ -178,7 +178,7 @@ pub(super) fn friction() -> Result<Figure, ReportError> {
              g²; a pulled finger has friction only above its pull-off (rings). Right: the part that voltage adds to \
              the friction µ F_N of an example finger that presses; a larger contact is attracted more."
                 .to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         csv: data([&relative, &loaded], ["electric_friction_n", "friction_over_scale"], &contact, |state| {
             [state.electric_friction_n, state.friction_n / contact.friction_scale_n()]

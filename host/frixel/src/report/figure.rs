@@ -1,15 +1,32 @@
-//! The numbers behind a picture, as a table.
+//! A figure: a picture, its caption, and the numbers behind it.
+
+use crate::chart::Chart;
+
+/// A picture with its caption and the numbers behind it.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Name of the figure, used for its CSV file (without the extension) and its anchor in the page.
+    pub name: &'static str,
+    /// Title above the picture.
+    pub title: String,
+    /// Paragraphs that explain the picture without any other text.
+    pub caption: Vec<String>,
+    /// The picture.
+    pub chart: Chart,
+    /// Content of the CSV file.
+    pub csv: Vec<u8>,
+}
 
 /// A table with named columns.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Data<const COLUMNS: usize> {
+pub struct Data<const COLUMNS: usize> {
     header: [&'static str; COLUMNS],
     rows: Vec<[Value; COLUMNS]>,
 }
 
 /// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub enum Value {
     /// A number, written with enough digits to be read back exactly; not-a-number is an empty cell.
     Number(f64),
     /// A text, written unchanged.
@@ -17,16 +34,18 @@ pub(super) enum Value {
 }
 
 impl<const COLUMNS: usize> Data<COLUMNS> {
-    pub(super) fn new(header: [&'static str; COLUMNS]) -> Self {
+    /// A table without rows.
+    pub fn new(header: [&'static str; COLUMNS]) -> Self {
         Self { header, rows: Vec::new() }
     }
 
-    pub(super) fn row(&mut self, cells: [Value; COLUMNS]) {
+    /// Appends a row.
+    pub fn row(&mut self, cells: [Value; COLUMNS]) {
         self.rows.push(cells);
     }
 
     /// The table as a CSV file.
-    pub(super) fn csv(&self) -> Result<Vec<u8>, csv::Error> {
+    pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(self.header)?;
         for row in &self.rows {

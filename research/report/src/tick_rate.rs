@@ -1,13 +1,11 @@
 //! Error of the felt friction of a texture against the tick rate.
-
 use std::collections::BTreeMap;
+use std::error::Error;
 
+use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
+use frixel::player::{Simulation, simulate};
+use frixel::report::{Data, Figure};
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
-
-use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
-use crate::player::{Simulation, simulate};
-use crate::report::data::Data;
 use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Scene, compile};
 
@@ -81,7 +79,7 @@ struct Felt {
     range_n: f64,
 }
 
-fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, ReportError> {
+fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, Box<dyn Error>> {
     let mut rig = RigConfig::default();
     rig.board.tick_hz = tick_hz;
     rig.world.tick_hz = tick_hz;
@@ -101,7 +99,7 @@ fn felt(case: &Case, tick_hz: u32, rows_hz: u32, seed: u64) -> Result<Felt, Repo
 }
 
 /// Root mean square of felt minus reference friction over the windows of all seeds, relative to the reachable range.
-fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, ReportError> {
+fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, Box<dyn Error>> {
     let (mut sum, mut count) = (0.0, 0.0);
     for seed in SEEDS {
         let felt = felt(case, tick_hz, WINDOW_HZ, seed)?;
@@ -115,7 +113,7 @@ fn rms_error(case: &Case, tick_hz: u32) -> Result<f64, ReportError> {
 }
 
 /// Adds reference and felt friction over a few periods of the finest stripes.
-fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), ReportError> {
+fn trace(panel: &mut Panel, data: &mut Data<6>, case: &Case) -> Result<(), Box<dyn Error>> {
     for (index, (tick_hz, look)) in
         (0..).zip([(1_000, Look::line(PALETTE[1], Line::Solid)), (40_000, Look::line(PALETTE[0], Line::Solid))])
     {
@@ -179,7 +177,7 @@ fn caption() -> Vec<String> {
     ]
 }
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
+pub(super) fn figure() -> Result<Figure, Box<dyn Error>> {
     let mut left = Panel::new(
         "Stripes under a finger of 100 mm/s, simulated",
         Axis::log("ticks a second, kHz", 0.9..50.0),
