@@ -10,16 +10,16 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use frixel::calibration::Protocol;
 use frixel::input;
 use frixel::output_file::{Inputs, OutputFile, Recording};
 use frixel::player::Player;
 use frixel::rigs::{RecordedLink, SimLink};
 use frixel::stream::Feed;
-use frixel::threshold::{Staircase, Threshold};
 use frixel_driver::Device;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::calibration::Protocol;
+use frixel_lab::threshold::{Staircase, Threshold};
 use frixel_scene::{Evidence, Experiment, FingerProfile, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use hound::{SampleFormat, WavSpec, WavWriter};

@@ -8,9 +8,9 @@ use std::marker::PhantomData;
 use frixel_felt::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
-use crate::calibration::ForceRow;
 use crate::output_file::{FileWriter, OutputFileError};
 use crate::rigs::BoardEvent;
+use frixel_lab::calibration::ForceRow;
 
 /// A row of a CSV file. `docs/outputs.md` describes the columns.
 pub trait CsvRow {
