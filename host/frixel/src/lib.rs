@@ -1,7 +1,7 @@
 //! The library behind the `frixel` command: playing scenes, recording them, drawing charts and writing reports.
 #![forbid(unsafe_code)]
 
-mod chart;
+pub mod chart;
 mod default_stroke;
 mod finger_reference;
 pub mod input;
