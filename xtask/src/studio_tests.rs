@@ -9,7 +9,7 @@ use crate::needs::Need;
 use crate::{results, studio};
 
 /// What the tests need.
-pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
+pub(crate) const NEEDS: [Need; 5] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium, Need::Git];
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";

@@ -36,12 +36,13 @@ pub struct ForceRow {
 pub enum CalibrationError {
     /// The forces cannot be read.
     #[error(
-        "the forces cannot be read ({0}): give CSV with the columns time_s,normal_force_n,friction_n in seconds and \
-         newtons"
+        "the forces cannot be read ({}): give CSV with the columns time_s,normal_force_n,friction_n in seconds and \
+         newtons",
+        found(.0)
     )]
     Forces(csv::Error),
     /// What the board reported cannot be read.
-    #[error("what the board reported cannot be read ({0}): it was changed")]
+    #[error("what the board reported cannot be read ({}): it was changed", found(.0))]
     Board(csv::Error),
     /// A force is not a number, or time goes backwards.
     #[error("row {row} of the forces {found}: give finite numbers, sorted by time")]
@@ -90,6 +91,18 @@ pub enum CalibrationError {
     /// The recording cannot be written.
     #[error("the recording cannot be written ({0}): check the folder and its free space")]
     Write(csv::Error),
+}
+
+/// What was found in a table that cannot be read.
+fn found(error: &csv::Error) -> String {
+    let line = |position: &Option<csv::Position>| position.as_ref().map_or(0, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::Deserialize { pos, err } => format!("line {}: {}", line(pos), err.kind()),
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            format!("line {} has {len} cells instead of {expected_len}", line(pos))
+        }
+        _ => error.to_string(),
+    }
 }
 
 /// Reads the forces of a sensor from CSV with the columns `time_s,normal_force_n,friction_n`, in any order.
@@ -165,4 +178,21 @@ pub fn write_csv(output: impl Write, rows: &[Row]) -> Result<(), CalibrationErro
 
 fn rounded(value: f64, step: f64) -> f64 {
     (value / step).round() / (1.0 / step).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_read_is_said_in_words_of_its_own() {
+        for (text, found) in [
+            ("t,v,s\n1,2,3\n", "line 2: missing field `time_s`"),
+            ("time_s,voltage_v_rms,speed_mm_s\n1,2,three\n", "line 2: "),
+            ("time_s,voltage_v_rms,speed_mm_s\n1,2\n", "line 2 has 2 cells instead of 3"),
+        ] {
+            let said = read_board(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(said.contains(found) && !said.contains("CSV"), "{said}");
+        }
+    }
 }
