@@ -6,9 +6,9 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldErro
 use frixel_layers::Scene as WireScene;
 use thiserror::Error;
 
-use crate::player::load;
 use crate::rigs::SimLink;
 use frixel_driver::{Device, DeviceError};
+use frixel_play::load;
 use frixel_scene::Program;
 use frixel_scene::check::BoardCosts;
 use frixel_scene::recorder::Recorder;

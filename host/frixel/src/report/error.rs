@@ -9,7 +9,7 @@ use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 use crate::output_file::OutputFileError;
-use crate::player::PlayError;
+use crate::player::SimulationError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.
@@ -71,5 +71,5 @@ pub enum ReportError {
     Stroke(#[from] StrokeError),
     /// The texture could not be simulated.
     #[error(transparent)]
-    Simulation(#[from] PlayError),
+    Simulation(#[from] SimulationError),
 }

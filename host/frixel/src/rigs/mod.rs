@@ -23,7 +23,7 @@ mod sim_link;
 
 #[cfg(unix)]
 pub use emulated::EmulatedLink;
-pub use event_log::{BoardEvent, EventKind, EventLog, StopReason};
+pub use event_log::{BoardEvent, EventKind, EventLog};
 pub use force_sensor::ForceSensor;
 #[cfg(unix)]
 pub use pace::Dropped;

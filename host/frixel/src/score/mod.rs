@@ -13,7 +13,7 @@ use frixel_scene::Program;
 use frixel_scene::fidelity::Fidelity;
 use serde::Serialize;
 
-use crate::player::PlayError;
+use crate::player::SimulationError;
 use metric::METRICS;
 pub use metric::MetricScore;
 pub use output::draw_score_svg;
@@ -74,13 +74,13 @@ pub struct Score {
 
 impl Score {
     /// Plays a program on a simulated board once for each trial, and scores it.
-    pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, PlayError> {
+    pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, SimulationError> {
         let play = |trial: &Trial| {
             let person = trial.finger.map(|finger| finger.person);
             let fidelity = fidelity(program, rig, trial)?;
             Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
         };
-        let plays: Vec<TrialScore> = trials.iter().map(play).collect::<Result<_, PlayError>>()?;
+        let plays: Vec<TrialScore> = trials.iter().map(play).collect::<Result<_, SimulationError>>()?;
         let groups = independent(&plays);
         Ok(Self { metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(), plays })
     }
@@ -88,7 +88,7 @@ impl Score {
 
 /// Plays a program on a simulated board, and scores it; `None` if the finger was down for less than a quarter of a
 /// second.
-pub fn fidelity(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Option<Fidelity>, PlayError> {
+pub fn fidelity(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Option<Fidelity>, SimulationError> {
     Ok(Fidelity::of(&play::samples(program, rig, trial)?))
 }
 

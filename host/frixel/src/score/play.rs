@@ -8,10 +8,14 @@ use frixel_wire::fault::Flags;
 
 use super::Trial;
 use crate::finger_reference::FingerReference;
-use crate::player::{PlayError, Simulation, simulate_observed};
+use crate::player::{Simulation, SimulationError, simulate_observed};
 
 /// Plays a trial; returns a sample for every quarter of a millisecond.
-pub(super) fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<FidelitySample>, PlayError> {
+pub(super) fn samples(
+    program: &Program,
+    rig: &RigConfig,
+    trial: &Trial,
+) -> Result<Vec<FidelitySample>, SimulationError> {
     let simulation = Simulation {
         rig: *rig,
         stroke: trial.stroke.clone(),

@@ -54,7 +54,7 @@ impl Recording {
         let seconds = SAMPLES as f64 / f64::from(SAMPLE_HZ) + SETTLING_S;
         let stroke = Stroke::human(0.12, 0.08, seconds + 0.5, Some(median_m_per_s), seed)?;
         let config = WorldConfig { tick_hz: TICK_HZ, touch, ..WorldConfig::IDEAL };
-        let mut world = World::new(config, stroke, seed).map_err(crate::player::PlayError::from)?;
+        let mut world = World::new(config, stroke, seed).map_err(crate::player::SimulationError::from)?;
         world.start_stroke();
         let (mut places_m, mut reports) = (Vec::new(), Vec::new());
         for tick in 0..(seconds * f64::from(TICK_HZ)) as u32 {
