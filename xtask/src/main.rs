@@ -31,7 +31,7 @@ cargo xtask test     format, lints, images, all tests but those on emulators, th
 cargo xtask soak     the parts of what takes too long for that; each takes an hour at most
 cargo xtask soak PART
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
-         --bless     and writes down what each kind of layer costs, which compiler and board use
+                     with FRIXEL_BLESS=1, writes down what each kind of layer costs, which compiler and board use
 cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
 cargo xtask portability
                      the crates of a page for WebAssembly; the command for Windows and macOS
@@ -73,17 +73,16 @@ fn main() -> ExitCode {
             Ok(seconds) => require(&[Need::CppCompiler]).and_then(|()| fuzz::run_for(Duration::from_secs(seconds))),
             Err(_) => Err(format!("expected a number of seconds, found `{seconds}`\n{USAGE}")),
         },
-        ["bench", "--bless"] => require(&EMULATED).and_then(|()| bench::bench()).and_then(|figures| {
-            print!("{}", figures.table());
-            bench::costs::bless(&figures)
-        }),
         ["programs", pace, first, count] => match (Pace::named(pace), first.parse(), count.parse()) {
             (Some(pace), Ok(first), Ok(count)) => {
                 require(&[M4F_TARGET, Need::Emulator]).and_then(|()| programs::check(pace, first, count))
             }
             _ => Err(format!("no such random scenes: {}\n{USAGE}", arguments.join(" "))),
         },
-        ["bench"] => require(&EMULATED).and_then(|()| bench::bench()).map(|figures| print!("{}", figures.table())),
+        ["bench"] => require(&EMULATED).and_then(|()| bench::bench()).and_then(|figures| {
+            print!("{}", figures.table());
+            if env::var_os("FRIXEL_BLESS").is_some() { bench::costs::bless(&figures) } else { Ok(()) }
+        }),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
     };
     match result {

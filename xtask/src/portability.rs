@@ -11,7 +11,7 @@ const MACOS: &str = "aarch64-apple-darwin";
 pub(crate) const NEEDS: [Need; 2] = [Need::Target(WINDOWS), Need::Target(MACOS)];
 /// The crates of the page whose code differs for WebAssembly. The `clippy.toml` of these, and of those that they
 /// depend on, disallows clocks, files, threads and processes on every platform.
-const WASM_CRATES: [&str; 2] = ["frixel-hil-sim", "frixel-studio"];
+const WASM_CRATES: [&str; 3] = ["frixel-hil-sim", "frixel-lab", "frixel-studio"];
 
 /// Compiles the whole command for Windows and macOS. Functions that need a pseudo-terminal fail there at run time.
 pub(crate) fn other_systems() -> Result<(), String> {

@@ -6,7 +6,7 @@ use heapless::Vec;
 
 use crate::bitmap_pool::{BitmapPool, StoredBitmap};
 use crate::blend::Blend;
-use crate::click::Clicks;
+use crate::clicks::Clicks;
 use crate::context::{Context, Inputs};
 use crate::grid::{Cell, Grid, LayerSet};
 use crate::header::Header;

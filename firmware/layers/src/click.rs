@@ -3,11 +3,12 @@
 
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
+use crate::clicks::{CLICKS_MAX, ClickCoefficients, ClickNumber, Slot};
 use crate::context::Context;
 use crate::interval::Interval;
-use crate::parameters::{Parameter, RecordBytes, UnknownForm, range};
+use crate::layout::RecordBytes;
+use crate::parameters::{Parameter, UnknownForm, range};
 use crate::prepare::{Preparation, no_room, ticks};
-use crate::tables::CLICKS_MAX;
 
 /// A short pulse of friction: `height (1 - t / decay)^2` until `decay` has passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,72 +62,6 @@ impl Click {
         let click = ClickCoefficients { height_n: self.height_n, decay_ticks, per_tick: 1.0 / decay_ticks as f32 };
         let number = preparation.tables.add_click(click);
         number.map(Some).map_err(|_| no_room(ConfigField::ClickLayers, CLICKS_MAX, layer))
-    }
-}
-
-/// A layer's click in the scene's tables.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ClickCoefficients {
-    height_n: f32,
-    decay_ticks: u32,
-    per_tick: f32,
-}
-
-/// Number of a layer's click in the scene's tables, and of its state in the [`Clicks`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct ClickNumber(pub(crate) u8);
-
-/// The state of all clicks: where the finger was at the previous evaluation. It belongs to the tick; coefficients do
-/// not change.
-///
-/// The state counts evaluations of the scene instead of ticks, so that a tick without an evaluation does not hide a
-/// crossing.
-#[derive(Clone, Debug)]
-pub struct Clicks {
-    /// Evaluations of the scene, modulo 2^32.
-    evaluation: u32,
-    /// The finger was on the screen at the previous evaluation, and has not been lifted since.
-    unbroken: bool,
-    touching: bool,
-    slots: [Slot; CLICKS_MAX],
-}
-
-/// The state of one click.
-#[derive(Clone, Copy, Debug)]
-struct Slot {
-    /// The last evaluation of this layer, and on which side of its line the finger was.
-    evaluation: u32,
-    beyond: bool,
-    /// The click's first tick, while it lasts.
-    started_at_tick: Option<u32>,
-}
-
-impl Clicks {
-    /// Initial state: no click is under way, and there was no finger.
-    pub const NONE: Self = Self {
-        evaluation: 0,
-        unbroken: false,
-        touching: false,
-        slots: [Slot { evaluation: 0, beyond: false, started_at_tick: None }; CLICKS_MAX],
-    };
-
-    /// Resets the state for another scene.
-    pub fn reset(&mut self) {
-        *self = Self::NONE;
-    }
-
-    /// Counts an evaluation of the scene. Must be called before the evaluation.
-    #[inline]
-    pub(crate) fn begin(&mut self) {
-        self.evaluation = self.evaluation.wrapping_add(1);
-        self.unbroken = self.touching;
-        self.touching = true;
-    }
-
-    /// Records that the finger is not on the screen.
-    #[inline]
-    pub fn lift(&mut self) {
-        self.touching = false;
     }
 }
 

@@ -2,17 +2,16 @@
 //! numbers, so that the board accepts what the compiler accepts. The limit of a tick is
 //! [`BoardLimits::tick_cycles_max`](frixel_wire::hello::BoardLimits::tick_cycles_max).
 //!
-//! `measured` holds the cost of every kind and region in **core cycles**: the cycles of each instruction by its class
+//! The module `measured` holds the cost of every kind and region in **core cycles**: the cycles of each instruction by its class
 //! (Cortex-M4 technical reference, Arm 100166, tables 3-1 and 7-1), with a memory without wait states. The file of
 //! each kind adds up those that apply to it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles.
-
-pub(crate) mod measured;
 
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
 use crate::grid::{Cell, Grid, LayerSet, layer_numbers};
 use crate::header::Header;
+use crate::measured;
 use crate::point::Point;
 use crate::record::Record;
 use frixel_model::Waveform;

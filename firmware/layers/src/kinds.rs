@@ -1,4 +1,4 @@
-//! The kinds of layer: the traits that each kind implements, and the list from which everything else is generated.
+//! The kinds of layer: the list from which everything that covers all kinds is generated.
 
 #[cfg(feature = "bitmap")]
 pub(crate) mod bitmap;
@@ -28,82 +28,12 @@ use frixel_wire::scene::SceneError;
 use crate::click::Click;
 use crate::context::Context;
 use crate::interval::Interval;
-use crate::parameters::{Parameters, RecordBytes, UnknownForm};
+use crate::kind::{Kind, evaluate};
+use crate::layout::{FORM_AT, RecordBytes};
+use crate::parameters::{Parameters, UnknownForm};
 use crate::point::Point;
 use crate::prepare::Preparation;
-use crate::record::FORM_AT;
 use crate::region::{ActiveRegion, Region};
-
-/// A kind of layer: its cost, its bounds, and the computation of its coefficients. The type of the kind's parameters
-/// implements it.
-pub(crate) trait Kind: Parameters + Copy {
-    /// The coefficients that the tick evaluates.
-    type Coefficients: Evaluate;
-    /// Core cycles that the kind adds to every tick of a scene with at least one such layer, wherever the finger is.
-    /// They count once for all layers of the kind.
-    const COST_ELSEWHERE: u32 = 0;
-    /// Whether the layer plays the host's stream, and fades with it.
-    const STREAMED: bool = false;
-
-    /// Checks the kind's requirements on its region, and on the number of points in the scene.
-    fn check_structure(&self, region: &Region, point_count: u8, record: u8) -> Result<(), SceneError> {
-        let _ = (region, point_count, record);
-        Ok(())
-    }
-
-    /// Checks parameters that depend on one another, and the points that the layer refers to. The range of each
-    /// parameter has already been checked.
-    fn check_relations(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
-        let _ = (points, layer);
-        Ok(())
-    }
-
-    /// Most core cycles of an evaluation.
-    fn cost(&self) -> u32;
-
-    /// Bounds of the layer's friction before its gain, in N, or as a factor.
-    fn bounds(&self, points: &[Point]) -> Interval<f32>;
-
-    /// CRC-32 of the bitmap that the layer uses; `None` without a bitmap.
-    fn bitmap_crc32(&self) -> Option<u32> {
-        None
-    }
-
-    /// The layer's click, if it has one.
-    fn click(&self) -> Option<Click> {
-        None
-    }
-
-    /// Bytes that the layer takes in the scene's tables.
-    fn table_bytes(&self) -> usize {
-        0
-    }
-
-    /// Computes the coefficients of layer number `layer`. Its parameters have been checked.
-    fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Self::Coefficients, Refusal>;
-}
-
-/// Coefficients of a layer, as the tick evaluates them.
-pub(crate) trait Evaluate: Copy {
-    /// Whether to inline the evaluation, because a call would cost more than the evaluation itself.
-    const IN_LINE: bool = false;
-
-    /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
-    fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32;
-}
-
-/// Evaluates one kind without inlining: otherwise a loop over layers would first load the constants of all kinds.
-///
-/// The function is generic, so that it is compiled with the crate that calls it.
-#[inline(never)]
-fn call<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut Context) -> f32 {
-    coefficients.electric_friction_n(region, context)
-}
-
-#[inline]
-fn evaluate<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut Context) -> f32 {
-    if C::IN_LINE { coefficients.electric_friction_n(region, context) } else { call(coefficients, region, context) }
-}
 
 /// Generates the enums of all kinds, and the functions that dispatch on them, from one list.
 macro_rules! kinds {
@@ -284,7 +214,7 @@ impl Layer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{GAIN_AT, RECORD_LEN};
+    use crate::layout::{GAIN_AT, RECORD_LEN};
 
     #[test]
     fn parameters_do_not_overlap() {

@@ -25,9 +25,19 @@
 //!   parameters become coefficients;
 //! - its coefficients, with `Evaluate`: the friction at the finger's place.
 //!
-//! The list at the end of `kinds.rs` gives it its number in records and its Cargo feature; everything that
+//! `kind.rs` holds the traits. The list at the end of `kinds.rs` gives it its number in records and its Cargo feature; everything that
 //! covers all kinds is generated from that list. Whatever several kinds use has its own module: waves, clicks, regions,
 //! blends, points.
+//!
+//! # Order of the modules
+//!
+//! A module uses those of the lines above its own, and of its own line only those to its left:
+//!
+//! 1. numbers: `interval`, `cosine`, `square_root`, `measured` (what evaluations cost);
+//! 2. bytes: `layout` (what all records have in common), `parameters`, `point`, `header`;
+//! 3. what an evaluation reads and changes: `bitmap_pool`, `clicks`, `noise_waves`, `tables`, `context`, `prepare`;
+//! 4. the parts of a layer: `blend`, `region`, `wave`, `click`, `kind`, `kinds`, `record`;
+//! 5. a scene: `scene`, `grid`, `cost`, `bounds`, `active`.
 //!
 //! # Features
 //!
@@ -45,14 +55,21 @@
 mod active;
 mod bitmap_pool;
 mod blend;
+mod bounds;
 mod click;
+mod clicks;
 mod context;
 mod cosine;
 pub mod cost;
 mod grid;
 mod header;
 mod interval;
+mod kind;
 mod kinds;
+mod layout;
+mod measured;
+#[cfg(feature = "noise")]
+mod noise_waves;
 mod parameters;
 mod point;
 mod prepare;
@@ -68,24 +85,27 @@ mod wave;
 pub use active::{ActiveLayers, active_bytes};
 pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool, StoredBitmap};
 pub use blend::Blend;
-pub use click::{Click, Clicks};
+pub use bounds::electric_friction_max_n;
+pub use click::Click;
+pub use clicks::{CLICKS_MAX, Clicks};
 pub use context::{Inputs, StreamSample};
 pub use cosine::cosine;
 pub use frixel_model::Waveform;
 pub use grid::{Cell, Grid, LayerSet, layer_numbers, layer_set};
 pub use header::{HALF_PERIOD_MIN_TICKS, HEADER_LEN, Header, Leader, SCENE_VERSION};
-pub use interval::{Interval, Number, electric_friction_max_n};
+pub use interval::{Interval, Number};
 #[cfg(feature = "vibration")]
 pub use kinds::vibration::{Beat, Burst};
 pub use kinds::*;
+pub use layout::RECORD_LEN;
 pub use parameters::{Range, range, within};
 pub use point::{POINT_LEN, Point};
 pub use prepare::ticks;
-pub use record::{RECORD_LEN, Record, disabled_record};
+pub use record::{Record, disabled_record};
 pub use region::Region;
 pub use scene::{SCENE_MAX_LEN, Scene, features_of};
 pub use square_root::square_root;
-pub use tables::{CLICKS_MAX, NOISES_MAX};
+pub use tables::NOISES_MAX;
 pub use wave::Wave;
 
 use frixel_wire::hello::feature;

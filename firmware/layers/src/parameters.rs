@@ -4,10 +4,7 @@
 use frixel_wire::bytes::{get_at, put_at};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
 
-use crate::record::{FORM_AT, RECORD_LEN};
-
-/// The bytes of a record.
-pub(crate) type RecordBytes = [u8; RECORD_LEN];
+use crate::layout::{FORM_AT, RecordBytes};
 
 /// A form byte that is unknown to its kind of layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +60,7 @@ macro_rules! parameters {
         }
 
         $( const _: () = assert!(
-            $offset + <$type as $crate::parameters::Parameter>::LEN <= $crate::record::RECORD_LEN,
+            $offset + <$type as $crate::parameters::Parameter>::LEN <= $crate::layout::RECORD_LEN,
             "the parameter lies outside the record"
         ); )*
 
@@ -74,12 +71,12 @@ macro_rules! parameters {
             ];
 
             fn read(
-                record: &$crate::parameters::RecordBytes,
+                record: &$crate::layout::RecordBytes,
             ) -> Result<Self, $crate::parameters::UnknownForm> {
                 Ok(Self { $( $parameter: $crate::parameters::Parameter::read(record, $offset)?, )* })
             }
 
-            fn write(&self, record: &mut $crate::parameters::RecordBytes) {
+            fn write(&self, record: &mut $crate::layout::RecordBytes) {
                 $( $crate::parameters::Parameter::write(&self.$parameter, record, $offset); )*
             }
 

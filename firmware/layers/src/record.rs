@@ -9,19 +9,10 @@ use frixel_wire::scene::SceneError;
 
 use crate::blend::Blend;
 use crate::kinds::{self, Layer};
+use crate::layout::{BLEND_AT, GAIN_AT, KIND_AT, RECORD_LEN, REGION_AT};
 use crate::parameters::{Parameter, range};
 use crate::point::Point;
 use crate::region::{POLYGON, Region};
-
-/// Bytes of a record.
-pub const RECORD_LEN: usize = 56;
-
-const KIND_AT: usize = 0;
-pub(crate) const REGION_AT: usize = 1;
-const BLEND_AT: usize = 2;
-/// A choice between the forms of a kind: the wave of a grating, whether a bitmap is tiled.
-pub(crate) const FORM_AT: usize = 3;
-pub(crate) const GAIN_AT: usize = 20;
 
 /// One layer.
 #[derive(Clone, Copy, Debug, PartialEq)]

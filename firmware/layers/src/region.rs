@@ -8,21 +8,19 @@ use frixel_wire::hello::feature;
 use frixel_wire::message::ConfigRefusal;
 use frixel_wire::scene::{POLYGON_POINTS_MAX, SceneError};
 
-use crate::context::{Context, Inputs};
-use crate::cost::measured;
-use crate::parameters::{Parameter, RecordBytes, UnknownForm, range};
+use crate::context::{Context, Inputs, STEPS_PER_M, place_steps};
+use crate::layout::{REGION_AT, REGION_NUMBERS_AT, RecordBytes};
+use crate::measured;
+use crate::parameters::{Parameter, UnknownForm, range};
 use crate::point::{Point, check_count, points_of};
-use crate::record::REGION_AT;
 
 const SCREEN: u8 = 0;
 const RECTANGLE: u8 = 1;
 const ELLIPSE: u8 = 2;
 pub(crate) const POLYGON: u8 = 3;
 
-/// Offset of a region's own numbers in a record: four `f32` of a rectangle, two bytes of a polygon.
-const NUMBERS_AT: usize = 4;
-const POLYGON_FIRST_AT: usize = NUMBERS_AT;
-const POLYGON_COUNT_AT: usize = NUMBERS_AT + 1;
+const POLYGON_FIRST_AT: usize = REGION_NUMBERS_AT;
+const POLYGON_COUNT_AT: usize = REGION_NUMBERS_AT + 1;
 
 /// Where a layer acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +82,7 @@ impl Region {
     /// Reads the region of a record. A polygon is unknown without its feature.
     pub(crate) fn read(record: &RecordBytes, number: u8) -> Result<Self, SceneError> {
         let numbers = || -> Result<[f32; 4], UnknownForm> {
-            let number = |number| f32::read(record, NUMBERS_AT + number * f32::LEN);
+            let number = |number| f32::read(record, REGION_NUMBERS_AT + number * f32::LEN);
             Ok([number(0)?, number(1)?, number(2)?, number(3)?])
         };
         let [x_m, y_m, width_m, height_m] = numbers().unwrap_or_default();
@@ -147,7 +145,7 @@ impl Region {
 
 fn put_numbers(record: &mut RecordBytes, numbers: [f32; 4]) {
     for (number, value) in numbers.into_iter().enumerate() {
-        value.write(record, NUMBERS_AT + number * f32::LEN);
+        value.write(record, REGION_NUMBERS_AT + number * f32::LEN);
     }
 }
 
@@ -166,16 +164,6 @@ fn edges_level(vertices: &[Point], y_m: f32) -> u32 {
         was_below = is_below;
     }
     count
-}
-
-/// Rectangles are tested in integer steps of 2^-28 m, 3.7 nm: a tick compares integers faster than `f32`. All
-/// coordinates of a scene are within 4 m.
-const STEPS_PER_M: f32 = (1 << 28) as f32;
-
-/// A coordinate in steps; saturates at the limits of the integer.
-#[inline]
-pub(crate) fn place_steps(place_m: f32) -> i32 {
-    (place_m * STEPS_PER_M) as i32
 }
 
 /// A region, ready to be tested.

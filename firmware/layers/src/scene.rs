@@ -6,8 +6,9 @@ use frixel_wire::hello::feature;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
 use crate::header::{HEADER_LEN, Header, SCENE_VERSION};
+use crate::layout::RECORD_LEN;
 use crate::point::{POINT_LEN, Point};
-use crate::record::{RECORD_LEN, Record};
+use crate::record::Record;
 use frixel_model::Waveform;
 
 /// Bytes of the largest scene.

@@ -4,15 +4,13 @@
 use frixel_wire::scene::POINTS_MAX;
 use heapless::Vec;
 
-use crate::click::{ClickCoefficients, ClickNumber};
+use crate::clicks::{CLICKS_MAX, ClickCoefficients, ClickNumber};
 #[cfg(feature = "noise")]
-use crate::kinds::noise::Waves;
+use crate::noise_waves::Waves;
 use crate::point::Point;
 
 /// Most layers of noise in a scene.
 pub const NOISES_MAX: usize = if cfg!(feature = "noise") { 8 } else { 0 };
-/// Most edges and buttons of a scene that click.
-pub const CLICKS_MAX: usize = if cfg!(feature = "edge") { 16 } else { 0 };
 /// Capacity for points; 0 if no enabled feature uses them.
 const POINTS_LEN: usize = if cfg!(any(feature = "polygon", feature = "speed")) { POINTS_MAX } else { 0 };
 

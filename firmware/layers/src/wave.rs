@@ -7,8 +7,9 @@
 use frixel_wire::message::ConfigRefusal;
 
 use crate::cosine::{centred, cosine};
-use crate::cost::measured;
-use crate::parameters::{Parameter, RecordBytes, UnknownForm, form, put_form, range};
+use crate::layout::RecordBytes;
+use crate::measured;
+use crate::parameters::{Parameter, UnknownForm, form, put_form, range};
 
 const SINE: u8 = 0;
 const SQUARE: u8 = 1;

@@ -1,5 +1,4 @@
-//! The bytes of scenes, held in `golden/`. To accept a change: `FRIXEL_BLESS=1 cargo test -p frixel-layers --test main
-//! golden`.
+//! The bytes of scenes, held in `golden/`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 #[allow(unreachable_pub, reason = "it is shared with the tests of `frixel-wire`")]
@@ -9,9 +8,9 @@ use crate::support;
 
 use std::fmt::Write;
 use std::path::Path;
-use std::{env, fs};
 
 use frixel_layers::{Header, Point, Record};
+use frixel_testkit::golden;
 use hex::{from_hex, to_hex};
 
 /// The bytes of all lines of this kind.
@@ -32,13 +31,7 @@ fn scenes_are_golden() {
     for point in support::points() {
         writeln!(text, "# {point:?}\npoint {}", to_hex(&point.write())).unwrap();
     }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/scene.hex");
-    if env::var_os("FRIXEL_BLESS").is_some() {
-        fs::write(&path, &text).unwrap();
-    }
-    let golden = fs::read_to_string(path).unwrap_or_default();
-    let difference = golden.lines().zip(text.lines()).find(|(golden, found)| golden != found);
-    assert!(golden == text, "the bytes of scenes have changed: first difference {difference:#?}");
+    golden::hold(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/scene.hex"), &text);
 
     for (golden, header) in lines(&text, "header").zip(support::headers()) {
         assert_eq!(Header::parse(golden.as_slice().try_into().unwrap()), Ok((header, 4, 3)));

@@ -4,6 +4,7 @@
 //! - [`IdealMonitor`]: the monitor readings of an ideal amplifier.
 //! - [`Random`]: random numbers that depend on the seed only, not on the platform.
 //! - [`RandomScene`], [`RandomFinger`]: scenes that a board accepts, and fingers to play them under.
+//! - `golden`: files of the repository that a test makes anew and compares.
 //!
 //! ```
 //! use frixel_testkit::{Pace, RandomFinger, RandomScene};
@@ -18,15 +19,29 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "std")]
+pub mod corpus;
+#[cfg(feature = "std")]
+pub mod golden;
+
+#[cfg(feature = "scenes")]
 mod finger;
+#[cfg(feature = "scenes")]
 mod layers;
+#[cfg(feature = "scenes")]
 mod monitor;
+#[cfg(feature = "scenes")]
 mod random;
+#[cfg(feature = "scenes")]
 mod random_scene;
+#[cfg(feature = "scenes")]
 mod scenes;
 
-pub use finger::{FingerReport, Pace, RandomFinger};
-pub use monitor::IdealMonitor;
-pub use random::Random;
-pub use random_scene::RandomScene;
-pub use scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points};
+#[cfg(feature = "scenes")]
+pub use self::{
+    finger::{FingerReport, Pace, RandomFinger},
+    monitor::IdealMonitor,
+    random::Random,
+    random_scene::RandomScene,
+    scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points},
+};

@@ -1,5 +1,4 @@
-//! The bytes of everything that goes over the wire, held in `golden/`. To accept a change:
-//! `FRIXEL_BLESS=1 cargo test -p frixel-wire --test main golden`.
+//! The bytes of everything that goes over the wire, held in `golden/`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use crate::support;
@@ -7,8 +6,8 @@ use crate::support;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
-use std::{env, fs};
 
+use frixel_testkit::golden;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
 use frixel_wire::hello::{BoardKind, PROTOCOL_MAJOR, PROTOCOL_MINOR, ResetCause};
@@ -18,20 +17,8 @@ use frixel_wire::scene::SceneError;
 use support::hex::{from_hex, to_hex};
 use support::{samples, variants};
 
-/// Compares with the golden file of this name, or writes it.
 fn hold(name: &str, found: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
-    if env::var_os("FRIXEL_BLESS").is_some() {
-        fs::write(path, found).unwrap();
-        return;
-    }
-    let golden = fs::read_to_string(path).unwrap_or_default();
-    let difference = golden.lines().zip(found.lines()).find(|(golden, found)| golden != found);
-    assert!(
-        golden == found,
-        "{name} is not what is written now: first difference {difference:#?}; when the change is meant, run \
-         `FRIXEL_BLESS=1 cargo test -p frixel-wire --test main golden`"
-    );
+    golden::hold(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name), found);
 }
 
 /// The bytes of all lines of this kind.

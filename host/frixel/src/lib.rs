@@ -1,13 +1,10 @@
 //! The library behind the `frixel` command: playing scenes, recording them, drawing charts and writing reports.
 #![forbid(unsafe_code)]
 
-pub mod calibration;
-mod chart;
+pub mod chart;
 mod default_stroke;
 mod finger_reference;
-pub mod fit;
 pub mod input;
-pub mod model_csv;
 pub mod output;
 pub mod output_file;
 pub mod player;
@@ -18,6 +15,5 @@ pub mod scene_file;
 pub mod score;
 pub mod stream;
 pub mod studio;
-pub mod threshold;
 
 pub use default_stroke::default_stroke;

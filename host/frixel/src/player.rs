@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Counters, Device, DeviceError, StreamStatus};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
 use frixel_model::LoadedContact;
 use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
-use frixel_scene::recorder::Recorder;
 use thiserror::Error;
 
 use crate::rigs::{RecordedLink, SimLink};

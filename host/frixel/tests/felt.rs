@@ -7,9 +7,10 @@
 
 use std::collections::BTreeMap;
 
-use frixel::score::{Trial, fidelity};
+use frixel::score::samples;
+use frixel_felt::fidelity::Fidelity;
 use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
-use frixel_scene::fidelity::Fidelity;
+use frixel_lab::score::Trial;
 use frixel_scene::{Program, Scene, compile};
 
 /// Error below 40 Hz over the reference's swing, correlation, and spurious force between 40 and 400 Hz: a finger's own
@@ -116,7 +117,7 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
 fn play(rig: &RigConfig, program: &Program, speed_mm_s: f64, seed: u64) -> Fidelity {
     let stroke = Stroke::human(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
     let trial = Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None };
-    fidelity(program, rig, &trial).unwrap().unwrap()
+    Fidelity::of(&samples(program, rig, &trial).unwrap()).unwrap()
 }
 
 fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> Felt {

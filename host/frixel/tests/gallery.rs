@@ -1,7 +1,4 @@
 //! Every scene of `scenes/` plays on the simulator, and `docs/gallery.md` shows it.
-//!
-//! `FRIXEL_BLESS=1 cargo test -p frixel --test main gallery` writes page and pictures anew; without it, this test holds
-//! them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
@@ -13,12 +10,14 @@ use frixel::default_stroke;
 use frixel::output::draw_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
+use frixel_felt::Preview;
+use frixel_felt::perception::{weber_steps, weber_steps_safe};
+use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
-use frixel_scene::perception::{weber_steps, weber_steps_safe};
-use frixel_scene::recorder::FeltRow;
 use frixel_scene::reference::{Context, Reference};
-use frixel_scene::{FingerProfile, Preview, Program, Scene, TargetRange, compile};
+use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};
+use frixel_testkit::golden;
 use frixel_wire::fault::Flags;
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
@@ -240,23 +239,18 @@ fn page(gallery: &[Entry]) -> String {
 fn the_gallery_in_the_docs_shows_these_scenes() {
     let gallery = gallery();
     let docs = repository().join("docs");
-    let bless = std::env::var_os("FRIXEL_BLESS").is_some();
     let drawn_in = tempfile::tempdir().unwrap();
     let held_in = docs.join("gallery");
-    if bless {
-        fs::create_dir_all(&held_in).unwrap();
-        fs::write(docs.join("gallery.md"), page(&gallery)).unwrap();
-    }
-    assert!(fs::read_to_string(docs.join("gallery.md")).unwrap() == page(&gallery), "docs/gallery.md: bless it");
+    golden::hold(&docs.join("gallery.md"), &page(&gallery));
     for Entry { name, program, .. } in &gallery {
         let file = format!("{name}.png");
         let (drawn, held) = (drawn_in.path().join(&file), held_in.join(&file));
         let preview = Preview { map_max: (400, 400), ..Preview::default() };
         fs::write(&drawn, draw_preview_png(&format!("{name}.toml"), program, &preview).unwrap()).unwrap();
-        if bless {
+        if golden::is_blessing() {
             fs::copy(&drawn, &held).unwrap();
         }
-        assert!(decoded(&drawn) == decoded(&held), "{}: look at it, then bless it", held.display());
+        assert!(decoded(&drawn) == decoded(&held), "{} differs. {}", held.display(), golden::how_to_bless());
         assert!(fs::metadata(&held).unwrap().len() <= PICTURE_BYTES_MAX, "{}", held.display());
     }
     let held = fs::read_dir(&held_in).unwrap().map(|entry| entry.unwrap().path());

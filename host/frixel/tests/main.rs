@@ -6,8 +6,7 @@ mod designer;
 mod draft;
 mod endings;
 mod felt;
-#[path = "fit/main.rs"]
-mod fit;
+mod fit_command;
 mod gallery;
 mod handover;
 #[path = "kinds/main.rs"]

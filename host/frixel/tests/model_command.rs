@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::io::{self, Read, Write};
 use std::process::{Command, Output, Stdio};
 
-use frixel::model_csv::{self, CsvError, Precision, Summary};
+use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
 use frixel_model::{Contact, ContactModel, Finger, Real};
 use proptest::prelude::*;
 

@@ -1,8 +1,8 @@
 //! The record of a play, beside the link to the board.
 
 use frixel_driver::{ByteStream, LinkClosed, PollingLink};
+use frixel_felt::recorder::Recorder;
 use frixel_model::ParameterError;
-use frixel_scene::recorder::Recorder;
 use frixel_scene::{LayerSetting, Program};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use frixel_driver::{Device, PollingLink};
+use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_play::load;
-use frixel_scene::check::{BoardCosts, SceneCheck};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 

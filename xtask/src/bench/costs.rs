@@ -10,7 +10,7 @@ use super::Figures;
 use super::figures::CYCLES;
 use crate::command::root;
 
-const PATH: &str = "firmware/layers/src/cost/measured.rs";
+const PATH: &str = "firmware/layers/src/measured.rs";
 
 /// Numbers of curve points in the shorter and the longer of the two measured cases; the same for polygon vertices
 /// below.
@@ -47,7 +47,10 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
         .filter(|cost| !found.contains(&line(cost)))
         .map(|(name, _, core_cycles)| format!("{name} is {core_cycles}"))
         .collect();
-    Err(format!("{PATH} is not what was measured; `cargo xtask bench --bless` writes it anew: {}", drifted.join(", ")))
+    Err(format!(
+        "{PATH} is not what was measured; `FRIXEL_BLESS=1 cargo xtask bench` writes it anew: {}",
+        drifted.join(", ")
+    ))
 }
 
 /// Prefix of the names of ticks.
@@ -136,9 +139,8 @@ fn line((name, _, core_cycles): &Cost) -> String {
 
 fn text(costs: &[Cost]) -> String {
     let mut text = String::from(
-        "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `cargo xtask bench --bless`; \
-         `cargo xtask\n\
-         //! test` measures again and fails when it finds others.\n\
+        "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `FRIXEL_BLESS=1 cargo xtask bench`;\n\
+         //! `cargo xtask test` measures again and fails when it finds others.\n\
          #![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n",
     );
     for cost in costs {

@@ -3,12 +3,13 @@
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::SceneError;
 
-use super::{Evaluate, Kind};
-use crate::click::{Click, ClickNumber};
+use crate::click::Click;
+use crate::clicks::ClickNumber;
 use crate::context::Context;
 use crate::cosine::cosine;
-use crate::cost::measured;
 use crate::interval::Interval;
+use crate::kind::{Evaluate, Kind};
+use crate::measured;
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;

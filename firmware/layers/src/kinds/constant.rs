@@ -2,10 +2,10 @@
 
 use frixel_wire::message::Refusal;
 
-use super::{Evaluate, Kind};
 use crate::context::Context;
-use crate::cost::measured;
 use crate::interval::Interval;
+use crate::kind::{Evaluate, Kind};
+use crate::measured;
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;

@@ -2,9 +2,9 @@
 
 use frixel_wire::message::Refusal;
 
-use super::{Evaluate, Kind};
 use crate::context::Context;
 use crate::interval::Interval;
+use crate::kind::{Evaluate, Kind};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;

@@ -2,19 +2,18 @@
 
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
-use super::{Evaluate, Kind};
 use crate::context::Context;
-use crate::cosine::{cosine, direction};
-use crate::cost::measured;
+use crate::cosine::cosine;
 use crate::interval::Interval;
+use crate::kind::{Evaluate, Kind};
+use crate::measured;
+use crate::noise_waves::{WAVES, Waves};
 use crate::parameters::{parameters, range, within};
 use crate::point::Point;
 use crate::prepare::{Preparation, no_room};
 use crate::region::ActiveRegion;
 use crate::tables::NOISES_MAX;
 
-/// Number of waves in a layer of noise.
-const WAVES: usize = 8;
 /// Keeps the sum within its range although a cosine may be a millionth larger than 1.
 const WITHIN: f32 = 1.0 - 1e-6;
 
@@ -87,47 +86,4 @@ impl Evaluate for NoiseCoefficients {
         }
         self.middle_n + self.swing_n * sum
     }
-}
-
-/// The waves of one layer, in the scene's tables.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Waves([PlaneWave; WAVES]);
-
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct PlaneWave {
-    cycles_per_m_x: f32,
-    cycles_per_m_y: f32,
-    phase_turns: f32,
-}
-
-impl Waves {
-    /// Directions are spread over half a turn and wave numbers over the band, each divided into eight parts, one for
-    /// each wave: no seed leaves a part empty.
-    fn new(seed: u32, wavelength_min_m: f32, wavelength_max_m: f32) -> Self {
-        let (least, largest) = (1.0 / wavelength_max_m, 1.0 / wavelength_min_m);
-        let mut waves = [PlaneWave::default(); WAVES];
-        for (number, wave) in (0..).zip(&mut waves) {
-            let (x, y) = direction((number as f32 + fraction(seed, number, 1)) / 16.0);
-            let part = ((5 * number % 8) as f32 + fraction(seed, number, 2)) / 8.0;
-            let cycles_per_m = least + (largest - least) * part;
-            *wave = PlaneWave {
-                cycles_per_m_x: cycles_per_m * x,
-                cycles_per_m_y: cycles_per_m * y,
-                phase_turns: fraction(seed, number, 3),
-            };
-        }
-        Self(waves)
-    }
-}
-
-/// The pseudo-random number, from 0 to 1, of a seed and a wave: `draw` is 1 to 3. The hash is "lowbias32" of C.
-/// Wellons' hash-prospector.
-fn fraction(seed: u32, wave: u32, draw: u32) -> f32 {
-    let mut v = seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + draw));
-    v ^= v >> 16;
-    v = v.wrapping_mul(0x7feb_352d);
-    v ^= v >> 15;
-    v = v.wrapping_mul(0x846c_a68b);
-    v ^= v >> 16;
-    (v >> 8) as f32 / (1 << 24) as f32
 }

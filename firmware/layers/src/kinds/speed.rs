@@ -3,10 +3,10 @@
 use frixel_wire::message::{ConfigRefusal, Refusal};
 use frixel_wire::scene::{CURVE_POINTS_MAX, SceneError};
 
-use super::{Evaluate, Kind};
 use crate::context::Context;
-use crate::cost::measured;
 use crate::interval::Interval;
+use crate::kind::{Evaluate, Kind};
+use crate::measured;
 use crate::parameters::{parameters, range, within};
 use crate::point::{Point, check_count, points_of};
 use crate::prepare::Preparation;

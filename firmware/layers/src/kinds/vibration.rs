@@ -4,12 +4,13 @@ use core::num::NonZeroU32;
 
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
-use super::{Evaluate, Kind};
 use crate::context::Context;
 use crate::cosine::cosine;
-use crate::cost::measured;
 use crate::interval::Interval;
-use crate::parameters::{Parameter, RecordBytes, UnknownForm, form, parameters, put_form, range, within};
+use crate::kind::{Evaluate, Kind};
+use crate::layout::RecordBytes;
+use crate::measured;
+use crate::parameters::{Parameter, UnknownForm, form, parameters, put_form, range, within};
 use crate::point::Point;
 use crate::prepare::{Preparation, ticks};
 use crate::region::ActiveRegion;

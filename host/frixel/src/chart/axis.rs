@@ -10,9 +10,9 @@ const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', 
 
 /// A linear or logarithmic axis of a plot. It may run backwards.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Axis {
+pub struct Axis {
     /// The quantity and its unit.
-    pub(crate) label: String,
+    pub label: String,
     logarithmic: bool,
     /// First and last value, or their decimal logarithms.
     range: Range<f64>,
@@ -21,18 +21,19 @@ pub(crate) struct Axis {
 
 impl Axis {
     /// Creates a linear axis.
-    pub(crate) fn linear(label: &str, range: Range<f64>) -> Self {
+    pub fn linear(label: &str, range: Range<f64>) -> Self {
         Self { label: label.to_owned(), logarithmic: false, range, labels: LABELS }
     }
 
     /// Creates a logarithmic axis; both ends must be above zero.
-    pub(crate) fn log(label: &str, range: Range<f64>) -> Self {
+    pub fn log(label: &str, range: Range<f64>) -> Self {
         let range = range.start.log10()..range.end.log10();
         Self { label: label.to_owned(), logarithmic: true, range, labels: LABELS }
     }
 
     /// Limits the number of labels to `labels`.
-    pub(crate) fn with_labels(self, labels: f64) -> Self {
+    #[must_use]
+    pub fn with_labels(self, labels: f64) -> Self {
         Self { labels, ..self }
     }
 
@@ -44,7 +45,7 @@ impl Axis {
     }
 
     /// The values that have a label.
-    pub(crate) fn ticks(&self) -> Vec<f64> {
+    pub fn ticks(&self) -> Vec<f64> {
         let (start, end) = (self.range.start.min(self.range.end), self.range.end.max(self.range.start));
         if !self.logarithmic {
             return multiples(start, end, step((end - start) / self.labels)).collect();

@@ -21,43 +21,50 @@ const SCALE_TITLE: u32 = 14;
 
 /// A value over a plane, drawn as a colour.
 #[derive(Clone, Debug)]
-pub(crate) struct Field {
-    pub(crate) values: Values,
+pub struct Field {
+    /// The values and where they lie.
+    pub values: Values,
     /// The axis of the values, from the first to the last colour of the scale.
-    pub(crate) colours: Axis,
+    pub colours: Axis,
 }
 
 /// The geometry of a field.
 #[derive(Clone, Debug)]
-pub(crate) enum Values {
+pub enum Values {
     Cells(Vec<Cell>),
     Raster(Raster),
 }
 
 /// A rectangle with a single value.
 #[derive(Clone, Debug)]
-pub(crate) struct Cell {
-    pub(crate) x: Range<f64>,
-    pub(crate) y: Range<f64>,
-    pub(crate) value: f64,
+pub struct Cell {
+    /// Left and right end.
+    pub x: Range<f64>,
+    /// Lower and upper end.
+    pub y: Range<f64>,
+    /// The value; not-a-number is grey.
+    pub value: f64,
 }
 
 /// A colour for every pixel of a plot, in rows from the top. Only PNG files support it.
 #[derive(Clone, Debug)]
-pub(crate) struct Raster {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-    pub(crate) pixels: Vec<RGBColor>,
+pub struct Raster {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Number of rows.
+    pub height: usize,
+    /// The colours.
+    pub pixels: Vec<RGBColor>,
 }
 
 impl Field {
     /// Creates a field of rectangles.
-    pub(crate) fn cells(cells: Vec<Cell>, colours: Axis) -> Self {
+    pub fn cells(cells: Vec<Cell>, colours: Axis) -> Self {
         Self { values: Values::Cells(cells), colours }
     }
 
     /// Creates a field of pixels.
-    pub(crate) fn pixels(raster: Raster, colours: Axis) -> Self {
+    pub fn pixels(raster: Raster, colours: Axis) -> Self {
         Self { values: Values::Raster(raster), colours }
     }
 

@@ -16,16 +16,16 @@ mod style;
 use frixel_scene::printable_lines;
 use plotters::coord::Shift;
 use plotters::prelude::*;
-pub(crate) use plotters::style::RGBColor;
+pub use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 use thiserror::Error;
 
-pub(crate) use axis::Axis;
-pub(crate) use field::{Cell, Field, Raster};
+pub use axis::Axis;
+pub use field::{Cell, Field, Raster};
 use legend::Legend;
-pub(crate) use strip::{Strip, StripCell};
+pub use strip::{Strip, StripCell};
 use style::{EDGE, NOTE, Scale, TITLE, WIDTH};
-pub(crate) use style::{Line, Look, Mark, PALETTE, colour, graded, signed};
+pub use style::{Line, Look, Mark, PALETTE, colour, graded, signed};
 
 /// Default height of a panel, including its title and axes, in pixels.
 const PANEL_HEIGHT: u32 = 360;
@@ -44,7 +44,7 @@ type Drawn = Result<(), DrawError>;
 /// The error that the drawing library reported.
 #[derive(Debug, Error)]
 #[error("{0}")]
-pub(crate) struct DrawError(String);
+pub struct DrawError(String);
 
 impl DrawError {
     fn new(reason: &impl ToString) -> Self {
@@ -60,76 +60,90 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawE
 
 /// A picture of one or more panels, side by side and in several rows.
 #[derive(Clone, Debug)]
-pub(crate) struct Chart {
+pub struct Chart {
     /// Title above all panels; empty for no title.
-    pub(crate) title: String,
-    pub(crate) panels: Vec<Panel>,
+    pub title: String,
+    /// The panels, row by row.
+    pub panels: Vec<Panel>,
     /// Number of panels in a row.
-    pub(crate) columns: u32,
+    pub columns: u32,
     /// Whether one legend below all panels replaces the legend of each panel.
-    pub(crate) shared_legend: bool,
+    pub shared_legend: bool,
     /// Sentences below the panels.
-    pub(crate) caption: Vec<String>,
+    pub caption: Vec<String>,
     /// Width of the picture, in pixels.
-    pub(crate) width: u32,
+    pub width: u32,
 }
 
 /// A plot with its axes and legend.
 #[derive(Clone, Debug)]
-pub(crate) struct Panel {
-    pub(crate) title: String,
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
-    pub(crate) series: Vec<Series>,
-    pub(crate) field: Option<Field>,
+pub struct Panel {
+    /// Title above the plot; empty for no title.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// What is plotted, the first at the bottom.
+    pub series: Vec<Series>,
+    /// A coloured field below the series.
+    pub field: Option<Field>,
     /// Short texts, each drawn to the right of its point.
-    pub(crate) notes: Vec<(f64, f64, String)>,
+    pub notes: Vec<(f64, f64, String)>,
     /// Further values along the axis, below its label.
-    pub(crate) strips: Vec<Strip>,
+    pub strips: Vec<Strip>,
     /// Height of plot, title and axes, in pixels.
-    pub(crate) height: u32,
-    pub(crate) margins: Margins,
+    pub height: u32,
+    /// Space around the plot.
+    pub margins: Margins,
 }
 
 /// Space around a plot for title, labels and colour scale, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Margins {
-    pub(crate) left: u32,
-    pub(crate) right: u32,
-    pub(crate) top: u32,
-    pub(crate) bottom: u32,
+pub struct Margins {
+    /// To the left.
+    pub left: u32,
+    /// To the right.
+    pub right: u32,
+    /// Above.
+    pub top: u32,
+    /// Below.
+    pub bottom: u32,
 }
 
 /// Points that are drawn in the same style. A series without a name does not appear in the legend.
 #[derive(Clone, Debug)]
-pub(crate) struct Series {
-    pub(crate) name: String,
+pub struct Series {
+    /// Name in the legend; empty for none.
+    pub name: String,
     /// Pairs of values; a point that is not a number interrupts the line.
-    pub(crate) points: Vec<(f64, f64)>,
-    pub(crate) look: Look,
+    pub points: Vec<(f64, f64)>,
+    /// How the points are drawn.
+    pub look: Look,
 }
 
 impl Panel {
     /// Creates a panel without series.
-    pub(crate) fn new(title: &str, x: Axis, y: Axis) -> Self {
+    pub fn new(title: &str, x: Axis, y: Axis) -> Self {
         let margins = Margins { left: 80, right: 20, top: 30, bottom: 44 };
         let (title, height) = (title.to_owned(), PANEL_HEIGHT);
         Self { title, x, y, series: Vec::new(), field: None, notes: Vec::new(), strips: Vec::new(), height, margins }
     }
 
     /// Adds a series.
-    pub(crate) fn add(&mut self, name: &str, look: Look, points: Vec<(f64, f64)>) {
+    pub fn add(&mut self, name: &str, look: Look, points: Vec<(f64, f64)>) {
         self.series.push(Series { name: name.to_owned(), points, look });
     }
 
     /// Adds a strip below the axis, and makes room for it.
-    pub(crate) fn add_strip(&mut self, strip: Strip) {
+    pub fn add_strip(&mut self, strip: Strip) {
         self.strips.push(strip);
         self.height += strip::STRIP_HEIGHT;
     }
 
     /// Adds a coloured field, and makes room for its colour scale.
-    pub(crate) fn with_field(mut self, field: Field) -> Self {
+    #[must_use]
+    pub fn with_field(mut self, field: Field) -> Self {
         self.field = Some(field);
         self.margins.right = 100;
         self
@@ -138,17 +152,18 @@ impl Panel {
 
 impl Chart {
     /// Creates a chart without a title, with `columns` panels in a row, each with its own legend.
-    pub(crate) fn new(panels: Vec<Panel>, columns: u32) -> Self {
+    pub fn new(panels: Vec<Panel>, columns: u32) -> Self {
         Self { title: String::new(), panels, columns, shared_legend: false, caption: Vec::new(), width: WIDTH }
     }
 
     /// Uses one legend for all panels.
-    pub(crate) fn with_shared_legend(self) -> Self {
+    #[must_use]
+    pub fn with_shared_legend(self) -> Self {
         Self { shared_legend: true, ..self }
     }
 
     /// Draws the chart as an SVG document.
-    pub(crate) fn svg(&self) -> Result<String, DrawError> {
+    pub fn svg(&self) -> Result<String, DrawError> {
         let layout = Layout::of(self)?;
         let fine = |pixels| SVG_SCALE.px(pixels);
         let mut text = String::new();
@@ -164,7 +179,7 @@ impl Chart {
     }
 
     /// Draws the chart as a PNG file.
-    pub(crate) fn png(&self) -> Result<Vec<u8>, DrawError> {
+    pub fn png(&self) -> Result<Vec<u8>, DrawError> {
         let layout = Layout::of(self)?;
         png::encoded((self.width, layout.height), |area, scale| self.draw(area, &layout, scale))
     }

@@ -19,19 +19,23 @@ const COLOUR_WIDTH_MIN: u32 = 2;
 
 /// A row of texts under the axis of a plot.
 #[derive(Clone, Debug)]
-pub(crate) struct Strip {
+pub struct Strip {
     /// Name of the strip, to the left of the plot.
-    pub(crate) label: String,
-    pub(crate) cells: Vec<StripCell>,
+    pub label: String,
+    /// The texts, from left to right.
+    pub cells: Vec<StripCell>,
 }
 
 /// A text under a part of the axis. It is left out where the part is too narrow for it, except for a part without any
 /// width, at which the text is centred.
 #[derive(Clone, Debug)]
-pub(crate) struct StripCell {
-    pub(crate) x: Range<f64>,
-    pub(crate) text: String,
-    pub(crate) colour: Option<RGBColor>,
+pub struct StripCell {
+    /// The part of the axis.
+    pub x: Range<f64>,
+    /// The text.
+    pub text: String,
+    /// Colour behind the text; `None` for none.
+    pub colour: Option<RGBColor>,
 }
 
 /// Draws strips below one another. `plot` has the left and right edge of the plot, in units; `top` is in pixels.

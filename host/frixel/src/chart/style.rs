@@ -32,7 +32,7 @@ const DASH: (u32, u32) = (7, 5);
 const COLOUR_STEPS: f64 = 32.0;
 
 /// Colours that can be told apart with any kind of colour vision (Okabe and Ito, <https://jfly.uni-koeln.de/color/>).
-pub(crate) const PALETTE: [RGBColor; 7] = [
+pub const PALETTE: [RGBColor; 7] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
     RGBColor(0x00, 0x9e, 0x73),
@@ -45,7 +45,7 @@ const UNKNOWN: RGBColor = RGBColor(128, 128, 128);
 
 /// The colour at `part` of the colour scale, from 0 to 1. Values outside take the colour of the nearer end, and
 /// not-a-number is grey.
-pub(crate) fn colour(part: f64) -> RGBColor {
+pub fn colour(part: f64) -> RGBColor {
     if part.is_nan() {
         return UNKNOWN;
     }
@@ -53,13 +53,13 @@ pub(crate) fn colour(part: f64) -> RGBColor {
 }
 
 /// The colour of curve `index` in an ordered family of `count` curves.
-pub(crate) fn graded(index: usize, count: usize) -> RGBColor {
+pub fn graded(index: usize, count: usize) -> RGBColor {
     // The bright end of the scale is too pale for a line on white.
     colour(0.85 * index as f64 / (count.max(2) - 1) as f64)
 }
 
 /// The colour of a value from -1 to 1: orange for negative and blue for positive values, stronger for larger ones.
-pub(crate) fn signed(part: f64) -> RGBColor {
+pub fn signed(part: f64) -> RGBColor {
     let (RGBColor(red, green, blue), strength) = match part {
         part if part < 0.0 => (PALETTE[1], -part),
         part if part > 0.0 => (PALETTE[0], part),
@@ -71,15 +71,19 @@ pub(crate) fn signed(part: f64) -> RGBColor {
 
 /// The style of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Look {
-    pub(crate) colour: RGBColor,
-    pub(crate) line: Line,
-    pub(crate) mark: Mark,
+pub struct Look {
+    /// Colour of line and marks.
+    pub colour: RGBColor,
+    /// How the points are connected.
+    pub line: Line,
+    /// How the points are marked.
+    pub mark: Mark,
 }
 
 /// How to connect the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Line {
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Line {
     None,
     Solid,
     Thin,
@@ -91,7 +95,8 @@ pub(crate) enum Line {
 
 /// How to mark the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mark {
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Mark {
     None,
     Disc,
     /// A disc that is large enough to be visible around another mark.
@@ -105,12 +110,12 @@ pub(crate) enum Mark {
 
 impl Look {
     /// A line without marks.
-    pub(crate) const fn line(colour: RGBColor, line: Line) -> Self {
+    pub const fn line(colour: RGBColor, line: Line) -> Self {
         Self { colour, line, mark: Mark::None }
     }
 
     /// Marks without a line.
-    pub(crate) const fn mark(colour: RGBColor, mark: Mark) -> Self {
+    pub const fn mark(colour: RGBColor, mark: Mark) -> Self {
         Self { colour, line: Line::None, mark }
     }
 

@@ -8,17 +8,17 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use frixel::calibration::{
-    BoardRow, CalibrationError, ForceRow, Protocol, align, read_board, read_forces, write_board, write_csv,
-};
 use frixel::output_file::{FileWriter, Inputs, Recording};
 use frixel::player::player;
-use frixel::rigs::{ForceSensor, RecordedLink, SimLink};
+use frixel::rigs::{RecordedLink, SimLink};
 use frixel_driver::Device;
+use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig, Stroke};
+use frixel_lab::calibration::{
+    BoardRow, CalibrationError, ForceRow, ForceSensor, Protocol, align, read_board, read_forces, write_board, write_csv,
+};
 use frixel_model::{Contact, Finger, LoadedContact};
 use frixel_play::{Feed, Player};
-use frixel_scene::recorder::{FeltRow, Recorder};
 use frixel_scene::{Elasticity, FingerProfile, Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -161,7 +161,7 @@ fn simulated_finger(seed: Option<u64>) -> Result<(LoadedContact<f64>, FingertipC
     let example = FingerProfile::example();
     let stiffness_pa_per_m = match example.elasticity {
         Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
-        Elasticity::Soft { .. } => frixel::fit::CONVENTIONAL_STIFFNESS_PA_PER_M,
+        Elasticity::Soft { .. } => frixel_lab::fit::CONVENTIONAL_STIFFNESS_PA_PER_M,
     };
     let finger = Finger {
         radius_m: 1e-3 * example.radius_mm,

@@ -3,9 +3,6 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel::calibration::CalibrationError;
-use frixel::fit::FitError;
-use frixel::model_csv::CsvError;
 use frixel::output::{DrawingError, FeltLogError};
 use frixel::output_file::OutputFileError;
 use frixel::rehearsal::RehearsalError;
@@ -19,6 +16,9 @@ use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
+use frixel_lab::calibration::CalibrationError;
+use frixel_lab::fit::FitError;
+use frixel_lab::model_csv::CsvError;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};

@@ -4,10 +4,10 @@ use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use frixel::fit::{self, Fit, Settings, Summary};
 use frixel::input::{self, Bounded};
 use frixel::output::draw_fit_svg;
 use frixel::output_file::{Inputs, OutputFile, commit_all};
+use frixel_lab::fit::{self, Fit, Settings, Summary};
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
 

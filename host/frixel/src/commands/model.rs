@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use frixel::input::{self, Bounded};
-use frixel::model_csv::{self, CsvError, Precision, Summary};
 use frixel::output_file::{Inputs, OutputFile};
+use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
 
 use super::error::CommandError;
 use super::terminal::note;

@@ -1,4 +1,4 @@
-//! `frixel report`: the model's figures, its error and its cost, on one page.
+//! `frixel report`: the model's error and its cost, on one page.
 
 use std::path::PathBuf;
 

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use frixel::output::draw_score_svg;
 use frixel::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use frixel::player::SimulationError;
-use frixel::score::{Score, Trial, TrialFinger, draw_score_svg};
+use frixel::score::samples;
 use frixel_hil_sim::{Person, RigConfig, Stroke};
+use frixel_lab::score::{Score, Trial, TrialFinger};
 use frixel_scene::{Program, Scene, compile};
 
 use super::argument::number;
@@ -96,7 +98,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
         }
     };
     let _folder = OutputFolder::open(&args.out)?;
-    let score = Score::of(&program, &rig, &trials).map_err(|error| match error {
+    let score = Score::of(&trials, |trial| samples(&program, &rig, trial)).map_err(|error| match error {
         SimulationError::Play(error) => CommandError::of_play("sim", error),
         SimulationError::World(error) => error.into(),
     })?;

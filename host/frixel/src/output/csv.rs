@@ -5,12 +5,12 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::marker::PhantomData;
 
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
-use crate::calibration::ForceRow;
 use crate::output_file::{FileWriter, OutputFileError};
 use crate::rigs::BoardEvent;
+use frixel_lab::calibration::ForceRow;
 
 /// A row of a CSV file. `docs/outputs.md` describes the columns.
 pub trait CsvRow {

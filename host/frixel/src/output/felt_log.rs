@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use thiserror::Error;
 
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 
 use crate::input;
 

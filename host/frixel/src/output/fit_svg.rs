@@ -2,7 +2,7 @@
 
 use super::DrawingError;
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
-use crate::fit::Fit;
+use frixel_lab::fit::Fit;
 
 /// Number of points of a fitted curve.
 const CURVE_POINTS: u32 = 100;
@@ -54,7 +54,7 @@ fn over_voltage(fit: &Fit) -> Panel {
     panel
 }
 
-fn points(fit: &Fit) -> impl Iterator<Item = (usize, &crate::fit::Point)> {
+fn points(fit: &Fit) -> impl Iterator<Item = (usize, &frixel_lab::fit::Point)> {
     fit.strokes.iter().enumerate().flat_map(|(index, stroke)| stroke.points.iter().map(move |point| (index + 1, point)))
 }
 
@@ -84,8 +84,9 @@ fn over_load(fit: &Fit) -> Panel {
 }
 
 fn coefficients(fit: &Fit) -> Panel {
-    let coefficient =
-        |(index, stroke): (usize, &crate::fit::StrokeResult)| Some((index as f64 + 1.0, stroke.natural_coefficient?));
+    let coefficient = |(index, stroke): (usize, &frixel_lab::fit::StrokeResult)| {
+        Some((index as f64 + 1.0, stroke.natural_coefficient?))
+    };
     let points: Vec<_> = fit.strokes.iter().enumerate().filter_map(coefficient).collect();
     let last = fit.strokes.len() as f64 + 1.0;
     let mean = fit.friction_coefficient.value;

@@ -5,6 +5,7 @@
 //! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
 //! - [`draw_felt_svg`]: friction and voltage over time.
 //! - [`draw_fit_svg`]: the residual plots of a fit.
+//! - [`draw_score_svg`]: the numbers of a score that a person notices.
 //! - [`draw_scene_png`]: the friction map of a program with the stroke over it.
 //! - [`draw_preview_png`]: the friction map of a program before it is played.
 //! - [`FeltLog`]: the log of a virtual board, which joins what its finger felt to the rows of a client.
@@ -21,6 +22,7 @@ mod off_strip;
 mod preview_png;
 mod report;
 mod scene_png;
+mod score_svg;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -34,6 +36,7 @@ pub use fit_svg::draw_fit_svg;
 pub use preview_png::draw_preview_png;
 pub use report::{Report, WorldReport, draft_line};
 pub use scene_png::draw_scene_png;
+pub use score_svg::draw_score_svg;
 pub use trace::{Trace, TracedLayer};
 
 /// The subject of a picture, from which its title is made.

@@ -3,13 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
-use frixel_hil_sim::StrokeError;
 use frixel_model::{InverseError, ParameterError, StateError, TableError};
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 use crate::output_file::OutputFileError;
-use crate::player::SimulationError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.
@@ -66,10 +64,4 @@ pub enum ReportError {
     /// A scene could not be compiled.
     #[error(transparent)]
     Texture(#[from] CompileError),
-    /// The stroke over the texture could not be created.
-    #[error(transparent)]
-    Stroke(#[from] StrokeError),
-    /// The texture could not be simulated.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
 }

@@ -10,7 +10,6 @@
 #[cfg(unix)]
 mod emulated;
 mod event_log;
-mod force_sensor;
 #[cfg(unix)]
 mod pace;
 mod port;
@@ -24,7 +23,6 @@ mod sim_link;
 #[cfg(unix)]
 pub use emulated::EmulatedLink;
 pub use event_log::{BoardEvent, EventKind, EventLog};
-pub use force_sensor::ForceSensor;
 #[cfg(unix)]
 pub use pace::Dropped;
 pub use port::PortLink;

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use frixel_driver::{Link, LinkClosed, SerialLink, Written};
+use frixel_felt::recorder::{Observation, Recorder};
 use frixel_play::Recorded;
-use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::message::Telemetry;
 
 /// A serial port, with the record of the telemetry received from it.

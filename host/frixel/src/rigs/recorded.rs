@@ -1,9 +1,9 @@
 //! What all rigs have in common.
 
 use frixel_driver::Link;
+use frixel_felt::recorder::{FeltFriction, FingerState, Observation, Recorder};
 use frixel_hil_sim::{Felt, FingerState as SimulatedFinger, ReferenceFriction};
 use frixel_play::Recorded;
-use frixel_scene::recorder::{FeltFriction, FingerState, Observation, Recorder};
 
 /// A link to a board that plays a scene, with the [`Recorder`] of that play. It is idle until a play has its own.
 pub trait RecordedLink: Link + Recorded<Recorder = Recorder> {}

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{Rig, TickRecord};
-use frixel_scene::recorder::Recorder;
+use frixel_lab::calibration::ForceSensor;
 use frixel_wire::fault::State;
 
 use super::sim_link::observation;
-use super::{BoardEvent, EventKind, EventLog, ForceSensor};
+use super::{BoardEvent, EventKind, EventLog};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
 use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, is_play_of_person};
 

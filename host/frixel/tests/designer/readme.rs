@@ -1,10 +1,10 @@
 //! Figures in the README are what the command beside them prints.
 //!
 //! A line `    $ frixel ...` is run, and the lines behind it, indented by six, are lines of its output.
-//! `FRIXEL_BLESS=1 cargo test -p frixel --test main designer::readme` writes them anew.
 
 use std::fs;
 
+use frixel_testkit::golden;
 use tempfile::TempDir;
 
 use super::{scenes, succeed};
@@ -45,9 +45,5 @@ fn figures_in_the_readme_are_printed_by_their_commands() {
         found.push('\n');
     }
     assert!(commands >= 2 && figures >= 4, "{commands} commands, {figures} figures");
-    if std::env::var_os("FRIXEL_BLESS").is_some() {
-        fs::write(&path, found).unwrap();
-    } else {
-        assert!(found == text, "README.md has other figures than its commands print; inspect them, then bless it");
-    }
+    golden::hold(&path, &found);
 }

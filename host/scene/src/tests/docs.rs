@@ -1,9 +1,9 @@
 //! Tests that the examples in `docs/scene.md` compile, and that its tables of fields match the parser.
-//!
-//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` rewrites the tables.
 
 use std::fs;
 use std::path::PathBuf;
+
+use frixel_testkit::golden;
 
 use super::*;
 use crate::FingerProfile;
@@ -184,11 +184,7 @@ fn the_tables_of_fields_are_those_of_the_parser() {
     let path: PathBuf = scenes().join("../docs/scene.md");
     let held = fs::read_to_string(&path).expect("it is there");
     let made = with_tables(&held);
-    if std::env::var_os("FRIXEL_BLESS").is_some() {
-        fs::write(&path, &made).expect("it is written");
-    } else {
-        assert!(held == made, "bless it: FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs");
-    }
+    golden::hold(&path, &made);
 }
 
 #[test]

@@ -1,11 +1,10 @@
 //! Tests that the JSON schema agrees with the parser, and that `docs/scene.schema.json` is the generated one.
-//!
-//! `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib schema` rewrites the file.
 
 use std::fs;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
+use frixel_testkit::golden;
 use serde_json::Value;
 
 use super::json_schema::is_valid;
@@ -65,11 +64,7 @@ pub(super) fn check_agrees(text: &str, mistakes: &[Located]) {
 #[test]
 fn the_schema_in_the_docs_is_the_one_that_is_made() {
     let path: PathBuf = scenes().join("../docs/scene.schema.json");
-    if std::env::var_os("FRIXEL_BLESS").is_some() {
-        fs::write(&path, json_schema()).expect("it is written");
-    }
-    let held = fs::read_to_string(&path).expect("it is there");
-    assert!(held == json_schema(), "bless it: FRIXEL_BLESS=1 cargo test -p frixel-scene --lib schema");
+    golden::hold(&path, &json_schema());
 }
 
 #[test]

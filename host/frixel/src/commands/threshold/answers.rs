@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use frixel::output_file::{FileWriter, Recording};
-use frixel::threshold::Staircase;
+use frixel_lab::threshold::Staircase;
 use serde::Deserialize;
 
 use super::CommandError;

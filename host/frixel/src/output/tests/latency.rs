@@ -1,10 +1,7 @@
 //! How the friction error of the brick scene grows with the latency of the touch source: `docs/latency.csv` and
 //! `docs/latency.svg`.
-//!
-//! `FRIXEL_BLESS=1 cargo test -p frixel --lib latency` writes them anew; without it, this test holds them.
 
 use std::fmt::Write;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
@@ -12,6 +9,7 @@ use crate::player::{Simulation, simulate};
 use crate::scene_file;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::{Program, compile};
+use frixel_testkit::golden;
 
 const LATENCIES_MS: [u32; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
 const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
@@ -113,11 +111,6 @@ fn the_error_over_latency_in_the_docs_is_the_one_that_is_simulated() {
     let curves = curves();
     let files = [(path("latency.csv"), csv(&curves)), (path("latency.svg"), svg(&curves))];
     for (path, text) in files {
-        if std::env::var_os("FRIXEL_BLESS").is_some() {
-            fs::write(&path, text).unwrap();
-        } else {
-            let held = fs::read_to_string(&path).unwrap();
-            assert!(held == text, "{} is not what is simulated; inspect it, then bless it", path.display());
-        }
+        golden::hold(&path, &text);
     }
 }

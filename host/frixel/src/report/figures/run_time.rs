@@ -5,10 +5,10 @@ use core::f64::consts::LOG10_2;
 use frixel_model::ContactModel;
 
 use super::boards::BoardCostFigure;
-use super::{EXAMPLE, Figure, GAP_M, LOAD_N, ReportError, example, example_finger};
+use super::{Figure, ReportError, example};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
-use crate::report::data::{Data, Value};
+use crate::report::figure::{Data, Value};
 use crate::report::methods::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
 
 /// Kinds of methods in the order of the legends, with their names and styles.
@@ -76,22 +76,22 @@ impl Measured {
 
 /// Measures all methods without a load and under the load of the example finger.
 pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
-    let finger = example_finger();
+    let finger = example::FINGER;
     let measured = |load_n: f64| {
         let bench = Bench {
-            contact: &example::<f64>()?.under_load(load_n)?,
-            single: &example::<f32>()?.under_load(load_n as f32)?,
+            contact: &example::contact::<f64>()?.under_load(load_n)?,
+            single: &example::contact::<f32>()?.under_load(load_n as f32)?,
             parameters: Parameters {
                 radius_m: finger.radius_m,
                 stiffness_pa_per_m: finger.stiffness_pa_per_m,
                 friction_coefficient: finger.friction_coefficient,
-                gap_m: GAP_M,
+                gap_m: example::GAP_M,
                 normal_load_n: load_n,
             },
         };
         Ok::<_, ReportError>(Measured { load_n, methods: bench.all()? })
     };
-    Ok([measured(0.0)?, measured(LOAD_N)?])
+    Ok([measured(0.0)?, measured(example::LOAD_N)?])
 }
 
 /// Error over run time on this computer.
@@ -142,7 +142,7 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: BoardCostFigure) ->
              it knows nothing. Direct tables find their row from the bits of the friction and evaluate a polynomial. \
              Integers have codes of 32 bits for friction, and their error is that against the code."
                 .to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
@@ -182,7 +182,7 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
                 range_octaves(measured[0].load_n),
                 range_octaves(measured[1].load_n),
             ),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
@@ -230,7 +230,7 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
              and the cycles beside them are estimates; instructions are not cycles. A board of 170 MHz has 4,250 \
              cycles to a tick at 40 kHz, and 170 to a microsecond."
                 .to_owned(),
-            EXAMPLE.to_owned(),
+            example::CAPTION.to_owned(),
         ],
         chart: Chart::new(panels, columns).with_shared_legend(),
         csv: data.csv()?,
@@ -257,7 +257,7 @@ fn nanoseconds(measured: &[Measured; 2]) -> String {
 /// Octaves of electric friction between the least and the largest voltage.
 fn range_octaves(load_n: f64) -> f64 {
     let friction = |voltage: f64| {
-        let contact = example::<f64>().ok()?.under_load(load_n).ok()?;
+        let contact = example::contact::<f64>().ok()?.under_load(load_n).ok()?;
         contact.state(voltage).ok().map(|state| state.electric_friction_n)
     };
     let octaves = |low: f64, high: f64| (high / low).log10() / LOG10_2;

@@ -11,7 +11,7 @@ use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
-use crate::report::data::Data;
+use crate::report::figure::Data;
 use crate::report::wire::OnTheWire;
 use frixel_scene::{CompileError, Program, Scene, compile};
 
@@ -282,7 +282,7 @@ mod tests {
     use super::*;
     use crate::rigs::SimLink;
     use frixel_driver::{Bitmap, Device, Upload};
-    use frixel_scene::recorder::Recorder;
+    use frixel_felt::recorder::Recorder;
 
     /// Frames and bytes that the driver sends to a simulated board.
     fn sent(program: &Program) -> (u64, u64) {

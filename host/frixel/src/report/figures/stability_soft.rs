@@ -4,7 +4,7 @@ use frixel_model::{Real, SoftFinger, contact_exponent};
 
 use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
-use crate::report::data::Data;
+use crate::report::figure::Data;
 use crate::report::reference::{SoftRow, soft};
 
 /// The parameters are exact in f32.

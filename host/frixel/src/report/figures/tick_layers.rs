@@ -3,7 +3,7 @@
 use super::{Figure, ReportError};
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
-use crate::report::data::Data;
+use crate::report::figure::Data;
 
 const CORE: &str = "m4f";
 /// Numbers of layers in the scene.

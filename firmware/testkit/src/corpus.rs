@@ -1,0 +1,121 @@
+//! Corpora: Markdown files of inputs, each followed by what must be said to it.
+//!
+//! A heading names a case. A code block with the name of a file behind its language, such as `toml scene.toml`, is an
+//! input; blocks of the introduction stand at the beginning of the file of the same name in each case. The block with
+//! the language `says` is what must be said. A test makes the page anew with what is said now and holds it as a
+//! [golden file](crate::golden).
+//!
+//! ````text
+//! # Layers
+//!
+//! Each scene begins with
+//!
+//! ```toml scene.toml
+//! version = 2
+//! ```
+//!
+//! ## A misspelt kind
+//!
+//! ```toml scene.toml
+//! [[layer]]
+//! kind = "gratng"
+//! ```
+//!
+//! ```says
+//! scene.toml:3:8: `kind = "gratng"` is not known; did you mean `grating`?
+//! ```
+//! ````
+#![allow(clippy::panic, reason = "part of a test, which may fail")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::golden;
+
+const FENCE: &str = "```";
+/// The language of the block with what must be said.
+const SAYS: &str = "says";
+
+/// The inputs of a case.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Case {
+    /// Its heading.
+    pub heading: String,
+    /// Names and texts of its files.
+    pub files: BTreeMap<String, String>,
+}
+
+/// Plays all cases of a folder's pages, and holds what is said to them. `answer` takes the inputs of a case and returns
+/// the lines that are said.
+///
+/// # Panics
+///
+/// Something else is said to a case than the page has, or a page cannot be read.
+#[track_caller]
+pub fn hold(folder: &Path, mut answer: impl FnMut(&Case) -> String) {
+    let pages = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut pages: Vec<_> = pages.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
+    pages.sort();
+    assert!(!pages.is_empty(), "{} has no pages", folder.display());
+    for page in pages {
+        let text = fs::read_to_string(&page).unwrap_or_else(|error| panic!("{}: {error}", page.display()));
+        golden::hold(&page, &answered(&text, &mut answer));
+    }
+}
+
+/// A page with what is said now in the place of what must be said.
+fn answered(page: &str, answer: &mut impl FnMut(&Case) -> String) -> String {
+    let mut answered = String::new();
+    let mut introduction = BTreeMap::new();
+    let mut case = Case::default();
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        answered.extend([line, "\n"]);
+        if let Some(heading) = line.strip_prefix("## ") {
+            if case.heading.is_empty() {
+                introduction = case.files;
+            }
+            case = Case { heading: heading.to_owned(), files: introduction.clone() };
+        }
+        let Some(block) = line.strip_prefix(FENCE) else { continue };
+        let held: String = lines.by_ref().take_while(|line| *line != FENCE).flat_map(|line| [line, "\n"]).collect();
+        let text = if block == SAYS {
+            let said = answer(&case);
+            case.files.clone_from(&introduction);
+            said
+        } else {
+            let name = block.split_once(' ').map(|(_, name)| name.to_owned());
+            let name = name.unwrap_or_else(|| panic!("a block of {} names no file", case.heading));
+            *case.files.entry(name).or_default() += &held;
+            held
+        };
+        answered.extend([&text, FENCE, "\n"]);
+    }
+    answered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: &str =
+        "# Sums\n\n```text a\n1\n```\n\n## Two\n\n```text a\n2\n```\n\n```says\n3\n```\n\n## None\n\n```says\n1\n```\n";
+
+    fn sum(case: &Case) -> String {
+        let sum: u32 = case.files["a"].lines().filter_map(|line| line.parse::<u32>().ok()).sum();
+        format!("{sum}\n")
+    }
+
+    #[test]
+    fn a_page_that_says_what_is_said_stays() {
+        assert_eq!(answered(PAGE, &mut sum), PAGE);
+    }
+
+    #[test]
+    fn another_answer_takes_the_place_of_the_old_one() {
+        let wrong = PAGE.replace("\n3\n", "\n4\n5\n");
+        assert_eq!(answered(&wrong, &mut sum), PAGE);
+    }
+}

@@ -1,0 +1,50 @@
+//! Golden files: files of the repository that a test makes anew and compares.
+#![allow(clippy::panic, reason = "part of a test, which may fail")]
+
+use std::path::Path;
+use std::{env, fs, thread};
+
+/// The environment variable that has tests write their golden files anew.
+const BLESS: &str = "FRIXEL_BLESS";
+
+/// Whether golden files are to be written anew.
+pub fn is_blessing() -> bool {
+    env::var_os(BLESS).is_some()
+}
+
+/// Panics unless a golden file has this text; with `FRIXEL_BLESS` set, writes it.
+///
+/// # Panics
+///
+/// The file has another text. The message shows the first line that differs, and the command that blesses the file.
+#[track_caller]
+pub fn hold(path: &Path, text: &str) {
+    if is_blessing() {
+        fs::write(path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        return;
+    }
+    let held = fs::read_to_string(path).unwrap_or_default();
+    if held != text {
+        let difference = first_difference(&held, text);
+        panic!("{} is not what this test makes. {difference}\n{}", path.display(), how_to_bless());
+    }
+}
+
+/// The first line in which two texts differ.
+fn first_difference(held: &str, made: &str) -> String {
+    let lines = held.lines().zip(made.lines()).enumerate();
+    let differing = lines.map(|(number, lines)| (number + 1, lines)).find(|(_, (held, made))| held != made);
+    match differing {
+        Some((number, (held, made))) => format!("Line {number} is\n{held}\nand the test makes\n{made}"),
+        None => format!("It has {} bytes, and the test makes {}.", held.len(), made.len()),
+    }
+}
+
+/// What to do when a golden file differs, with the command that blesses the golden files of the running test.
+pub fn how_to_bless() -> String {
+    let package = env::var("CARGO_PKG_NAME").map(|name| format!(" -p {name}")).unwrap_or_default();
+    // The test harness names the thread of a test after the test, unless all run on its main thread.
+    let test = thread::current().name().filter(|name| *name != "main").map(|name| format!(" {name}"));
+    let test = test.unwrap_or_default();
+    format!("If the change is meant, `{BLESS}=1 cargo test{package}{test}` writes it anew.")
+}

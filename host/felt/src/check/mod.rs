@@ -1,0 +1,196 @@
+//! The cost of a scene, and the friction that a finger will feel of it, computed before it is played.
+
+//!
+//! The input is a program, the limits of the board that it was compiled for, and what that board needs for it
+//! ([`BoardCosts`]). The output is [`SceneCheck`], as text for a person or as JSON.
+
+mod board;
+pub mod feel;
+mod text;
+
+use frixel_model::InverseTable;
+use frixel_wire::hello::BoardLimits;
+use serde::Serialize;
+
+pub use board::BoardImage;
+
+use crate::perception::Perception;
+use frixel_scene::{Program, TargetRange, middle_mm};
+
+/// What a board needs for a program. The caller measures it on a board, which may be simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoardCosts {
+    /// Bytes that the host sends, without the hello, until a board that holds no picture has accepted the program.
+    pub wire_total_bytes: usize,
+    /// Bytes of coefficients that the program fills in the board's RAM.
+    pub active_bytes: usize,
+    /// Rows of the inverse table that the board computes for the program.
+    pub table_rows: usize,
+    /// Rows that it would compute for a program that targets the whole reachable range.
+    pub table_rows_whole: usize,
+}
+
+/// The costs and limits of a scene; the field names are the keys of `--json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneCheck {
+    /// Number of layers that are played.
+    pub layers: usize,
+    /// Bytes of the upload.
+    pub wire: WireBytes,
+    /// Bytes of the board's RAM.
+    pub ram: RamBytes,
+    /// The longest tick.
+    pub tick: LongestTick,
+    /// The finger that the newtons are computed for.
+    pub finger: CheckedFinger,
+    /// Friction that the drive can reach on this finger.
+    pub reach: ReachableFriction,
+    /// Friction that the scene targets.
+    pub asked: TargetRange,
+    /// Reasons to doubt these newtons, a sentence each.
+    pub warnings: Vec<String>,
+    /// What a person will feel of it.
+    pub perception: Perception,
+    /// Values that the compiler rounded, converted or clamped, a sentence each.
+    pub notes: Vec<String>,
+    /// Parts of the scene that the compiler omitted and the reasons, a sentence each.
+    pub left_out: Vec<String>,
+    /// The smallest firmware image that plays the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub board: Option<BoardImage>,
+}
+
+/// Bytes sent from host to board, if the board does not hold any picture of the scene yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct WireBytes {
+    /// The compiled scene: header, layers, points.
+    pub scene_bytes: usize,
+    /// Samples of the scene's pictures.
+    pub bitmap_bytes: usize,
+    /// Overhead: framing, checksums, the commands of the upload and the commit.
+    pub framing_bytes: usize,
+    /// Sum of the other fields.
+    pub total_bytes: usize,
+}
+
+/// Bytes of the board's RAM that depend on the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct RamBytes {
+    /// Bytes of the scene's pictures in the bitmap pool.
+    pub bitmap_pool_bytes: usize,
+    /// Size of the bitmap pool. While one scene replaces another, the pool holds the pictures of both.
+    pub bitmap_pool_limit_bytes: u32,
+    /// Coefficients of layers, points, waves and clicks.
+    pub active_bytes: usize,
+    /// Rows of the inverse table that the board computes for this scene.
+    pub table_bytes: usize,
+    /// Rows that the board would compute for a scene that targets the whole reachable range.
+    pub table_whole_bytes: usize,
+    /// Memory reserved for the table, equal for every scene: computing fewer rows shortens a commit, but saves no RAM.
+    pub table_room_bytes: usize,
+}
+
+/// The longest tick on a Cortex-M4F.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LongestTick {
+    /// Estimated processor cycles.
+    pub cycles: u32,
+    /// Largest estimate that a board accepts.
+    pub cycles_limit: u32,
+    /// A position of the finger at which a tick may take that long, mm from the screen's left edge.
+    pub x_mm: f64,
+    /// The same position, mm from the screen's top edge.
+    pub y_mm: f64,
+    /// Layers that may act at that position.
+    pub layers: Vec<String>,
+}
+
+impl LongestTick {
+    fn of(program: &Program, cycles_limit: u32) -> Self {
+        let worst = program.worst_tick();
+        let cell = worst.cell;
+        let (x_mm, y_mm) = middle_mm(&cell);
+        Self {
+            cycles: worst.cycles(),
+            cycles_limit,
+            x_mm,
+            y_mm,
+            layers: program.titles_in(&cell).into_iter().map(str::to_owned).collect(),
+        }
+    }
+}
+
+/// The finger that a scene is compiled for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CheckedFinger {
+    /// The finger, for a person.
+    pub title: String,
+    /// `assumed`, `perceptual` or `measured`, on the screen that the scene is compiled for.
+    pub origin: &'static str,
+}
+
+/// Friction that the drive can reach on the scene's finger, at its load and on its coating.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReachableFriction {
+    /// Total friction at zero voltage, N.
+    pub natural_n: f64,
+    /// Largest friction that the drive can add to that, N.
+    pub electric_max_n: f64,
+    /// Largest total friction, N.
+    pub total_max_n: f64,
+    /// Rms voltage at the largest friction, V.
+    pub voltage_max_v_rms: f64,
+}
+
+impl SceneCheck {
+    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it.
+    pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts) -> Self {
+        let scene_bytes = program.scene_bytes().len();
+        let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
+        let total_bytes = costs.wire_total_bytes;
+        let reach = &program.reach;
+        Self {
+            layers: program.records.len(),
+            wire: WireBytes {
+                scene_bytes,
+                bitmap_bytes,
+                framing_bytes: total_bytes.saturating_sub(scene_bytes + bitmap_bytes),
+                total_bytes,
+            },
+            ram: RamBytes {
+                bitmap_pool_bytes: bitmap_bytes,
+                bitmap_pool_limit_bytes: limits.bitmap_pool_bytes,
+                active_bytes: costs.active_bytes,
+                table_bytes: InverseTable::ROW_BYTES * costs.table_rows,
+                table_whole_bytes: InverseTable::ROW_BYTES * costs.table_rows_whole,
+                table_room_bytes: size_of::<InverseTable>(),
+            },
+            tick: LongestTick::of(program, limits.tick_cycles_max),
+            finger: CheckedFinger { title: program.finger.title.clone(), origin: program.finger.origin.word() },
+            reach: ReachableFriction {
+                natural_n: reach.natural_friction_n,
+                electric_max_n: reach.electric_friction_max_n,
+                total_max_n: reach.friction_max_n(),
+                voltage_max_v_rms: reach.voltage_max_v_rms,
+            },
+            asked: TargetRange::of(program),
+            warnings: program.warnings.iter().map(ToString::to_string).collect(),
+            perception: Perception::of(program),
+            notes: program.notes.clone(),
+            left_out: program.optimisations.iter().map(ToString::to_string).collect(),
+            board: None,
+        }
+    }
+
+    /// Adds the smallest firmware image that plays the program.
+    #[must_use]
+    pub fn with_board(self, program: &Program) -> Self {
+        Self { board: Some(BoardImage::of(program)), ..self }
+    }
+
+    /// The costs as one JSON object on one line.
+    pub fn to_json(&self) -> String {
+        // Numbers and strings always serialise.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}

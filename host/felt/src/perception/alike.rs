@@ -1,0 +1,98 @@
+//! Layers that a person cannot tell apart by their strength.
+
+use frixel_layers::Layer;
+use serde::Serialize;
+
+use super::{JudgedLayer, Texture, USUAL_M_PER_S, VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps};
+use frixel_scene::Program;
+
+/// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
+const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
+/// Frictions are compared that differ by less, in Weber steps: by less than a person feels.
+const ALIKE_WEBER_STEPS: f64 = 1.0;
+
+/// Two layers whose difference is less than a person can tell. One of the differences is known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AlikeLayers {
+    /// Titles of the layers.
+    pub layers: [String; 2],
+    /// Textures of about the same frequency: difference of their voltages at the 95th percentile of their friction, dB.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub difference_db: Option<f64>,
+    /// Plates, buttons and ridges: difference of their least frictions or of their largest ones, whichever differ by
+    /// more, in Weber steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub difference_weber_steps: Option<f64>,
+}
+
+/// Pairs of layers that a person cannot tell apart. Layers of the same parameters are meant to feel the same, and
+/// layers that act at the same place are not felt one by one.
+pub(super) fn of(judged: &[JudgedLayer], program: &Program) -> Vec<AlikeLayers> {
+    let pairs = judged
+        .iter()
+        .enumerate()
+        .flat_map(|(number, one)| judged.iter().skip(number + 1).map(move |other| (one, other)));
+    let is_comparable = |one: &JudgedLayer, other: &JudgedLayer| {
+        !(acts_on(one, other) || acts_on(other, one) || are_copies(one, other, program))
+    };
+    let comparable = pairs.filter(|(one, other)| is_comparable(one, other));
+    comparable.filter_map(|(one, other)| alike(one, other, program)).collect()
+}
+
+/// Whether a layer acts where another one is.
+fn acts_on(one: &JudgedLayer, other: &JudgedLayer) -> bool {
+    other.visible >> one.layer & 1 == 1
+}
+
+/// Whether two layers have the same parameters, but for their place.
+pub(super) fn are_copies(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
+    let placeless = |judged: &JudgedLayer| {
+        let mut layer = program.records.get(judged.layer)?.layer;
+        match &mut layer {
+            Layer::Edge(edge) => (edge.x_m, edge.y_m) = (0.0, 0.0),
+            Layer::Rings(rings) => (rings.x_m, rings.y_m) = (0.0, 0.0),
+            Layer::Bitmap(bitmap) => (bitmap.x_m, bitmap.y_m) = (0.0, 0.0),
+            Layer::Grating(grating) => grating.phase_turns = 0.0,
+            _ => {}
+        }
+        Some(layer)
+    };
+    placeless(one) == placeless(other)
+}
+
+/// The layers and their difference, if that is too small to tell them apart.
+fn alike(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> Option<AlikeLayers> {
+    let layers = [one, other].map(|judged| judged.perception.layer.clone());
+    match (felt_texture(one), felt_texture(other)) {
+        (Some(one_texture), Some(other_texture)) => {
+            let octaves = libm::log2(one_texture.frequency_hz / other_texture.frequency_hz).abs();
+            let ratio = voltage_v_rms(one, program)? / voltage_v_rms(other, program)?;
+            let difference_db = 20.0 * libm::log10(ratio).abs();
+            let is_alike = octaves < ALIKE_OCTAVES && difference_db < VOLTAGE_DIFFERENCE_DB;
+            let difference_db = Some(difference_db);
+            is_alike.then_some(AlikeLayers { layers, difference_db, difference_weber_steps: None })
+        }
+        (None, None) => {
+            let (one, other) = (&one.perception.contrast, &other.perception.contrast);
+            let least = weber_steps(one.from_n, other.from_n).abs();
+            let steps = weber_steps(one.to_n, other.to_n).abs().max(least);
+            let difference_weber_steps = Some(steps);
+            (steps < ALIKE_WEBER_STEPS).then_some(AlikeLayers { layers, difference_db: None, difference_weber_steps })
+        }
+        _ => None,
+    }
+}
+
+/// The texture at the usual speed, if it may be felt.
+fn felt_texture(judged: &JudgedLayer) -> Option<&Texture> {
+    let mut textures = judged.perception.textures.iter();
+    let texture = textures.find(|texture| texture.speed_mm_per_s == 1e3 * USUAL_M_PER_S)?;
+    (texture.verdict != Verdict::NotFelt).then_some(texture)
+}
+
+/// The voltage at the 95th percentile of the friction; `None` at natural friction.
+fn voltage_v_rms(judged: &JudgedLayer, program: &Program) -> Option<f64> {
+    let electric_n = judged.perception.contrast.to_n - program.reach.natural_friction_n;
+    let contact = program.loaded_contact().ok().filter(|_| electric_n > 0.0)?;
+    Some(contact.voltage_v_rms(electric_n))
+}

@@ -1,0 +1,238 @@
+//! Numbers about what fingers feel, with their sources. Those quoted from memory say so, and are to be checked before
+//! anyone builds on them; `docs/truth.md` lists them.
+
+use serde::Serialize;
+
+/// Weber fraction of friction: the smallest change of the total friction that is felt, for a transient decrease
+/// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). It holds for steps and says nothing about fine textures.
+pub const WEBER_FRACTION: f64 = 0.11;
+
+/// Weber fraction that rubber needed under active touch, rounded up to the 0.27 of force discrimination below 0.5 N
+/// (Fehlberg 2022, doi:10.1007/978-3-031-06249-0_3: 0.2; doi:10.1038/s41598-022-12010-0: 0.15 to 0.27). A step above it
+/// is felt whichever of the three studies a person is like.
+pub(super) const WEBER_FRACTION_SAFE: f64 = 0.27;
+
+/// Difference threshold of electrovibration voltage, dB (doi:10.1038/s41598-018-22865-x).
+pub const VOLTAGE_DIFFERENCE_DB: f64 = 1.21;
+
+/// Length over which friction follows its target while sliding, mm: a cutoff of 13.8 Hz for each mm/s
+/// (arXiv 2505.11162) is `1 / (2 pi 13.8)` mm at every speed.
+pub(crate) const RELAXATION_LENGTH_MM: f64 = 1.0 / (std::f64::consts::TAU * 13.8);
+
+/// Root mean square of a finger's own friction noise from [`NOISE_BAND_HZ`], N. Its spectral density falls as 1/f, so
+/// each octave has the same share. Computed from one trial of one bare finger at 0.53 N and 40 mm/s
+/// (romangrigorii/data-driven-playback).
+pub const NATURAL_NOISE_RMS_N: f64 = 4.5e-3;
+/// Band of [`NATURAL_NOISE_RMS_N`], Hz.
+pub const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
+
+/// Below this frequency, Hz, a change of friction counts as a step. Above it, it counts as a texture.
+pub const TEXTURE_MIN_HZ: f64 = 10.0;
+
+/// Smallest vibration that is felt: frequency in Hz and displacement amplitude in micrometres, from the four-channel
+/// model of Bolanowski et al. 1988 (doi:10.1121/1.397184). Quoted from memory.
+const DISPLACEMENT_THRESHOLD_UM: [(f64, f64); 8] =
+    [(10.0, 16.0), (20.0, 10.0), (40.0, 4.0), (80.0, 1.0), (160.0, 0.2), (250.0, 0.1), (400.0, 0.16), (500.0, 0.25)];
+
+/// Stiffness of a fingertip against tangential motion, N/m (Wiertlewski and Hayward 2012,
+/// doi:10.1016/j.jbiomech.2012.05.045). Quoted from memory.
+const TANGENTIAL_STIFFNESS_N_PER_M: f64 = 1.0e3;
+/// Damping of a fingertip against tangential motion, N s/m. Same source, quoted from memory too.
+const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
+
+/// Factor by which the threshold may be wrong in either direction: people differ by a factor of 2, and the thresholds
+/// were measured with a vibrating probe, not with friction. Assumed.
+pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
+
+/// What [`Verdict::NearThreshold`] means, for a person. It is about a range of contrast, from the smallest Weber
+/// fraction of the studies to the largest one, or a factor of 3 on both sides of a texture's threshold; no study says
+/// which share of people is how far above it.
+pub const NEAR_THRESHOLD: &str = "near the threshold, where some people or some strokes will not notice it";
+
+/// Whether a person feels something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Too small for anyone in the studies.
+    NotFelt,
+    /// Near the threshold, see [`NEAR_THRESHOLD`].
+    #[serde(rename = "felt_by_some")]
+    NearThreshold,
+    /// Felt by everyone in the studies.
+    Felt,
+    /// No study covers it.
+    Unknown,
+}
+
+impl Verdict {
+    /// Judges a change of friction by its size in Weber steps.
+    pub fn of_step(weber_steps: f64) -> Self {
+        match weber_steps.abs() {
+            steps if steps < 1.0 => Self::NotFelt,
+            steps if steps < weber_steps_safe() => Self::NearThreshold,
+            steps if steps.is_finite() => Self::Felt,
+            _ => Self::Unknown,
+        }
+    }
+
+    /// Judges a texture of an amplitude in newtons at a frequency.
+    pub fn of_texture(amplitude_n: f64, frequency_hz: f64) -> Self {
+        let Some(threshold_n) = texture_threshold_n(frequency_hz) else { return Self::Unknown };
+        if amplitude_n < threshold_n / THRESHOLD_UNCERTAINTY {
+            Self::NotFelt
+        } else if amplitude_n < threshold_n * THRESHOLD_UNCERTAINTY {
+            Self::NearThreshold
+        } else if amplitude_n < natural_noise_amplitude_n(frequency_hz) {
+            // The thresholds were measured on a finger that did not slide.
+            Self::Unknown
+        } else {
+            Self::Felt
+        }
+    }
+
+    /// The verdict in words that follow "is".
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::NotFelt => "not felt",
+            Self::NearThreshold => "near the threshold",
+            Self::Felt => "felt",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// The change from one total friction to another, in Weber steps: `ln(to / from) / ln 1.11`. Negative where friction
+/// falls.
+///
+/// ```
+/// use frixel_felt::perception::weber_steps;
+///
+/// assert!((weber_steps(0.25, 0.2775) - 1.0).abs() < 1e-12);
+/// ```
+pub fn weber_steps(from_n: f64, to_n: f64) -> f64 {
+    libm::log(to_n / from_n) / libm::log1p(WEBER_FRACTION)
+}
+
+/// A number of Weber steps with one digit after the point, or with as many more as its verdict needs: 2.3 is felt, and
+/// 2.28 is near the threshold.
+pub fn weber_steps_text(weber_steps: f64) -> String {
+    let rounded = |digits: i32| (weber_steps * 10f64.powi(digits)).round() / 10f64.powi(digits);
+    let is_faithful = |digits: &i32| Verdict::of_step(rounded(*digits)) == Verdict::of_step(weber_steps);
+    let digits = (1..=3).find(is_faithful).unwrap_or(3);
+    // Adding zero makes no negative zero.
+    format!("{:.*}", digits as usize, 0.0 + rounded(digits))
+}
+
+/// Number of Weber steps that everyone in the studies feels, about 2.3.
+pub fn weber_steps_safe() -> f64 {
+    weber_steps(1.0, 1.0 + WEBER_FRACTION_SAFE)
+}
+
+/// The smallest amplitude of a sinusoidal tangential force that is felt, N; `None` where there is no measurement.
+///
+/// It is the displacement threshold times the magnitude of the fingertip's tangential impedance, `|k + 2 pi i f c|`,
+/// interpolated in the logarithms of frequency and displacement. It holds within a factor of 3.
+pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
+    let pair = DISPLACEMENT_THRESHOLD_UM.windows(2).find_map(|pair| match pair {
+        [from, to] if (from.0..=to.0).contains(&frequency_hz) => Some((*from, *to)),
+        _ => None,
+    });
+    let ((from_hz, from_um), (to_hz, to_um)) = pair?;
+    let part = libm::log(frequency_hz / from_hz) / libm::log(to_hz / from_hz);
+    let displacement_m = 1e-6 * from_um * libm::pow(to_um / from_um, part);
+    let damping_n_per_m = std::f64::consts::TAU * frequency_hz * TANGENTIAL_DAMPING_N_S_PER_M;
+    Some(displacement_m * libm::hypot(TANGENTIAL_STIFFNESS_N_PER_M, damping_n_per_m))
+}
+
+/// Amplitude of a sine with the power of a finger's own friction noise in the third of an octave around a frequency, N.
+pub fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
+    let (from_hz, to_hz) = NOISE_BAND_HZ;
+    if !(from_hz..=to_hz).contains(&frequency_hz) {
+        return 0.0;
+    }
+    let thirds_of_octave = 3.0 * libm::log2(to_hz / from_hz);
+    NATURAL_NOISE_RMS_N * (2.0 / thirds_of_octave).sqrt()
+}
+
+/// The part of a texture's amplitude that is left behind the lag of friction, from 0 to 1.
+pub fn lag_gain(wavelength_mm: f64) -> f64 {
+    1.0 / libm::hypot(1.0, std::f64::consts::TAU * RELAXATION_LENGTH_MM / wavelength_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_a_weber_fraction_is_one_step() {
+        assert!((weber_steps(0.2, 0.222) - 1.0).abs() < 1e-12);
+        assert!((weber_steps(0.222, 0.2) + 1.0).abs() < 1e-12);
+        assert!((weber_steps_safe() - 2.29).abs() < 0.01);
+    }
+
+    #[test]
+    fn verdicts_of_steps_change_at_one_and_at_the_safe_number() {
+        let steps = [0.99, 1.01, 2.28, 2.30, -3.0, f64::NAN];
+        let verdicts = steps.map(Verdict::of_step);
+        assert_eq!(
+            verdicts,
+            [
+                Verdict::NotFelt,
+                Verdict::NearThreshold,
+                Verdict::NearThreshold,
+                Verdict::Felt,
+                Verdict::Felt,
+                Verdict::Unknown
+            ]
+        );
+    }
+
+    #[test]
+    fn a_number_of_steps_is_written_as_it_is_judged() {
+        for (steps, text) in [
+            (2.326, "2.3"),
+            (2.275, "2.28"),
+            (0.96, "0.96"),
+            (1.04, "1.0"),
+            (-0.01, "0.0"),
+            (-0.98, "-0.98"),
+            (-3.04, "-3.0"),
+        ] {
+            assert_eq!(weber_steps_text(steps), text);
+        }
+    }
+
+    #[test]
+    fn the_threshold_is_a_u_with_its_bottom_in_the_pacinian_range() {
+        let threshold_n = |frequency_hz| texture_threshold_n(frequency_hz).unwrap();
+        let lowest_hz = (10..=500).map(f64::from).min_by(|a, b| threshold_n(*a).total_cmp(&threshold_n(*b))).unwrap();
+        assert!((200.0..=300.0).contains(&lowest_hz), "{lowest_hz} Hz");
+        assert!(threshold_n(10.0) > 30.0 * threshold_n(250.0));
+        assert!(threshold_n(500.0) > 2.0 * threshold_n(250.0));
+        assert_eq!((texture_threshold_n(9.0), texture_threshold_n(501.0)), (None, None));
+    }
+
+    #[test]
+    fn the_noise_of_all_thirds_of_an_octave_is_the_measured_noise() {
+        let bands = (3.0 * libm::log2(100.0)).round();
+        let sum = bands * natural_noise_amplitude_n(100.0).powi(2) / 2.0;
+        assert!((sum.sqrt() / NATURAL_NOISE_RMS_N - 1.0).abs() < 0.02, "{sum}");
+    }
+
+    #[test]
+    fn a_texture_is_judged_by_threshold_and_noise() {
+        let threshold_n = texture_threshold_n(40.0).unwrap();
+        assert_eq!(Verdict::of_texture(0.3 * threshold_n, 40.0), Verdict::NotFelt);
+        assert_eq!(Verdict::of_texture(2.0 * threshold_n, 40.0), Verdict::NearThreshold);
+        assert_eq!(Verdict::of_texture(4.0 * threshold_n, 40.0), Verdict::Felt);
+        // At 250 Hz the threshold is far below the noise of the finger itself.
+        assert_eq!(Verdict::of_texture(4.0 * texture_threshold_n(250.0).unwrap(), 250.0), Verdict::Unknown);
+        assert_eq!(Verdict::of_texture(1.0, 900.0), Verdict::Unknown);
+    }
+
+    #[test]
+    fn the_lag_halves_the_power_at_its_cutoff_at_every_speed() {
+        // 50 mm/s: cutoff 690 Hz, wavelength 50/690 mm.
+        assert!((lag_gain(50.0 / 690.0) - 0.5_f64.sqrt()).abs() < 1e-12);
+    }
+}

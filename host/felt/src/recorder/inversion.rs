@@ -1,0 +1,60 @@
+//! Converts a commanded voltage to friction, without the errors of amplifier and finger.
+
+use frixel_layers::Waveform;
+use frixel_model::{LoadedContact, ParameterError};
+use frixel_wire::hello::BoardLimits;
+
+use frixel_scene::{Program, carrier};
+
+/// The full model, driven through an ideal amplifier and a DAC with its steps.
+#[derive(Debug)]
+pub(super) struct Inversion {
+    contact: LoadedContact<f64>,
+    waveform: Waveform,
+    codes_per_v_rms: f64,
+    electric_friction_max_n: f64,
+}
+
+impl Inversion {
+    pub(super) fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
+        let header = &program.header;
+        let carrier = carrier(header.waveform, program.half_period_ticks, tick_hz, limits);
+        let peak_per_rms = f64::from(carrier.peak_per_rms());
+        let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
+        Ok(Self {
+            contact: program.loaded_contact()?,
+            waveform: header.waveform,
+            codes_per_v_rms: peak_per_rms * codes_per_v_peak,
+            electric_friction_max_n: program.reach.electric_friction_max_n,
+        })
+    }
+
+    /// Electric friction at a commanded voltage, the DAC's step included, N.
+    ///
+    /// The code of a square wave is its amplitude. The code of a sine wave is only one of many samples, so its
+    /// amplitude is rounded as the DAC would round it.
+    pub(super) fn electric_friction_n(&self, voltage_v_rms: f32, dac_code: i16) -> f64 {
+        let amplitude_code = match self.waveform {
+            Waveform::Square => f64::from(dac_code).abs(),
+            Waveform::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
+        };
+        self.contact.electric_friction_n(amplitude_code / self.codes_per_v_rms)
+    }
+
+    /// Whether the drive can add so much friction.
+    pub(super) fn reaches(&self, electric_friction_n: f64) -> bool {
+        (0.0..=self.electric_friction_max_n).contains(&electric_friction_n)
+    }
+
+    /// DAC codes of an rms voltage.
+    #[cfg(test)]
+    pub(super) fn code_of(&self, voltage_v_rms: f64) -> i16 {
+        (voltage_v_rms * self.codes_per_v_rms).round() as i16
+    }
+
+    /// Electric friction at an rms voltage that is not rounded to DAC steps, N.
+    #[cfg(test)]
+    pub(super) fn without_steps_n(&self, voltage_v_rms: f64) -> f64 {
+        self.contact.electric_friction_n(voltage_v_rms)
+    }
+}

@@ -1,0 +1,256 @@
+//! Records what a board did and what its finger felt, and compares it with the [reference](mod@frixel_scene::reference).
+//!
+//! The same [`Recorder`] serves simulated boards and boards at a port. Its input is [`Observation`]s: one for every
+//! tick if the board or its world is simulated, one for every telemetry message of a board at a port. Its output is
+//! [`FeltRow`]s and a [`MetricsSummary`]. A value that the source cannot observe is `None` in an observation, and an
+//! absent cell or number in the output.
+
+mod host_stream;
+mod inversion;
+mod observation;
+mod rows;
+mod turning;
+
+use frixel_model::ParameterError;
+use frixel_wire::fault::Flags;
+use frixel_wire::hello::BoardLimits;
+
+use crate::metrics::{Metrics, MetricsSummary, Sample};
+use frixel_scene::Program;
+use frixel_scene::reference::{Context, Reference, StrokeReference};
+use host_stream::{HostStream, LayerChange};
+use inversion::Inversion;
+pub use observation::{FeltFriction, FingerState, Observation};
+pub use rows::FeltRow;
+use rows::{Frictions, RowMaker};
+use turning::Turning;
+
+/// Records one play.
+///
+/// Time zero is the tick given to [`Self::start`], or else the first observation.
+#[derive(Debug)]
+pub struct Recorder {
+    comparison: Option<Comparison>,
+    row_maker: RowMaker,
+    rows: Vec<FeltRow>,
+    tick_period_s: f64,
+    ticks_max: u64,
+    start_tick: Option<u64>,
+    last_tick: u64,
+}
+
+/// The reference that a play is compared with, and the metrics of the comparison.
+#[derive(Debug)]
+struct Comparison {
+    reference: StrokeReference,
+    inversion: Inversion,
+    stream: HostStream,
+    turning: Turning,
+    metrics: Metrics,
+}
+
+impl Recorder {
+    /// Creates a recorder that compares with the reference of `program`, on a board with these limits and `tick_hz`
+    /// ticks a second. It records at most `ticks_max` ticks, with a row for every `ticks_per_row` of them.
+    ///
+    /// Returns an error if the contact model refuses the program's finger. This does not happen for a compiled program.
+    pub fn new(
+        program: &Program,
+        limits: &BoardLimits,
+        tick_hz: u32,
+        ticks_max: u64,
+        ticks_per_row: u32,
+    ) -> Result<Self, ParameterError> {
+        let comparison = Comparison {
+            reference: Reference::new(program).along_stroke(),
+            inversion: Inversion::new(program, limits, tick_hz)?,
+            stream: HostStream::new(tick_hz),
+            turning: Turning::default(),
+            metrics: Metrics::new(program.half_period_ticks),
+        };
+        Ok(Self { comparison: Some(comparison), ticks_max, ..Self::without_reference(tick_hz, ticks_per_row) })
+    }
+
+    /// Creates a recorder for a board whose program is unknown: no row has `wanted_n`, and the summary has no errors.
+    pub fn without_reference(tick_hz: u32, ticks_per_row: u32) -> Self {
+        Self {
+            comparison: None,
+            row_maker: RowMaker::new(tick_hz, ticks_per_row),
+            rows: Vec::new(),
+            tick_period_s: 1.0 / f64::from(tick_hz),
+            ticks_max: u64::MAX,
+            start_tick: None,
+            last_tick: 0,
+        }
+    }
+
+    /// Creates a placeholder that records nothing, for use until a play has its recorder.
+    pub fn idle() -> Self {
+        Self { ticks_max: 0, ..Self::without_reference(1, u32::MAX) }
+    }
+
+    /// Makes `tick` time zero: the record begins with the tick after it, and earlier observations are ignored.
+    pub fn start(&mut self, tick: u32) {
+        self.start_tick = Some(u64::from(tick));
+        self.last_tick = u64::from(tick);
+    }
+
+    /// Compares with another program from now on, for example when a scene is replaced while it plays. A recorder
+    /// without a reference stays without one.
+    pub fn replace(&mut self, program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<(), ParameterError> {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.reference = Reference::new(program).along_stroke();
+            comparison.inversion = Inversion::new(program, limits, tick_hz)?;
+            comparison.metrics.set_half_period(program.half_period_ticks);
+        }
+        Ok(())
+    }
+
+    /// Reads bytes that the host sends to the board: whole frames or parts of them, in order. The samples of a stream
+    /// and the changes of layers in them are part of the reference.
+    pub fn record_sent(&mut self, bytes: &[u8]) {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.stream.receive(bytes);
+            for LayerChange { layer, on, gain } in comparison.stream.take_layer_changes() {
+                comparison.reference.set_layer(layer.into(), on, gain.into());
+            }
+        }
+    }
+
+    /// Adds an observation. Ignores one that is not later than the one before, or that is beyond the end of the record.
+    pub fn record(&mut self, observation: &Observation) {
+        self.add(observation, None);
+    }
+
+    /// Adds an observation of a simulated finger that is not only the scene's contact model, so that the reference goes
+    /// through the same finger.
+    ///
+    /// `total_friction_n` converts the electric friction of the scene at the finger's true place, in N, to the total
+    /// friction that this finger would have felt from it in this tick, in N. It is called once for each recorded tick
+    /// with a finger.
+    pub fn record_through(&mut self, observation: &Observation, total_friction_n: &mut dyn FnMut(f64) -> f64) {
+        self.add(observation, Some(total_friction_n));
+    }
+
+    fn add(&mut self, observation: &Observation, total_friction_n: Option<&mut dyn FnMut(f64) -> f64>) {
+        let Some(ticks_passed) = self.advance_to(observation.tick) else { return };
+        let t_s = self.last_tick as f64 * self.tick_period_s;
+        let frictions = match &mut self.comparison {
+            Some(comparison) => comparison.add(observation, t_s, ticks_passed, total_friction_n),
+            None => Frictions::without_reference(observation),
+        };
+        self.rows.extend(self.row_maker.add(observation, self.ticks(), &frictions));
+    }
+
+    /// Ticks of the record so far.
+    pub fn ticks(&self) -> u64 {
+        self.start_tick.map_or(0, |start_tick| self.last_tick - start_tick)
+    }
+
+    /// Time of the record so far, s.
+    pub fn t_s(&self) -> f64 {
+        self.ticks() as f64 * self.tick_period_s
+    }
+
+    /// Time from the power-on of the board to time zero of the record, s; `None` before the first observation.
+    pub fn start_s(&self) -> Option<f64> {
+        Some(self.start_tick? as f64 * self.tick_period_s)
+    }
+
+    /// Ticks that remain to be recorded.
+    pub fn ticks_left(&self) -> u64 {
+        self.ticks_max - self.ticks()
+    }
+
+    /// The rows so far, except those already taken.
+    pub fn rows(&self) -> &[FeltRow] {
+        &self.rows
+    }
+
+    /// Removes the rows so far and returns them.
+    pub fn take_rows(&mut self) -> Vec<FeltRow> {
+        std::mem::take(&mut self.rows)
+    }
+
+    /// The metrics so far; only the ticks if there is no reference.
+    pub fn summary(&self) -> MetricsSummary {
+        let ticks = self.ticks();
+        match &self.comparison {
+            Some(comparison) => comparison.metrics.summary(ticks),
+            None => MetricsSummary { ticks, ..MetricsSummary::default() },
+        }
+    }
+
+    /// Advances to a tick of the board's counter, which is modulo 2^32, and returns the ticks since the previous
+    /// observation; `None` if the tick is not to be recorded.
+    fn advance_to(&mut self, tick: u32) -> Option<u32> {
+        if self.start_tick.is_none() && self.ticks_max > 0 {
+            self.start(tick);
+            return Some(0);
+        }
+        let passed = tick.wrapping_sub(self.last_tick as u32);
+        let is_later = (passed as i32) > 0;
+        if !is_later || u64::from(passed) > self.ticks_left() {
+            return None;
+        }
+        self.last_tick += u64::from(passed);
+        Some(passed)
+    }
+}
+
+impl Comparison {
+    /// Adds an observation at time `t_s` since power-on, `ticks_passed` ticks after the previous one.
+    fn add(
+        &mut self,
+        observation: &Observation,
+        t_s: f64,
+        ticks_passed: u32,
+        total_friction_n: Option<&mut dyn FnMut(f64) -> f64>,
+    ) -> Frictions {
+        let scenes_natural_n = self.reference.natural_friction_n();
+        let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
+        let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);
+        let in_reach = in_scene_n.is_some_and(|in_scene_n| self.inversion.reaches(in_scene_n - scenes_natural_n));
+        // Only a simulated finger with a skin of its own turns.
+        let turning = self.turning.follow(observation.finger) && total_friction_n.is_some();
+        let (natural_n, wanted_n) = match (total_friction_n, &observation.felt) {
+            (Some(total_friction_n), Some(felt)) => {
+                (felt.friction_n - felt.electric_friction_n, electric_n.map(total_friction_n))
+            }
+            _ => (scenes_natural_n, in_scene_n),
+        };
+        let telemetry = observation.telemetry.as_ref();
+        let asked_n = telemetry.map(|telemetry| natural_n + f64::from(telemetry.asked_electric_friction_n));
+        let felt_n = observation.felt.map(|felt| felt.friction_n);
+        self.metrics.add(&Sample {
+            finger_down: observation.finger.is_some(),
+            board_has_finger: telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER)),
+            wanted_n,
+            turning,
+            asked_n,
+            felt_n,
+            inversion_n: telemetry.filter(|_| in_reach).map(|telemetry| {
+                natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms, telemetry.dac_code)
+            }),
+            slewing: telemetry.is_some_and(|telemetry| telemetry.flags.contains(Flags::SLEWED)),
+            load_mismatch_n: observation.felt.map(|felt| felt.load_mismatch_n),
+            saturated: telemetry.map(|telemetry| telemetry.flags.contains(Flags::SATURATED)),
+        });
+        Frictions { wanted_n, asked_n, felt_n }
+    }
+
+    /// Electric friction of the reference at the finger's place; `None` while the finger is up.
+    fn reference_electric_n(&mut self, observation: &Observation, t_s: f64, ticks_passed: u32) -> Option<f64> {
+        let dry = observation.telemetry.map(|telemetry| telemetry.flags.contains(Flags::STREAM_DRY));
+        let (stream, stream_weight) = self.stream.advance(ticks_passed, dry);
+        let Some(FingerState { x_m, y_m, speed_m_per_s }) = observation.finger else {
+            self.reference.lift();
+            return None;
+        };
+        let context = Context { x_m, y_m, t_s, speed_m_per_s, stream, stream_weight };
+        Some(self.reference.electric_friction_n(&context))
+    }
+}
+
+#[cfg(test)]
+mod tests;

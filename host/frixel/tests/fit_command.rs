@@ -1,0 +1,140 @@
+//! From a board to a profile: `frixel calibrate` on the in-process simulator, then `frixel fit` on what it wrote.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use frixel_hil_sim::Person;
+use frixel_scene::{Evidence, FingerProfile};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use self::simulated::steady;
+
+#[allow(dead_code, unused_imports, reason = "the tests of the fit use the rest")]
+#[path = "../../lab/tests/person.rs"]
+mod person;
+#[allow(dead_code, reason = "the tests of the fit use the rest")]
+#[path = "../../lab/tests/simulated.rs"]
+mod simulated;
+
+fn frixel(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = frixel(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn fail(folder: &Path, arguments: &[&str]) -> String {
+    let output = frixel(folder, arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_calibrated_person_is_recovered() {
+    let folder = TempDir::new().unwrap();
+    let said = succeed(folder.path(), &["calibrate", "-o", "data.csv", "--finger-seed", "5"]);
+    assert!(said.contains("36 strokes") && said.contains("75, 106, 150 V rms"), "{said}");
+    let json = succeed(folder.path(), &["fit", "data.csv", "-o", "finger.toml", "--json"]);
+    let fitted: Value = serde_json::from_str(&json).unwrap();
+    let number = |key: &str| fitted[key].as_f64().unwrap_or_else(|| panic!("{key} in {json}"));
+    let interval = |key: &str| {
+        let ends = [0, 1].map(|end| fitted[key][end].as_f64().unwrap_or_else(|| panic!("{key} in {json}")));
+        assert!(ends[0] < ends[1], "{key}: {ends:?}");
+        ends
+    };
+
+    let person = Person::drawn(5);
+    // Of what the amplifier's edges lose, the board makes up for a part: friction lies between that of a drive of 150
+    // V rms
+    // and that of 150 V rms on the electrode.
+    let load_n = number("normal_load_n");
+    let drive = steady(&person, load_n, 150.0);
+    let electrode = steady(&person, load_n, 150.0 * 150.0 / drive.electrode_v_rms);
+    let between_n = 0.98 * drive.electric_friction_n..1.02 * electrode.electric_friction_n;
+    assert!((number("friction_coefficient") / drive.friction_coefficient - 1.0).abs() < 0.02, "{json}");
+    assert!(between_n.contains(&number("electric_friction_150_v_n")), "{between_n:?}: {json}");
+    for key in ["friction_coefficient", "electric_friction_150_v", "voltage_exponent"] {
+        let unit = if key == "electric_friction_150_v" { ("_n", "_interval_n") } else { ("", "_interval") };
+        let [low, high] = interval(&format!("{key}{}", unit.1));
+        assert!((low..=high).contains(&number(&format!("{key}{}", unit.0))), "{key}: {json}");
+    }
+    assert_eq!(fitted["strokes"], 36);
+
+    let text = fs::read_to_string(folder.path().join("finger.toml")).unwrap();
+    let profile = FingerProfile::parse(&text, "finger.toml").unwrap();
+    assert!(matches!(profile.evidence, Evidence::Measured { voltage_max_v_rms, .. } if voltage_max_v_rms > 149.0));
+    assert!(fs::read_to_string(folder.path().join("finger.svg")).unwrap().contains("contact model, fitted"));
+
+    // The same file in words, from standard columns in another order, without the stroke column.
+    let words = succeed(folder.path(), &["fit", "data.csv"]);
+    assert!(words.contains("cannot tell radius, stiffness and gap apart"), "{words}");
+    assert!(fail(folder.path(), &["fit", "data.csv", "--screen", "nowhere.toml"]).contains("nowhere.toml"));
+    fs::write(
+        folder.path().join("thick.toml"),
+        "width_mm = 120\nheight_mm = 80\n[[coating]]\nthickness_um = 40\npermittivity = 3.9\n",
+    )
+    .unwrap();
+    let thick = fail(folder.path(), &["fit", "data.csv", "--screen", "thick.toml"]);
+    assert!(thick.contains("the coating alone has 10.256 um"), "{thick}");
+}
+
+#[test]
+fn a_board_that_drives_less_gives_no_verdict_on_the_model() {
+    let folder = TempDir::new().unwrap();
+    let said = succeed(folder.path(), &["calibrate", "-o", "data.csv", "--voltage", "80"]);
+    assert!(said.contains("below 100 V rms the recording cannot test the model"), "{said}");
+    assert!(fail(folder.path(), &["fit", "data.csv"]).contains("would be extrapolated"));
+    let json = succeed(folder.path(), &["fit", "data.csv", "--voltage", "80", "--json"]);
+    let fitted: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&fitted["voltage_verdict"], &fitted["electric_friction_150_v_n"]), (&"none".into(), &Value::Null));
+}
+
+#[test]
+fn a_board_at_a_port_needs_forces() {
+    let folder = TempDir::new().unwrap();
+    let said = fail(folder.path(), &["calibrate", "-o", "data.csv", "--port", "/dev/null"]);
+    assert!(said.contains("--forces"), "{said}");
+    fs::write(folder.path().join("forces.csv"), "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n").unwrap();
+    let said = fail(folder.path(), &["calibrate", "-o", "data.csv", "--forces", "forces.csv"]);
+    assert!(said.contains("start the sensor before the board"), "{said}");
+}
+
+#[test]
+fn a_threshold_is_found_by_answers_and_is_no_force() {
+    let folder = TempDir::new().unwrap();
+    let run = |answers: &str, more: &[&str]| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
+            .args(["threshold", "--port", "sim", "--trials", "12", "-o", "person.toml"])
+            .args(more)
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
+        child.wait_with_output().unwrap()
+    };
+    let short = run("1\n2\n", &[]);
+    let said = String::from_utf8(short.stderr).unwrap();
+    assert!(said.contains("the answers ended at trial 3") && said.contains("is in person.toml.partial"), "{said}");
+    let output = run(&"1\nperhaps\n2\n".repeat(6), &["--overwrite"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("trial 12 of 12") && said.contains("this gives no newtons"), "{said}");
+    let text = fs::read_to_string(folder.path().join("person.toml")).unwrap();
+    let profile = FingerProfile::parse(&text, "person.toml").unwrap();
+    let Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms: [low, high], .. } = profile.evidence else {
+        panic!("{text}")
+    };
+    assert!(low < threshold_v_rms && threshold_v_rms < high && high <= 150.0, "{text}");
+    succeed(folder.path(), &["threshold", "--port", "sim", "--noise", "noise.wav"]);
+    assert!(fs::metadata(folder.path().join("noise.wav")).unwrap().len() > 5_000_000);
+}

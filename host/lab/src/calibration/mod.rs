@@ -1,0 +1,168 @@
+//! Records the data that [`fit`](crate::fit) needs: a board switches its drive on and off while a finger slides, and a
+//! force sensor watches.
+//!
+//! [`Protocol`] says what is driven when, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes
+//! the recording. [`ForceSensor`] is the sensor under a simulated screen.
+
+mod align;
+mod force_sensor;
+mod protocol;
+
+use std::fmt::Write as _;
+use std::io::{Read, Write};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+pub use align::{BoardRow, align};
+pub use force_sensor::ForceSensor;
+pub use protocol::Protocol;
+
+use crate::fit::Row;
+
+/// A sample of a force sensor, on the sensor's own clock.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct ForceRow {
+    /// Time, in seconds.
+    pub time_s: f64,
+    /// Normal force, in newtons.
+    pub normal_force_n: f64,
+    /// Friction, in newtons.
+    pub friction_n: f64,
+}
+
+/// Why a recording was not made.
+#[derive(Debug, Error)]
+pub enum CalibrationError {
+    /// The forces cannot be read.
+    #[error(
+        "the forces cannot be read ({0}): give CSV with the columns time_s,normal_force_n,friction_n in seconds and \
+         newtons"
+    )]
+    Forces(csv::Error),
+    /// What the board reported cannot be read.
+    #[error("what the board reported cannot be read ({0}): it was changed")]
+    Board(csv::Error),
+    /// A force is not a number, or time goes backwards.
+    #[error("row {row} of the forces {found}: give finite numbers, sorted by time")]
+    Row {
+        /// Number of the row; the header is row 1.
+        row: usize,
+        /// What is wrong with it.
+        found: &'static str,
+    },
+    /// The sensor is too slow.
+    #[error("the forces have {found:.0} rows a second, fewer than 200: half-periods of 20 ms need at least 200")]
+    TooSlow {
+        /// Rows a second.
+        found: f64,
+    },
+    /// The sensor did not see the whole protocol.
+    #[error(
+        "the forces last {found:.1} s, and the protocol {needed:.1} s: start the sensor before the board, and stop \
+         it after"
+    )]
+    TooShort {
+        /// Duration of the forces.
+        found: f64,
+        /// Duration of the protocol.
+        needed: f64,
+    },
+    /// Friction does not answer the drive.
+    #[error(
+        "friction does not follow the drive (correlation {found:.2}): check that the electrode is driven, that the \
+         finger \
+         slides, and that the forces are those of this run"
+    )]
+    NoAnswer {
+        /// Correlation of friction with the squared voltage.
+        found: f64,
+    },
+    /// The clocks differ.
+    #[error(
+        "the clocks of board and sensor drift apart by {drift_ms:.1} ms during the recording, more than 1 ms: sample \
+         the forces on a steadier clock"
+    )]
+    Clocks {
+        /// Drift in milliseconds.
+        drift_ms: f64,
+    },
+    /// The recording cannot be written.
+    #[error("the recording cannot be written ({0}): check the folder and its free space")]
+    Write(csv::Error),
+}
+
+/// Reads the forces of a sensor from CSV with the columns `time_s,normal_force_n,friction_n`, in any order.
+///
+/// A last line without a line feed is left out: the sensor is still writing it.
+pub fn read_forces(mut input: impl Read) -> Result<Vec<ForceRow>, CalibrationError> {
+    let mut text = String::new();
+    input.read_to_string(&mut text).map_err(|error| CalibrationError::Forces(error.into()))?;
+    let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(whole.as_bytes());
+    let rows: Vec<ForceRow> = reader.deserialize().collect::<Result<_, _>>().map_err(CalibrationError::Forces)?;
+    let mut last_s = f64::NEG_INFINITY;
+    for (row, number) in rows.iter().zip(2..) {
+        if ![row.time_s, row.normal_force_n, row.friction_n].iter().all(|value| value.is_finite()) {
+            return Err(CalibrationError::Row { row: number, found: "has a cell that is not finite" });
+        }
+        if row.time_s < last_s {
+            return Err(CalibrationError::Row { row: number, found: "goes back in time" });
+        }
+        last_s = row.time_s;
+    }
+    Ok(rows)
+}
+
+/// A row of the file that `frixel fit` reads.
+#[derive(Serialize)]
+struct Written<'r> {
+    time_s: f64,
+    stroke: &'r str,
+    voltage_v_rms: f64,
+    normal_force_n: f64,
+    friction_n: f64,
+    speed_mm_s: f64,
+}
+
+/// Writes what a board reported as CSV, which [`read_board`] reads: the column names, or rows behind them.
+pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> Result<(), CalibrationError> {
+    let mut text = String::new();
+    if rows.is_none() {
+        text.push_str("time_s,voltage_v_rms,speed_mm_s\n");
+    }
+    for BoardRow { time_s, voltage_v_rms, speed_mm_s } in rows.into_iter().flatten() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{time_s:.6},{voltage_v_rms:.4},{speed_mm_s:.3}");
+    }
+    output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+        .map_err(|error| CalibrationError::Write(error.into()))
+}
+
+/// Reads what [`write_board`] wrote.
+pub fn read_board(input: impl Read) -> Result<Vec<BoardRow>, CalibrationError> {
+    csv::Reader::from_reader(input).deserialize().collect::<Result<_, _>>().map_err(CalibrationError::Board)
+}
+
+/// Writes a recording as CSV.
+pub fn write_csv(output: impl Write, rows: &[Row]) -> Result<(), CalibrationError> {
+    let mut writer = csv::Writer::from_writer(output);
+    for row in rows {
+        let written = Written {
+            time_s: rounded(row.time_s.unwrap_or_default(), 1e-6),
+            stroke: row.stroke.as_deref().unwrap_or_default(),
+            voltage_v_rms: rounded(row.voltage_v_rms, 1e-3),
+            normal_force_n: rounded(row.normal_force_n, 1e-6),
+            friction_n: rounded(row.friction_n, 1e-6),
+            speed_mm_s: rounded(row.speed_mm_s.unwrap_or_default(), 1e-3),
+        };
+        writer.serialize(written).map_err(CalibrationError::Write)?;
+    }
+    writer.flush().map_err(|error| CalibrationError::Write(error.into()))
+}
+
+fn rounded(value: f64, step: f64) -> f64 {
+    (value / step).round() / (1.0 / step).round()
+}

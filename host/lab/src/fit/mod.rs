@@ -1,0 +1,209 @@
+//! Fits a finger's profile to measured friction: values in, values out.
+//!
+//! **In**: rows of voltage (rms), normal force and friction, in strokes of a finger that slides while the drive is
+//! switched on and off ([`rows`] reads them from CSV). **Out**: a [`Fit`] with the friction coefficient, the one
+//! coupling number that friction data identify, friction at a stated voltage, each with an interval, and the exponent
+//! of the voltage, which tests the model; or a [`FitError`] that says in one sentence what was found and what to do.
+//!
+//! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
+//! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
+//! least squares (`search`, `least_squares`), intervals come from a bootstrap over strokes (`intervals`, `bootstrap`),
+//! and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it).
+//!
+//! # What is estimated
+//!
+//! - **Friction coefficient**: friction over normal load with the drive off, the mean over the strokes of the
+//!   recording.
+//! - **Electric friction**: what the stated voltage adds to the friction of this finger on this screen in full slip,
+//!   under the median load of the recording, at the mean friction coefficient of the recording. Losses between the
+//!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers what the
+//!   model says and what a power law without any model says.
+
+mod bootstrap;
+mod contrast;
+mod error;
+mod intervals;
+mod law;
+mod least_squares;
+mod profile;
+mod recording;
+mod rules;
+mod search;
+mod statistics;
+mod summary;
+mod table;
+mod verdict;
+
+pub use bootstrap::Estimate;
+use contrast::{Levels, StrokeMeans, stroke_means};
+pub use error::FitError;
+use intervals::{Fitted, wandering};
+use law::{Attraction, Coupling};
+pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
+use least_squares::{Observation, Solution, residuals_n};
+pub use profile::profile;
+pub use recording::Division;
+use recording::Recording;
+use search::{Search, attraction_of, coupling_of, start};
+pub use summary::{Summary, words};
+pub use table::{Row, rows};
+pub use verdict::{Exponent, Verdict};
+
+/// What to fit for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Voltage at which electric friction is stated, in volts rms.
+    pub voltage_v_rms: f64,
+    /// Normal load at which it is stated, in newtons; `None` for the median load of the recording.
+    pub normal_load_n: Option<f64>,
+    /// Effective gap of the screen's coating, in metres: the rest of the fitted gap is the skin's.
+    pub coating_gap_m: f64,
+    /// Names of strokes to leave out.
+    pub without: Vec<String>,
+    /// Seed of the bootstrap.
+    pub seed: u64,
+}
+
+/// A fitted finger.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Friction over load with the drive off.
+    pub friction_coefficient: Estimate,
+    /// The one number about electrode, skin and gap that friction data give, in `sqrt(N)/V^2`:
+    /// `eps0/(2 g^2) sqrt(pi R/k)`.
+    pub coupling_sqrt_n_per_v2: Estimate,
+    /// Voltage at which electric friction is stated, in volts rms.
+    pub stated_voltage_v_rms: f64,
+    /// Normal load at which it is stated, in newtons.
+    pub normal_load_n: f64,
+    /// What the stated voltage adds to the friction, in newtons.
+    pub electric_friction_n: Estimate,
+    /// What the highest voltage of the data adds to the friction, in newtons.
+    pub electric_friction_most_n: Estimate,
+    /// Exponent of the voltage, and what it says about the model.
+    pub voltage_exponent: Exponent,
+    /// Exponent of the load, likewise.
+    pub load_exponent: Exponent,
+    /// Effective gap of coating and skin for a finger of conventional radius and stiffness, in metres.
+    pub gap_m: f64,
+    /// The part of the gap that is not coating, in metres.
+    pub skin_gap_m: f64,
+    /// Lowest and highest voltage of the data with the drive on, in volts rms.
+    pub voltage_range_v_rms: (f64, f64),
+    /// Smallest and largest load of the strokes, in newtons.
+    pub load_range_n: (f64, f64),
+    /// Number of rows that were used.
+    pub rows: usize,
+    /// How rows were divided into strokes.
+    pub division: Division,
+    /// Whether the data have times, so that starts and turns were dropped.
+    pub has_time: bool,
+    /// Whether the data have speeds.
+    pub has_speed: bool,
+    /// What was measured in each stroke, and what the fit says.
+    pub strokes: Vec<StrokeResult>,
+}
+
+/// The means of a stroke beside the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrokeResult {
+    /// Name of the stroke.
+    pub name: String,
+    /// Friction over load with the drive off.
+    pub natural_coefficient: Option<f64>,
+    /// A point for each voltage of the stroke.
+    pub points: Vec<Point>,
+}
+
+/// What a voltage added to friction in a stroke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Voltage, in volts rms.
+    pub voltage_v_rms: f64,
+    /// Normal load, in newtons.
+    pub normal_load_n: f64,
+    /// Electric friction as measured, in newtons.
+    pub measured_n: f64,
+    /// Measured minus fitted, in newtons.
+    pub residual_n: f64,
+}
+
+impl Fit {
+    /// The fitted electric friction at a voltage under the stated load, in newtons; `None` out of the model's range.
+    pub fn electric_friction_at_n(&self, voltage_v_rms: f64) -> Option<f64> {
+        let attraction = Attraction::Contact(Coupling(self.coupling_sqrt_n_per_v2.value));
+        Some(self.friction_coefficient.value * attraction.attraction_n(voltage_v_rms, self.normal_load_n)?)
+    }
+}
+
+/// Fits a finger to the rows of a recording.
+pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
+    rules::check_units(&rows)?;
+    let recording = Recording::new(rows, &settings.without)?;
+    rules::check_strokes(&recording)?;
+    let levels = Levels::of(&recording);
+    let voltage_range_v_rms = rules::check_levels(&levels)?;
+    rules::check_carrier(&recording, &levels)?;
+    let strokes = stroke_means(&recording, &levels);
+    let (load_median_n, load_range_n) = rules::check_loads(&recording)?;
+    rules::check_natural(&strokes)?;
+    rules::check_stated(settings, voltage_range_v_rms, load_range_n)?;
+    let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
+
+    let observations: Vec<Observation> = strokes.iter().flat_map(|stroke| &stroke.observations).copied().collect();
+    let start = start(&strokes, &observations)?;
+    let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
+    let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
+    rules::check_slip(&strokes, &best.contact)?;
+    let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
+    let judge = verdict::Judge { fitted: &fitted, observations: &observations };
+    let voltage_exponent = judge.voltage(normal_load_n, voltage_range_v_rms.1)?;
+    let load_exponent = judge.load(normal_load_n)?;
+
+    let friction_coefficient = fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?;
+    let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
+    let gap_m = Coupling(coupling.value).gap_m();
+    let fit = Fit {
+        friction_coefficient: wandering(&strokes, friction_coefficient),
+        coupling_sqrt_n_per_v2: coupling,
+        stated_voltage_v_rms: settings.voltage_v_rms,
+        normal_load_n,
+        electric_friction_n: fitted.electric_friction_n(settings.voltage_v_rms, normal_load_n)?,
+        electric_friction_most_n: fitted.electric_friction_n(voltage_range_v_rms.1, normal_load_n)?,
+        voltage_exponent,
+        load_exponent,
+        gap_m,
+        skin_gap_m: gap_m - settings.coating_gap_m,
+        voltage_range_v_rms,
+        load_range_n,
+        rows: recording.rows().count(),
+        division: recording.division,
+        has_time: recording.has_time,
+        has_speed: recording.has_speed,
+        strokes: results(&strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
+    };
+    verdict::check_fit(&fit, settings)?;
+    Ok(fit)
+}
+
+fn results(strokes: &[StrokeMeans], solution: &Solution) -> Option<Vec<StrokeResult>> {
+    let coefficient = solution.friction_coefficient;
+    strokes
+        .iter()
+        .map(|stroke| {
+            let residuals = residuals_n(solution, coefficient, &stroke.observations)?;
+            let points = stroke.observations.iter().zip(residuals).filter(|(one, _)| one.voltage_v_rms > 0.0);
+            let points = points.map(|(one, residual_n)| Point {
+                voltage_v_rms: one.voltage_v_rms,
+                normal_load_n: one.normal_load_n,
+                measured_n: coefficient * attraction_of(one, coefficient),
+                residual_n,
+            });
+            Some(StrokeResult {
+                name: stroke.name.clone(),
+                natural_coefficient: stroke.natural_coefficient,
+                points: points.collect(),
+            })
+        })
+        .collect()
+}

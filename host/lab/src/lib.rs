@@ -1,0 +1,16 @@
+//! What is measured of fingers and of scenes: values in, values out, on any host.
+//!
+//! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
+//! - [`fit`]: a finger's profile from such a recording.
+//! - [`threshold`]: what a person just feels, from a staircase of answers.
+//! - [`score`]: how faithfully simulated fingers felt a scene.
+//! - [`model_csv`]: the contact model over rows of CSV.
+//!
+//! Files, ports, clocks and the terminal are the caller's: the `frixel` command is one.
+#![forbid(unsafe_code)]
+
+pub mod calibration;
+pub mod fit;
+pub mod model_csv;
+pub mod score;
+pub mod threshold;

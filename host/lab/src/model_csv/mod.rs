@@ -1,0 +1,197 @@
+//! The contact model applied to the rows of a CSV file, as in `frixel model eval` and `frixel model invert`.
+//!
+//! The first row names the columns, in any order. Each row names a `variant` of the model and gives the numbers that
+//! the variant needs, in SI units:
+//!
+//! | variant | equations | needs, besides what every row needs | takes as well |
+//! |---|---|---|---|
+//! | `wf-upper` | (34), (36) | `stiffness_pa_per_m` | |
+//! | `wf-lower` | (37)-(39), (42) | `stiffness_pa_per_m` | `normal_force_n` |
+//! | `wf-loaded` | (43), (21) | `stiffness_pa_per_m`, `normal_force_n` | |
+//! | `wf-finite` | (19), (21) | `stiffness_pa_per_m`, `outer_radius_m` | `normal_force_n` |
+//! | `soft-upper` | (29)-(33) | `modulus_pa`, `stress_exponent`, `shape_constant` | |
+//! | `soft-lower` | (40), (41) | `modulus_pa`, `stress_exponent`, `shape_constant` | |
+//! | `soft-loaded` | (29), (43) | `modulus_pa`, `stress_exponent`, `shape_constant`, `normal_force_n` | |
+//!
+//! Every row needs `radius_m`, `coating_m`, `permittivity` and `friction_coefficient`. For [`eval`], it also needs
+//! `voltage_v` (rms). For [`invert`], it needs either `friction_n` (total) or `electric_friction_n` (the part that the
+//! voltage adds; exact where the difference of totals would cancel). A row with both is invalid. An optional
+//! `normal_force_n` defaults to zero. Cells that a variant does not need are ignored.
+//!
+//! The output has the input's columns, unchanged, followed by
+//!
+//! - [`eval`]: `sigma0_pa, contact_radius_m, effective_stiffness_pa_per_m, friction_n, status`,
+//! - [`invert`]: `voltage_v, status`.
+//!
+//! If the input already has a column of such a name, the output has two; the last one is the answer. Numbers have 17
+//! significant digits, or 9 in `f32`, so that they can be read back exactly.
+//!
+//! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (the friction is less than at zero
+//! voltage, possibly negative), `unstable`, or `invalid: REASON` with empty cells. An invalid row does not stop the
+//! others. The file as a whole is rejected ([`CsvError`]) when its header lacks a column that every row needs, or
+//! repeats a column that the model reads. A missing column that only some variants need makes the rows of those
+//! variants invalid. Messages count rows from the header, which is row 1; blank lines do not count.
+
+mod columns;
+mod error;
+mod number;
+mod row;
+mod variant;
+
+use std::io::{Read, Write};
+
+use csv::{ByteRecord, ReaderBuilder, WriterBuilder};
+use frixel_model::{InverseError, StateError, contact_attraction_pa};
+
+pub use error::CsvError;
+pub use number::Precision;
+
+use columns::{Columns, FRICTIONS, VOLTAGE};
+use error::Refusal;
+use number::Number;
+use row::Row;
+use variant::Model;
+
+/// Counts of the rows that were processed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Number of rows, without the header.
+    pub rows: u64,
+    /// Number of rows whose status is `invalid`.
+    pub invalid_rows: u64,
+    /// Number of rows whose contact radius exceeds the finger's radius of curvature, where the paraboloid no longer
+    /// approximates it.
+    pub beyond_finger_rows: u64,
+}
+
+/// Evaluates the model row by row: voltage to friction.
+///
+/// ```
+/// use frixel_lab::model_csv::{Precision, eval};
+/// let input = "variant,radius_m,stiffness_pa_per_m,coating_m,permittivity,friction_coefficient,voltage_v\n\
+///              wf-upper,8e-3,1.8e7,1e-5,1,0.5,150\n";
+/// let mut output = Vec::new();
+/// let summary = eval(Precision::F64, input.as_bytes(), &mut output)?;
+/// assert_eq!((summary.rows, summary.invalid_rows), (1, 0));
+/// assert!(String::from_utf8(output)?.trim_end().ends_with(",ok"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn eval(precision: Precision, input: impl Read, output: impl Write) -> Result<Summary, CsvError> {
+    match precision {
+        Precision::F64 => transform(&EVAL, evaluated::<f64>, input, output),
+        Precision::F32 => transform(&EVAL, evaluated::<f32>, input, output),
+    }
+}
+
+/// Inverts the model row by row: friction to voltage.
+pub fn invert(precision: Precision, input: impl Read, output: impl Write) -> Result<Summary, CsvError> {
+    match precision {
+        Precision::F64 => transform(&INVERT, inverted::<f64>, input, output),
+        Precision::F32 => transform(&INVERT, inverted::<f32>, input, output),
+    }
+}
+
+/// The columns that one direction of the model reads and writes.
+struct Direction {
+    /// The input needs at least one of these columns, besides the common ones.
+    given: &'static [&'static str],
+    answers: &'static [&'static str],
+}
+
+const EVAL: Direction = Direction {
+    given: &[VOLTAGE],
+    answers: &["sigma0_pa", "contact_radius_m", "effective_stiffness_pa_per_m", "friction_n"],
+};
+const INVERT: Direction = Direction { given: &FRICTIONS, answers: &["voltage_v"] };
+
+/// The cells that are appended to a row.
+struct Answer {
+    /// One cell for each of the direction's answers.
+    cells: Vec<String>,
+    status: &'static str,
+    beyond_finger: bool,
+}
+
+fn transform(
+    direction: &Direction,
+    answer: fn(&Row) -> Result<Answer, Refusal>,
+    input: impl Read,
+    output: impl Write,
+) -> Result<Summary, CsvError> {
+    let mut reader = ReaderBuilder::new().flexible(true).from_reader(input);
+    let mut writer = WriterBuilder::new().from_writer(output);
+    let header = reader.byte_headers().map_err(CsvError::read)?.clone();
+    let columns = Columns::new(&header, direction.given)?;
+    let names = direction.answers.iter().map(|name| name.as_bytes());
+    write(&mut writer, header.iter().chain(names).chain([b"status".as_slice()]))?;
+
+    let mut summary = Summary::default();
+    let mut record = ByteRecord::new();
+    while reader.read_byte_record(&mut record).map_err(CsvError::read)? {
+        if is_blank(&record) && columns.len() > 1 {
+            continue;
+        }
+        summary.rows += 1;
+        let (cells, status) = match answer(&Row::new(1 + summary.rows, &columns, &record)) {
+            Ok(answer) => {
+                summary.beyond_finger_rows += u64::from(answer.beyond_finger);
+                (answer.cells, answer.status.to_owned())
+            }
+            Err(refusal) => {
+                summary.invalid_rows += 1;
+                (vec![String::new(); direction.answers.len()], format!("invalid: {refusal}"))
+            }
+        };
+        // A row of the wrong length is invalid, and is padded or cut so that its status is in the status column.
+        let passed = (0..columns.len()).map(|place| record.get(place).unwrap_or_default());
+        write(&mut writer, passed.chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]))?;
+    }
+    writer.flush().map_err(CsvError::Write)?;
+    Ok(summary)
+}
+
+/// Whether a line is blank, such as some editors leave at the end of a file.
+fn is_blank(record: &ByteRecord) -> bool {
+    record.len() == 1 && record.iter().all(|cell| cell.trim_ascii().is_empty())
+}
+
+fn write<'a>(writer: &mut csv::Writer<impl Write>, cells: impl Iterator<Item = &'a [u8]>) -> Result<(), CsvError> {
+    writer.write_record(cells).map_err(CsvError::write)
+}
+
+fn evaluated<T: Number>(row: &Row) -> Result<Answer, Refusal> {
+    let model = Model::<T>::read(row)?;
+    let voltage_v_rms = row.real(VOLTAGE)?;
+    let sigma0_pa = contact_attraction_pa(voltage_v_rms, model.gap_m)?;
+    let (contact_radius_m, stiffness_pa_per_m, friction_n, status) = match model.contact.state(voltage_v_rms) {
+        Ok(state) => (state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, "ok"),
+        Err(StateError::NoContact) => (T::ZERO, model.stiffness_pa_per_m, T::ZERO, "no-contact"),
+        Err(error) => return Err(error.into()),
+    };
+    let numbers = [sigma0_pa, contact_radius_m, stiffness_pa_per_m, friction_n];
+    Ok(Answer { cells: cells(&numbers)?, status, beyond_finger: contact_radius_m > model.radius_m })
+}
+
+fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
+    let model = Model::<T>::read(row)?;
+    let [total, electric] = FRICTIONS;
+    let voltage_v_rms = match (row.is_filled(total), row.is_filled(electric)) {
+        (true, true) => return Err(Refusal::BothFrictions { row: row.number() }),
+        (false, false) => return Err(Refusal::NoFriction { row: row.number() }),
+        (true, false) => model.contact.voltage_for_friction(row.real(total)?),
+        (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),
+    };
+    let (cells, status) = match voltage_v_rms {
+        Ok(voltage_v_rms) => (cells(&[voltage_v_rms])?, "ok"),
+        Err(InverseError::BelowNatural) => (vec![String::new()], "below-natural"),
+        Err(InverseError::Unstable) => (vec![String::new()], "unstable"),
+        Err(error) => return Err(error.into()),
+    };
+    Ok(Answer { cells, status, beyond_finger: false })
+}
+
+/// Formats the numbers; fails if one of them is not finite.
+fn cells<T: Number>(numbers: &[T]) -> Result<Vec<String>, Refusal> {
+    let all_finite = numbers.iter().all(|number| number.is_finite());
+    if all_finite { Ok(numbers.iter().map(|number| number.digits()).collect()) } else { Err(Refusal::OutOfRange) }
+}

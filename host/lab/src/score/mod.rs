@@ -1,0 +1,98 @@
+//! Scores a scene: how faithfully simulated fingers feel it, over strokes and seeds.
+//!
+//! The input is strokes with their seeds, and what the finger felt on each. The output is the [`Fidelity`] of each play,
+//! and of each of its numbers the mean, the interval, and what a person notices.
+
+mod metric;
+mod text;
+
+use frixel_felt::fidelity::{Fidelity, FidelitySample};
+use frixel_hil_sim::{FingertipConfig, Stroke, WorldConfig};
+use frixel_model::LoadedContact;
+use serde::Serialize;
+
+use metric::METRICS;
+pub use metric::{Human, MetricScore};
+
+/// One play to score.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Name of the stroke.
+    pub stroke_name: String,
+    /// Path of the finger.
+    pub stroke: Stroke,
+    /// Seed of all that is random in the world.
+    pub seed: u64,
+    /// The finger, if it is not the one that the scene is meant for.
+    pub finger: Option<TrialFinger>,
+}
+
+/// A person's finger on the screen of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct TrialFinger {
+    /// Number of the person.
+    pub person: u64,
+    /// Contact of the finger with the screen.
+    pub contact: LoadedContact<f64>,
+    /// What the finger does beside the contact model; absent in an ideal world.
+    pub fingertip: Option<FingertipConfig>,
+}
+
+impl Trial {
+    /// The world of this trial: `world` with the finger's skin.
+    pub fn world(&self, world: WorldConfig) -> WorldConfig {
+        let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(world.fingertip);
+        WorldConfig { fingertip, ..world }
+    }
+}
+
+/// The score of one play.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrialScore {
+    /// Number of the person whose finger it was; absent for the finger that the scene is meant for.
+    pub person: Option<u64>,
+    /// Name of the stroke.
+    pub stroke: String,
+    /// Seed of all that was random.
+    pub seed: u64,
+    /// How faithfully friction was felt; absent if the finger was down for less than a quarter of a second.
+    pub fidelity: Option<Fidelity>,
+}
+
+/// The score of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// Each number of [`Fidelity`] over all plays.
+    pub metrics: Vec<MetricScore>,
+    /// The plays.
+    pub plays: Vec<TrialScore>,
+}
+
+impl Score {
+    /// Scores trials. `play` plays one, and returns what was felt and the reference for every quarter of a millisecond.
+    pub fn of<E>(trials: &[Trial], mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>) -> Result<Self, E> {
+        let score = |trial: &Trial| {
+            let person = trial.finger.map(|finger| finger.person);
+            let fidelity = Fidelity::of(&play(trial)?);
+            Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
+        };
+        let plays: Vec<TrialScore> = trials.iter().map(score).collect::<Result<_, E>>()?;
+        let groups = independent(&plays);
+        Ok(Self { metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(), plays })
+    }
+}
+
+/// The plays in groups that are independent of one another: those of a person, or else those of a stroke. Seeds of the
+/// same stroke, and strokes of the same finger, resemble one another.
+fn independent(plays: &[TrialScore]) -> Vec<Vec<Fidelity>> {
+    let mut groups: Vec<(Option<u64>, Option<&str>, Vec<Fidelity>)> = Vec::new();
+    for play in plays {
+        let Some(fidelity) = play.fidelity else { continue };
+        let stroke = if play.person.is_some() { None } else { Some(play.stroke.as_str()) };
+        match groups.iter_mut().find(|(person, other, _)| (*person, *other) == (play.person, stroke)) {
+            Some((.., group)) => group.push(fidelity),
+            None => groups.push((play.person, stroke, vec![fidelity])),
+        }
+    }
+    groups.into_iter().map(|(.., group)| group).collect()
+}

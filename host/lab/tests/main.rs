@@ -1,0 +1,19 @@
+//! Fits recover people: what is recovered, how often intervals are right, and what is refused.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod coverage;
+mod person;
+mod refusals;
+mod simulated;
+
+use frixel_lab::fit::Settings;
+
+fn settings() -> Settings {
+    Settings {
+        voltage_v_rms: 150.0,
+        normal_load_n: None,
+        coating_gap_m: simulated::COATING_GAP_M,
+        without: Vec::new(),
+        seed: 1,
+    }
+}
