@@ -56,9 +56,13 @@ pub enum PlayError {
 }
 
 impl PlayError {
-    /// Whether the board has refused what was asked for, and goes on as before.
+    /// Whether what was asked for is refused, by the board or before, and the play goes on as it was.
     pub fn is_refusal(&self) -> bool {
-        matches!(self, Self::Device(error) if is_refusal(error))
+        match self {
+            Self::Device(error) => is_refusal(error),
+            Self::Live(_) | Self::NothingPlays => true,
+            _ => false,
+        }
     }
 }
 
