@@ -7,7 +7,7 @@ use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
 use frixel_model::{LoadedContact, ParameterError};
-use frixel_scene::Program;
+use frixel_scene::{LayerSetting, Program};
 use frixel_wire::message::Telemetry;
 use thiserror::Error;
 
@@ -143,8 +143,8 @@ impl<L: RecordedLink> Player<L> {
     /// Replaces the scene that is playing between two ticks, and uses the new one as the reference of the record.
     pub fn replace(&mut self, program: &Program) -> Result<(), PlayError> {
         upload(&mut self.device, program, &mut |_| ControlFlow::Continue(()))?;
-        let hello = *self.device.hello();
-        self.recorder_mut().replace(program, &hello.limits, hello.tick_hz).map_err(PlayError::Finger)
+        let limits = self.device.hello().limits;
+        self.recorder_mut().scene_replaced(program, &limits).map_err(PlayError::Finger)
     }
 
     /// Like [`Self::replace`], for a scene whose bitmaps do not fit on the board beside those of the scene that plays:
@@ -156,6 +156,7 @@ impl<L: RecordedLink> Player<L> {
 
     /// Switches a layer of the playing scene on or off, and sets its gain; see [`Device::set_layer`].
     pub fn set_layer(&mut self, layer: u8, on: bool, gain: f32) -> Result<(), PlayError> {
+        self.recorder_mut().layer_changed(layer, LayerSetting { on, gain });
         Ok(self.device.set_layer(layer, on, gain)?)
     }
 
@@ -177,6 +178,7 @@ impl<L: RecordedLink> Player<L> {
 
     /// Ends the play and the record: sets the output to zero and disarms the board.
     pub fn stop(&mut self) -> Result<(), PlayError> {
+        self.recorder_mut().stopped();
         self.device.stop()?;
         Ok(self.device.disarm()?)
     }

@@ -35,7 +35,6 @@ impl RecordedLink for PortLink {
 
 impl Link for PortLink {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
-        self.recorder.record_sent(frame);
         self.serial.write(frame)
     }
 

@@ -14,6 +14,8 @@ use thiserror::Error;
 use frixel_driver::{Device, DeviceError, Link, StreamSettings, StreamStatus};
 use pipe::Pipe;
 
+use crate::rigs::RecordedLink;
+
 /// Samples that are read ahead, before the board has room for them.
 const AHEAD: usize = 2048;
 /// Time for requests at the start of a stream, and for its fade, s.
@@ -130,7 +132,8 @@ impl Feed {
     }
 
     /// Starts the stream on a board that is playing, and sends the first samples.
-    pub fn start<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
+    pub fn start<L: RecordedLink>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
+        device.link_mut().recorder_mut().stream_started(self.settings.sample_hz);
         device.start_stream(self.settings)?;
         self.started_at = Some(device.now());
         self.pump(device)
@@ -138,13 +141,15 @@ impl Feed {
 
     /// Sends as many samples as the board has room for, and ends the stream after the last one. Call this every few
     /// milliseconds.
-    pub fn pump<L: Link>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
+    pub fn pump<L: RecordedLink>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
         while self.ended_at.is_none() {
             let more = self.fetch()?;
             let sent = device.send_samples(&self.pending)?;
-            self.pending.drain(..sent);
+            let taken: Vec<u16> = self.pending.drain(..sent).collect();
+            device.link_mut().recorder_mut().samples_sent(&taken);
             if !more && self.pending.is_empty() {
                 self.ended_at = Some(device.now());
+                device.link_mut().recorder_mut().stream_ended();
                 device.end_stream()?;
             }
             if sent == 0 {
