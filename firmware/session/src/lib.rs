@@ -48,32 +48,20 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-mod autonomous;
-mod bitmap_directory;
 mod commands;
-mod commit;
-mod credit;
-mod estimator;
-mod fingers;
 mod hello;
-mod live;
-mod loading;
+mod link;
+mod motion;
 mod queues;
+mod scene;
 mod session;
-mod standstill;
 mod states;
 #[cfg(feature = "store")]
 pub mod store;
-#[cfg(feature = "store")]
-mod stored;
-mod storing;
-mod tracker;
-mod transmit_queue;
-mod upload;
 
-pub use loading::{TableRows, active_bytes_filled, table_rows};
+pub use motion::tracker::Touch;
 pub use queues::{Queues, SessionEnds, TickEnds};
-pub use session::Session;
+pub use scene::loading::{TableRows, active_bytes_filled, table_rows};
 #[cfg(feature = "store")]
-pub use stored::StoredScene;
-pub use tracker::Touch;
+pub use scene::stored::StoredScene;
+pub use session::Session;
