@@ -280,8 +280,8 @@ fn reasons_say_what_was_expected_and_found_and_where() {
             "invalid: voltage_v of 1e300 leads to numbers too large or too small for this precision",
         ),
         (changed(GOOD[0], "voltage_v", "1e150"), "invalid: the answer is too large or too small for this precision"),
-        (changed(GOOD[2], "normal_force_n", "-inf"), "invalid: normal_force_n must be finite, but is -inf"),
-        (changed(GOOD[2], "normal_force_n", "nan"), "invalid: normal_force_n must be finite, but is NaN"),
+        (changed(GOOD[2], "normal_force_n", "-inf"), "invalid: row 2, column normal_force_n: expected a number, found \"-inf\""),
+        (changed(GOOD[2], "normal_force_n", "nan"), "invalid: row 2, column normal_force_n: expected a number, found \"nan\""),
         (
             changed(GOOD[2], "normal_force_n", "-1e308"),
             "invalid: normal_force_n of -1e308 leads to numbers too large or too small for this precision",
@@ -302,7 +302,7 @@ fn reasons_say_what_was_expected_and_found_and_where() {
     };
     assert_eq!(
         f32_status(&changed(GOOD[0], "voltage_v", "1e-50")),
-        "invalid: row 3, column voltage_v: 1e-50 is out of the range of f32; use --precision f64"
+        "invalid: row 5, column voltage_v: 1e-50 is out of the range of f32; use --precision f64"
     );
     // Friction and contact radius are in range, and the contact attraction is not.
     assert_eq!(
@@ -332,21 +332,21 @@ fn a_column_that_only_some_variants_need_is_missed_only_by_them() {
 #[test]
 fn a_header_that_no_row_can_be_answered_from_is_refused_at_once() {
     for (direction, header, message) in [
-        ("eval", "", "standard input: row 1: expected a column `variant` in the header, found none"),
+        ("eval", "", "standard input: the header has no column variant: name the column so, in a word such as wf-loaded"),
         (
             "eval",
             "variant,radius_m,coating_m,permittivity,friction_coefficient,voltage",
-            "standard input: row 1: expected a column `voltage_v` in the header, found none; is `voltage` meant?",
+            "standard input: the header has no column voltage_v (it has voltage): name the column so, in volts rms",
         ),
         (
             "invert",
             "variant,radius_m,coating_m,permittivity,friction_coefficient,voltage_v",
-            "standard input: row 1: expected a column `friction_n` or `electric_friction_n` in the header, found none",
+            "standard input: the header has no column friction_n or electric_friction_n (it has friction_coefficient): name the column so, in newtons",
         ),
         (
             "eval",
             "variant,radius_m,coating_m,permittivity,friction_coefficient,voltage_v,radius_m",
-            "standard input: row 1: column `radius_m` stands in places 2 and 7; leave one of them out",
+            "standard input: the header has the column radius_m twice: leave one of them out",
         ),
     ] {
         let output = frixel(&[direction], &format!("{header}\n"));

@@ -550,7 +550,7 @@ pub(super) const DATA: &[Case] = &[
     Case {
         what: "a model without rows",
         run: "model eval",
-        says: "standard input: row 1: expected a column `variant` in the header, found none",
+        says: "standard input: the header has no column variant: name the column so, in a word such as wf-loaded",
         ..CASE
     },
     Case {
@@ -558,7 +558,7 @@ pub(super) const DATA: &[Case] = &[
         run: "model eval",
         stdin: "variant,radius_m\n\
              bound,1\n",
-        says: "standard input: row 1: expected a column `coating_m` in the header, found none",
+        says: "standard input: the header has no column coating_m: name the column so, in metres",
         ..CASE
     },
     Case {
