@@ -13,10 +13,10 @@ use std::time::Duration;
 use frixel::rehearsal::board_costs;
 use frixel::rigs::SimLink;
 use frixel_driver::{Device, DeviceError, Upload};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_layers::cost::worst_of_scene;
 use frixel_layers::{Point, Record, Scene as WireScene};
-use frixel_scene::recorder::Recorder;
 use frixel_scene::{Scene, compile};
 
 /// Compiles arbitrary text as a scene file. It is rejected, or becomes a program that a board accepts, with ticks in

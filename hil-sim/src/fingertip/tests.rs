@@ -5,7 +5,7 @@ use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 use super::{Fingertip, FingertipConfig, Friction, example_finger};
 use crate::amplifier::Output;
 use crate::stroke::FingerState;
-use frixel_scene::band_rms;
+use frixel_felt::band_rms;
 
 const TICK_HZ: u32 = 40_000;
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::{FingerState, Point, Stroke, StrokeError};
-use frixel_scene::band_rms;
+use frixel_felt::band_rms;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.02 };
 const RIGHT: Point = Point { x_m: 0.09, y_m: 0.08 };

@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, Counters, Device, DeviceError, Event, Link, Progress, StreamStatus, Upload};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
 use frixel_model::{LoadedContact, ParameterError};
 use frixel_scene::Program;
-use frixel_scene::recorder::Recorder;
 use frixel_wire::message::Telemetry;
 use thiserror::Error;
 

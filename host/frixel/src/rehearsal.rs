@@ -9,9 +9,9 @@ use thiserror::Error;
 use crate::player::load;
 use crate::rigs::SimLink;
 use frixel_driver::{Device, DeviceError};
+use frixel_felt::check::BoardCosts;
+use frixel_felt::recorder::Recorder;
 use frixel_scene::Program;
-use frixel_scene::check::BoardCosts;
-use frixel_scene::recorder::Recorder;
 
 /// Why a simulated board did not accept a scene.
 #[derive(Debug, Error)]

@@ -1,10 +1,10 @@
 //! Plays a trial, and records what was felt and what the reference was.
 
+use frixel_felt::fidelity::{FidelitySample, SAMPLE_HZ};
+use frixel_felt::recorder::FingerState;
 use frixel_hil_sim::{RigConfig, TickRecord};
 use frixel_lab::score::Trial;
 use frixel_scene::Program;
-use frixel_scene::fidelity::{FidelitySample, SAMPLE_HZ};
-use frixel_scene::recorder::FingerState;
 use frixel_wire::fault::Flags;
 
 use crate::finger_reference::FingerReference;

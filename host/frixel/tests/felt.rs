@@ -8,9 +8,9 @@
 use std::collections::BTreeMap;
 
 use frixel::score::samples;
+use frixel_felt::fidelity::Fidelity;
 use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
 use frixel_lab::score::Trial;
-use frixel_scene::fidelity::Fidelity;
 use frixel_scene::{Program, Scene, compile};
 
 /// Error below 40 Hz over the reference's swing, correlation, and spurious force between 40 and 400 Hz: a finger's own

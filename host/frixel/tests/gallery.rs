@@ -10,12 +10,13 @@ use frixel::default_stroke;
 use frixel::output::draw_preview_png;
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
+use frixel_felt::Preview;
+use frixel_felt::perception::{weber_steps, weber_steps_safe};
+use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
-use frixel_scene::perception::{weber_steps, weber_steps_safe};
-use frixel_scene::recorder::FeltRow;
 use frixel_scene::reference::{Context, Reference};
-use frixel_scene::{FingerProfile, Preview, Program, Scene, TargetRange, compile};
+use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};
 use frixel_testkit::golden;
 use frixel_wire::fault::Flags;
 

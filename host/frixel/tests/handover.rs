@@ -7,9 +7,9 @@ use frixel::player;
 use frixel::rigs::SimLink;
 use frixel::scene_file;
 use frixel_driver::Device;
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::compile;
-use frixel_scene::recorder::Recorder;
 use frixel_wire::fault::State;
 
 /// The state that a second client finds, when the first one has left its scene playing.

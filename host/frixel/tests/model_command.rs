@@ -280,8 +280,14 @@ fn reasons_say_what_was_expected_and_found_and_where() {
             "invalid: voltage_v of 1e300 leads to numbers too large or too small for this precision",
         ),
         (changed(GOOD[0], "voltage_v", "1e150"), "invalid: the answer is too large or too small for this precision"),
-        (changed(GOOD[2], "normal_force_n", "-inf"), "invalid: row 2, column normal_force_n: expected a number, found \"-inf\""),
-        (changed(GOOD[2], "normal_force_n", "nan"), "invalid: row 2, column normal_force_n: expected a number, found \"nan\""),
+        (
+            changed(GOOD[2], "normal_force_n", "-inf"),
+            "invalid: row 2, column normal_force_n: expected a number, found \"-inf\"",
+        ),
+        (
+            changed(GOOD[2], "normal_force_n", "nan"),
+            "invalid: row 2, column normal_force_n: expected a number, found \"nan\"",
+        ),
         (
             changed(GOOD[2], "normal_force_n", "-1e308"),
             "invalid: normal_force_n of -1e308 leads to numbers too large or too small for this precision",
@@ -332,7 +338,11 @@ fn a_column_that_only_some_variants_need_is_missed_only_by_them() {
 #[test]
 fn a_header_that_no_row_can_be_answered_from_is_refused_at_once() {
     for (direction, header, message) in [
-        ("eval", "", "standard input: the header has no column variant: name the column so, in a word such as wf-loaded"),
+        (
+            "eval",
+            "",
+            "standard input: the header has no column variant: name the column so, in a word such as wf-loaded",
+        ),
         (
             "eval",
             "variant,radius_m,coating_m,permittivity,friction_coefficient,voltage",
@@ -341,7 +351,7 @@ fn a_header_that_no_row_can_be_answered_from_is_refused_at_once() {
         (
             "invert",
             "variant,radius_m,coating_m,permittivity,friction_coefficient,voltage_v",
-            "standard input: the header has no column friction_n or electric_friction_n (it has friction_coefficient): name the column so, in newtons",
+            "standard input: the header has no column friction_n or electric_friction_n: name the column so, in newtons",
         ),
         (
             "eval",
@@ -464,7 +474,7 @@ fn lines_of_blanks_are_no_rows() {
     let text = format!("{HEADER}\r\n\r\n{}\r\n \t \r\n{}\r\n   \r\n", GOOD[0], changed(GOOD[0], "radius_m", "x"));
     let (rows, summary) = transformed(eval, Precision::F64, &text);
     assert_eq!((summary.rows, summary.invalid_rows), (2, 1));
-    assert!(rows[1]["status"].starts_with("invalid: row 3, column radius_m"), "{:?}", rows[1]);
+    assert!(rows[1]["status"].starts_with("invalid: row 5, column radius_m"), "{:?}", rows[1]);
 }
 
 /// Rows without end.

@@ -14,7 +14,7 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 
 pub use error::TableError;
 pub(crate) use error::system_error;
-use lines::LineEnds;
+use lines::Lines;
 
 /// Similarity from which one name is suggested for another, as a part of their length.
 const LIKENESS: f64 = 0.6;
@@ -48,7 +48,7 @@ pub struct Place {
 
 /// A table that is read row by row.
 pub struct Table<R> {
-    reader: Reader<LineEnds<R>>,
+    reader: Reader<Lines<R>>,
     names: Vec<String>,
     cells: ByteRecord,
 }
@@ -56,7 +56,7 @@ pub struct Table<R> {
 impl<R: Read> Table<R> {
     /// Reads the header. Fails if there are other separators than commas.
     pub fn new(input: R) -> Result<Self, TableError> {
-        let mut reader = ReaderBuilder::new().flexible(true).comment(Some(b'#')).from_reader(LineEnds::new(input));
+        let mut reader = ReaderBuilder::new().flexible(true).comment(Some(b'#')).from_reader(Lines::new(input));
         let header = reader.byte_headers().map_err(TableError::read)?;
         let names: Vec<String> = header.iter().map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
         if let [only] = &names[..]
@@ -123,13 +123,12 @@ impl<R: Read> Table<R> {
         Ok(Some(Row { number, expected: self.names.len(), cells: &self.cells }))
     }
 
-    /// The line of the row that was just read. The reader itself knows only the first of the lines that it skipped.
-    fn number(&self) -> u64 {
-        let behind = self.reader.position();
+    /// The line in which the row that was just read begins. The CSV reader itself knows only the first of the lines
+    /// that it skipped.
+    fn number(&mut self) -> u64 {
+        let end = self.reader.position().byte();
         let inside = self.cells.iter().flatten().filter(|byte| **byte == b'\n').count() as u64;
-        let is_ended = self.reader.get_ref().is_ended_at(behind.byte());
-        let first = self.cells.position().map_or(1, csv::Position::line);
-        behind.line().saturating_sub(inside + u64::from(is_ended)).max(first)
+        self.reader.get_mut().last_line(end).saturating_sub(inside)
     }
 }
 
@@ -194,4 +193,40 @@ impl<'t> Row<'t> {
 /// The whole rows of a file that its writer may still be writing: without a last line that has no line feed.
 pub fn whole_rows(text: &str) -> &str {
     text.rsplit_once('\n').map_or("", |(whole, _)| whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Column, Table};
+
+    fn numbers(text: &str) -> Vec<u64> {
+        let mut table = Table::new(text.as_bytes()).unwrap();
+        std::iter::from_fn(|| table.next_row().unwrap().map(|row| row.number())).collect()
+    }
+
+    #[test]
+    fn rows_are_numbered_as_the_lines_of_the_file() {
+        assert_eq!(numbers("a,b\n1,2\n3,4\n"), [2, 3]);
+        assert_eq!(numbers("a,b\n1,2\n3,4"), [2, 3]);
+        assert_eq!(numbers("a,b\r\n1,2\r\n3,4\r\n"), [2, 3]);
+        assert_eq!(numbers("a,b\r\n\r\n1,2\r\n \t \r\n3,4"), [3, 5]);
+        assert_eq!(numbers("\n# made by hand\na,b\n\n1,2\n\n\n# and\n3,4\n\n"), [5, 9]);
+        assert_eq!(numbers("a,b\n\"1\n\",2\n3,\"\n\n4\"\n5,6\n"), [2, 4, 7]);
+        assert_eq!(numbers("a,b\n"), Vec::<u64>::new());
+        assert_eq!(numbers(""), Vec::<u64>::new());
+    }
+
+    #[test]
+    fn cells_are_found_by_the_names_of_their_columns() {
+        let mut table = Table::new("\u{feff}note, b ,\"a\"\nx, 1e3 ,-2\ny,,\n".as_bytes()).unwrap();
+        let [a, b] = ["a", "b"].map(|name| table.need(Column::new(name, "newtons")).unwrap());
+        assert_eq!(table.find(Column::new("c", "newtons")).unwrap(), None);
+        assert!(table.need(Column::new("note", "words")).is_ok());
+        let row = table.next_row().unwrap().unwrap();
+        assert_eq!([a, b].map(|place| row.real(place).unwrap()), [-2.0, 1000.0]);
+        let row = table.next_row().unwrap().unwrap();
+        assert_eq!(row.real_if_filled(a).unwrap(), None);
+        let said = row.real(b).unwrap_err().to_string();
+        assert_eq!(said, "row 3, column b: expected a number, found an empty cell: correct the cell or delete the row");
+    }
 }

@@ -25,23 +25,16 @@
 //!
 //! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
-//! - [`TargetRange`] and [`FrictionMap`]: the target friction of a program over its screen.
-//! - [`check`]: what a program costs and what will be felt of it, as `frixel scene check` prints it.
-//! - [`perception`]: what a person will feel of a program, with its sources.
+//! - [`TargetRange`]: the target friction of a program over its screen.
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
-//! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
-//! - [`metrics`]: the size of the errors.
-//! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
 #![forbid(unsafe_code)]
 
-pub mod check;
 mod compile;
 mod compile_error;
 mod cover;
 mod defaults;
 mod digits;
 mod excess;
-pub mod fidelity;
 mod fields;
 mod file;
 mod files;
@@ -56,29 +49,23 @@ mod live_change;
 mod live_layers;
 mod log;
 mod lower;
-pub mod metrics;
 mod migrate;
 mod mistake;
 mod nearest;
 mod optimisation;
 mod optimise;
-mod percentile;
-pub mod perception;
 mod picture;
 mod played_finger;
 mod pool;
-mod preview;
 mod printable;
 mod profiles;
 mod program;
 mod reach;
-pub mod recorder;
 pub mod reference;
 mod resample;
 mod schema;
 mod screen;
 mod source;
-mod spectrum;
 mod springs;
 mod stack;
 mod tables;
@@ -108,14 +95,12 @@ pub use nearest::Nearest;
 pub use optimisation::Optimisation;
 pub use picture::check_picture;
 pub use played_finger::PlayedFinger;
-pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
 pub use printable::{NAME_MAX_CHARS, Shown, is_printable, printable, printable_lines};
 pub use profiles::ProfileSource;
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use schema::json_schema;
 pub use screen::{Screen, Slab};
-pub use spectrum::band_rms;
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
 pub use titles::{fold_copies, table_number};

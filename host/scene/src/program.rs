@@ -1,6 +1,7 @@
 //! The compiled scene.
 
 use frixel_layers::{Header, Point, Record, features_of};
+use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
@@ -8,7 +9,7 @@ use super::compile_error::Located;
 use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
 use super::played_finger::PlayedFinger;
-use super::reach::Reach;
+use super::reach::{Reach, loaded_contact};
 use super::warning::Warning;
 
 /// The first protocol version with [`Header::layers_fixed`].
@@ -93,6 +94,12 @@ impl Program {
     /// Whether the friction depends on more than place, speed and time: on earlier clicks, or on a stream.
     pub fn has_history(&self) -> bool {
         self.records.iter().any(|record| record.layer.click().is_some() || record.layer.is_streamed())
+    }
+
+    /// The contact that the program's finger makes with its coating under its load, in `f64`, from the board's `f32`
+    /// numbers. An error does not happen for a compiled program: its reach was computed from the contact.
+    pub fn loaded_contact(&self) -> Result<LoadedContact<f64>, ParameterError> {
+        loaded_contact(&self.header)
     }
 
     /// The bitmap that a record names.

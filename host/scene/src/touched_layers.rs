@@ -1,7 +1,7 @@
 //! Which layers of a program a finger has touched.
 
 use super::program::Program;
-use crate::reference::{Piece, Reference, visible_at};
+use crate::reference::Reference;
 
 /// Places that are tried along each side of a layer's region.
 const PLACES: u32 = 40;
@@ -9,7 +9,7 @@ const PLACES: u32 = 40;
 /// Records which layers a finger has touched on its way. A layer under one that replaces it is not touched there.
 #[derive(Clone, Debug)]
 pub struct TouchedLayers {
-    pieces: Vec<Piece>,
+    reference: Reference,
     screen_m: (f64, f64),
     titles: Vec<String>,
     touched: Vec<bool>,
@@ -32,9 +32,9 @@ pub struct LayerMiddle {
 impl TouchedLayers {
     /// Creates a record in which no layer of the program is touched.
     pub fn new(program: &Program) -> Self {
-        let pieces = Reference::new(program).pieces().to_vec();
+        let reference = Reference::new(program);
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        Self { touched: vec![false; pieces.len()], pieces, screen_m, titles: program.titles.clone() }
+        Self { touched: vec![false; reference.layer_count()], reference, screen_m, titles: program.titles.clone() }
     }
 
     /// Adds a place of the finger, from the top left corner of the screen, m. Returns the topmost layer there, by its
@@ -62,7 +62,7 @@ impl TouchedLayers {
     /// The middle of a layer, or the place nearest to it where a finger touches the layer; `None` if no tried place is
     /// inside the layer.
     pub fn middle(&self, index: usize) -> Option<LayerMiddle> {
-        let [left_m, top_m, right_m, bottom_m] = self.pieces.get(index)?.shape.bounds_m();
+        let [left_m, top_m, right_m, bottom_m] = self.reference.bounds_m(index)?;
         let (left_m, right_m) = (left_m.max(0.0), right_m.min(self.screen_m.0));
         let (top_m, bottom_m) = (top_m.max(0.0), bottom_m.min(self.screen_m.1));
         let part = |number: u32| (f64::from(number) + 0.5) / f64::from(PLACES);
@@ -84,13 +84,13 @@ impl TouchedLayers {
 
     /// Number of layers.
     pub fn layer_count(&self) -> usize {
-        self.pieces.len()
+        self.reference.layer_count()
     }
 
     /// The layers that a finger touches at a place, from the topmost down.
     fn layers_at(&self, x_m: f64, y_m: f64) -> Vec<usize> {
         let is_on_screen = (0.0..=self.screen_m.0).contains(&x_m) && (0.0..=self.screen_m.1).contains(&y_m);
-        visible_at(&self.pieces, x_m, y_m).filter(|_| is_on_screen).collect()
+        self.reference.visible_at(x_m, y_m).filter(|_| is_on_screen).collect()
     }
 }
 

@@ -12,7 +12,7 @@ use super::finger::Evidence;
 use super::kinds::Kind;
 use super::layer::Layer;
 use super::program::Program;
-use super::reach::{ROUNDING, Reach, loaded_contact};
+use super::reach::{ROUNDING, Reach};
 use super::reference::Reference;
 use super::titles::listed;
 
@@ -244,7 +244,7 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
         return warnings;
     };
     // The contact is one: the reach was computed from it.
-    if let Ok(contact) = loaded_contact(&program.header) {
+    if let Ok(contact) = program.loaded_contact() {
         let measured_n = (1.0 + ROUNDING) * contact.electric_friction_n(voltage_max_v_rms);
         if let Some(needed_n) = demand_above(program, measured_n) {
             let voltage_v_rms = digits(contact.voltage_v_rms(needed_n), f64::round);

@@ -1,9 +1,9 @@
 //! What `frixel scene check` says of a scene.
 
 use frixel_driver::{Device, DeviceError, PollingLink};
+use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
-use frixel_scene::check::{BoardCosts, SceneCheck};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 

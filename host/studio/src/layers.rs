@@ -1,8 +1,8 @@
 //! The layers of a scene's files, for a page that lists them beside the text.
 
+use frixel_felt::check::feel;
+use frixel_felt::perception::Perception;
 use frixel_layers::range;
-use frixel_scene::check::feel;
-use frixel_scene::perception::Perception;
 use frixel_scene::{LayerTable, Program, Scene, table_number};
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! The friction map of a scene.
 
-use frixel_scene::{FrictionMap, Preview, ReachSide};
+use frixel_felt::{FrictionMap, Preview, ReachSide};
 
 use crate::host::HostError;
 use crate::program::drafted;

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use frixel::rehearsal::board_costs;
 use frixel::scene_file;
+use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::check::SceneCheck;
 use frixel_scene::compile;
 use frixel_studio::{Request, check, used_files};
 use serde_json::json;

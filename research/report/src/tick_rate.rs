@@ -5,8 +5,8 @@ use std::error::Error;
 use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
 use frixel::player::{Simulation, simulate};
 use frixel::report::{Data, Figure};
+use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
-use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Scene, compile};
 
 /// Tick rates in Hz, each with a whole number of ticks per window.

@@ -13,12 +13,12 @@ use frixel::player::Player;
 use frixel::rigs::{RecordedLink, SimLink};
 use frixel::stream::Feed;
 use frixel_driver::Device;
+use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig, Stroke};
 use frixel_lab::calibration::{
     BoardRow, CalibrationError, ForceRow, ForceSensor, Protocol, align, read_board, read_forces, write_board, write_csv,
 };
 use frixel_model::{Contact, Finger, LoadedContact};
-use frixel_scene::recorder::{FeltRow, Recorder};
 use frixel_scene::{Elasticity, FingerProfile, Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};

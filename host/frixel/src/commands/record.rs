@@ -8,8 +8,8 @@ use std::time::Duration;
 use clap::Args;
 use frixel::output_file::{FileWriter, Inputs, Recording};
 use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
+use frixel_felt::recorder::Observation;
 use frixel_lab::table::{Column, Table, TableError};
-use frixel_scene::recorder::Observation;
 
 use super::error::CommandError;
 use super::experiment::cut_off;

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::marker::PhantomData;
 
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
 use crate::output_file::{FileWriter, OutputFileError};

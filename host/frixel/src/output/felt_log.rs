@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use frixel_felt::recorder::FeltRow;
 use frixel_lab::table::{Column, Table, TableError, whole_rows};
-use frixel_scene::recorder::FeltRow;
 use thiserror::Error;
 
 use crate::input;

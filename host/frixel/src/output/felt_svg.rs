@@ -288,7 +288,7 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use frixel_scene::recorder::FeltRow;
+    use frixel_felt::recorder::FeltRow;
 
     use super::*;
 

@@ -1,7 +1,8 @@
 //! Maps of a screen: a colour for every pixel, rulers in millimetres, and a colour scale in millinewtons.
 
 use crate::chart::{Axis, Chart, Field, Margins, Panel, RGBColor, Raster, colour};
-use frixel_scene::{FrictionMap, MapGrid, Preview, Program, Reach, ReachSide};
+use frixel_felt::{FrictionMap, MapGrid, Preview, ReachSide};
+use frixel_scene::{Program, Reach};
 
 /// Space around the map, below the title, in pixels.
 const MARGINS: Margins = Margins { left: 84, right: 150, top: 26, bottom: 62 };

@@ -1,6 +1,6 @@
 //! The strip of `felt.svg` that says why the output is off while a finger is on the screen.
 
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
 use super::trace::Span;

@@ -2,7 +2,8 @@
 
 use super::map::chart;
 use super::{DrawingError, Subject};
-use frixel_scene::{Preview, Program};
+use frixel_felt::Preview;
+use frixel_scene::Program;
 
 /// Draws the friction that a program targets everywhere on the screen. The colours span the reachable range; targets
 /// beyond it have the colour of the nearer end, and are hatched. The caption is the map's. The title of a draft says

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use frixel_driver::{Counters, StreamStatus};
-use frixel_scene::metrics::{ErrorSize, MetricsSummary};
+use frixel_felt::metrics::{ErrorSize, MetricsSummary};
 use frixel_scene::{Origin, Reach, fold_copies};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.

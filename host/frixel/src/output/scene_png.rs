@@ -4,8 +4,9 @@ use super::map::chart;
 use super::trace::Trace;
 use super::{DrawingError, Subject};
 use crate::chart::{Line, Look, Mark, RGBColor};
+use frixel_felt::Preview;
 use frixel_layers::Layer;
-use frixel_scene::{Preview, Program};
+use frixel_scene::Program;
 
 const STROKE: RGBColor = RGBColor(255, 59, 48);
 const CASING: RGBColor = RGBColor(255, 255, 255);

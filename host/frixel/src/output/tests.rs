@@ -14,8 +14,8 @@ use crate::output_file::{Inputs, OutputFile};
 use crate::scene_file;
 use frixel_control::Board;
 use frixel_driver::Counters;
-use frixel_scene::metrics::{ErrorSize, MetricsSummary};
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::metrics::{ErrorSize, MetricsSummary};
+use frixel_felt::recorder::FeltRow;
 use frixel_scene::reference::Reference;
 use frixel_scene::{Program, compile};
 

@@ -1,6 +1,6 @@
 //! Downsampling of rows for pictures, in memory that does not grow with the length of a play.
 
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 
 use super::off_strip;
 

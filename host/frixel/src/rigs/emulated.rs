@@ -6,8 +6,8 @@ use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use frixel_driver::{DEFAULT_BAUD, KeepAlive, Link, LinkClosed, PortError, SerialLink, Written};
+use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
-use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_driver::{Link, LinkClosed, SerialLink, Written};
-use frixel_scene::recorder::{Observation, Recorder};
+use frixel_felt::recorder::{Observation, Recorder};
 use frixel_wire::message::Telemetry;
 
 use super::RecordedLink;

@@ -1,8 +1,8 @@
 //! The interface that all rigs have in common.
 
 use frixel_driver::{Link, LinkClosed};
+use frixel_felt::recorder::{FeltFriction, FingerState, Observation, Recorder};
 use frixel_hil_sim::{Felt, FingerState as SimulatedFinger, ReferenceFriction};
-use frixel_scene::recorder::{FeltFriction, FingerState, Observation, Recorder};
 use frixel_wire::message::Telemetry;
 
 /// A link to a board that plays a scene, with the record of that play.

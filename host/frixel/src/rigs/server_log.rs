@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_lab::calibration::ForceSensor;
-use frixel_scene::recorder::Recorder;
 use frixel_wire::fault::State;
 
 use super::sim_link::observation;

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use frixel_driver::{KeepAlive, Link, LinkClosed, Written};
+use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
-use frixel_scene::recorder::{Observation, Recorder};
 use frixel_wire::fault::State;
 use frixel_wire::message::Telemetry;
 

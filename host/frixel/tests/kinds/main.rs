@@ -17,8 +17,8 @@ use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
 use frixel::player::{Simulation, simulate};
 use frixel::scene_file::SceneFolder;
+use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_scene::recorder::FeltRow;
 use frixel_scene::{Program, Scene, compile};
 
 const HEAD: &str = "\

@@ -6,9 +6,9 @@ use std::time::Duration;
 use frixel::player;
 use frixel::rigs::SimLink;
 use frixel_driver::{Device, StreamSettings};
+use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_scene::Program;
-use frixel_scene::recorder::{FeltRow, Recorder};
 
 use super::cases::Path;
 use super::{NATURAL_N, PERIOD_TICKS, compiled, stroke};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use frixel_scene::fidelity::Fidelity;
-use frixel_scene::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
+use frixel_felt::fidelity::Fidelity;
+use frixel_felt::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
 
 /// Number of standard errors on either side of a mean in its 95 % interval, by the number of independent values less

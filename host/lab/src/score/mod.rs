@@ -6,9 +6,9 @@
 mod metric;
 mod text;
 
+use frixel_felt::fidelity::{Fidelity, FidelitySample};
 use frixel_hil_sim::{FingertipConfig, Stroke, WorldConfig};
 use frixel_model::LoadedContact;
-use frixel_scene::fidelity::{Fidelity, FidelitySample};
 use serde::Serialize;
 
 use metric::METRICS;

@@ -76,7 +76,7 @@ impl Reference {
 
     /// The same reference with only those layers on for whose index, from the bottom, `is_on` is true.
     #[must_use]
-    pub(crate) fn with_only(mut self, is_on: impl Fn(usize) -> bool) -> Self {
+    pub fn with_only(mut self, is_on: impl Fn(usize) -> bool) -> Self {
         for (layer, piece) in self.pieces.iter_mut().enumerate() {
             piece.is_on = is_on(layer);
         }
@@ -106,19 +106,35 @@ impl Reference {
         })
     }
 
+    /// The layers that have an effect at a place in metres, by their index from the bottom, from the topmost down: those
+    /// that are on and cover it, and that no layer above replaces.
+    pub fn visible_at(&self, x_m: f64, y_m: f64) -> impl Iterator<Item = usize> {
+        let covers = move |piece: &Piece| piece.is_on && piece.shape.covers(x_m, y_m);
+        let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
+        let visible = self.pieces.iter().enumerate().skip(lowest).rev().filter(move |(_, piece)| covers(piece));
+        visible.map(|(number, _)| number)
+    }
+
+    /// Left, top, right and bottom of the smallest rectangle around a layer, in metres, infinite for a layer that covers
+    /// the screen; `None` for an index beyond the topmost layer.
+    pub fn bounds_m(&self, layer: usize) -> Option<[f64; 4]> {
+        self.pieces.get(layer).map(|piece| piece.shape.bounds_m())
+    }
+
+    /// Number of layers.
+    pub fn layer_count(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Whether friction changes under a finger at rest: a layer vibrates or follows a stream.
+    pub fn changes_by_itself(&self) -> bool {
+        self.pieces.iter().any(|piece| piece.is_streamed || piece.field.largest_over_time_n().is_some())
+    }
+
     /// The layers from bottom to top.
     pub(crate) fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
-}
-
-/// The layers that have an effect at a place, from the topmost down: those that are on and cover it, and that no layer
-/// above replaces.
-pub(crate) fn visible_at(pieces: &[Piece], x_m: f64, y_m: f64) -> impl Iterator<Item = usize> {
-    let covers = move |piece: &Piece| piece.is_on && piece.shape.covers(x_m, y_m);
-    let lowest = pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
-    let visible = pieces.iter().enumerate().skip(lowest).rev().filter(move |(_, piece)| covers(piece));
-    visible.map(|(number, _)| number)
 }
 
 impl Piece {

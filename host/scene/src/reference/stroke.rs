@@ -48,7 +48,8 @@ impl StrokeReference {
     }
 
     /// The same reference without the clicks of all other layers.
-    pub(crate) fn with_clicks_of(mut self, layer: usize) -> Self {
+    #[must_use]
+    pub fn with_clicks_of(mut self, layer: usize) -> Self {
         self.clicking.retain(|clicking| clicking.layer == layer);
         self
     }

@@ -5,9 +5,9 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
+use frixel_felt::fidelity::{self, Fidelity, FidelitySample};
+use frixel_felt::recorder::FingerState;
 use frixel_hil_sim::{Stroke, TouchConfig, TouchReport, World, WorldConfig};
-use frixel_scene::fidelity::{self, Fidelity, FidelitySample};
-use frixel_scene::recorder::FingerState;
 
 pub(super) use filters::{Filter, Path, best_of_grid, methods};
 

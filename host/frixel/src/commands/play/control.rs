@@ -191,8 +191,8 @@ mod tests {
 
     use frixel::rigs::SimLink;
     use frixel_driver::Device;
+    use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-    use frixel_scene::recorder::Recorder;
     use frixel_scene::{Scene, compile};
 
     use super::*;

@@ -7,7 +7,7 @@ use frixel::output_file::{
     FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
 };
 use frixel::scene_file::SceneFiles;
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 use frixel_scene::{Program, TouchedLayers};
 
 use super::super::experiment::cut_off;
@@ -254,8 +254,8 @@ mod tests {
     use std::fs;
 
     use frixel_driver::Counters;
+    use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::RigConfig;
-    use frixel_scene::recorder::Recorder;
     use frixel_scene::{Scene, compile};
 
     use super::*;

@@ -7,8 +7,8 @@ use std::time::Duration;
 use frixel::default_stroke;
 use frixel::output::WorldReport;
 use frixel::stream::Feed;
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
-use frixel_scene::recorder::Recorder;
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 

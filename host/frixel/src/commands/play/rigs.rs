@@ -2,8 +2,8 @@
 
 use frixel::rigs::SimLink;
 use frixel_driver::Device;
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
-use frixel_scene::recorder::Recorder;
 use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
 use frixel_wire::hello::{BoardLimits, Hello};
 

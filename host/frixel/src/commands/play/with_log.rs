@@ -5,7 +5,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use frixel::output::FeltLog;
-use frixel_scene::recorder::FeltRow;
+use frixel_felt::recorder::FeltRow;
 
 use super::CommandError;
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use frixel::rehearsal::board_costs;
+use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::check::SceneCheck;
 use frixel_scene::{compile, printable};
 
 use super::super::error::CommandError;

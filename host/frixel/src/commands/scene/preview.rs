@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use frixel::output::{draft_line, draw_preview_png};
 use frixel::output_file::{Inputs, OutputFile};
+use frixel_felt::Preview;
+use frixel_felt::check::feel;
+use frixel_felt::perception::Perception;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::check::feel;
-use frixel_scene::perception::Perception;
-use frixel_scene::{Preview, compile_draft};
+use frixel_scene::compile_draft;
 
 use super::super::argument::number;
 use super::super::error::CommandError;

@@ -282,7 +282,7 @@ mod tests {
     use super::*;
     use crate::rigs::SimLink;
     use frixel_driver::{Bitmap, Device, Upload};
-    use frixel_scene::recorder::Recorder;
+    use frixel_felt::recorder::Recorder;
 
     /// Frames and bytes that the driver sends to a simulated board.
     fn sent(program: &Program) -> (u64, u64) {

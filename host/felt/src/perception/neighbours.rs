@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use frixel_layers::{Blend, Layer};
 
 use super::slide::{total_n, visible_layers};
-use crate::Program;
-use crate::reference::{Context, Reference};
+use frixel_scene::Program;
+use frixel_scene::reference::{Context, Reference};
 
 /// Places along the longer side of the screen.
 const PLACES: f64 = 300.0;
@@ -43,7 +43,7 @@ pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
         let place_m = |cell: usize| (cell as f64 + 0.5) * pitch_m;
         let (x_m, y_m) = (place_m(number % columns), place_m(number / columns));
         let context = Context { x_m, y_m, speed_m_per_s, ..Context::default() };
-        (visible_layers(reference.pieces(), x_m, y_m), total_n(program, reference.electric_friction_at_n(&context)))
+        (visible_layers(&reference, x_m, y_m), total_n(program, reference.electric_friction_at_n(&context)))
     };
     let cells: Vec<(u64, f64)> = (0..columns * rows).map(at).collect();
     let mut found: BTreeMap<[Option<usize>; 2], Pairs> = BTreeMap::new();

@@ -1,9 +1,9 @@
 use super::{BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Verdict, weber_steps};
 use crate::check::feel;
-use crate::tests::{HEAD, compile_text};
+use crate::tests::{compiled, program};
 
 fn of(layers: &str) -> Perception {
-    Perception::of(&compile_text(&format!("{HEAD}{layers}")).unwrap())
+    Perception::of(&program(layers))
 }
 
 fn only(perception: &Perception) -> &LayerPerception {
@@ -110,7 +110,7 @@ fn a_vibration_is_said_to_need_a_sliding_finger() {
 
 /// On the example screen, under the example finger: 250 mN, to which the drive adds up to 130 mN.
 fn on_example(layers: &str) -> Perception {
-    Perception::of(&compile_text(&format!("version = 2\n{layers}")).unwrap())
+    Perception::of(&compiled(&format!("version = 2\n{layers}")))
 }
 
 /// A layer whose friction is in parts of the reach, at a place of 30 by 20 mm.

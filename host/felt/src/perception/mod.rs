@@ -18,11 +18,11 @@ mod thresholds;
 use frixel_layers::{Burst, Layer};
 use serde::Serialize;
 
-use crate::Program;
 use crate::percentile::percentiles;
-use crate::reference::Reference;
 pub use alike::AlikeLayers;
 use click::ClickStep;
+use frixel_scene::Program;
+use frixel_scene::reference::Reference;
 use slide::Slide;
 pub(crate) use thresholds::RELAXATION_LENGTH_MM;
 pub use thresholds::{
@@ -145,7 +145,7 @@ impl Perception {
     ///
     /// ```
     /// use std::collections::BTreeMap;
-    /// use frixel_scene::perception::{Perception, Verdict};
+    /// use frixel_felt::perception::{Perception, Verdict};
     /// use frixel_scene::{Scene, compile};
     /// # fn judge(text: &str, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
     /// let program = compile(&Scene::parse(text, "grating.toml", &BTreeMap::new())?, limits, 40_000)?;
@@ -232,7 +232,7 @@ impl JudgedLayer {
     /// visible nowhere. `lasting` is `program` without pauses between bursts, and `reference` belongs to it.
     fn new(layer: usize, reference: &Reference, program: &Program, lasting: &Program) -> Option<Self> {
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        let slides = Slide::over(layer, reference.pieces(), screen_m);
+        let slides = Slide::over(layer, reference, screen_m);
         let uncovered = reference.clone().with_only(|other| other <= layer);
         let slides_n = SPEEDS_M_PER_S.map(|speed_m_per_s| -> Vec<Vec<f64>> {
             slides.iter().map(|slide| slide.friction_n(&uncovered, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
@@ -242,7 +242,7 @@ impl JudgedLayer {
         let contrasts = usual_n.iter().filter_map(|friction_n| contrast_within(friction_n, is_edge));
         let (contrast, is_narrow) =
             contrasts.max_by(|(one, _), (other, _)| one.contrast_n.total_cmp(&other.contrast_n))?;
-        let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference.pieces()));
+        let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference));
         let felt = visible & (u64::MAX >> (63 - layer));
         let has_texture = !is_edge && has_texture(felt, program);
         let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter(|_| has_texture).filter_map(
@@ -317,9 +317,7 @@ impl Texture {
 }
 
 fn notes(reference: &Reference) -> Vec<String> {
-    let changes_by_itself =
-        reference.pieces().iter().any(|piece| piece.is_streamed || piece.field.largest_over_time_n().is_some());
-    if changes_by_itself {
+    if reference.changes_by_itself() {
         vec![
             "Only a sliding finger feels vibrations and streams: of people whose finger rests, 30 % feel 125 Hz \
              (Dryad 9ghx3ffgp)."

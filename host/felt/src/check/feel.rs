@@ -4,7 +4,7 @@ use crate::perception::{
     AlikeLayers, BorderStep, BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Texture,
     VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps_text,
 };
-use crate::titles::table_number;
+use frixel_scene::table_number;
 
 /// The subject of a sentence: a layer, or the border of two.
 struct Subject {

@@ -1,7 +1,7 @@
 //! Straight slides over a layer, and the friction along them.
 
-use crate::Program;
-use crate::reference::{Context, Piece, Reference, visible_at};
+use frixel_scene::Program;
+use frixel_scene::reference::{Context, Reference};
 
 /// Rows and columns over the bounding rectangle of a layer.
 const ROWS: usize = 5;
@@ -21,9 +21,8 @@ pub(super) struct Slide {
 
 impl Slide {
     /// Rows and columns over a layer, each where it is visible for the longest.
-    pub(super) fn over(layer: usize, pieces: &[Piece], screen_m: (f64, f64)) -> Vec<Self> {
-        let Some(piece) = pieces.get(layer) else { return Vec::new() };
-        let [left_m, top_m, right_m, bottom_m] = piece.shape.bounds_m();
+    pub(super) fn over(layer: usize, reference: &Reference, screen_m: (f64, f64)) -> Vec<Self> {
+        let Some([left_m, top_m, right_m, bottom_m]) = reference.bounds_m(layer) else { return Vec::new() };
         let (from_x_m, to_x_m) = (left_m.max(0.0), right_m.min(screen_m.0));
         let (from_y_m, to_y_m) = (top_m.max(0.0), bottom_m.min(screen_m.1));
         let slides = (0..ROWS).flat_map(|number| {
@@ -32,7 +31,7 @@ impl Slide {
             [((from_x_m, y_m), (to_x_m, y_m)), ((x_m, from_y_m), (x_m, to_y_m))]
                 .map(|(from_m, to_m)| Self::new(from_m, to_m))
         });
-        slides.filter_map(|slide| slide.longest_visible(layer, pieces)).collect()
+        slides.filter_map(|slide| slide.longest_visible(layer, reference)).collect()
     }
 
     fn new(from_m: (f64, f64), to_m: (f64, f64)) -> Self {
@@ -52,12 +51,12 @@ impl Slide {
 
     /// The longest stretch on which the layer is visible, from the first place there to the last one, or to
     /// the end of the row; `None` for less than two places.
-    fn longest_visible(&self, layer: usize, pieces: &[Piece]) -> Option<Self> {
+    fn longest_visible(&self, layer: usize, reference: &Reference) -> Option<Self> {
         let part = |number: usize| number as f64 / PLACES as f64;
         let (mut longest, mut run) = (0..0, 0..0);
         for number in 0..PLACES {
             let (x_m, y_m) = self.at(part(number) + 0.5 / PLACES as f64);
-            if visible_layers(pieces, x_m, y_m) >> layer & 1 == 1 {
+            if visible_layers(reference, x_m, y_m) >> layer & 1 == 1 {
                 run.end = number + 1;
                 if run.len() > longest.len() {
                     longest = run.clone();
@@ -74,9 +73,9 @@ impl Slide {
     }
 
     /// The layers that have an effect somewhere on the way, a bit each.
-    pub(super) fn visible_layers(&self, pieces: &[Piece]) -> u64 {
+    pub(super) fn visible_layers(&self, reference: &Reference) -> u64 {
         let places = (0..PLACES).map(|number| self.at((number as f64 + 0.5) / PLACES as f64));
-        places.fold(0, |visible, (x_m, y_m)| visible | visible_layers(pieces, x_m, y_m))
+        places.fold(0, |visible, (x_m, y_m)| visible | visible_layers(reference, x_m, y_m))
     }
 
     /// The same way, begun two places earlier: outside of a layer that begins where the way does.
@@ -114,6 +113,6 @@ pub(super) fn total_n(program: &Program, electric_n: f64) -> f64 {
 }
 
 /// The layers that have an effect at a place, a bit each.
-pub(super) fn visible_layers(pieces: &[Piece], x_m: f64, y_m: f64) -> u64 {
-    visible_at(pieces, x_m, y_m).fold(0, |visible, layer| visible | 1 << layer)
+pub(super) fn visible_layers(reference: &Reference, x_m: f64, y_m: f64) -> u64 {
+    reference.visible_at(x_m, y_m).fold(0, |visible, layer| visible | 1 << layer)
 }

@@ -5,9 +5,8 @@
 
 use frixel_layers::{Button, Edge, Layer};
 
-use super::program::Program;
-use super::reach::{ROUNDING, Reach};
-use super::reference::{Context, Reference};
+use frixel_scene::reference::{Context, Reference};
+use frixel_scene::{Program, ROUNDING, Reach};
 
 /// Settings of a preview.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +97,8 @@ impl FrictionMap {
     ///
     /// ```
     /// use std::collections::BTreeMap;
-    /// use frixel_scene::{FrictionMap, Preview, Scene, compile};
+    /// use frixel_felt::{FrictionMap, Preview};
+    /// use frixel_scene::{Scene, compile};
     /// # fn map(text: &str, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
     /// let program = compile(&Scene::parse(text, "grating.toml", &BTreeMap::new())?, limits, 40_000)?;
     /// let map = FrictionMap::new(&program, &Preview::default());

@@ -4,8 +4,7 @@ use frixel_layers::Layer;
 use serde::Serialize;
 
 use super::{JudgedLayer, Texture, USUAL_M_PER_S, VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps};
-use crate::Program;
-use crate::reach::loaded_contact;
+use frixel_scene::Program;
 
 /// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
 const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
@@ -94,7 +93,6 @@ fn felt_texture(judged: &JudgedLayer) -> Option<&Texture> {
 /// The voltage at the 95th percentile of the friction; `None` at natural friction.
 fn voltage_v_rms(judged: &JudgedLayer, program: &Program) -> Option<f64> {
     let electric_n = judged.perception.contrast.to_n - program.reach.natural_friction_n;
-    // The contact is one: the program's reach was computed from it.
-    let contact = loaded_contact(&program.header).ok().filter(|_| electric_n > 0.0)?;
+    let contact = program.loaded_contact().ok().filter(|_| electric_n > 0.0)?;
     Some(contact.voltage_v_rms(electric_n))
 }

@@ -15,7 +15,7 @@ use serde::Serialize;
 pub use board::BoardImage;
 
 use crate::perception::Perception;
-use crate::{Program, TargetRange, middle_mm};
+use frixel_scene::{Program, TargetRange, middle_mm};
 
 /// What a board needs for a program. The caller measures it on a board, which may be simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

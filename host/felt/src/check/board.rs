@@ -1,6 +1,6 @@
 //! The smallest firmware image that plays a scene.
 
-use crate::Program;
+use frixel_scene::Program;
 use frixel_wire::hello::feature;
 use serde::Serialize;
 

@@ -1,19 +1,10 @@
-use std::collections::BTreeMap;
-
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request, Telemetry};
 use frixel_wire::payload::{request_frame, samples_frame};
 
 use super::*;
-use crate::tests::{HEAD, LIMITS, TICK_HZ};
-use crate::{Scene, compile};
-
-fn program(layers: &str) -> Program {
-    let text = format!("{HEAD}{layers}");
-    let scene = Scene::parse(&text, "test.toml", &BTreeMap::new()).unwrap();
-    compile(&scene, &LIMITS, TICK_HZ).unwrap()
-}
+use crate::tests::{LIMITS, TICK_HZ, program};
 
 const CONSTANT: &str = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n";
 const EDGE: &str =

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use frixel_model::InverseTable;
 
 use super::{RamBytes, SceneCheck, feel};
-use crate::{Origin, OutOfReach};
+use frixel_scene::{Origin, OutOfReach};
 
 impl SceneCheck {
     /// The costs as a few lines of text, each ending in a line feed.

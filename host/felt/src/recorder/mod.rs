@@ -1,4 +1,4 @@
-//! Records what a board did and what its finger felt, and compares it with the [reference](mod@crate::reference).
+//! Records what a board did and what its finger felt, and compares it with the [reference](mod@frixel_scene::reference).
 //!
 //! The same [`Recorder`] serves simulated boards and boards at a port. Its input is [`Observation`]s: one for every
 //! tick if the board or its world is simulated, one for every telemetry message of a board at a port. Its output is
@@ -15,9 +15,9 @@ use frixel_model::ParameterError;
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
 
-use crate::Program;
 use crate::metrics::{Metrics, MetricsSummary, Sample};
-use crate::reference::{Context, Reference, StrokeReference};
+use frixel_scene::Program;
+use frixel_scene::reference::{Context, Reference, StrokeReference};
 use host_stream::{HostStream, LayerChange};
 use inversion::Inversion;
 pub use observation::{FeltFriction, FingerState, Observation};

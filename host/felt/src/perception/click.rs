@@ -2,8 +2,8 @@
 
 use super::slide::{Slide, total_n};
 use super::{SAMPLE_HZ, Step};
-use crate::Program;
-use crate::reference::Reference;
+use frixel_scene::Program;
+use frixel_scene::reference::Reference;
 
 /// The friction that is missing to a click, in N, from which it counts as cut off: above the rounding of `f32`.
 const CUT_MIN_N: f64 = 1e-6;

@@ -1,10 +1,10 @@
 //! Converts a commanded voltage to friction, without the errors of amplifier and finger.
 
 use frixel_layers::Waveform;
-use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
+use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::hello::BoardLimits;
 
-use crate::{Program, carrier};
+use frixel_scene::{Program, carrier};
 
 /// The full model, driven through an ideal amplifier and a DAC with its steps.
 #[derive(Debug)]
@@ -18,17 +18,11 @@ pub(super) struct Inversion {
 impl Inversion {
     pub(super) fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
         let header = &program.header;
-        let finger = Finger {
-            radius_m: f64::from(header.finger_radius_m),
-            stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
-            friction_coefficient: f64::from(header.friction_coefficient),
-        };
-        let contact = Contact::new(&finger, f64::from(header.effective_gap_m))?;
         let carrier = carrier(header.waveform, program.half_period_ticks, tick_hz, limits);
         let peak_per_rms = f64::from(carrier.peak_per_rms());
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
-            contact: contact.under_load(f64::from(header.normal_load_n))?,
+            contact: program.loaded_contact()?,
             waveform: header.waveform,
             codes_per_v_rms: peak_per_rms * codes_per_v_peak,
             electric_friction_max_n: program.reach.electric_friction_max_n,
