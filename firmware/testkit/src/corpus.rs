@@ -1,9 +1,9 @@
 //! Corpora: Markdown files of inputs, each followed by what must be said to it.
 //!
-//! A heading names a case. A code block with the name of a file behind its language, such as `toml scene.toml`, is an
-//! input; blocks of the introduction stand at the beginning of the file of the same name in each case. The block with
-//! the language `says` is what must be said. A test makes the page anew with what is said now and holds it as a
-//! [golden file](crate::golden).
+//! A heading names the cases below it. A code block with the name of a file behind its language, such as
+//! `toml scene.toml`, is an input, or so many copies of it: `toml scene.toml x65`. Blocks of the introduction stand at
+//! the beginning of the file of the same name in each case. The block with the language `says` ends a case with what
+//! must be said. A test makes the page anew with what is said now and holds it as a [golden file](crate::golden).
 //!
 //! ````text
 //! # Layers
@@ -40,7 +40,7 @@ const SAYS: &str = "says";
 /// The inputs of a case.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Case {
-    /// Its heading.
+    /// The heading above it.
     pub heading: String,
     /// Names and texts of its files.
     pub files: BTreeMap<String, String>,
@@ -86,9 +86,10 @@ fn answered(page: &str, answer: &mut impl FnMut(&Case) -> String) -> String {
             case.files.clone_from(&introduction);
             said
         } else {
-            let name = block.split_once(' ').map(|(_, name)| name.to_owned());
-            let name = name.unwrap_or_else(|| panic!("a block of {} names no file", case.heading));
-            *case.files.entry(name).or_default() += &held;
+            let mut words = block.split(' ').skip(1);
+            let name = words.next().unwrap_or_else(|| panic!("a block of {} names no file", case.heading));
+            let copies = words.next().and_then(|word| word.strip_prefix('x')?.parse().ok()).unwrap_or(1);
+            *case.files.entry(name.to_owned()).or_default() += &held.repeat(copies);
             held
         };
         answered.extend([&text, FENCE, "\n"]);
@@ -100,8 +101,7 @@ fn answered(page: &str, answer: &mut impl FnMut(&Case) -> String) -> String {
 mod tests {
     use super::*;
 
-    const PAGE: &str =
-        "# Sums\n\n```text a\n1\n```\n\n## Two\n\n```text a\n2\n```\n\n```says\n3\n```\n\n## None\n\n```says\n1\n```\n";
+    const PAGE: &str = "# Sums\n\n```text a\n1\n```\n\n## Two\n\n```text a\n2\n```\n\n```says\n3\n```\n\n## None, and copies\n\n```says\n1\n```\n\n```text a x3\n5\n```\n\n```says\n16\n```\n";
 
     fn sum(case: &Case) -> String {
         let sum: u32 = case.files["a"].lines().filter_map(|line| line.parse::<u32>().ok()).sum();

@@ -34,8 +34,9 @@ const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 /// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the application's last call that sends or receives, and the
 /// board then disarms itself, so an application that hangs does not keep a board playing. A call that waits keeps the
 /// pings going while it waits. An application that plays one scene for a long time calls [`Self::wait`] or
-/// [`Self::keep_alive`] several times a second. While two pings are unanswered no other is sent. It makes these calls in the loop that reacts to a request to stop,
-/// never in a thread or timer that would continue without that loop.
+/// [`Self::keep_alive`] several times a second. It makes these calls in the loop that reacts to a request to stop,
+/// never in a thread or timer that would continue without that loop. [`KeepAlive`](crate::KeepAlive) says what a board
+/// that does not answer gets.
 ///
 /// Dropping a value that has armed the board stops and disarms the board if the link still works. In any case the board
 /// sets its output to zero once the pings have stopped.

@@ -19,7 +19,7 @@ use super::link::Link;
 pub(super) use incoming::StreamReport;
 
 /// Sequence number of requests whose answer is ignored.
-const UNAWAITED: u16 = PING_SEQUENCES[0];
+const UNAWAITED: u16 = 0;
 /// Longest time to an answer, from the time at which the request has reached the board, and longest time without any
 /// byte leaving a line on which bytes are under way.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
@@ -35,8 +35,8 @@ const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
 /// Credit that uploads leave for commands and pings, bytes: a dozen of them. Those that the line loses take credit until
 /// a command is answered.
 const RESERVE_LEN: usize = 256;
-/// Credit that commands leave for pings, bytes: the two that may be unanswered, and two that may be lost.
-const PING_RESERVE_LEN: usize = 64;
+/// Credit that commands leave for pings, bytes: the ten that may be unanswered after a minute.
+const PING_RESERVE_LEN: usize = 128;
 
 /// What a call waits for; see [`Device::while_waiting`](crate::Device::while_waiting).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,6 +238,7 @@ impl<L: Link> Exchange<L> {
             self.receive(wake_at.saturating_sub(now).min(watch_in), name_of(&command))?;
             if let Some(answer) = self.answer.take() {
                 self.repeated = self.awaited.first().is_some_and(|first| first.sequence != answer.sequence);
+                self.awaited.clear();
                 return Ok(self.outcome(command, &answer));
             }
         }
@@ -246,7 +247,7 @@ impl<L: Link> Exchange<L> {
     /// Sends a request if there is credit for it.
     fn send(&mut self, command: Command) -> Result<bool, DeviceError> {
         let mut sequence = self.sequence.wrapping_add(1);
-        while PING_SEQUENCES.contains(&sequence) {
+        while sequence == UNAWAITED || PING_SEQUENCES.contains(&sequence) {
             sequence = sequence.wrapping_add(1);
         }
         let frame = frame_of(sequence, command)?;

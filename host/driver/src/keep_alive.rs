@@ -1,39 +1,51 @@
 //! The pings of a link: when the next one is due, and which ones the board has answered.
 
 use std::collections::VecDeque;
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use frixel_wire::frame::Decoder;
-use frixel_wire::message::{Command, FromBoard};
+use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::Payload;
 
 use super::command::frame_of;
 
-/// Sequence numbers of two pings in a row. No request has them.
-pub(super) const PING_SEQUENCES: [u16; 2] = [0, u16::MAX];
-/// Most pings without an answer. A board that is slow, or whose line is, then does not spend its time on pings.
+/// Sequence numbers of pings, one after the other. No request has them. They are so many that no two pings under way
+/// have the same.
+pub(super) const PING_SEQUENCES: RangeInclusive<u16> = 0xffc0..=0xffff;
+/// Longest frame that may be a ping: a zero byte, 9 bytes, and two of the encoding.
+const PING_MAX_LEN: usize = 12;
+/// Pings without an answer that no other follows at its time. A board that is slow, or whose line is, then does not
+/// spend its time on pings.
 const UNANSWERED_MAX: usize = 2;
-/// Time after which the last ping counts as lost when neither it nor the one before was answered.
+/// Round trips of the last answered ping after which two pings without an answer count as damaged.
+const ROUND_TRIPS: u32 = 4;
+/// Longest time after two pings without an answer to the third, and time from the third to the fourth.
 const LOST_AFTER: Duration = Duration::from_millis(750);
+/// How often that time is doubled for further pings without an answer.
+const DOUBLINGS_MAX: usize = 10;
 /// Shortest period. Without it, a period of zero could block a call for ever.
 const PERIOD_MIN: Duration = Duration::from_millis(1);
 
 /// The pings of a [`Link`](crate::Link), which keep a board alive.
 ///
 /// A ping is due when nothing was written for the period, but not while the two before it are unanswered: a board that
-/// answers more slowly than it is pinged would have more and more of them ahead of every command. When both are lost,
-/// the next one is due 0.75 s after them; a board that takes longer than that for one frame counts as silent.
+/// answers more slowly than it is pinged would have more and more of them ahead of every command. Two that stay
+/// unanswered for the period, and for four times the last round trip, count as damaged, and a third one is due. The next
+/// one is due 0.75 s after that, and each further one after twice the time; a board that takes longer than 0.75 s for one
+/// frame counts as silent.
 ///
 /// A link asks [`Self::due_at`], writes [`Self::next_ping`] then, and passes everything that arrives to
 /// [`Self::hear`]. Times are on the link's clock.
 #[derive(Debug)]
 pub struct KeepAlive {
     period: Option<Duration>,
-    frames: [Vec<u8>; 2],
-    /// Index of the next ping's frame.
-    next: usize,
-    /// Index of the frame of each ping without an answer, and when it was written.
-    unanswered: VecDeque<(usize, Duration)>,
+    /// Sequence number of the next ping.
+    next: u16,
+    /// Sequence number of each ping without an answer, and when it was written.
+    unanswered: VecDeque<(u16, Duration)>,
+    /// Time from the last answered ping to its answer.
+    round_trip: Duration,
     decoder: Decoder,
 }
 
@@ -41,10 +53,9 @@ impl Default for KeepAlive {
     fn default() -> Self {
         Self {
             period: None,
-            // A ping always fits into a frame.
-            frames: PING_SEQUENCES.map(|sequence| frame_of(sequence, Command::Ping).unwrap_or_default()),
-            next: 0,
+            next: *PING_SEQUENCES.start(),
             unanswered: VecDeque::new(),
+            round_trip: Duration::ZERO,
             decoder: Decoder::new(),
         }
     }
@@ -58,10 +69,14 @@ impl KeepAlive {
 
     /// When the next ping is due, after a last write at `last_write`; `None` without a period.
     pub fn due_at(&self, last_write: Duration) -> Option<Duration> {
-        let due = last_write + self.period?;
-        let is_full = self.unanswered.len() >= UNANSWERED_MAX;
-        let lost = self.unanswered.back().filter(|_| is_full).map(|(_, written)| *written + LOST_AFTER);
-        Some(lost.map_or(due, |lost| lost.max(due)))
+        let period = self.period?;
+        let wait = match self.unanswered.len() {
+            ..UNANSWERED_MAX => Duration::ZERO,
+            UNANSWERED_MAX => LOST_AFTER.min(period.max(ROUND_TRIPS * self.round_trip)),
+            more => LOST_AFTER * (1 << (more - UNANSWERED_MAX - 1).min(DOUBLINGS_MAX)),
+        };
+        let held_back = self.unanswered.back().map_or(Duration::ZERO, |(_, written)| *written + wait);
+        Some(held_back.max(last_write + period))
     }
 
     /// The bytes of the next ping, which the link writes at the time `now`.
@@ -69,31 +84,46 @@ impl KeepAlive {
     /// They start with a zero byte while the ping before is unanswered, whose own last byte may have been damaged: one
     /// damaged byte then costs one ping.
     pub fn next_ping(&mut self, now: Duration) -> Vec<u8> {
-        while self.unanswered.len() >= UNANSWERED_MAX {
+        let mut bytes = if self.unanswered.is_empty() { Vec::new() } else { vec![0] };
+        // A ping always fits into a frame.
+        bytes.extend(frame_of(self.next, Command::Ping).unwrap_or_default());
+        self.unanswered.push_back((self.next, now));
+        if self.unanswered.len() > PING_SEQUENCES.len() {
             self.unanswered.pop_front();
         }
-        let mut bytes = if self.unanswered.is_empty() { Vec::new() } else { vec![0] };
-        bytes.extend(self.frames.get(self.next).into_iter().flatten());
-        self.unanswered.push_back((self.next, now));
-        self.next = (self.next + 1) % self.frames.len();
+        self.next = if self.next == *PING_SEQUENCES.end() { *PING_SEQUENCES.start() } else { self.next + 1 };
         bytes
     }
 
-    /// Takes the bytes that have arrived, and looks for answers to pings in them. Returns whether there is one.
-    pub fn hear(&mut self, bytes: &[u8]) -> bool {
+    /// Takes the bytes that have arrived at the time `now`, and looks for answers to pings in them. Returns whether there
+    /// is one.
+    pub fn hear(&mut self, bytes: &[u8], now: Duration) -> bool {
         let mut input = bytes;
         let before = self.unanswered.len();
         while let Some(payload) = self.decoder.next_frame(&mut input) {
             let Ok(Payload::FromBoard(FromBoard::Answer(answer))) = Payload::parse_from_board(payload) else {
                 continue;
             };
-            let is_of = |(index, _): &(usize, Duration)| PING_SEQUENCES.get(*index) == Some(&answer.sequence);
-            if let Some(position) = self.unanswered.iter().position(is_of) {
+            if let Some(position) = self.unanswered.iter().position(|(sequence, _)| *sequence == answer.sequence) {
                 // The board answers in order: a ping before this one is lost, or its answer is.
-                self.unanswered.drain(..=position);
+                let answered = self.unanswered.drain(..=position).next_back();
+                self.round_trip = answered.map_or(Duration::ZERO, |(_, written)| now.saturating_sub(written));
             }
         }
         self.unanswered.len() < before
+    }
+}
+
+/// The sequence number of a ping that [`KeepAlive::next_ping`] made; `None` for any other frame.
+pub(super) fn sequence_of_ping(mut frame: &[u8]) -> Option<u16> {
+    if frame.len() > PING_MAX_LEN {
+        return None;
+    }
+    match Payload::parse_from_host(Decoder::new().next_frame(&mut frame)?) {
+        Ok(Payload::Request(Request { sequence, command: Command::Ping })) => {
+            Some(sequence).filter(|sequence| PING_SEQUENCES.contains(sequence))
+        }
+        _ => None,
     }
 }
 
@@ -107,6 +137,7 @@ mod tests {
     use super::*;
 
     const MS: Duration = Duration::from_millis(1);
+    const FIRST: u16 = *PING_SEQUENCES.start();
 
     fn answer(sequence: u16) -> Vec<u8> {
         let answer = Answer { sequence, received_bytes: 0, state: State::Disarmed, outcome: Ok(Accepted::Done) };
@@ -124,11 +155,38 @@ mod tests {
     fn no_ping_is_due_while_two_are_unanswered() {
         let mut pings = pinging();
         pings.next_ping(Duration::ZERO);
-        assert_eq!(pings.due_at(Duration::ZERO), Some(10 * MS));
+        assert!(pings.hear(&answer(FIRST), 100 * MS));
+        pings.next_ping(100 * MS);
+        assert_eq!(pings.due_at(100 * MS), Some(110 * MS));
+        pings.next_ping(110 * MS);
+        assert_eq!(pings.due_at(110 * MS), Some((110 + 4 * 100) * MS), "four round trips of 100 ms");
+        assert!(pings.hear(&answer(FIRST + 1), 200 * MS));
+        assert_eq!(pings.due_at(110 * MS), Some(120 * MS));
+    }
+
+    #[test]
+    fn two_damaged_pings_are_made_up_for_by_one() {
+        let mut pings = pinging();
+        pings.next_ping(Duration::ZERO);
         pings.next_ping(10 * MS);
-        assert_eq!(pings.due_at(10 * MS), Some(10 * MS + LOST_AFTER), "both count as lost then");
-        assert!(pings.hear(&answer(PING_SEQUENCES[0])));
         assert_eq!(pings.due_at(10 * MS), Some(20 * MS));
+        for (sent, wait) in [(20 * MS, LOST_AFTER), (770 * MS, 2 * LOST_AFTER), (2270 * MS, 4 * LOST_AFTER)] {
+            pings.next_ping(sent);
+            assert_eq!(pings.due_at(sent), Some(sent + wait), "the board is slow or silent");
+        }
+    }
+
+    /// An early ping's answer is not taken for that of a later one, which would seem quick.
+    #[test]
+    fn the_round_trip_of_a_board_that_becomes_slow_is_its_own() {
+        let mut pings = pinging();
+        pings.next_ping(Duration::ZERO);
+        assert!(pings.hear(&answer(FIRST), MS));
+        for sent in [10 * MS, 20 * MS, 30 * MS] {
+            pings.next_ping(sent);
+        }
+        assert!(pings.hear(&answer(FIRST + 1), 110 * MS));
+        assert_eq!(pings.due_at(30 * MS), Some((30 + 4 * 100) * MS), "four round trips of 100 ms");
     }
 
     #[test]
@@ -138,7 +196,8 @@ mod tests {
             let [first, second] = [20 * round * MS, (20 * round + 10) * MS];
             pings.next_ping(first);
             pings.next_ping(second);
-            assert!(pings.hear(&answer(PING_SEQUENCES[1])));
+            let sequence = FIRST + (2 * round as u16 + 1) % 64;
+            assert!(pings.hear(&answer(sequence), second));
             assert_eq!(pings.due_at(second), Some(second + 10 * MS), "one ping in two is lost, and none is held back");
         }
     }
@@ -148,8 +207,9 @@ mod tests {
         let mut pings = pinging();
         pings.next_ping(Duration::ZERO);
         pings.next_ping(10 * MS);
-        assert!(!pings.hear(&answer(7)));
-        assert_eq!(pings.due_at(10 * MS), Some(10 * MS + LOST_AFTER));
+        pings.next_ping(20 * MS);
+        assert!(!pings.hear(&answer(7), 21 * MS));
+        assert_eq!(pings.due_at(20 * MS), Some(20 * MS + LOST_AFTER));
     }
 
     #[test]
@@ -157,5 +217,18 @@ mod tests {
         let mut pings = pinging();
         assert_ne!(pings.next_ping(Duration::ZERO).first(), Some(&0));
         assert_eq!(pings.next_ping(10 * MS).first(), Some(&0));
+    }
+
+    #[test]
+    fn a_ping_is_told_from_other_frames() {
+        let mut pings = pinging();
+        for number in 0..200 {
+            let ping = pings.next_ping(Duration::ZERO);
+            assert!(ping.len() <= PING_MAX_LEN);
+            assert_eq!(sequence_of_ping(&ping), Some(FIRST + number % 64));
+        }
+        for (sequence, command) in [(1, Command::Ping), (FIRST, Command::Arm)] {
+            assert_eq!(sequence_of_ping(&frame_of(sequence, command).unwrap()), None);
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::error::LinkClosed;
+use super::keep_alive::sequence_of_ping;
 
 /// How long a link keeps the board alive after the application's last call. The link then sends nothing more, and the
 /// board sets its output to zero when its host timeout has passed.
@@ -26,8 +27,8 @@ pub trait Link {
     /// Time on the link's clock: wall time for a serial port, virtual time for a simulated board.
     fn now(&self) -> Duration;
 
-    /// Pings the board from now on whenever nothing was written for `period` and at most one ping is unanswered.
-    /// Replaces the previous period. [`KeepAlive`](crate::KeepAlive) has the pings and these rules.
+    /// Pings the board from now on whenever nothing was written for `period`, by the rules of
+    /// [`KeepAlive`](crate::KeepAlive). Replaces the previous period.
     ///
     /// A ping reports to the board that the application is running, so a link must not send it for an application
     /// that hangs: sending ends [`KEEP_ALIVE_TIMEOUT`] after the last [`Self::write`] or [`Self::read`], and resumes
@@ -54,6 +55,8 @@ pub struct Written {
     pub frames: u64,
     /// Number of bytes, encoding and checksums included.
     pub bytes: u64,
+    /// Sequence number of the last frame, if [`KeepAlive`](crate::KeepAlive) made it.
+    pub last_ping: Option<u16>,
 }
 
 impl Written {
@@ -61,5 +64,6 @@ impl Written {
     pub fn add(&mut self, frame: &[u8]) {
         self.frames += 1;
         self.bytes += frame.len() as u64;
+        self.last_ping = sequence_of_ping(frame);
     }
 }

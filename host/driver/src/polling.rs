@@ -116,7 +116,7 @@ impl<S: ByteStream> Link for PollingLink<S> {
             let wake_at = next_ping.map_or(deadline, |next_ping| next_ping.min(deadline));
             let heard = buffer.len();
             self.stream.read(buffer, wake_at.saturating_sub(self.stream.now()))?;
-            self.pings.hear(buffer.get(heard..).unwrap_or_default());
+            self.pings.hear(buffer.get(heard..).unwrap_or_default(), self.stream.now());
             if buffer.len() > len_before || self.stream.now() >= deadline {
                 return Ok(());
             }
@@ -216,7 +216,7 @@ mod tests {
         let [first, second] = [pings.next_ping(14 * MS), pings.next_ping(24 * MS)];
         let bytes = 2 + first.len() as u64 + second.len() as u64;
         assert_eq!(*written.borrow(), [(4 * MS, vec![1, 2]), (14 * MS, first), (24 * MS, second)]);
-        assert_eq!(link.written(), Written { frames: 3, bytes });
+        assert_eq!(link.written(), Written { frames: 3, bytes, last_ping: Some(0xffc1) });
         assert_eq!(link.now(), 29 * MS);
     }
 

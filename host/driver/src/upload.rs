@@ -194,8 +194,14 @@ impl<'a, L: Link> Transfer<'a, L> {
             self.send_chunks(report)?;
             match self.exchange.try_request(Command::UploadEnd)? {
                 Ok(_) => return Ok(End::Arrived),
-                Err(Refusal::UploadIncomplete { .. }) if self.exchange.repeated() => return Ok(End::Unknown),
-                Err(Refusal::UploadIncomplete { next_chunk }) => self.send_again_from(next_chunk)?,
+                Err(Refusal::UploadIncomplete { next_chunk: 0 }) if self.exchange.repeated() => {
+                    return Ok(End::Unknown);
+                }
+                Err(Refusal::UploadIncomplete { next_chunk }) => {
+                    // A report that came before the answer expects chunks that have arrived since.
+                    self.exchange.take_next_chunk();
+                    self.send_again_from(next_chunk)?;
+                }
                 Err(refusal) => return Err(self.exchange.refused(&Command::UploadEnd, refusal)),
             }
         }

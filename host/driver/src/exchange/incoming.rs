@@ -78,8 +78,13 @@ impl<L: Link> Exchange<L> {
             FromBoard::Answer(answer) => {
                 self.update_credit(answer.received_bytes, doing)?;
                 let awaited = self.awaited.iter().find(|one| one.sequence == answer.sequence);
+                let written = self.link.written();
+                // Lost chunks take credit until then: that ends an upload that does not get on.
+                if !self.awaited.is_empty() && written.last_ping == Some(answer.sequence) {
+                    self.credit.answered(written.bytes, written.bytes);
+                }
                 if let Some(awaited) = awaited {
-                    self.credit.answered(awaited.end, self.link.written().bytes);
+                    self.credit.answered(awaited.end, written.bytes);
                     self.answer = Some(answer);
                     if std::mem::take(&mut self.stream_begins) {
                         self.stream = None;

@@ -166,6 +166,31 @@ fn pings_follow_the_committed_scenes_host_timeout() {
     }
 }
 
+/// Two pings in a row are hit, then one to three get through. The board is never without one for a host timeout.
+#[test]
+fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
+    let hit = [Fate::Lost, Fate::Tail(1)].into_iter().chain((0..12).map(Fate::Damaged));
+    for (fate, good) in hit.flat_map(|fate| [1, 2, 3].map(|good| (fate, good))) {
+        for host_timeout_ms in [20, 250] {
+            let mut device = virtual_board();
+            let scene = scene(host_timeout_ms as f32 / 1000.0);
+            let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+            device.upload(&upload, &mut |_| {}).unwrap();
+            device.commit(upload.scene_crc32()).unwrap();
+            device.arm().unwrap();
+            device.play().unwrap();
+            let played_at = device.counters().frames_sent;
+            let link = device.link_mut();
+            link.to_board_weather = Box::new(move |number, _| {
+                let of_round = (number - played_at) % (2 + good);
+                if of_round < 2 { fate } else { Fate::Arrives }
+            });
+            let silence = silence_on(link);
+            assert!(silence < Duration::from_millis(host_timeout_ms), "{fate:?}, {good} good: {silence:?}");
+        }
+    }
+}
+
 /// The old scene's timeout counts until the new one is committed, and that of a scene that was there before is not
 /// known.
 #[test]

@@ -13,8 +13,8 @@ pub(crate) const TICK_HZ: u32 = 40_000;
 pub(crate) const WINDOW: u16 = 4096;
 /// Samples that the board has room for.
 const STREAM_LEN: usize = 1024;
-/// Chunks that go by without a word when all is well.
-const CHUNKS_PER_PROGRESS: u16 = 4;
+/// Chunks that go by until the board reports the one that it expects, as in the firmware.
+const CHUNKS_PER_PROGRESS: u16 = 5;
 
 pub(crate) type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal> + Send>;
 
@@ -64,6 +64,7 @@ struct FakeUpload {
     len: usize,
     crc32: u32,
     next_chunk: u16,
+    gap_reported: bool,
     bytes: Vec<u8>,
 }
 
@@ -262,12 +263,14 @@ impl FakeBoard {
 
     fn take_chunk(&mut self, number: u16, bytes: &[u8], out: &mut Vec<u8>) {
         let Some(upload) = &mut self.upload else { return };
+        let Some(chunks_per_progress) = self.chunks_per_progress else { return upload.take(number, bytes) };
+        // As the firmware: a chunk that was received before is ignored, and a gap is reported once.
+        let early = number > upload.next_chunk && !upload.gap_reported;
         let fits = number == upload.next_chunk;
-        if fits {
-            upload.bytes.extend_from_slice(bytes);
-            upload.next_chunk += 1;
-        }
-        if self.chunks_per_progress.is_some_and(|chunks| !fits || upload.next_chunk.is_multiple_of(chunks)) {
+        upload.take(number, bytes);
+        let due = upload.next_chunk.is_multiple_of(chunks_per_progress) || upload.bytes.len() == upload.len;
+        upload.gap_reported = if fits { false } else { upload.gap_reported || early };
+        if early || fits && due {
             let next_chunk = upload.next_chunk;
             send(out, &FromBoard::Progress { next_chunk, received_bytes: self.received_bytes });
         }
@@ -294,7 +297,14 @@ impl FakeBoard {
 
 impl FakeUpload {
     fn new(bitmap: bool, len: usize, crc32: u32) -> Self {
-        Self { bitmap, len, crc32, next_chunk: 0, bytes: Vec::new() }
+        Self { bitmap, len, crc32, next_chunk: 0, gap_reported: false, bytes: Vec::new() }
+    }
+
+    fn take(&mut self, number: u16, bytes: &[u8]) {
+        if number == self.next_chunk {
+            self.bytes.extend_from_slice(bytes);
+            self.next_chunk += 1;
+        }
     }
 }
 

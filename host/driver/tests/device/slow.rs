@@ -38,12 +38,25 @@ fn uploaded(time_per_frame: Duration) -> (Result<(), DeviceError>, u64, u32, Dur
 /// Its pings would otherwise take the time of almost all frames: 735 of 762 in 150 s.
 #[test]
 fn a_slow_board_is_not_drowned_in_pings() {
-    for ms in [50, 100, 150] {
+    for ms in [50, 100, 120] {
         let (result, frames, pings, took) = uploaded(ms * SECOND / 1000);
         result.unwrap();
         assert!(u64::from(pings) * 2 < frames, "{pings} of {frames} frames are pings");
         assert!(took < 600 * ms * SECOND / 1000, "{took:?} for 137 chunks");
     }
+}
+
+/// Chunks that have arrived are not sent again: there is hardly more to send than the picture's 136 chunks.
+#[test]
+fn a_picture_arrives_on_a_board_that_takes_a_tenth_of_a_second_a_frame() {
+    let samples = vec![7; 25_000];
+    let scene = scene(0.25);
+    let mut device = slow(SECOND / 10);
+    let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
+    device.upload(&upload, &mut |_| {}).unwrap();
+    let counters = device.counters();
+    assert!(counters.wire_bytes < 30_000, "{counters:?}");
+    assert_eq!(device.into_link().board.bitmaps.get(&crc32(&samples)), Some(&samples));
 }
 
 #[test]

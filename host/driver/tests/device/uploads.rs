@@ -283,7 +283,7 @@ fn a_board_that_forgets_every_upload_is_given_up() {
 #[test]
 fn a_slow_line_uploads_in_the_end() {
     let (samples, scene) = (samples(25_000), scene(0.25));
-    for bytes_per_s in [11_520, 5_760, 2_880, 1_200] {
+    for bytes_per_s in [11_520, 5_760, 2_880, 1_500] {
         let mut link = VirtualLink::new(FakeBoard::new());
         link.bytes_per_s = bytes_per_s;
         let mut device = connected(link);

@@ -165,7 +165,7 @@ impl Link for VirtualLink {
             self.check_plugged()?;
             self.step();
             while let Some(bytes) = self.to_host.arrived(self.now) {
-                self.pings.hear(&bytes);
+                self.pings.hear(&bytes, self.now);
                 buffer.extend(bytes);
             }
             if buffer.len() > len_before {

@@ -176,7 +176,8 @@ impl Link for EmulatedLink<'_> {
         self.serve()?;
         while buffer.len() == before && self.now() < end {
             self.serial.read(buffer, POLL_PERIOD)?;
-            self.pings.hear(buffer.get(before..).unwrap_or_default());
+            let now = self.now();
+            self.pings.hear(buffer.get(before..).unwrap_or_default(), now);
             self.serve()?;
             if self.now() != seen {
                 (moved_at, seen) = (Instant::now(), self.now());

@@ -134,7 +134,8 @@ impl Link for SimLink<'_> {
         }
         let len_before = buffer.len();
         self.rig.receive(buffer);
-        if self.pings.hear(buffer.get(len_before..).unwrap_or_default()) {
+        let now = self.now();
+        if self.pings.hear(buffer.get(len_before..).unwrap_or_default(), now) {
             self.plan_ping();
         }
         Ok(())

@@ -1,82 +1,12 @@
-//! Warnings of layers that their author probably means otherwise, and mistakes that layers share.
+//! Names and numbers of layers, mistakes that layers share, and what drafts and gains keep to.
 
 use super::*;
 use crate::Warning;
-
-fn warnings(layers: &str) -> Vec<String> {
-    let program = compile_text(&format!("version = 2\n{layers}")).expect("it compiles");
-    program.warnings.iter().map(ToString::to_string).collect()
-}
 
 const TRACK: &str = "[[layer]]\nname = \"track\"\nkind = \"constant\"\nfriction_fraction = 0.2\n\
     region = { x_mm = 10, y_mm = 10, width_mm = 100, height_mm = 10 }\n";
 const EDGE: &str =
     "[[layer]]\nname = \"detent\"\nkind = \"edge\"\nx_mm = 20\ny_mm = 10\nwidth_mm = 2\nridge_fraction = 0.3\n";
-
-#[test]
-fn an_edge_that_crosses_the_whole_screen_is_pointed_out_once() {
-    let repeated = format!("{EDGE}repeat = {{ columns = 3, dx_mm = 8 }}\n");
-    assert_eq!(
-        warnings(&format!("{TRACK}{repeated}")),
-        [
-            "layer 2.1 \"detent 1\" has no `region`, so that its line crosses the whole screen: give it one to end the line \
-             there"
-        ]
-    );
-    let region = "region = { x_mm = 19, y_mm = 10, width_mm = 2, height_mm = 10 }\n";
-    assert_eq!(warnings(&format!("{TRACK}{EDGE}{region}")), Vec::<String>::new());
-    assert_eq!(warnings(EDGE), Vec::<String>::new(), "a scene of one line means it");
-}
-
-/// The fields of an edge are a place on the screen, not in the region.
-#[test]
-fn an_edge_whose_line_misses_its_region_is_pointed_out() {
-    let region = "region = { x_mm = 30, y_mm = 10, width_mm = 20, height_mm = 20 }\n";
-    let warned = warnings(&format!("{EDGE}{region}"));
-    assert_eq!(
-        warned,
-        [
-            "layer 1 \"detent\": its line lies 10 mm outside of its `region`, so that nobody crosses it: move `x_mm` and \
-             `y_mm`, which are a place on the screen, or the region"
-        ]
-    );
-    assert_eq!(warnings(&format!("{EDGE}{region}repeat = {{ columns = 2, dx_mm = 30 }}\n")).len(), 1);
-    // Turned by 90 degrees the line runs along the region's top side, and turned by 45 through its corner.
-    for harmless in ["angle_deg = 90\n", "angle_deg = -45\n", "angle_deg = 45\n"] {
-        let expected = usize::from(harmless == "angle_deg = 45\n");
-        assert_eq!(warnings(&format!("{EDGE}{region}{harmless}")).len(), expected, "{harmless}");
-    }
-}
-
-#[test]
-fn a_layer_that_hides_everything_below_it_is_pointed_out() {
-    let plate = "[[layer]]\nname = \"plate\"\nkind = \"vibration\"\nfrequency_hz = 80\nlow_n = 0\nhigh_n = 0.01\n";
-    assert_eq!(
-        warnings(&format!("{TRACK}{plate}")),
-        [
-            "layer 2 \"plate\" has no `region`, so that it replaces layer 1 \"track\" on the whole screen: give it a `region`, \
-             or a `blend` such as \"add\""
-        ]
-    );
-    assert_eq!(
-        warnings(&format!("{TRACK}{plate}live = true\n")),
-        [
-            "layer 2 \"plate\" has no `region`, so that it replaces layer 1 \"track\" on the whole screen while it is on: give \
-             it a `region`, or a `blend` such as \"add\""
-        ]
-    );
-    let ground = "[[layer]]\nname = \"ground\"\nkind = \"constant\"\nfriction_fraction = 0.2\n";
-    assert_eq!(warnings(&format!("{ground}{plate}live = true\n")), Vec::<String>::new(), "one surface after another");
-    let ping = plate.replace("plate", "ping") + "live = true\n";
-    assert_eq!(warnings(&format!("{TRACK}{plate}{ping}")).len(), 2, "one hides for good, one while it is on");
-    assert_eq!(warnings(&format!("{TRACK}{ping}{plate}")).len(), 1, "what is hidden for good hides nothing");
-    for harmless in ["blend = \"add\"\n", "region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n"] {
-        assert_eq!(warnings(&format!("{TRACK}{plate}{harmless}")), Vec::<String>::new(), "{harmless}");
-    }
-    assert_eq!(warnings(&format!("{plate}{TRACK}")), Vec::<String>::new(), "below the others it hides nothing");
-    let picture = "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20\n";
-    assert_eq!(warnings(&format!("{TRACK}{picture}")), Vec::<String>::new(), "a picture has an outline");
-}
 
 #[test]
 fn two_layers_of_one_name_are_pointed_out_with_the_one_that_counts() {
@@ -87,13 +17,6 @@ fn two_layers_of_one_name_are_pointed_out_with_the_one_that_counts() {
         )
     };
     let twice = format!("{}{}{}", at(0, "a"), at(10, "b"), at(20, "a"));
-    assert_eq!(
-        warnings(&twice),
-        [
-            "layer 3 \"a\" has the name of layer 1, which is the one that `--control` changes by this name: give it another \
-             name, or call it 3"
-        ]
-    );
     let program = compile_text(&format!("version = 2\n{twice}")).expect("it compiles");
     assert_eq!((program.layers.record("a"), program.layers.record("3")), (Ok(0), Ok(2)));
     let keys = |y_mm: u32| {
@@ -131,40 +54,6 @@ fn a_layer_with_a_mistake_that_it_shares_is_no_layer() {
         [[layer]]\nkind = \"constant\"\nfriction_fraction = 0.3\n";
     let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).expect("only its layers have mistakes");
     assert_eq!((scene.mistakes().len(), scene.layers.len()), (1, 0));
-}
-
-#[test]
-fn defaults_are_checked_whether_a_layer_uses_them_or_not() {
-    let refused = |defaults: &str| {
-        let text = format!("version = 2\n[defaults]\n{defaults}\n{TRACK}");
-        let refused = compile_text(&text).expect_err("it is refused");
-        refused.mistakes.iter().map(|located| format!("{}: {}", located.line, located.mistake)).collect::<Vec<_>>()
-    };
-    for (defaults, mistake) in [
-        ("face_fraction = 30", "3: `face_fraction = 30` is out of range: expected -1 to 1"),
-        ("low_factor = \"a\"", "3: `low_factor` has to be a number, and this is a text"),
-        ("wave = \"squre\"", "3: `wave = \"squre\"` is not known; did you mean `square`?"),
-        ("kind = \"buton\"", "3: `kind = \"buton\"` is not known; did you mean `button`?"),
-        ("burst = { period_ms = 10 }", "3: this burst has no `on_ms`: add it"),
-        (
-            "repeat = 3",
-            "3: `repeat` has to be a table, and this is a number: write `repeat = { columns = 3, dx_mm = 10 }`, with \
-            the distance from a copy to the next",
-        ),
-    ] {
-        assert_eq!(refused(defaults), [mistake], "{defaults}");
-    }
-    let text = format!(
-        "version = 2\n[defaults]\nregion = {{ x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }}\n\
-         [[layer]]\nkind = \"constant\"\nfriction_fraction = 0\nregion = {{ x_mm = 1, y_mm = 0, width_mm = 9 }}\n{TRACK}"
-    );
-    assert_eq!(
-        compile_text(&text).expect_err("it is refused").to_string(),
-        "test.toml:7:10: this region, which replaces the default as a whole, has no `height_mm`: add it"
-    );
-    // A blend that one kind does not have is right for the others.
-    let text = format!("version = 2\n[defaults]\nblend = \"add\"\nfactors = [0, 1]\nabove = \"natural\"\n{TRACK}");
-    compile_text(&text).expect("it is right");
 }
 
 /// A layer off the design's range has its picture on a screen where it is valid.

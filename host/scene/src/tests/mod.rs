@@ -8,9 +8,10 @@ use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Located, Program, Scene, compile, compile_draft};
 
+mod corpus;
 mod cures;
 mod docs;
-mod errors;
+mod drafts;
 mod files;
 mod hints;
 mod json_schema;
@@ -19,6 +20,7 @@ mod optimise;
 mod pictures;
 mod pixels;
 mod profiles;
+mod random;
 mod repeat;
 mod schema;
 

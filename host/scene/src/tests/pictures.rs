@@ -80,24 +80,6 @@ fn pictures_share_the_pool() {
 }
 
 #[test]
-fn a_word_that_is_no_pitch() {
-    for (pitch, part) in [
-        ("\"fine\"", "test.toml:8:12: `pitch_mm` has to be a number or \"auto\", and this is a text"),
-        ("\"atuo\"", "test.toml:8:12: `pitch_mm = \"atuo\"` is not known; did you mean `auto`?"),
-        ("true", "test.toml:8:12: `pitch_mm` has to be a number or \"auto\", and this is `true` or `false`"),
-        ("0.01", "test.toml:8:12: `pitch_mm = 0.01` is out of range: expected 0.02 to 10 mm"),
-    ] {
-        let refused = compile_text(&format!("{SHORT}{}", layer("brick.png", 0, 80, &format!("pitch_mm = {pitch}"))));
-        assert_eq!(refused.expect_err("it is refused").to_string(), part);
-    }
-    let refused = compile_text(&format!("{SHORT}{}", layer("brick.png", 0, 80, "levels = \"strech\"")));
-    assert_eq!(
-        refused.expect_err("it is refused").to_string(),
-        "test.toml:8:10: `levels = \"strech\"` is not known; did you mean `stretch`?"
-    );
-}
-
-#[test]
 fn a_scene_of_version_one_keeps_its_pitch() {
     let head = HEAD.replace("# layers follow\n", "");
     let layer = layer("leather.png", 0, 60, "white_n = 0.01\nblack_n = 0");

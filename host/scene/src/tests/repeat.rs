@@ -5,10 +5,6 @@ use frixel_layers::{Layer, Region};
 use super::{HEAD, compile_text};
 use crate::reference::Reference;
 
-fn refused(layer: &str) -> String {
-    compile_text(&format!("{HEAD}{layer}")).unwrap_err().to_string()
-}
-
 const PADS: &str = "[[layer]]\nname = \"pad\"\nkind = \"constant\"\nfriction_n = 0.26\n\
     region = { x_mm = 10, y_mm = 20, width_mm = 8, height_mm = 6 }\n";
 
@@ -41,20 +37,6 @@ fn places_of_a_kind_move_with_the_copy() {
         assert!((first_n - second_n).abs() < 1e-8, "{first_n} {second_n}");
     }
     assert_eq!(program.titles, ["layer 1.1 (rings)", "layer 1.2 (rings)"]);
-}
-
-#[test]
-fn copies_that_would_lie_on_one_another_or_off_the_screen_are_refused() {
-    let in_place = refused(&format!("{PADS}repeat = {{ columns = 3, dy_mm = 10 }}\n"));
-    assert!(in_place.contains("the columns of this repeat would lie on one another"), "{in_place}");
-    assert!(in_place.contains("`dx_mm`"), "{in_place}");
-    let beyond = refused(&format!("{PADS}repeat = {{ columns = 20, dx_mm = 12 }}\n"));
-    assert!(beyond.contains("layer 1.10 \"pad 10\"") && beyond.contains("right"), "{beyond}");
-    let above = PADS.replace("0.26", "0.9");
-    let once = refused(&format!("{above}repeat = {{ columns = 3, dx_mm = 12 }}\n"));
-    assert_eq!(once.lines().count(), 1, "a mistake that all copies have is told once: {once}");
-    let unknown = refused(&format!("{PADS}repeat = {{ columns = 2, dx = 12 }}\n"));
-    assert!(unknown.contains("`dx_mm`"), "{unknown}");
 }
 
 #[test]

@@ -76,7 +76,8 @@ impl Shared {
             match outcome {
                 Ok(0) => return self.close(state, "the other end hung up".into()),
                 Ok(len) => {
-                    if state.pings.hear(bytes.get(..len).unwrap_or_default()) {
+                    let now = state.since_opened(Instant::now());
+                    if state.pings.hear(bytes.get(..len).unwrap_or_default(), now) {
                         // The next ping may be due earlier.
                         self.queued.notify_one();
                     }

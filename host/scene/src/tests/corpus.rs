@@ -1,0 +1,132 @@
+//! What the compiler says about scenes, and about wrong ones above all: the pages in `tests/corpus`.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use frixel_testkit::corpus::{self, Case};
+
+use super::*;
+use crate::{FieldMistake, FileMistake, FingerProfile, FitMistake, Mistake, Screen, Warning, migrate};
+
+/// The files of a case, those that every case finds, and the scene among them.
+struct Inputs {
+    name: String,
+    text: Vec<u8>,
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+impl Inputs {
+    fn of(case: &Case) -> Self {
+        // This character stands for a byte that is not UTF-8.
+        let bytes = |text: &String| text.split('\u{fffd}').map(str::as_bytes).collect::<Vec<_>>().join(&0xff);
+        let (name, text) = case.files.iter().find(|(name, _)| name.ends_with("scene.toml")).expect("a scene");
+        let folder = name.strip_suffix("scene.toml").expect("its folder");
+        let beside = |name: &String| name.strip_prefix(folder).unwrap_or(name).to_owned();
+        let mut files = PICTURES.clone();
+        let brick = &PICTURES["textures/brick.png"];
+        files.insert("textures/cut.png".to_owned(), brick[..brick.len() / 2].to_vec());
+        files.extend((1..=64).map(|number| (format!("parts/{number}.toml"), b"version = 2\n".to_vec())));
+        files.extend(case.files.iter().map(|(name, text)| (beside(name), bytes(text))));
+        Self { name: name.clone(), text: bytes(text), files }
+    }
+
+    fn scene(&self) -> Result<Scene, CompileError> {
+        let scene = Scene::parse_bytes(&self.text, &self.name, &self.files);
+        if let Ok(text) = str::from_utf8(&self.text) {
+            schema::check_agrees(text, mistakes(&scene));
+        }
+        let profile = |option: &str| self.files.get(option).map(|text| str::from_utf8(text).expect("a text"));
+        let mut scene = scene?;
+        if let Some(text) = profile("--finger") {
+            scene = scene.with_finger(FingerProfile::parse(text, "--finger")?, "--finger")?;
+        }
+        if let Some(text) = profile("--screen") {
+            scene = scene.with_screen(Screen::parse(text, "--screen")?, "--screen")?;
+        }
+        Ok(scene)
+    }
+}
+
+fn folder(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(name)
+}
+
+/// Whatever is met in a corpus, by the name of its variant.
+#[derive(Default)]
+struct Met(BTreeSet<&'static str>);
+
+/// Declares the names of an enum's variants. A variant without a name does not compile.
+macro_rules! variants {
+    ($name:ident, $all:ident, $type:ident: $($variant:ident)*) => {
+        const $all: &[&str] = &[$(concat!(stringify!($type), "::", stringify!($variant))),*];
+
+        fn $name(value: &$type) -> &'static str {
+            match value {
+                $($type::$variant { .. } => concat!(stringify!($type), "::", stringify!($variant)),)*
+            }
+        }
+    };
+}
+
+variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Misplaced MissingField WrongType NotATable NotTables
+    OutOfRange TooLong UnknownChoice NoDefault NoDesign LowAboveHigh TwoUnits NotWhole IntervalReversed Date EmptyText
+    Unprintable NameTooLong Count SpeedsDoNotRise ButtonPolygon RepeatInPlace AddedTotal);
+variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version VersionOneProfile NothingToMigrate
+    UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooManyFiles IncludedTwice IncludedMissing
+    IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
+variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong
+    PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger Model);
+variants!(warning_name, WARNINGS, Warning: ElectricAboveNatural BeyondMeasuredVoltage BeyondMeasuredLoad
+    RimWiderThanButton PictureStretched EdgeAcrossScreen EdgeOutsideRegion HidesAllBelow NameTwice);
+
+impl Met {
+    fn meet(&mut self, mistakes: &[Located]) {
+        self.0.extend(mistakes.iter().map(|located| match &located.mistake {
+            Mistake::Field(mistake) => field_name(mistake),
+            Mistake::File(mistake) => file_name(mistake),
+            Mistake::Fit(mistake) => fit_name(mistake),
+        }));
+    }
+}
+
+#[test]
+fn every_scene_is_answered_as_its_page_says() {
+    let mut met = Met::default();
+    corpus::hold(&folder("check"), |case| {
+        let inputs = Inputs::of(case);
+        let scene = inputs.scene();
+        let mistakes = mistakes(&scene).to_vec();
+        let compiled = scene.and_then(|scene| {
+            let compiled = compile(&scene, &LIMITS, TICK_HZ);
+            check_draft(&compiled, compile_draft(&scene, &LIMITS, TICK_HZ));
+            compiled
+        });
+        match compiled {
+            Err(error) => {
+                met.meet(&error.mistakes);
+                let kind = |located| if mistakes.contains(located) { "mistake" } else { "refusal" };
+                let lines: Vec<_> =
+                    error.mistakes.iter().map(|located| format!("{} {located}\n", kind(located))).collect();
+                lines.concat()
+            }
+            Ok(program) => {
+                met.0.extend(program.warnings.iter().map(warning_name));
+                let warnings = program.warnings.iter().map(|warning| format!("warning {warning}\n"));
+                let notes = program.notes.iter().map(|note| format!("note {note}\n"));
+                let optimised = program.optimisations.iter().map(|note| format!("note {note}\n"));
+                warnings.chain(notes).chain(optimised).collect()
+            }
+        }
+    });
+    corpus::hold(&folder("migrate"), |case| {
+        let inputs = Inputs::of(case);
+        let text = str::from_utf8(&inputs.text).expect("a text");
+        migrate(text, &inputs.name, &inputs.files).unwrap_or_else(|error| {
+            met.meet(&error.mistakes);
+            format!("mistake {error}\n")
+        })
+    });
+    let all = [FIELD_MISTAKES, FILE_MISTAKES, FIT_MISTAKES, WARNINGS].concat();
+    let missing: Vec<&str> = all.into_iter().filter(|name| !met.0.contains(name)).collect();
+    assert!(missing.is_empty(), "no page of tests/corpus has a case for {missing:?}");
+}
