@@ -133,7 +133,7 @@ fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interru
     let mut config = RigConfig { world: rig.world.realistic(), ..rig };
     config.world.fingertip = fingertip;
     let plan = Plan::new(args, recording, &config.board.limits, config.board.tick_hz)?;
-    let stroke = Stroke::from_csv(&plan.protocol.stroke_csv()).map_err(CommandError::GeneratedStroke)?;
+    let stroke = plan.protocol.stroke().map_err(CommandError::GeneratedStroke)?;
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     rig.world_mut().set_own_finger(contact);

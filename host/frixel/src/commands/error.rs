@@ -21,6 +21,7 @@ use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::model_csv::CsvError;
+use frixel_lab::stroke_file::StrokeFileError;
 use frixel_model::ParameterError;
 use frixel_scene::{CompileError, Shown, Warning};
 use thiserror::Error;
@@ -64,7 +65,7 @@ pub(crate) enum CommandError {
     #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
     #[error("{}: {source}", path.display())]
-    Stroke { path: PathBuf, source: StrokeError },
+    Stroke { path: PathBuf, source: StrokeFileError },
     #[error("no stroke can be generated for this scene's screen: {0}")]
     GeneratedStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]

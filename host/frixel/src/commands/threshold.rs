@@ -130,7 +130,7 @@ fn measure(
     if port == "sim" {
         let config = RigConfig::default();
         let protocol = protocol(args, &config.board.limits)?;
-        let stroke = Stroke::from_csv(&protocol.stroke_csv()).and_then(|stroke| stroke.looped(0.0));
+        let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
         session(args, interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol, answers)
