@@ -29,7 +29,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::golden;
 
@@ -46,23 +46,31 @@ pub struct Case {
     pub files: BTreeMap<String, String>,
 }
 
-/// Plays all cases of a folder's pages, and holds what is said to them. `answer` takes the inputs of a case and returns
-/// the lines that are said.
+/// The pages of a folder.
 ///
 /// # Panics
 ///
-/// Something else is said to a case than the page has, or a page cannot be read.
+/// It cannot be read, or has none.
 #[track_caller]
-pub fn hold(folder: &Path, mut answer: impl FnMut(&Case) -> String) {
+pub fn pages(folder: &Path) -> Vec<PathBuf> {
     let pages = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut pages: Vec<_> = pages.filter_map(|entry| Some(entry.ok()?.path())).collect();
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     pages.sort();
     assert!(!pages.is_empty(), "{} has no pages", folder.display());
-    for page in pages {
-        let text = fs::read_to_string(&page).unwrap_or_else(|error| panic!("{}: {error}", page.display()));
-        golden::hold(&page, &answered(&text, &mut answer));
-    }
+    pages
+}
+
+/// Plays all cases of a page, and holds what is said to them. `answer` takes the inputs of a case and returns the lines
+/// that are said.
+///
+/// # Panics
+///
+/// Something else is said to a case than the page has, or the page cannot be read.
+#[track_caller]
+pub fn hold(page: &Path, mut answer: impl FnMut(&Case) -> String) {
+    let text = fs::read_to_string(page).unwrap_or_else(|error| panic!("{}: {error}", page.display()));
+    golden::hold(page, &answered(&text, &mut answer));
 }
 
 /// A page with what is said now in the place of what must be said.

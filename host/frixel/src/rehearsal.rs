@@ -6,11 +6,11 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldErro
 use frixel_layers::Scene as WireScene;
 use thiserror::Error;
 
-use crate::player::load;
 use crate::rigs::SimLink;
 use frixel_driver::{Device, DeviceError};
 use frixel_felt::check::BoardCosts;
 use frixel_felt::recorder::Recorder;
+use frixel_play::load;
 use frixel_scene::Program;
 
 /// Why a simulated board did not accept a scene.

@@ -8,11 +8,11 @@ use frixel_scene::Program;
 use frixel_wire::fault::Flags;
 
 use crate::finger_reference::FingerReference;
-use crate::player::{PlayError, Simulation, simulate_observed};
+use crate::player::{Simulation, SimulationError, simulate_observed};
 
 /// Plays a trial on a simulated board, for [`Score::of`](frixel_lab::score::Score::of); returns a sample for every
 /// quarter of a millisecond.
-pub fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<FidelitySample>, PlayError> {
+pub fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<FidelitySample>, SimulationError> {
     let simulation = Simulation {
         rig: *rig,
         stroke: trial.stroke.clone(),

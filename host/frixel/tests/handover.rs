@@ -1,9 +1,9 @@
 //! One client after the other on one board: what the first set going is not the second's.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use frixel::player;
 use frixel::rigs::SimLink;
 use frixel::scene_file;
 use frixel_driver::Device;
@@ -21,7 +21,7 @@ fn found(autonomous: bool) -> State {
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
     let mut first = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
-    player::start(&mut first, &program, &mut |_| {}).unwrap();
+    frixel_play::start(&mut first, &program, &mut |_| ControlFlow::Continue(())).unwrap();
     Device::connect(first.into_link()).unwrap().hello().state
 }
 

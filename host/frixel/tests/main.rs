@@ -25,5 +25,4 @@ mod studio;
 mod untrusted_text;
 mod virtual_board;
 mod watch;
-#[path = "wrong_inputs/main.rs"]
 mod wrong_inputs;

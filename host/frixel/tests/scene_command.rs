@@ -1,7 +1,6 @@
 //! `frixel scene` as a person uses it: numbers, pictures, and what it says to wrong input.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -265,35 +264,6 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
         known.sort_unstable();
         assert_eq!(found, known, "{manifest}");
     }
-}
-
-#[test]
-fn a_scene_above_a_limit_is_refused_with_the_limit() {
-    let files = Files::new();
-    fs::copy(repository().join("scenes/textures/brick.png"), files.path("brick.png")).unwrap();
-    let bitmap = "[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n";
-    let message = refused(&["scene", "check", &files.scene(bitmap)]);
-    assert!(message.contains("need 102400 bytes, and the board has 65536"), "{message}");
-    let message = refused(&["scene", "check", &files.scene(&constant("friction_n = 0.26").repeat(65))]);
-    assert!(message.contains("the scene has 65 layers, and the board takes 64"), "{message}");
-    let piled = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 2\nlow_n = 0\nhigh_n = 0.001\n";
-    let message = refused(&["scene", "check", &files.scene(&piled.repeat(4))]);
-    assert!(
-        message.contains(":38:1: ") && message.contains(" meet at ") && message.contains("the board has time for 2550"),
-        "{message}"
-    );
-    let triangle = |x: usize| {
-        let mut points = String::new();
-        for number in 0..32 {
-            let _ = write!(points, "[{}, {}],", x + number % 5, number);
-        }
-        constant(&format!("friction_n = 0.26\nregion = {{ shape = \"polygon\", points_mm = [{points}] }}"))
-    };
-    let message = refused(&["scene", "check", &files.scene(&(0..5).map(triangle).collect::<String>())]);
-    assert!(
-        message.contains("number 160 of the scene's points of polygons and curves, and a board takes 128"),
-        "{message}"
-    );
 }
 
 #[test]

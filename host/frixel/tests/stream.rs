@@ -5,13 +5,13 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel::player;
 use frixel::rigs::SimLink;
 use frixel::scene_file;
-use frixel::stream::Feed;
+use frixel::stream;
 use frixel_driver::{Device, StreamStatus};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
@@ -85,9 +85,9 @@ fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
     let rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 80_000, 1).unwrap();
     let mut device = Device::connect(SimLink::new(rig, recorder)).unwrap();
-    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program, &mut |_| ControlFlow::Continue(())).unwrap();
     device.wait(Duration::from_millis(100), &mut |_| {}).unwrap();
-    let mut feed = Feed::wav(&wav, config.board.tick_hz).unwrap();
+    let mut feed = stream::wav(&wav, config.board.tick_hz).unwrap();
     feed.start(&mut device).unwrap();
     for step in 0..330 {
         device.wait(Duration::from_millis(5), &mut |_| {}).unwrap();

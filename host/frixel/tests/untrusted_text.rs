@@ -81,49 +81,6 @@ fn a_file_with_a_hostile_name_plays_and_spoils_nothing() {
 }
 
 #[test]
-fn a_name_has_at_most_64_characters() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("scene.toml");
-    fs::write(&path, layer(&format!("name = \"{}\"", "ä".repeat(64)))).unwrap();
-    assert!(run(folder.path(), &["scene", "check", "scene.toml"]).status.success());
-    fs::write(&path, layer(&format!("name = \"{}\"", "ä".repeat(65)))).unwrap();
-    let output = run(folder.path(), &["scene", "check", "scene.toml"]);
-    let printed = clean(&output);
-    assert!(printed.contains("scene.toml:5:8: `name` has 65 characters: expected at most 64"), "{printed}");
-}
-
-#[test]
-fn no_sentence_contradicts_itself() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("scene.toml");
-    fs::create_dir(folder.path().join("textures")).unwrap();
-    for (text, expected, wrong) in [
-        (
-            format!(
-                "[screen]\nwidth_mm = 1234567890123456789012\nheight_mm = 50\n{}",
-                layer("").replace("version = 2", "")
-            ),
-            "`width_mm = 1.2345678901234568e21` is out of range",
-            "this is a number",
-        ),
-        (layer("gain = 1e308"), "`gain = 1e308` is out of range", "00000000000000000"),
-        (
-            layer(
-                "[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\nblack_n = 0.3\nwhite_n = 0.4\npicture = \"textures\"",
-            ),
-            "picture \"textures\" cannot be used: it cannot be read (",
-            "was not found",
-        ),
-        (format!("include = [\".\"]\n{}", layer("")), "includes ., which cannot be used", "includes ,"),
-    ] {
-        let text = if text.contains("version = 2") { text } else { format!("version = 2\n{text}") };
-        fs::write(&path, &text).unwrap();
-        let printed = clean(&run(folder.path(), &["scene", "check", "scene.toml"]));
-        assert!(printed.contains(expected) && !printed.contains(wrong), "{text}: {printed}");
-    }
-}
-
-#[test]
 fn check_notes_the_files_outside_of_the_scene_s_folder() {
     let folder = TempDir::new().unwrap();
     let inner = folder.path().join("inner");
@@ -134,34 +91,4 @@ fn check_notes_the_files_outside_of_the_scene_s_folder() {
     let printed = clean(&run(&inner, &["scene", "check", "scene.toml"]));
     let notes: Vec<&str> = printed.lines().filter(|line| line.contains("outside of the scene's folder")).collect();
     assert!(matches!(notes[..], [note] if note.contains("../outer.toml")), "{printed}");
-}
-
-/// 1e308 and 1e-300 have 309 and 302 characters otherwise.
-#[test]
-fn absurd_times_have_few_digits() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("scene.toml"), layer("")).unwrap();
-    fs::write(folder.path().join("long.csv"), "t_s,x_mm,y_mm\n0,10,10\n1e308,20,20\n").unwrap();
-    for (arguments, says) in [
-        (["play", "scene.toml", "--stroke", "long.csv"], "long.csv lasts 1e308 s, longer than a day"),
-        (["play", "scene.toml", "--seconds", "1e-300"], "1e-300 s is shorter than one tick"),
-    ] {
-        let output = run(folder.path(), &arguments);
-        let printed = clean(&output);
-        assert!(output.status.code() == Some(1) && printed.contains(says), "{printed}");
-    }
-}
-
-/// As a spreadsheet saves a table where the decimal sign is a comma.
-#[test]
-fn other_separators_than_commas_are_named() {
-    let folder = TempDir::new().unwrap();
-    for (separator, name) in [(";", "semicolons"), ("\t", "tabs")] {
-        let header = ["voltage_v_rms", "normal_force_n", "friction_n"].join(separator);
-        fs::write(folder.path().join("data.csv"), format!("{header}\n")).unwrap();
-        let output = run(folder.path(), &["fit", "data.csv"]);
-        let printed = clean(&output);
-        let says = format!("data.csv: {name} separate the columns of the header");
-        assert!(output.status.code() == Some(1) && printed.contains(&says), "{printed}");
-    }
 }

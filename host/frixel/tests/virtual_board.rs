@@ -8,13 +8,13 @@ use crate::processes;
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
 
-use frixel::player;
 use frixel::scene_file;
 use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, SerialLink};
 use frixel_scene::compile;
@@ -370,7 +370,7 @@ fn start_playing(board: &VirtualBoard) -> Option<Device<SerialLink>> {
     let started = Device::connect(SerialLink::open(&board.port, DEFAULT_BAUD).unwrap()).and_then(|mut device| {
         let hello = *device.hello();
         let program = compile(&scene_file::load(&board.scene).unwrap(), &hello.limits, hello.tick_hz).unwrap();
-        player::start(&mut device, &program, &mut |_| {}).map(|()| device)
+        frixel_play::start(&mut device, &program, &mut |_| ControlFlow::Continue(())).map(|()| device)
     });
     match started {
         Ok(device) => Some(device),

@@ -28,7 +28,7 @@ const OTHER_SEPARATORS: [(char, &str); 2] = [(';', "semicolons"), ('\t', "tabs")
 pub struct Column {
     /// Its name in the header.
     pub name: &'static str,
-    /// What its cells are, for a message: a unit such as `newtons`, or what they say.
+    /// The unit of its cells, for a message, such as `newtons`; empty for words and plain numbers.
     pub unit: &'static str,
 }
 
@@ -50,6 +50,8 @@ pub struct Place {
 pub struct Table<R> {
     reader: Reader<Lines<R>>,
     names: Vec<String>,
+    /// Whether a caller has asked for the column of each name.
+    asked: Vec<bool>,
     cells: ByteRecord,
 }
 
@@ -64,7 +66,7 @@ impl<R: Read> Table<R> {
         {
             return Err(TableError::Separator { found });
         }
-        Ok(Self { reader, names, cells: ByteRecord::new() })
+        Ok(Self { reader, asked: vec![false; names.len()], names, cells: ByteRecord::new() })
     }
 
     /// The names of all columns, in the order of the file.
@@ -78,18 +80,24 @@ impl<R: Read> Table<R> {
     }
 
     /// The place of a column that may be missing. Fails if the header has it twice.
-    pub fn find(&self, column: Column) -> Result<Option<Place>, TableError> {
+    pub fn find(&mut self, column: Column) -> Result<Option<Place>, TableError> {
         let mut places = (0..).zip(&self.names).filter(|(_, name)| *name == column.name);
         let place = places.next().map(|(index, _)| Place { column: column.name, index });
-        if places.next().is_some() { Err(TableError::ColumnTwice { column: column.name }) } else { Ok(place) }
+        if places.next().is_some() {
+            return Err(TableError::ColumnTwice { column: column.name });
+        }
+        if let Some(asked) = place.and_then(|place| self.asked.get_mut(place.index)) {
+            *asked = true;
+        }
+        Ok(place)
     }
 
     /// The place of a column that is needed.
-    pub fn need(&self, column: Column) -> Result<Place, TableError> {
+    pub fn need(&mut self, column: Column) -> Result<Place, TableError> {
         self.find(column)?.ok_or_else(|| self.missing(&[column]))
     }
 
-    /// The error of a header that has none of these columns.
+    /// The error of a header that has none of these columns. A name that the caller has asked for is not suggested.
     pub(crate) fn missing(&self, columns: &[Column]) -> TableError {
         let likeness = |name: &str| {
             let each = columns.iter().map(|column| strsim::normalized_damerau_levenshtein(column.name, name));
@@ -98,7 +106,9 @@ impl<R: Read> Table<R> {
         let nearest = self
             .names
             .iter()
-            .map(|name| (likeness(name), name))
+            .zip(&self.asked)
+            .filter(|(_, asked)| !**asked)
+            .map(|(name, _)| (likeness(name), name))
             .filter(|(likeness, _)| *likeness >= LIKENESS)
             .max_by(|one, other| one.0.total_cmp(&other.0))
             .map(|(_, name)| name.clone());
@@ -223,7 +233,7 @@ mod tests {
         assert_eq!(table.find(Column::new("c", "newtons")).unwrap(), None);
         assert!(table.need(Column::new("note", "words")).is_ok());
         let row = table.next_row().unwrap().unwrap();
-        assert_eq!([a, b].map(|place| row.real(place).unwrap()), [-2.0, 1000.0]);
+        assert_eq!([a, b].map(|place| row.real(place).unwrap().to_string()), ["-2", "1000"]);
         let row = table.next_row().unwrap().unwrap();
         assert_eq!(row.real_if_filled(a).unwrap(), None);
         let said = row.real(b).unwrap_err().to_string();

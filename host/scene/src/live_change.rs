@@ -43,7 +43,7 @@ fn side(asked_n: f64, reach_n: f64) -> String {
 impl Program {
     /// The layers whose friction the board clamps when they play with these settings, one for each record; `None` if the
     /// drive can give all friction that the search finds. A stream counts with every value that it may have.
-    pub(crate) fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
+    pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
         let within = self.within_reach();
         let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
         let titles: Vec<&str> =
@@ -59,7 +59,7 @@ impl Program {
 
     /// The least and the largest gain of a record with which the board clamps nothing, while all other settings stay as
     /// they are; `None` if it clamps with every gain. The search starts from the record's gain in `settings`.
-    pub(crate) fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
+    pub fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
         let mut pieces = pieces(&Reference::new(self), settings);
         let number = usize::from(record);
         let mut is_in_reach = |gain: f64| {

@@ -1,14 +1,17 @@
 //! What `frixel scene check` says of a scene.
 
-use frixel_driver::{Device, DeviceError, PollingLink};
+use std::ops::ControlFlow;
+
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
+use frixel_play::load;
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::{Problem, problems, refusals};
-use crate::host::{self, HostError};
+use crate::host::HostError;
 use crate::layers::layers;
 use crate::program::{drafted, for_drafts};
 use crate::request::Request;
@@ -72,12 +75,9 @@ fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, Host
 /// Bytes that the host sends, without the hello, until an empty board has accepted a scene.
 fn wire_bytes(program: &Program, memory: &mut BoardMemory, config: &RigConfig) -> Result<usize, HostError> {
     let stream = RigStream::new(memory, config, 1)?;
-    let mut device = Device::connect(PollingLink::new(stream)).map_err(HostError::Device)?;
+    let mut device = Device::connect(PollingLink::new(stream))?;
     let before = device.counters().wire_bytes;
-    let upload = |device: &mut Device<_>| -> Result<(), DeviceError> {
-        device.disarm()?;
-        host::upload(device, program)
-    };
-    upload(&mut device).map_err(HostError::Refused)?;
+    let loaded = load(&mut device, program, &mut |_| ControlFlow::Continue(()));
+    loaded.map_err(|error| HostError::Refused(error.into()))?;
     Ok((device.counters().wire_bytes - before) as usize)
 }

@@ -16,7 +16,7 @@ use frixel_wire::message::Telemetry;
 use serde_json::{Value, json};
 
 use crate::answer;
-use crate::host::{Host, HostError};
+use crate::host::{self, Host, HostError, stream_mut};
 use crate::link_stream::LinkStream;
 use crate::pointer::PointerSample;
 use crate::request::Request;
@@ -131,7 +131,7 @@ pub extern "C" fn simulator_resume() -> i32 {
 /// is clamped from now on, or `null`.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_control() -> i32 {
-    with_simulator(|simulator| Ok(json!({ "notice": simulator.host_mut().control(&line())? })))
+    with_simulator(|simulator| Ok(json!({ "notice": host::control(simulator.host_mut(), &line())? })))
 }
 
 /// Ticks of the simulator since power-on; 0 without one.
@@ -187,9 +187,9 @@ pub extern "C" fn simulator_run(ticks: u32, is_alive: u32) -> i32 {
 pub extern "C" fn host_connect() -> i32 {
     respond(|| {
         HOST.set(None);
-        let mut host = Host::connect(LinkStream::new())?;
-        host.subscribe(TELEMETRY_TICKS)?;
-        let answer = driving(&host);
+        let mut host = host::connect(LinkStream::new())?;
+        host.device_mut().subscribe(TELEMETRY_TICKS)?;
+        let answer = driving(host.device().hello());
         HOST.set(Some(host));
         Ok(answer)
     })
@@ -205,7 +205,7 @@ pub extern "C" fn host_disconnect() {
 #[unsafe(no_mangle)]
 pub extern "C" fn host_load() -> i32 {
     with_host(|host| {
-        host.load(&request()?)?;
+        host::load(host, &request()?)?;
         Ok(json!({}))
     })
 }
@@ -240,7 +240,7 @@ pub extern "C" fn host_clear_fault() -> i32 {
 /// Carries out a control line, which is the input as text, as [`simulator_control`] does. Suspends.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_control() -> i32 {
-    with_host(|host| Ok(json!({ "notice": host.control(&line())? })))
+    with_host(|host| Ok(json!({ "notice": host::control(host, &line())? })))
 }
 
 /// Keeps the board alive for some milliseconds. Suspends. The answer has `state`, `fault` and `telemetry`.
@@ -248,8 +248,9 @@ pub extern "C" fn host_control() -> i32 {
 pub extern "C" fn host_wait(wait_ms: f64) -> i32 {
     with_host(|host| {
         host.wait(Duration::from_secs_f64(1e-3 * wait_ms.max(0.0)))?;
-        let natural_n = host.natural_friction_n();
-        let telemetry: Vec<Value> = host.take_telemetry().iter().map(|message| telemetry(message, natural_n)).collect();
+        let natural_n = host.playing().map_or(0.0, |playing| playing.program().reach.natural_friction_n);
+        let messages = stream_mut(host).take_telemetry();
+        let telemetry: Vec<Value> = messages.iter().map(|message| telemetry(message, natural_n)).collect();
         let (state, fault) = host.state();
         Ok(json!({ "state": state_word(state), "fault": fault.map(sentence), "telemetry": telemetry }))
     })
@@ -265,8 +266,7 @@ pub extern "C" fn state_words(state: u32, fault: u32) -> i32 {
     })
 }
 
-fn driving<S: frixel_driver::ByteStream + crate::host::SceneListener>(host: &Host<S>) -> Value {
-    let hello = host.hello();
+fn driving(hello: &Hello) -> Value {
     let (is_simulated, voltage_v) = (hello.board.is_simulated(), hello.limits.voltage_max_v_peak);
     json!({ "driving": driven_board(hello), "isSimulated": is_simulated, "voltageMaxV": voltage_v })
 }

@@ -1,7 +1,11 @@
 //! What the simulated finger felt, as the page draws and plays it.
 
 use frixel_hil_sim::{Felt, ReferenceFriction, TickRecord};
-use frixel_scene::reference::{Context, StrokeReference};
+use frixel_model::ParameterError;
+use frixel_play::PlayListener;
+use frixel_scene::reference::{Context, Reference, StrokeReference};
+use frixel_scene::{LayerSetting, Program};
+use frixel_wire::hello::Hello;
 
 /// Ticks of one sample for the page: a period of the usual carrier of 1 kHz, so that its ripple averages out.
 pub(crate) const TICKS_PER_SAMPLE: u32 = 40;
@@ -56,16 +60,6 @@ impl FeltRecorder {
         }
     }
 
-    /// Compares with another reference from now on.
-    pub(crate) fn set_reference(&mut self, reference: StrokeReference) {
-        self.reference = Some(reference);
-    }
-
-    /// The reference that the friction is compared with, to change its layers.
-    pub(crate) fn reference_mut(&mut self) -> Option<&mut StrokeReference> {
-        self.reference.as_mut()
-    }
-
     /// Adds a tick.
     pub(crate) fn add(&mut self, TickRecord { tick, felt, .. }: &TickRecord) {
         let reference_n = self.reference_n(*tick, felt);
@@ -118,6 +112,19 @@ impl FeltRecorder {
             first_tick: self.first_tick,
             columns: std::mem::take(&mut self.columns),
             sound_n: std::mem::take(&mut self.sound.samples_n),
+        }
+    }
+}
+
+impl PlayListener for FeltRecorder {
+    fn scene_replaced(&mut self, program: &Program, _: &Hello) -> Result<(), ParameterError> {
+        self.reference = Some(Reference::new(program).along_stroke());
+        Ok(())
+    }
+
+    fn layer_changed(&mut self, record: u8, LayerSetting { on, gain }: LayerSetting) {
+        if let Some(reference) = &mut self.reference {
+            reference.set_layer(record.into(), on, gain.into());
         }
     }
 }

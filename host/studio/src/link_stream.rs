@@ -7,9 +7,8 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_scene::Program;
-
-use crate::host::SceneListener;
+use frixel_play::Recorded;
+use frixel_wire::message::Telemetry;
 
 /// Bytes that one read takes at most.
 const READ_MAX: usize = 4_096;
@@ -19,11 +18,18 @@ const CLOSED: i32 = -1;
 /// The stream that `host.js` has connected this instance to.
 pub(crate) struct LinkStream {
     buffer: Box<[u8; READ_MAX]>,
+    telemetry: Vec<Telemetry>,
+    recorder: (),
 }
 
 impl LinkStream {
     pub(crate) fn new() -> Self {
-        Self { buffer: Box::new([0; READ_MAX]) }
+        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new(), recorder: () }
+    }
+
+    /// The telemetry since the last call.
+    pub(crate) fn take_telemetry(&mut self) -> Vec<Telemetry> {
+        std::mem::take(&mut self.telemetry)
     }
 }
 
@@ -55,10 +61,16 @@ impl ByteStream for LinkStream {
     }
 }
 
-impl SceneListener for LinkStream {
-    fn scene_replaced(&mut self, _program: &Program) {}
+impl Recorded for LinkStream {
+    type Recorder = ();
 
-    fn layer_changed(&mut self, _layer: u8, _is_on: bool, _gain: f32) {}
+    fn recorder_mut(&mut self) -> &mut () {
+        &mut self.recorder
+    }
+
+    fn record(&mut self, telemetry: &[Telemetry]) {
+        self.telemetry.extend(telemetry);
+    }
 }
 
 #[cfg(target_family = "wasm")]

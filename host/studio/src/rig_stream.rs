@@ -4,12 +4,11 @@ use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
-use frixel_scene::Program;
-use frixel_scene::reference::Reference;
+use frixel_play::Recorded;
 use frixel_wire::fault::{Fault, State};
 
 use crate::felt::FeltRecorder;
-use crate::host::{HostError, SceneListener};
+use crate::host::HostError;
 use crate::pointer::{Finger, Pointer};
 
 /// The line to a simulated board. Each tick of virtual time passes in [`Self::step`].
@@ -93,15 +92,11 @@ impl RigStream<'_> {
     }
 }
 
-impl SceneListener for RigStream<'_> {
-    fn scene_replaced(&mut self, program: &Program) {
-        self.felt.set_reference(Reference::new(program).along_stroke());
-    }
+impl Recorded for RigStream<'_> {
+    type Recorder = FeltRecorder;
 
-    fn layer_changed(&mut self, layer: u8, is_on: bool, gain: f32) {
-        if let Some(reference) = self.felt.reference_mut() {
-            reference.set_layer(usize::from(layer), is_on, f64::from(gain));
-        }
+    fn recorder_mut(&mut self) -> &mut FeltRecorder {
+        &mut self.felt
     }
 }
 

@@ -6,9 +6,9 @@ use std::time::Duration;
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord};
 use frixel_layers::Header;
-use frixel_scene::Program;
+use frixel_play::Recorded;
 
-use crate::host::{Host, HostError, SceneListener};
+use crate::host::{HostError, connect, load, stream_mut};
 use crate::pointer::PointerSample;
 use crate::request::Request;
 use crate::rig_stream::RigStream;
@@ -26,25 +26,27 @@ pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
     let config = RigConfig::default();
     let config = RigConfig { world: config.world.realistic(), ..config };
     let mut memory = BoardMemory::new();
-    let mut host = Host::connect(Hashing::new(&mut memory, &config, request.numbers.seed)?)?;
-    let header = host.load(request)?.header;
+    let mut host = connect(Hashing::new(&mut memory, &config, request.numbers.seed)?)?;
+    load(&mut host, request)?;
+    let Some(header) = host.playing().map(|playing| playing.program().header) else { return Err(HostError::NoBoard) };
     host.arm_and_play()?;
-    let tick_hz = f64::from(host.hello().tick_hz);
-    host.stream_mut().slide(&header, request.numbers.duration_ms, tick_hz);
+    let tick_hz = f64::from(host.device().hello().tick_hz);
+    stream_mut(&mut host).slide(&header, request.numbers.duration_ms, tick_hz);
     host.wait(Duration::from_millis(request.numbers.duration_ms.into()))?;
     host.stop()?;
-    Ok(host.stream_mut().hash.0)
+    Ok(stream_mut(&mut host).hash.0)
 }
 
 /// The line to the rig, with a hash of its ticks.
 struct Hashing<'a> {
     rig: RigStream<'a>,
     hash: Hash,
+    recorder: (),
 }
 
 impl<'a> Hashing<'a> {
     fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
-        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new() })
+        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new(), recorder: () })
     }
 
     /// Samples of the pointer from now on.
@@ -63,10 +65,12 @@ impl<'a> Hashing<'a> {
     }
 }
 
-impl SceneListener for Hashing<'_> {
-    fn scene_replaced(&mut self, _program: &Program) {}
+impl Recorded for Hashing<'_> {
+    type Recorder = ();
 
-    fn layer_changed(&mut self, _layer: u8, _is_on: bool, _gain: f32) {}
+    fn recorder_mut(&mut self) -> &mut () {
+        &mut self.recorder
+    }
 }
 
 impl ByteStream for Hashing<'_> {

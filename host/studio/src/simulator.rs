@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use frixel_driver::DeviceError;
 use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_play::PlayError;
 use frixel_wire::fault::{Fault, State};
 
 use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
-use crate::host::{Host, HostError};
+use crate::host::{self, Host, HostError, stream_mut};
 use crate::pointer::{Pointer, PointerSample};
 use crate::program::{drafted, for_drafts};
 use crate::request::Request;
@@ -32,22 +33,22 @@ impl Simulator {
         let config = RigConfig::default();
         let config = RigConfig { world: config.world.realistic(), board: for_drafts(config.board), baud: BAUD };
         let stream = RigStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
-        Ok(Self { host: Host::connect(stream)?, is_wanted: false })
+        Ok(Self { host: host::connect(stream)?, is_wanted: false })
     }
 
     /// Ticks since power-on.
     pub(crate) fn tick(&mut self) -> u64 {
-        self.host.stream_mut().tick()
+        stream_mut(&mut self.host).tick()
     }
 
     /// The board's state and latched fault.
     pub(crate) fn state(&mut self) -> (State, Option<Fault>) {
-        self.host.stream_mut().state()
+        stream_mut(&mut self.host).state()
     }
 
     /// Whether the finger is on the screen.
     pub(crate) fn is_touched(&mut self) -> bool {
-        self.host.stream_mut().is_touched()
+        stream_mut(&mut self.host).is_touched()
     }
 
     /// The board's host, for control lines.
@@ -59,7 +60,7 @@ impl Simulator {
     /// on.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
         let (_, program) = drafted(request)?;
-        self.host.replace(program)?;
+        host::replace(&mut self.host, program)?;
         self.resume()?;
         Ok(())
     }
@@ -78,22 +79,22 @@ impl Simulator {
 
     /// The finger, moved by the page.
     pub(crate) fn pointer_mut(&mut self) -> &mut Pointer {
-        &mut self.host.stream_mut().pointer
+        &mut stream_mut(&mut self.host).pointer
     }
 
     /// Adds a sample of the pointer.
     pub(crate) fn add_pointer_sample(&mut self, sample: PointerSample) {
-        let stream = self.host.stream_mut();
+        let stream = stream_mut(&mut self.host);
         let now_tick = stream.tick() as f64;
         stream.pointer.add(sample, now_tick);
     }
 
     /// Lets `ticks` of virtual time pass. The host lives only while `is_alive`: without it, the board hears nothing,
     /// and its own host timeout sets the output to zero. When the host lives again, a scene that is wanted plays on.
-    pub(crate) fn run(&mut self, ticks: u32, is_alive: bool) -> Result<(), DeviceError> {
+    pub(crate) fn run(&mut self, ticks: u32, is_alive: bool) -> Result<(), PlayError> {
         if !is_alive {
             for _ in 0..ticks {
-                self.host.stream_mut().step();
+                stream_mut(&mut self.host).step();
             }
             return Ok(());
         }
@@ -102,13 +103,13 @@ impl Simulator {
             self.host.arm_and_play()?;
         }
         let left = end.saturating_sub(self.tick());
-        let tick_hz = self.host.hello().tick_hz;
+        let tick_hz = self.host.device().hello().tick_hz;
         self.host.wait(Duration::from_secs(left) / tick_hz)
     }
 
     /// Takes what was felt since the last call.
     pub(crate) fn take_felt(&mut self) -> FeltSamples {
-        self.host.stream_mut().felt.take()
+        stream_mut(&mut self.host).felt.take()
     }
 
     /// What was felt since the last call, and the board's state, as the bytes that `board.js` reads.
@@ -204,6 +205,6 @@ mod tests {
         simulator.run(4_000, true).unwrap();
         assert_eq!(simulator.state().0, State::Active);
         // A board refuses it.
-        assert!(matches!(simulator.host.load(&request), Err(HostError::Program(_))));
+        assert!(matches!(host::load(&mut simulator.host, &request), Err(HostError::Program(_))));
     }
 }

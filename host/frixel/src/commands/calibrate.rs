@@ -9,16 +9,16 @@ use std::time::Duration;
 
 use clap::Args;
 use frixel::output_file::{FileWriter, Inputs, Recording};
-use frixel::player::Player;
+use frixel::player::player;
 use frixel::rigs::{RecordedLink, SimLink};
-use frixel::stream::Feed;
 use frixel_driver::Device;
 use frixel_felt::recorder::{FeltRow, Recorder};
-use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig};
 use frixel_lab::calibration::{
     BoardRow, CalibrationError, ForceRow, ForceSensor, Protocol, align, read_board, read_forces, write_board, write_csv,
 };
 use frixel_model::{Contact, Finger, LoadedContact};
+use frixel_play::{Feed, Player};
 use frixel_scene::{Elasticity, FingerProfile, Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -236,8 +236,10 @@ impl Plan {
     fn start<L: RecordedLink>(&self, device: Device<L>, telemetry_ticks: u32) -> Result<Player<L>, CommandError> {
         let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
-        let mut player = Player::new(device, recorder.map_err(CommandError::Finger)?);
-        player.start(&self.program, telemetry_ticks, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
+        let mut player = player(device, recorder.map_err(CommandError::Finger)?);
+        player
+            .start(self.program.clone(), telemetry_ticks, &mut |_| ControlFlow::Continue(()))
+            .map_err(CommandError::Play)?;
         let samples = self.protocol.samples().map_err(CommandError::Finger)?;
         player.stream(Feed::of(samples, self.protocol.sample_hz())).map_err(CommandError::Play)?;
         Ok(player)
@@ -259,7 +261,7 @@ impl Plan {
         let mut left = time_max;
         while !left.is_zero() && player.recorder_mut().ticks_left() > 0 {
             if interrupt.is_requested() {
-                player.stop().map_err(CommandError::Play)?;
+                player.stop()?;
                 return Err(CommandError::ExperimentInterrupted);
             }
             let stepped = player.step(left);
@@ -271,7 +273,7 @@ impl Plan {
             bar.set_position((stroke + 1).min(self.protocol.strokes as u64));
             bar.set_message(if stroke.is_multiple_of(2) { "to the right" } else { "to the left" });
         }
-        player.stop().map_err(CommandError::Play)?;
+        player.stop()?;
         bar.finish_and_clear();
         let stream = player.device().stream_status();
         if let Some(status) = stream.filter(|status| status.underruns > 0) {

@@ -5,14 +5,12 @@ use std::path::{Path, PathBuf};
 
 use frixel::output::{DrawingError, FeltLogError};
 use frixel::output_file::OutputFileError;
-use frixel::player::PlayError;
 use frixel::rehearsal::RehearsalError;
 use frixel::report::ReportError;
 #[cfg(unix)]
 use frixel::rigs::ServerError;
-use frixel::rigs::StopReason;
 use frixel::scene_file::{SceneFileError, check_path};
-use frixel::stream::FeedError;
+use frixel::stream::StreamError;
 use frixel::studio::StudioError;
 use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
@@ -23,6 +21,7 @@ use frixel_lab::fit::FitError;
 use frixel_lab::model_csv::CsvError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_model::ParameterError;
+use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
 use thiserror::Error;
 
@@ -182,7 +181,7 @@ pub(crate) enum CommandError {
     )]
     LogTooShort { path: PathBuf, behind_s: f64 },
     #[error(transparent)]
-    Feed(#[from] FeedError),
+    Feed(#[from] StreamError),
     #[error(
         "--stream-hz says how many samples a second come on standard input: put --stream - before it, or leave it out"
     )]

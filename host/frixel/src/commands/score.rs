@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use frixel::output::draw_score_svg;
 use frixel::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
+use frixel::player::SimulationError;
 use frixel::score::samples;
 use frixel_hil_sim::{Person, RigConfig, Stroke};
 use frixel_lab::score::{Score, Trial, TrialFinger};
@@ -97,8 +98,10 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
         }
     };
     let _folder = OutputFolder::open(&args.out)?;
-    let score = Score::of(&trials, |trial| samples(&program, &rig, trial))
-        .map_err(|error| CommandError::of_play("sim", error))?;
+    let score = Score::of(&trials, |trial| samples(&program, &rig, trial)).map_err(|error| match error {
+        SimulationError::Play(error) => CommandError::of_play("sim", error),
+        SimulationError::World(error) => error.into(),
+    })?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
     commit_all(vec![csv.filled(score.to_csv().as_bytes())?, svg.filled(drawn.as_bytes())?], &[])?;

@@ -12,14 +12,14 @@ use std::time::Duration;
 use clap::Args;
 use frixel::input;
 use frixel::output_file::{Inputs, OutputFile, Recording};
-use frixel::player::Player;
+use frixel::player::player;
 use frixel::rigs::{RecordedLink, SimLink};
-use frixel::stream::Feed;
 use frixel_driver::Device;
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::Protocol;
 use frixel_lab::threshold::{Staircase, Threshold};
+use frixel_play::{Feed, Player};
 use frixel_scene::{Evidence, Experiment, FingerProfile, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use hound::{SampleFormat, WavSpec, WavWriter};
@@ -166,8 +166,8 @@ fn session<L: RecordedLink>(
     let scene = protocol.scene().map_err(CommandError::Finger)?;
     let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
-    let mut player = Player::new(waiting::watch(device, interrupt), Recorder::idle());
-    player.start(&program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
+    let mut player = player(waiting::watch(device, interrupt), Recorder::idle());
+    player.start(program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
     print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
     print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
     let answers = answers();
@@ -184,7 +184,7 @@ fn session<L: RecordedLink>(
                 Ok(line) if line.trim() == "1" => break false,
                 Ok(line) if line.trim() == "2" => break true,
                 Ok(_) if wrong + 1 == WRONG_ANSWERS_MAX => {
-                    player.stop().map_err(CommandError::Play)?;
+                    player.stop()?;
                     return Err(CommandError::WrongAnswers { trial, count: WRONG_ANSWERS_MAX });
                 }
                 Ok(_) => {
@@ -201,7 +201,7 @@ fn session<L: RecordedLink>(
         staircase.answer(level_db, is_right);
         recorded.add(Answer { trial, highest_v_rms, level_db, is_right })?;
     }
-    player.stop().map_err(CommandError::Play)?;
+    player.stop()?;
     Ok((staircase.threshold(), protocol))
 }
 
@@ -237,7 +237,7 @@ fn wait<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt, seconds:
     let mut left = Duration::from_secs_f64(seconds);
     loop {
         if interrupt.is_requested() {
-            player.stop().map_err(CommandError::Play)?;
+            player.stop()?;
             return Err(CommandError::ExperimentInterrupted);
         }
         left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);

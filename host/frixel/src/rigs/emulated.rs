@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 use frixel_driver::{DEFAULT_BAUD, KeepAlive, Link, LinkClosed, PortError, SerialLink, Written};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
+use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
 
-use super::RecordedLink;
 use super::recorded::{ReferenceFinger, finger_and_felt};
 
 /// Wall time between two readings of the board's clock.
@@ -141,7 +141,9 @@ fn telemetry_of(tick: u32, telemetry: &mut VecDeque<Telemetry>) -> Option<Teleme
     last.filter(|last| last.tick == tick)
 }
 
-impl RecordedLink for EmulatedLink<'_> {
+impl Recorded for EmulatedLink<'_> {
+    type Recorder = Recorder;
+
     fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }

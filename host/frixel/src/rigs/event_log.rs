@@ -1,14 +1,12 @@
 //! Log of the events of a board: changes of its state, and a silent host.
 
-use frixel_wire::fault::{Fault, Flags, State};
-use thiserror::Error;
+use frixel_wire::fault::{Flags, State};
 
 /// Tracks the state of a board and keeps its changes in order of time.
 #[derive(Clone, Debug)]
 pub struct EventLog {
     state: State,
     host_silent: bool,
-    stop_reason: Option<StopReason>,
     events: Vec<BoardEvent>,
 }
 
@@ -32,17 +30,6 @@ pub enum EventKind {
     TimeDropped,
 }
 
-/// Why a board stopped without a stop command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum StopReason {
-    /// A fault is latched.
-    #[error("stopped with its output at zero: {0}")]
-    Fault(Fault),
-    /// The board stopped because of the host timeout.
-    #[error("stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
-    HostSilent,
-}
-
 impl EventKind {
     /// The name of the kind, for a column of a CSV file.
     pub fn name(self) -> &'static str {
@@ -60,11 +47,11 @@ impl EventKind {
 impl EventLog {
     /// Starts tracking a board that is in this state.
     pub fn new(state: State) -> Self {
-        Self { state, host_silent: false, stop_reason: None, events: Vec::new() }
+        Self { state, host_silent: false, events: Vec::new() }
     }
 
     /// Compares a report of the board with the one before, and logs the changes.
-    pub fn observe(&mut self, t_s: f64, state: State, fault: Option<Fault>, flags: Flags) {
+    pub fn observe(&mut self, t_s: f64, state: State, flags: Flags) {
         let host_silent = flags.contains(Flags::HOST_SILENT);
         let begins_silent = host_silent && !self.host_silent;
         if state != self.state {
@@ -73,17 +60,7 @@ impl EventLog {
         if begins_silent {
             self.events.push(BoardEvent { t_s, kind: EventKind::HostSilent });
         }
-        self.stop_reason = match fault {
-            Some(fault) => Some(StopReason::Fault(fault)),
-            None if host_silent => Some(StopReason::HostSilent),
-            None => None,
-        };
         (self.state, self.host_silent) = (state, host_silent);
-    }
-
-    /// Why the board stopped, if it did so without a stop command.
-    pub fn stop_reason(&self) -> Option<StopReason> {
-        self.stop_reason
     }
 
     /// Removes the logged events and returns them.
@@ -109,21 +86,11 @@ mod tests {
             (6.0, State::Disarmed, silent),
             (7.0, State::Armed, Flags::default()),
         ] {
-            log.observe(t_s, state, None, flags);
+            log.observe(t_s, state, flags);
         }
         let events: Vec<_> = log.take_events().iter().map(|event| (event.t_s, event.kind.name())).collect();
         let expected = [(2.0, "armed"), (3.0, "active"), (5.0, "disarmed"), (5.0, "host-silent"), (7.0, "armed")];
         assert_eq!(events, expected);
         assert!(log.take_events().is_empty());
-    }
-
-    #[test]
-    fn a_board_that_stopped_by_itself_says_why() {
-        let mut log = EventLog::new(State::Active);
-        assert_eq!(log.stop_reason(), None);
-        log.observe(1.0, State::Disarmed, None, Flags::HOST_SILENT);
-        assert_eq!(log.stop_reason(), Some(StopReason::HostSilent));
-        log.observe(2.0, State::Faulted, Some(Fault::Deadline), Flags::HOST_SILENT);
-        assert_eq!(log.stop_reason(), Some(StopReason::Fault(Fault::Deadline)));
     }
 }

@@ -22,7 +22,7 @@ mod sim_link;
 
 #[cfg(unix)]
 pub use emulated::EmulatedLink;
-pub use event_log::{BoardEvent, EventKind, EventLog, StopReason};
+pub use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub use pace::Dropped;
 pub use port::PortLink;

@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use frixel_driver::{Link, LinkClosed, SerialLink, Written};
 use frixel_felt::recorder::{Observation, Recorder};
+use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
-
-use super::RecordedLink;
 
 /// A serial port, with the record of the telemetry received from it.
 pub struct PortLink {
@@ -21,7 +20,9 @@ impl PortLink {
     }
 }
 
-impl RecordedLink for PortLink {
+impl Recorded for PortLink {
+    type Recorder = Recorder;
+
     fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }

@@ -1,27 +1,14 @@
-//! The interface that all rigs have in common.
+//! What all rigs have in common.
 
-use frixel_driver::{Link, LinkClosed};
+use frixel_driver::Link;
 use frixel_felt::recorder::{FeltFriction, FingerState, Observation, Recorder};
 use frixel_hil_sim::{Felt, FingerState as SimulatedFinger, ReferenceFriction};
-use frixel_wire::message::Telemetry;
+use frixel_play::Recorded;
 
-/// A link to a board that plays a scene, with the record of that play.
-pub trait RecordedLink: Link {
-    /// The recorder. It is idle until the caller replaces it.
-    fn recorder_mut(&mut self) -> &mut Recorder;
+/// A link to a board that plays a scene, with the [`Recorder`] of that play. It is idle until a play has its own.
+pub trait RecordedLink: Link + Recorded<Recorder = Recorder> {}
 
-    /// Starts the record and the stroke of a finger that is simulated beside the board. Call this when the scene
-    /// starts to play.
-    fn begin(&mut self) -> Result<(), LinkClosed> {
-        Ok(())
-    }
-
-    /// Records what has been observed of the board since the last call, and the telemetry received since then.
-    fn record(&mut self, telemetry: &[Telemetry]);
-
-    /// Records the ticks that still wait for telemetry. Call this after the last telemetry message.
-    fn record_rest(&mut self) {}
-}
+impl<L: Link + Recorded<Recorder = Recorder>> RecordedLink for L {}
 
 /// The finger that the reference of a record is meant for.
 #[derive(Clone, Copy, Debug, Default)]

@@ -83,7 +83,7 @@ impl ServerLog {
         }
         let status = &record.status;
         let t_s = record.tick as f64 * self.tick_period_s;
-        self.events.observe(t_s, status.telemetry.state, status.fault.map(|(fault, _)| fault), status.telemetry.flags);
+        self.events.observe(t_s, status.telemetry.state, status.telemetry.flags);
         let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
         for event in self.events.take_events() {
             self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: None })?;

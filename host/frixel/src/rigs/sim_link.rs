@@ -5,10 +5,9 @@ use std::time::Duration;
 use frixel_driver::{KeepAlive, Link, LinkClosed, Written};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
+use frixel_play::Recorded;
 use frixel_wire::fault::State;
-use frixel_wire::message::Telemetry;
 
-use super::RecordedLink;
 use super::recorded::{ReferenceFinger, finger_and_felt};
 
 /// Is called with every tick that is recorded.
@@ -112,13 +111,12 @@ pub(super) fn observation(record: &TickRecord) -> Observation {
     }
 }
 
-impl RecordedLink for SimLink<'_> {
+impl Recorded for SimLink<'_> {
+    type Recorder = Recorder;
+
     fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }
-
-    /// Does nothing: every tick has already been recorded, including the values that telemetry would report.
-    fn record(&mut self, _telemetry: &[Telemetry]) {}
 }
 
 impl Link for SimLink<'_> {

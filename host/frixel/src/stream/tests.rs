@@ -21,9 +21,7 @@ fn write<S: hound::Sample + Copy>(path: &Path, spec: WavSpec, samples: &[S]) {
 }
 
 fn read(path: &Path) -> (u32, Vec<u16>) {
-    let feed = Feed::wav(path, TICK_HZ).unwrap();
-    let Source::Samples(samples, 0) = feed.source else { panic!("not all there") };
-    (feed.settings.sample_hz, samples)
+    wav::read(path, TICK_HZ).unwrap()
 }
 
 #[test]
@@ -72,7 +70,7 @@ fn more_samples_than_ticks_are_brought_below_them() {
 #[test]
 fn a_file_that_is_not_a_stream_gives_one_sentence() {
     let folder = tempdir().unwrap();
-    let message = |path: &Path| Feed::wav(path, TICK_HZ).err().unwrap().to_string();
+    let message = |path: &Path| wav(path, TICK_HZ).err().unwrap().to_string();
     let path = folder.path().join("none.wav");
     assert!(message(&path).contains("none.wav cannot be streamed"));
     std::fs::write(&path, "no RIFF").unwrap();
@@ -82,7 +80,7 @@ fn a_file_that_is_not_a_stream_gives_one_sentence() {
     write(&path, spec(1, 8_000, 32, SampleFormat::Float), &[0.0, f32::NAN]);
     assert!(message(&path).contains("sample 1 of"));
     for sample_hz in [0, 40_001] {
-        let error = Feed::raw(Cursor::new([]), sample_hz, TICK_HZ, true).err().unwrap();
+        let error = raw(Cursor::new([]), sample_hz, TICK_HZ, true).err().unwrap();
         let expected = format!("a stream of {sample_hz} samples a second cannot be played: give 1 to {TICK_HZ}, ");
         assert!(error.to_string().starts_with(&expected), "{error}");
     }
@@ -91,11 +89,10 @@ fn a_file_that_is_not_a_stream_gives_one_sentence() {
 #[test]
 fn a_pipe_gives_little_endian_samples_and_drops_half_a_one() {
     let bytes: Vec<u8> = (0..5_000_u16).flat_map(u16::to_le_bytes).chain([7]).collect();
-    let mut feed = Feed::raw(Cursor::new(bytes), 8_000, TICK_HZ, true).unwrap();
-    let mut found = Vec::new();
-    while feed.fetch().unwrap() {
-        found.append(&mut feed.pending);
+    let mut pipe = Pipe::open(Cursor::new(bytes), true).unwrap();
+    let (mut found, mut len) = (Vec::new(), 2_048);
+    while pipe.fetch(&mut found, len).unwrap() {
+        len += 2_048;
     }
-    found.append(&mut feed.pending);
     assert_eq!(found, (0..5_000).collect::<Vec<u16>>());
 }

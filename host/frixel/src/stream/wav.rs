@@ -5,12 +5,12 @@ use std::path::Path;
 
 use hound::{SampleFormat, WavReader};
 
-use super::FeedError;
+use super::StreamError;
 use crate::input;
 
 /// The sample rate, reduced to at most `max_hz`, and the samples of the first channel.
-pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), FeedError> {
-    let failed = |source| FeedError::Wav { path: path.to_owned(), source };
+pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), StreamError> {
+    let failed = |source| StreamError::Wav { path: path.to_owned(), source };
     let file = input::open(path, input::WAV_MAX_BYTES).map_err(|error| failed(error.into()))?;
     let mut reader = WavReader::new(BufReader::new(file)).map_err(failed)?;
     let spec = reader.spec();
@@ -29,10 +29,10 @@ pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), FeedErro
         }
     };
     if let Some(index) = samples.iter().position(|sample| !sample.is_finite()) {
-        return Err(FeedError::NotANumber { path: path.to_owned(), index });
+        return Err(StreamError::NotANumber { path: path.to_owned(), index });
     }
     if samples.is_empty() || spec.sample_rate == 0 {
-        return Err(FeedError::Empty { path: path.to_owned() });
+        return Err(StreamError::Empty { path: path.to_owned() });
     }
     let together = samples_together(spec.sample_rate, max_hz);
     Ok((spec.sample_rate / together, means(&samples, together as usize)))

@@ -2,8 +2,8 @@
 
 use std::fs::OpenOptions;
 use std::io::Write;
+use std::ops::ControlFlow;
 
-use frixel::player;
 use frixel_control::Drive;
 use frixel_driver::Device;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -23,7 +23,7 @@ fn a_client_that_pours_pings_and_reads_nothing_keeps_nothing_playing() {
     let Some(image) = emulator::image() else { return };
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.until_driven(&mut device);
     drop(device);
 

@@ -1,6 +1,7 @@
 //! What ends the firmware leaves the output at zero, and the next hello says why.
 
-use frixel::player;
+use std::ops::ControlFlow;
+
 use frixel_control::Drive;
 use frixel_driver::Device;
 use frixel_hil_sim::emulated::InjectedFault;
@@ -16,7 +17,7 @@ fn suffer(fault: InjectedFault) -> Option<Hello> {
     let image = emulator::image()?;
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.until_driven(&mut device);
     bench.board.inject(fault).unwrap();
     let starts = if fault == InjectedFault::Overrun { 1 } else { 2 };
@@ -33,7 +34,7 @@ fn suffer(fault: InjectedFault) -> Option<Hello> {
     if hello.state == State::Faulted {
         device.clear_fault().unwrap();
     }
-    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.until_driven(&mut device);
     Some(hello)
 }

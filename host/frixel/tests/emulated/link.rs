@@ -1,6 +1,7 @@
 //! The link: hello, upload, play and stop over the emulated serial port, rubbish in between, and a cable that is cut.
 
-use frixel::player;
+use std::ops::ControlFlow;
+
 use frixel_control::Drive;
 use frixel_driver::Device;
 use frixel_wire::fault::State;
@@ -23,7 +24,7 @@ fn a_picture_goes_up_plays_and_stops() {
     assert_eq!(hello.board, BoardKind::Mps2An386);
     assert_eq!((hello.reset_cause, hello.last_fault, hello.state), (ResetCause::PowerOn, None, State::Disarmed));
 
-    player::start(&mut device, &program, &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program, &mut |_| ControlFlow::Continue(())).unwrap();
     // Where the finger is when the picture has arrived depends on the machine; it comes over bright mortar soon.
     bench.until_felt(&mut device, 0.06);
     device.stop().unwrap();
@@ -42,7 +43,7 @@ fn rubbish_between_frames_does_no_harm() {
     // Truncated, oversized, zeros only, and what looks like a frame but for its CRC.
     let rubbish = vec![vec![7, 1, 2, 0], [vec![0x55; 700], vec![0]].concat(), vec![0, 0, 0], vec![2, 9, 3, 8, 8, 0]];
     let mut device = Device::connect(Cable::plug(&bench.board).with_rubbish(rubbish)).unwrap();
-    player::start(&mut device, &program("grating.toml"), &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program("grating.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.until_driven(&mut device);
     device.stop().unwrap();
     assert_eq!(device.counters().frames_rejected, 0, "the board's own frames arrive whole");
@@ -53,7 +54,7 @@ fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
     let Some(image) = emulator::image() else { return };
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.until_driven(&mut device);
     drop(device);
     bench.until("the board falls silent", |board| {
@@ -76,7 +77,7 @@ fn a_host_that_hangs_puts_the_output_to_zero_after_the_wait_for_it() {
     let Some(image) = emulator::image() else { return };
     let bench = Bench::new(&image);
     let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    player::start(&mut device, &program("constant.toml"), &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.until_driven(&mut device);
     bench.until("the clock stands still", |board| {
         let ticks = board.ticks().unwrap();

@@ -1,9 +1,9 @@
 //! A stream, from the host's samples to the finger.
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel::player;
 use frixel::rigs::SimLink;
 use frixel_driver::{Device, StreamSettings};
 use frixel_felt::recorder::{FeltRow, Recorder};
@@ -32,7 +32,7 @@ fn play(program: &Program) -> Vec<FeltRow> {
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).unwrap();
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, 1).unwrap();
     let mut device = Device::connect(SimLink::new(rig, recorder)).unwrap();
-    player::start(&mut device, program, &mut |_| {}).unwrap();
+    frixel_play::start(&mut device, program, &mut |_| ControlFlow::Continue(())).unwrap();
     device.start_stream(StreamSettings::new(SAMPLE_HZ)).unwrap();
     let sample = |number: u32| {
         let turns = WAVE_HZ * f64::from(number) / f64::from(SAMPLE_HZ);

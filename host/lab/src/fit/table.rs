@@ -12,7 +12,7 @@ const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms");
 const LOAD: Column = Column::new("normal_force_n", "newtons");
 const FRICTION: Column = Column::new("friction_n", "newtons");
 const TIME: Column = Column::new("time_s", "seconds");
-const STROKE: Column = Column::new("stroke", "a number or name for each stroke");
+const STROKE: Column = Column::new("stroke", "");
 const SPEED: Column = Column::new("speed_mm_s", "mm/s");
 
 /// A row of a recording.

@@ -21,11 +21,11 @@ pub(super) const FRICTIONS: [&str; 2] = ["friction_n", "electric_friction_n"];
 
 /// Columns that every row needs, independent of its variant.
 const COMMON: [Column; 5] = [
-    Column::new(VARIANT, "a word such as wf-loaded"),
+    Column::new(VARIANT, ""),
     Column::new(RADIUS, "metres"),
     Column::new(COATING, "metres"),
-    Column::new(PERMITTIVITY, "parts of that of vacuum"),
-    Column::new(FRICTION_COEFFICIENT, "newtons per newton"),
+    Column::new(PERMITTIVITY, ""),
+    Column::new(FRICTION_COEFFICIENT, ""),
 ];
 /// Columns that some variants need.
 const PARTICULAR: [Column; 6] = [
@@ -33,8 +33,8 @@ const PARTICULAR: [Column; 6] = [
     Column::new(NORMAL_FORCE, "newtons"),
     Column::new(OUTER_RADIUS, "metres"),
     Column::new(MODULUS, "pascals"),
-    Column::new(STRESS_EXPONENT, "0 to 1"),
-    Column::new(SHAPE_CONSTANT, "a plain number"),
+    Column::new(STRESS_EXPONENT, ""),
+    Column::new(SHAPE_CONSTANT, ""),
 ];
 
 /// Places of the columns that the model reads.
@@ -42,7 +42,7 @@ pub(super) struct Columns(Vec<(&'static str, Place)>);
 
 impl Columns {
     /// Fails unless the table has all common columns and at least one of `given`, each at most once.
-    pub(super) fn new<R: Read>(table: &Table<R>, given: &[Column]) -> Result<Self, TableError> {
+    pub(super) fn new<R: Read>(table: &mut Table<R>, given: &[Column]) -> Result<Self, TableError> {
         let mut places = Vec::new();
         for column in COMMON.iter().chain(&PARTICULAR).chain(given) {
             places.extend(table.find(*column)?.map(|place| (column.name, place)));

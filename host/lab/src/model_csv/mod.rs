@@ -124,7 +124,7 @@ fn transform(
 ) -> Result<Summary, CsvError> {
     let mut table = Table::new(input)?;
     let mut writer = WriterBuilder::new().from_writer(output);
-    let columns = Columns::new(&table, direction.given)?;
+    let columns = Columns::new(&mut table, direction.given)?;
     let names = direction.answers.iter().map(|name| name.as_bytes());
     write(&mut writer, table.header()?.iter().chain(names).chain([b"status".as_slice()]))?;
 

@@ -21,7 +21,7 @@ pub enum TableError {
     ColumnMissing {
         /// The column, or those of which one is needed.
         column: String,
-        /// Its unit.
+        /// Its unit; empty for words and plain numbers.
         unit: &'static str,
         /// A column with a similar name.
         nearest: Option<String>,
@@ -91,6 +91,7 @@ impl TableError {
         match self {
             Self::Read(_) => "give a CSV file with a header row".to_owned(),
             Self::Separator { .. } => "save the file with commas between columns, and points in numbers".to_owned(),
+            Self::ColumnMissing { unit: "", .. } => "name the column so".to_owned(),
             Self::ColumnMissing { unit, .. } => format!("name the column so, in {unit}"),
             Self::ColumnTwice { .. } => "leave one of them out".to_owned(),
             Self::Length { .. } => "correct or delete the row".to_owned(),

@@ -1,7 +1,6 @@
 //! What the compiler says about scenes, and about wrong ones above all: the pages in `tests/corpus`.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use frixel_testkit::corpus::{self, Case};
 
@@ -47,8 +46,11 @@ impl Inputs {
     }
 }
 
-fn folder(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(name)
+/// Holds all pages of a folder of `tests/corpus`.
+fn hold(folder: &str, mut answer: impl FnMut(&Case) -> String) {
+    for page in corpus::pages(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(folder)) {
+        corpus::hold(&page, &mut answer);
+    }
 }
 
 /// Whatever is met in a corpus, by the name of its variant.
@@ -92,7 +94,7 @@ impl Met {
 #[test]
 fn every_scene_is_answered_as_its_page_says() {
     let mut met = Met::default();
-    corpus::hold(&folder("check"), |case| {
+    hold("check", |case| {
         let inputs = Inputs::of(case);
         let scene = inputs.scene();
         let mistakes = mistakes(&scene).to_vec();
@@ -118,7 +120,7 @@ fn every_scene_is_answered_as_its_page_says() {
             }
         }
     });
-    corpus::hold(&folder("migrate"), |case| {
+    hold("migrate", |case| {
         let inputs = Inputs::of(case);
         let text = str::from_utf8(&inputs.text).expect("a text");
         migrate(text, &inputs.name, &inputs.files).unwrap_or_else(|error| {

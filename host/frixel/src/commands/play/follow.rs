@@ -4,9 +4,10 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use frixel::output::Report;
-use frixel::player::{PlayError, Player};
+use frixel::player::{into_recorder, player};
 use frixel::rigs::RecordedLink;
 use frixel_driver::Device;
+use frixel_play::{LiveLayers, PlayError, Player};
 use frixel_scene::Program;
 
 use super::control::{Control, Next};
@@ -27,9 +28,9 @@ pub(super) fn follow<L: RecordedLink>(
 ) -> Result<Played, CommandError> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     let outputs = Outputs::create(args, files, is_simulated, &plan.program)?;
-    let player = Player::new(waiting::watch(device, interrupt), plan.recorder()?);
+    let player = player(waiting::watch(device, interrupt), plan.recorder()?);
     let waits = plan.target == Target::Simulator;
-    let control = args.control.then(|| Control::start(&plan.program, waits, interrupt)).transpose()?;
+    let control = args.control.then(|| Control::start(waits, interrupt)).transpose()?;
     let (bars, writing, refusals) = (Bars::default(), Duration::ZERO, sentences(&plan.program));
     let mut play = Play { args, plan, player, outputs, live_scene, control, interrupt, bars, writing, refusals };
     play.start()?;
@@ -42,6 +43,16 @@ pub(super) fn follow<L: RecordedLink>(
 /// Why a board refuses a program, a sentence each.
 fn sentences(program: &Program) -> Vec<String> {
     program.refusals.iter().map(ToString::to_string).collect()
+}
+
+/// Ends triggers, and says what the board refuses of it.
+fn end_triggers<L: RecordedLink>(player: &mut Player<L>, say: &mut dyn FnMut(String)) -> Result<(), PlayError> {
+    loop {
+        match player.end_triggers() {
+            Err(refused @ PlayError::TriggerEnd { .. }) => say(refused.to_string()),
+            ended => return ended,
+        }
+    }
 }
 
 /// A play in progress.
@@ -63,7 +74,7 @@ struct Play<'a, L: RecordedLink> {
 impl<L: RecordedLink> Play<'_, L> {
     fn start(&mut self) -> Result<(), CommandError> {
         let Self { args, plan, player, bars, interrupt, .. } = self;
-        let started = player.start(&plan.program, plan.telemetry_period_ticks, &mut |progress| {
+        let started = player.start(plan.program.clone(), plan.telemetry_period_ticks, &mut |progress| {
             bars.upload(progress);
             if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -89,7 +100,7 @@ impl<L: RecordedLink> Play<'_, L> {
             self.refresh_scene()?;
             self.bars.play(self.player.recorder_mut().t_s(), self.plan.seconds());
         }
-        self.player.stop().map_err(|error| self.error(error))
+        self.player.stop().map_err(|error| self.error(error.into()))
     }
 
     fn write_rows(&mut self) -> Result<(), CommandError> {
@@ -105,9 +116,10 @@ impl<L: RecordedLink> Play<'_, L> {
         let Some(control) = &mut self.control else { return Ok(Some(Duration::MAX)) };
         let t_s = self.player.recorder_mut().t_s();
         let say = &mut |sentence| note(format_args!("frixel: {sentence}"));
-        let next = control.step(&mut self.player, &self.plan.program, t_s, say);
+        let ended = end_triggers(&mut self.player, say);
+        let next = ended.and_then(|()| control.step(&mut self.player, t_s, say));
         let step_max = control.time_max(t_s);
-        self.outputs.switch(t_s, control.layers_off());
+        self.outputs.switch(t_s, self.player.playing().map_or(Vec::new(), LiveLayers::off));
         match next.map_err(|error| self.error(error))? {
             Next::GoOn => {}
             Next::Quit => return Ok(None),
@@ -125,17 +137,12 @@ impl<L: RecordedLink> Play<'_, L> {
     /// Replaces the scene if its file was saved.
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
-        match live_scene.refresh(&mut self.player, &self.plan.program) {
-            Ok(Some(program)) => {
-                self.outputs.replace(self.player.recorder_mut().t_s(), &program);
-                self.refusals.extend(sentences(&program));
-                if let Some(control) = &mut self.control {
-                    control.replace(&program);
-                }
-                self.plan.program = program;
-            }
-            Ok(None) => {}
-            Err(error) => return Err(self.error(error)),
+        let replaced = live_scene.refresh(&mut self.player).map_err(|error| self.error(error))?;
+        let t_s = self.player.recorder_mut().t_s();
+        if let Some(playing) = self.player.playing().filter(|_| replaced) {
+            self.outputs.replace(t_s, playing.program());
+            self.refusals.extend(sentences(playing.program()));
+            self.plan.program = playing.program().clone();
         }
         Ok(())
     }
@@ -144,7 +151,7 @@ impl<L: RecordedLink> Play<'_, L> {
     fn finish(mut self, ended: Result<(), CommandError>, playing: Duration) -> Played {
         self.bars.finish();
         let (counters, stream) = (self.player.device().counters(), self.player.device().stream_status());
-        let mut recorder = self.player.into_recorder();
+        let mut recorder = into_recorder(self.player);
         let Plan { program, target, .. } = &self.plan;
         let is_requested = self.interrupt.is_requested() || (ended.is_err() && self.interrupt.was_requested());
         let interrupted = is_requested && target.is_virtual_time();

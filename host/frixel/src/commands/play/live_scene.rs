@@ -4,13 +4,11 @@ use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
 
-use frixel::player::{PlayError, Player};
 use frixel::rigs::RecordedLink;
 use frixel::scene_file::{ProfileNames, SceneFiles};
-use frixel_driver::DeviceError;
+use frixel_play::{PlayError, Player, Replaced};
 use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::message::Refusal;
 
 use super::outputs::PlayFiles;
 use super::plan::{check_measured, print_notes};
@@ -82,22 +80,18 @@ impl LiveScene {
     }
 
     /// Plays the next scene once it is compiled. Without one, compiles the scene that plays anew if one of its files
-    /// was saved. Returns the new program if it replaced `playing`.
-    pub(super) fn refresh<L: RecordedLink>(
-        &mut self,
-        player: &mut Player<L>,
-        playing: &Program,
-    ) -> Result<Option<Program>, PlayError> {
+    /// was saved. Returns whether a new program plays.
+    pub(super) fn refresh<L: RecordedLink>(&mut self, player: &mut Player<L>) -> Result<bool, PlayError> {
         // In virtual time, the play waits for the compiler.
         let waits = self.loader.target == Target::Simulator;
         if let Some(next) = self.next.take_if(|next| waits || next.compiling.is_finished()) {
             let compiled = next.compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
-            return self.play(next.origin, compiled, player, playing);
+            return self.play(next.origin, compiled, player);
         }
         if self.watches && self.next.is_none() {
             self.check_files(player);
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// Plays a compiled scene. The files of another scene that cannot be played are not watched.
@@ -106,11 +100,10 @@ impl LiveScene {
         origin: Origin,
         Compiled { program, files }: Compiled,
         player: &mut Player<L>,
-        playing: &Program,
-    ) -> Result<Option<Program>, PlayError> {
+    ) -> Result<bool, PlayError> {
         let how = if origin == Origin::Saved { " as it was saved" } else { "" };
-        let replaced = replace(files.path(), how, program, player, playing)?;
-        if origin == Origin::Saved || replaced.is_some() {
+        let replaced = replace(files.path(), how, program, player)?;
+        if origin == Origin::Saved || replaced {
             self.files = files;
         }
         Ok(replaced)
@@ -138,63 +131,40 @@ impl LiveScene {
 }
 
 /// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints why,
-/// and keeps the earlier scene playing.
+/// and keeps the earlier scene playing. Returns whether it plays.
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
     compiled: Result<Program, CommandError>,
     player: &mut Player<L>,
-    playing: &Program,
-) -> Result<Option<Program>, PlayError> {
-    let (file, path) = (path, path.display());
-    let program = match compiled {
+) -> Result<bool, PlayError> {
+    let board = player.device().hello().board;
+    let checked = compiled.and_then(|program| check_measured(&program, board).map(|()| program));
+    let program = match checked {
         Ok(program) => program,
         Err(error) => {
             note(error);
-            note(format_args!("frixel: {path} is not played: the previous scene keeps playing"));
-            return Ok(None);
+            note(format_args!("frixel: {} is not played: the previous scene keeps playing", path.display()));
+            return Ok(false);
         }
     };
-    if let Err(error) = check_measured(&program, player.device().hello().board) {
-        note(error);
-        note(format_args!("frixel: {path} is not played: the previous scene keeps playing"));
-        return Ok(None);
-    }
-    let mut meanwhile = "";
-    let replaced = match player.replace(&program) {
-        Err(PlayError::Device(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. })) => {
-            meanwhile =
-                "; its pictures and those before it do not fit on the board together: the output faded out meanwhile";
-            replace_alone(&program, player, playing)
+    let meanwhile = match player.replace(program) {
+        Ok(Replaced::AtOnce) => "",
+        Ok(Replaced::AfterFadeOut) => {
+            "; its pictures and those before it do not fit on the board together: the output faded out meanwhile"
         }
-        replaced => replaced,
-    };
-    match replaced {
-        Ok(()) => {
-            note_refusals(file, &program);
-            print_notes(&program);
-            note(format_args!("frixel: {path} plays{how}{meanwhile}"));
-            Ok(Some(program))
-        }
-        Err(PlayError::Device(refused @ DeviceError::Refused { .. })) => {
+        Err(refused) if refused.is_refusal() => {
             note(format_args!("frixel: {refused}: the previous scene keeps playing"));
-            Ok(None)
+            return Ok(false);
         }
-        Err(error) => Err(error),
+        Err(error) => return Err(error),
+    };
+    if let Some(playing) = player.playing() {
+        note_refusals(path, playing.program());
+        print_notes(playing.program());
     }
-}
-
-/// Replaces `playing` after its pictures were removed from the board. Puts it back if the board refuses the program.
-fn replace_alone<L: RecordedLink>(
-    program: &Program,
-    player: &mut Player<L>,
-    playing: &Program,
-) -> Result<(), PlayError> {
-    let replaced = player.replace_alone(program);
-    if let Err(PlayError::Device(DeviceError::Refused { .. })) = replaced {
-        player.replace(playing)?;
-    }
-    replaced
+    note(format_args!("frixel: {} plays{how}{meanwhile}", path.display()));
+    Ok(true)
 }
 
 #[cfg(test)]
@@ -205,6 +175,7 @@ mod tests {
     use std::thread::sleep;
     use std::time::{Duration, Instant};
 
+    use frixel::player::player;
     use frixel::rigs::SimLink;
     use frixel_driver::Device;
     use frixel_felt::recorder::Recorder;
@@ -225,7 +196,6 @@ mod tests {
     struct Watched<'a> {
         folder: TempDir,
         player: Player<SimLink<'a>>,
-        program: Program,
         live: LiveScene,
     }
 
@@ -243,10 +213,10 @@ mod tests {
             let rig = Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
             let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
             let device = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
-            let mut player = Player::new(device, recorder);
-            player.start(&program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+            let mut player = player(device, recorder);
+            player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
             let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
-            Self { folder, player, program, live: LiveScene::new(&args, Target::Port, files, outputs) }
+            Self { folder, player, live: LiveScene::new(&args, Target::Port, files, outputs) }
         }
 
         fn write(&self, name: &str, text: &str) {
@@ -271,9 +241,7 @@ mod tests {
         }
 
         fn refresh(&mut self) {
-            if let Some(program) = self.live.refresh(&mut self.player, &self.program).unwrap() {
-                self.program = program;
-            }
+            self.live.refresh(&mut self.player).unwrap();
             self.player.step(Duration::from_millis(1)).unwrap();
             sleep(Duration::from_millis(5));
         }
@@ -281,7 +249,8 @@ mod tests {
         /// Refreshes until a scene with this friction plays.
         fn until_plays(&mut self, friction_n: f64) {
             let begin = Instant::now();
-            while (TargetRange::of(&self.program).most_n - friction_n).abs() > 1e-6 {
+            let plays = |player: &Player<SimLink>| TargetRange::of(player.playing().unwrap().program()).most_n;
+            while (plays(&self.player) - friction_n).abs() > 1e-6 {
                 assert!(begin.elapsed() < Duration::from_secs(20), "{friction_n} N never plays");
                 self.refresh();
             }

@@ -6,9 +6,10 @@ use std::time::Duration;
 
 use frixel::default_stroke;
 use frixel::output::WorldReport;
-use frixel::stream::Feed;
+use frixel::stream;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
+use frixel_play::Feed;
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
@@ -202,11 +203,11 @@ fn open_feed(args: &PlayArgs, tick_hz: u32, target: Target) -> Result<Option<Fee
         (None, None) => Ok(None),
         (None, Some(_)) => Err(CommandError::StreamRateAlone),
         (Some(path), Some(sample_hz)) if path == Path::new("-") => {
-            Ok(Some(Feed::raw(stdin(), sample_hz, tick_hz, waits)?))
+            Ok(Some(stream::raw(stdin(), sample_hz, tick_hz, waits)?))
         }
         (Some(path), None) if path == Path::new("-") => Err(CommandError::StreamRateMissing),
         (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.to_owned() }),
-        (Some(path), None) => Ok(Some(Feed::wav(path, tick_hz)?)),
+        (Some(path), None) => Ok(Some(stream::wav(path, tick_hz)?)),
     }
 }
 

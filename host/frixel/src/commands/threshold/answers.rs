@@ -78,9 +78,9 @@ impl Answers {
 fn read(text: &str) -> Result<Vec<Answer>, String> {
     let found = |error: TableError| error.found();
     let mut table = Table::new(text.as_bytes()).map_err(found)?;
-    let need = |name, unit| table.need(Column::new(name, unit)).map_err(found);
-    let (trial, highest) = (need("trial", "trials")?, need("highest_v_rms", "volts rms")?);
-    let (level, right) = (need("level_db", "decibels")?, need("is_right", "true or false")?);
+    let mut need = |name, unit| table.need(Column::new(name, unit)).map_err(found);
+    let (trial, highest) = (need("trial", "")?, need("highest_v_rms", "volts rms")?);
+    let (level, right) = (need("level_db", "decibels")?, need("is_right", "")?);
     let mut answers = Vec::new();
     while let Some(row) = table.next_row().map_err(found)? {
         row.check_length().map_err(found)?;

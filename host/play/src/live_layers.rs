@@ -2,12 +2,9 @@
 
 use std::time::Duration;
 
-use frixel_layers::{Blend, Layer, Vibration};
+use frixel_layers::{Blend, Layer, Record, Vibration};
+use frixel_scene::{Clamped, LayerError, LayerSetting, Program};
 use thiserror::Error;
-
-use super::layer_map::LayerError;
-use super::live_change::{Clamped, LayerSetting};
-use super::program::Program;
 
 /// Why layers are not changed as a host asks.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -15,9 +12,6 @@ pub enum LiveError {
     /// There is no such layer, or it cannot be changed.
     #[error(transparent)]
     Layer(#[from] LayerError),
-    /// The settings belong to another program.
-    #[error("the layer is not one of the program that plays: create `LiveLayers` anew with each program")]
-    OtherProgram,
     /// The layer is on.
     #[error(
         "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by `layer {layer:?} off`"
@@ -64,15 +58,25 @@ fn gain_advice(range: Option<(f32, f32)>) -> String {
     range.map_or(String::new(), |(least, most)| format!("; give a gain from {least} to {most}"))
 }
 
-/// A change that the host has to send to the board.
+/// A change of a layer that the board has to take before it counts; see [`LiveLayers::apply`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerChange {
     /// Number of the record, from zero.
     pub record: u8,
-    /// Its setting from now on.
+    /// Its setting from then on.
     pub setting: LayerSetting,
-    /// What the board clamps from now on, if it did not before.
+    /// What the board clamps from then on, if it did not before.
     pub clamped: Option<Clamped>,
+    trigger: TriggerChange,
+}
+
+/// What a change does to the trigger of its layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum TriggerChange {
+    Keep,
+    End,
+    /// The layer is switched off at this time.
+    Until(Duration),
 }
 
 impl LayerChange {
@@ -82,10 +86,14 @@ impl LayerChange {
     }
 }
 
-/// The settings of a program's layers while it plays, and when triggers end. Times are on any clock that only goes
+/// A program that plays, with the settings of its layers, and when triggers end. Times are on any clock that only goes
 /// forward.
-#[derive(Clone, Debug, Default, PartialEq)]
+///
+/// A method that changes a layer returns the change for the board, and the settings stay as they are until
+/// [`Self::apply`] is told that the board has taken it.
+#[derive(Clone, Debug)]
 pub struct LiveLayers {
+    program: Program,
     /// One for each record.
     settings: Vec<LayerSetting>,
     /// Records to switch off, and when.
@@ -93,10 +101,20 @@ pub struct LiveLayers {
 }
 
 impl LiveLayers {
-    /// The layers of a program that has just begun: all are on, with their gains in the file.
-    pub fn new(program: &Program) -> Self {
-        let setting = |record: &frixel_layers::Record| LayerSetting { on: true, gain: record.gain };
-        Self { settings: program.records.iter().map(setting).collect(), triggered: Vec::new() }
+    /// A program that has just begun: all layers are on, with their gains in the file.
+    pub fn new(program: Program) -> Self {
+        let setting = |record: &Record| LayerSetting { on: true, gain: record.gain };
+        Self { settings: program.records.iter().map(setting).collect(), triggered: Vec::new(), program }
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// The program, whose layers are in any setting.
+    pub(crate) fn into_program(self) -> Program {
+        self.program
     }
 
     /// Switches a layer, or changes its gain; `None` leaves as it is.
@@ -104,17 +122,12 @@ impl LiveLayers {
     /// # Errors
     ///
     /// An unknown layer, one that cannot be changed, and a gain that leads out of reach, now or once all layers are on,
-    /// in a scene that does not saturate and is no draft. Nothing is changed then.
-    pub fn change(
-        &mut self,
-        program: &Program,
-        layer: &str,
-        on: Option<bool>,
-        gain: Option<f32>,
-    ) -> Result<LayerChange, LiveError> {
+    /// in a scene that does not saturate and is no draft.
+    pub fn change(&self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, LiveError> {
+        let program = &self.program;
         let record = program.layers.record(layer)?;
-        let (changed, setting) = self.changed(record, on, gain)?;
-        let clamped = self.newly_clamped(program, &changed);
+        let (changed, setting) = self.changed(record, on, gain);
+        let clamped = self.newly_clamped(&changed);
         if let Some(gain) = gain.filter(|_| !program.saturates && !program.is_draft()) {
             // A layer that is off may be switched on later.
             let all_on: Vec<LayerSetting> =
@@ -124,12 +137,9 @@ impl LiveLayers {
                 return Err(LiveError::GainOutOfReach { gain, clamped, range });
             }
         }
-        self.settings = changed;
-        if on.is_some() {
-            // A layer that is switched by hand stays as it is when its trigger ends.
-            self.triggered.retain(|(triggered, _)| *triggered != record);
-        }
-        Ok(LayerChange { record, setting, clamped })
+        // A layer that is switched by hand stays as it is when its trigger ends.
+        let trigger = if on.is_some() { TriggerChange::End } else { TriggerChange::Keep };
+        Ok(LayerChange { record, setting, clamped, trigger })
     }
 
     /// Switches a layer that is off on at the time `now`, until `duration_s` seconds later. If it is triggered already,
@@ -139,17 +149,11 @@ impl LiveLayers {
     ///
     /// An unknown layer, one that cannot be changed, one that is on, one that plays nothing because its gain is zero, and
     /// one whose bursts the trigger may miss.
-    pub fn trigger(
-        &mut self,
-        program: &Program,
-        layer: &str,
-        now: Duration,
-        duration_s: f64,
-    ) -> Result<LayerChange, LiveError> {
-        let record = program.layers.record(layer)?;
-        let played = program.records.get(usize::from(record));
-        let (changed, setting) = self.changed(record, Some(true), None)?;
-        let was_on = self.settings.get(usize::from(record)).is_some_and(|setting| setting.on);
+    pub fn trigger(&self, layer: &str, now: Duration, duration_s: f64) -> Result<LayerChange, LiveError> {
+        let record = self.program.layers.record(layer)?;
+        let played = self.program.records.get(usize::from(record));
+        let (changed, setting) = self.changed(record, Some(true), None);
+        let was_on = self.setting(record).on;
         let triggered_until =
             self.triggered.iter().find(|(triggered, _)| *triggered == record).map(|(_, ends_at)| *ends_at);
         if was_on && triggered_until.is_none() {
@@ -165,23 +169,43 @@ impl LiveLayers {
             let (period_ms, duration_ms) = (1e3 * f64::from(burst.period_s), 1e3 * duration_s);
             return Err(LiveError::TriggerBetweenBursts { layer: layer.to_owned(), period_ms, duration_ms });
         }
-        self.triggered.retain(|(triggered, _)| *triggered != record);
         let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
         let ends_at = now.saturating_add(duration);
-        self.triggered.push((record, triggered_until.map_or(ends_at, |until| until.max(ends_at))));
-        let clamped = self.newly_clamped(program, &changed);
-        self.settings = changed;
-        Ok(LayerChange { record, setting, clamped })
+        let trigger = TriggerChange::Until(triggered_until.map_or(ends_at, |until| until.max(ends_at)));
+        let clamped = self.newly_clamped(&changed);
+        Ok(LayerChange { record, setting, clamped, trigger })
     }
 
     /// Switches off the layer of a trigger that has ended by `now`; `None` if no trigger has ended. The change carries no
     /// notice: the board clamps what it clamped before the trigger.
-    pub fn end_trigger(&mut self, now: Duration) -> Option<LayerChange> {
-        let index = self.triggered.iter().position(|(_, ends_at)| *ends_at <= now)?;
-        let (record, _) = self.triggered.swap_remove(index);
-        let setting = self.settings.get_mut(usize::from(record))?;
-        setting.on = false;
-        Some(LayerChange { record, setting: *setting, clamped: None })
+    pub fn end_trigger(&self, now: Duration) -> Option<LayerChange> {
+        let (record, _) = *self.triggered.iter().find(|(_, ends_at)| *ends_at <= now)?;
+        let setting = LayerSetting { on: false, ..self.setting(record) };
+        Some(LayerChange { record, setting, clamped: None, trigger: TriggerChange::End })
+    }
+
+    /// Takes over a change that the board has taken.
+    pub fn apply(&mut self, change: &LayerChange) {
+        let LayerChange { record, setting, trigger, .. } = *change;
+        if let Some(current) = self.settings.get_mut(usize::from(record)) {
+            *current = setting;
+        }
+        if trigger != TriggerChange::Keep {
+            self.forget_trigger(record);
+        }
+        if let TriggerChange::Until(ends_at) = trigger {
+            self.triggered.push((record, ends_at));
+        }
+    }
+
+    /// Ends a trigger whose end the board refuses.
+    pub(crate) fn forget_trigger(&mut self, record: u8) {
+        self.triggered.retain(|(triggered, _)| *triggered != record);
+    }
+
+    /// The setting of a record of the program.
+    pub(crate) fn setting(&self, record: u8) -> LayerSetting {
+        self.settings.get(usize::from(record)).copied().unwrap_or(LayerSetting { on: true, gain: 1.0 })
     }
 
     /// The layers that are off, by their index from the bottom.
@@ -195,23 +219,20 @@ impl LiveLayers {
     }
 
     /// Returns a copy of all settings in which a record has another one, and that one.
-    fn changed(
-        &self,
-        record: u8,
-        on: Option<bool>,
-        gain: Option<f32>,
-    ) -> Result<(Vec<LayerSetting>, LayerSetting), LiveError> {
+    fn changed(&self, record: u8, on: Option<bool>, gain: Option<f32>) -> (Vec<LayerSetting>, LayerSetting) {
+        let before = self.setting(record);
+        let setting = LayerSetting { on: on.unwrap_or(before.on), gain: gain.unwrap_or(before.gain) };
         let mut changed = self.settings.clone();
-        let setting = changed.get_mut(usize::from(record)).ok_or(LiveError::OtherProgram)?;
-        *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
-        let setting = *setting;
-        Ok((changed, setting))
+        if let Some(before) = changed.get_mut(usize::from(record)) {
+            *before = setting;
+        }
+        (changed, setting)
     }
 
     /// The layers that the board clamps with these settings; `None` if it already clamps the same ones in the same way.
-    fn newly_clamped(&self, program: &Program, changed: &[LayerSetting]) -> Option<Clamped> {
-        let clamped = program.clamped_with(changed)?;
-        (program.clamped_with(&self.settings).as_ref() != Some(&clamped)).then_some(clamped)
+    fn newly_clamped(&self, changed: &[LayerSetting]) -> Option<Clamped> {
+        let clamped = self.program.clamped_with(changed)?;
+        (self.program.clamped_with(&self.settings).as_ref() != Some(&clamped)).then_some(clamped)
     }
 }
 
@@ -220,9 +241,9 @@ mod tests {
     use std::collections::BTreeMap;
 
     use frixel_control::Board;
+    use frixel_scene::{Scene, compile};
 
     use super::*;
-    use crate::{Scene, compile};
 
     /// The simulator's board, with a drive that adds some 0.13 N.
     fn program_of(text: &str) -> Program {
@@ -238,31 +259,48 @@ mod tests {
         )
     }
 
+    /// The layers of a scene on a board that takes every change.
+    struct Taking(LiveLayers);
+
+    impl Taking {
+        fn new(text: &str) -> Self {
+            Self(LiveLayers::new(program_of(text)))
+        }
+
+        fn change(&mut self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, LiveError> {
+            self.0.change(layer, on, gain).inspect(|change| self.0.apply(change))
+        }
+
+        fn trigger(&mut self, layer: &str, now: Duration, duration_s: f64) -> Result<LayerChange, LiveError> {
+            self.0.trigger(layer, now, duration_s).inspect(|change| self.0.apply(change))
+        }
+    }
+
     fn ms(ms: u64) -> Duration {
         Duration::from_millis(ms)
     }
 
     #[test]
     fn a_second_trigger_does_not_shorten_the_first() {
-        let program = program_of(&layer("ping", ""));
-        let mut layers = LiveLayers::new(&program);
-        layers.change(&program, "ping", Some(false), None).expect("it is live");
-        layers.trigger(&program, "ping", ms(0), 0.3).expect("it is off");
-        layers.trigger(&program, "ping", ms(50), 0.1).expect("it is triggered");
-        assert_eq!(layers.next_end(), Some(ms(300)));
-        layers.trigger(&program, "ping", ms(250), 0.1).expect("it is triggered");
-        assert_eq!(layers.next_end(), Some(ms(350)));
-        assert_eq!(layers.end_trigger(ms(340)), None);
-        let ended = layers.end_trigger(ms(350)).expect("it has ended");
-        assert!(!ended.setting.on && layers.next_end().is_none());
+        let mut layers = Taking::new(&layer("ping", ""));
+        layers.change("ping", Some(false), None).expect("it is live");
+        layers.trigger("ping", ms(0), 0.3).expect("it is off");
+        layers.trigger("ping", ms(50), 0.1).expect("it is triggered");
+        assert_eq!(layers.0.next_end(), Some(ms(300)));
+        layers.trigger("ping", ms(250), 0.1).expect("it is triggered");
+        assert_eq!(layers.0.next_end(), Some(ms(350)));
+        assert_eq!(layers.0.end_trigger(ms(340)), None);
+        let ended = layers.0.end_trigger(ms(350)).expect("it has ended");
+        assert!(!ended.setting.on && layers.0.next_end() == Some(ms(350)), "the board has not taken it");
+        layers.0.apply(&ended);
+        assert_eq!(layers.0.next_end(), None);
     }
 
     #[test]
     fn a_trigger_of_no_gain_is_refused() {
-        let program = program_of(&layer("ping", ""));
-        let mut layers = LiveLayers::new(&program);
-        layers.change(&program, "ping", Some(false), Some(0.0)).expect("it is in reach");
-        let refused = layers.trigger(&program, "ping", ms(0), 0.1).expect_err("nothing would be felt");
+        let mut layers = Taking::new(&layer("ping", ""));
+        layers.change("ping", Some(false), Some(0.0)).expect("it is in reach");
+        let refused = layers.trigger("ping", ms(0), 0.1).expect_err("nothing would be felt");
         assert_eq!(
             refused.to_string(),
             "layer \"ping\" has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
@@ -274,10 +312,9 @@ mod tests {
                 if blend == "replace" { "above = \"natural\"\nfriction_n = 0.05" } else { "friction_factor = 0.5" };
             let mask =
                 format!("[[layer]]\nname = \"mask\"\nkind = \"constant\"\nblend = \"{blend}\"\nlive = true\n{mask}\n");
-            let program = program_of(&format!("{}{mask}", layer("wood", "")));
-            let mut layers = LiveLayers::new(&program);
-            layers.change(&program, "mask", Some(false), Some(0.0)).expect("it is in reach");
-            let trigger = layers.trigger(&program, "mask", ms(0), 0.1);
+            let mut layers = Taking::new(&format!("{}{mask}", layer("wood", "")));
+            layers.change("mask", Some(false), Some(0.0)).expect("it is in reach");
+            let trigger = layers.trigger("mask", ms(0), 0.1);
             assert!(trigger.is_ok_and(|change| change.setting.on), "{blend}");
         }
     }
@@ -289,10 +326,9 @@ mod tests {
              low_n = 0.0\nhigh_n = 0.05\nlive = true\n\
              region = { shape = \"ellipse\", x_mm = 5, y_mm = 10, width_mm = 30, height_mm = 30 }\n\
              repeat = { columns = 3, dx_mm = 32 }\n";
-        let program = program_of(circles);
-        let mut layers = LiveLayers::new(&program);
-        layers.change(&program, "1.2", None, Some(2.0)).expect("it is in reach");
-        let refused = layers.change(&program, "1.2", None, Some(4.0)).expect_err("it is out of reach").to_string();
+        let mut layers = Taking::new(circles);
+        layers.change("1.2", None, Some(2.0)).expect("it is in reach");
+        let refused = layers.change("1.2", None, Some(4.0)).expect_err("it is out of reach").to_string();
         assert!(refused.starts_with("gain 4 is refused: layer 1.2 \"wood 2\" would ask for up to 0.2"), "{refused}");
     }
 
@@ -300,31 +336,29 @@ mod tests {
     #[test]
     fn a_gain_is_judged_as_if_all_layers_were_on() {
         let text = format!("{}{}", layer("A", ""), layer("B", ""));
-        let strict = program_of(&text);
-        let mut layers = LiveLayers::new(&strict);
-        layers.change(&strict, "A", Some(false), None).expect("it is live");
-        layers.change(&strict, "B", Some(false), None).expect("it is live");
-        let before = layers.clone();
-        let refused = layers.change(&strict, "B", None, Some(2.0)).expect_err("with A it is out of reach");
+        let mut layers = Taking::new(&text);
+        layers.change("A", Some(false), None).expect("it is live");
+        layers.change("B", Some(false), None).expect("it is live");
+        let before = layers.0.settings.clone();
+        let refused = layers.change("B", None, Some(2.0)).expect_err("with A it is out of reach");
         assert!(
             refused.to_string().starts_with("gain 2 is refused: layer 1 \"A\" and layer 2 \"B\" would"),
             "{refused}"
         );
         assert!(refused.to_string().ends_with("give a gain from -1 to 1.59"), "{refused}");
-        assert_eq!(layers, before);
+        assert_eq!(layers.0.settings, before);
         for layer in ["A", "B"] {
-            let on = layers.change(&strict, layer, Some(true), None).expect("it is live");
+            let on = layers.change(layer, Some(true), None).expect("it is live");
             assert_eq!(on.notice(), None);
         }
         // With `saturate` it is taken, and the notice comes when it is felt.
-        let clamping = program_of(&format!("[drive]\nsaturate = true\n{text}"));
-        let mut layers = LiveLayers::new(&clamping);
-        let change = layers.change(&clamping, "B", Some(false), Some(5.0)).expect("it is clamped");
+        let mut layers = Taking::new(&format!("[drive]\nsaturate = true\n{text}"));
+        let change = layers.change("B", Some(false), Some(5.0)).expect("it is clamped");
         assert_eq!(change.notice(), None);
-        let on = layers.change(&clamping, "B", Some(true), None).expect("it is clamped");
+        let on = layers.change("B", Some(true), None).expect("it is clamped");
         assert!(on.notice().is_some_and(|notice| notice.ends_with("it is clamped there")));
-        layers.change(&clamping, "B", Some(false), None).expect("it is live");
-        let triggered = layers.trigger(&clamping, "B", ms(0), 0.1).expect("it is off");
+        layers.change("B", Some(false), None).expect("it is live");
+        let triggered = layers.trigger("B", ms(0), 0.1).expect("it is off");
         assert_eq!(triggered.notice(), on.notice());
     }
 }

@@ -1,0 +1,147 @@
+//! Samples for stream layers, sent to a board as fast as it plays them.
+
+use std::error::Error;
+use std::time::Duration;
+
+use frixel_driver::{Device, DeviceError, Link, StreamSettings, StreamStatus};
+use thiserror::Error;
+
+use crate::recorded::{PlayListener, Recorded};
+
+/// Samples that are read ahead, before the board has room for them.
+const AHEAD: usize = 2048;
+/// Time for requests at the start of a stream, and for its fade, s.
+const END_S: f64 = 0.05;
+
+/// A source of samples for a board.
+///
+/// A sample is a `u16`: 0 stands for the layer's low friction, 65,535 for its high friction.
+pub struct Feed {
+    settings: StreamSettings,
+    source: Source,
+    pending: Vec<u16>,
+    /// Time on the link's clock when the stream started.
+    started_at: Option<Duration>,
+    /// Time on the link's clock when the last sample was sent.
+    ended_at: Option<Duration>,
+}
+
+/// Why a source of samples has failed.
+type SourceError = Box<dyn Error + Send + Sync>;
+
+/// Appends samples until there are so many of them, or none are there yet. Returns false after the last one.
+type Fetch = Box<dyn FnMut(&mut Vec<u16>, usize) -> Result<bool, SourceError>>;
+
+enum Source {
+    /// All samples, and how many of them have been taken.
+    Samples(Vec<u16>, usize),
+    Fetched(Fetch),
+}
+
+/// Why samples could not be streamed to their end.
+#[derive(Debug, Error)]
+pub enum FeedError {
+    /// The source of the samples has failed.
+    #[error(transparent)]
+    Source(SourceError),
+    /// The board rejected a request, or stopped answering.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+}
+
+impl Feed {
+    /// Creates a feed from samples in memory.
+    pub fn of(samples: Vec<u16>, sample_hz: u32) -> Self {
+        Self::new(Source::Samples(samples, 0), sample_hz)
+    }
+
+    /// Creates a feed of samples that come while they are played.
+    ///
+    /// `fetch` appends samples until there are as many as its number says, or as there are at present. It returns false
+    /// after the last one. If it waits for samples, the play waits as well, which suits a board in virtual time only.
+    pub fn fetched(
+        sample_hz: u32,
+        fetch: impl FnMut(&mut Vec<u16>, usize) -> Result<bool, SourceError> + 'static,
+    ) -> Self {
+        Self::new(Source::Fetched(Box::new(fetch)), sample_hz)
+    }
+
+    fn new(source: Source, sample_hz: u32) -> Self {
+        let settings = StreamSettings::new(sample_hz);
+        Self { settings, source, pending: Vec::new(), started_at: None, ended_at: None }
+    }
+
+    /// The sample rate and the start level.
+    pub fn settings(&self) -> StreamSettings {
+        self.settings
+    }
+
+    /// Starts the stream on a board that is playing, and sends the first samples.
+    pub fn start<L: Link + Recorded>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
+        device.link_mut().recorder_mut().stream_started(self.settings.sample_hz);
+        device.start_stream(self.settings)?;
+        self.started_at = Some(device.now());
+        self.pump(device)
+    }
+
+    /// Sends as many samples as the board has room for, and ends the stream after the last one. Call this every few
+    /// milliseconds.
+    pub fn pump<L: Link + Recorded>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
+        while self.ended_at.is_none() {
+            let more = self.fetch()?;
+            let sent = device.send_samples(&self.pending)?;
+            let taken: Vec<u16> = self.pending.drain(..sent).collect();
+            if sent > 0 {
+                device.link_mut().recorder_mut().samples_sent(&taken);
+            }
+            if !more && self.pending.is_empty() {
+                self.ended_at = Some(device.now());
+                device.link_mut().recorder_mut().stream_ended();
+                device.end_stream()?;
+            }
+            if sent == 0 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Time that the stream takes from its start until it has faded out, if nothing delays it, in s; `None` if the samples
+    /// come while they are played.
+    pub fn duration_s(&self) -> Option<f64> {
+        match &self.source {
+            Source::Samples(samples, _) => Some(self.playing_s(samples.len() as u64, 0)),
+            Source::Fetched(_) => None,
+        }
+    }
+
+    /// Whether the board has played the last sample and has faded out.
+    pub fn is_over<L: Link>(&self, device: &Device<L>) -> bool {
+        let (Some(started_at), Some(ended_at)) = (self.started_at, self.ended_at) else { return false };
+        let StreamStatus { sent, underruns, .. } = device.stream_status().unwrap_or_default();
+        let since = |from: Duration| device.now().saturating_sub(from).as_secs_f64();
+        since(started_at) >= self.playing_s(sent, underruns) && since(ended_at) >= self.playing_s(0, 0)
+    }
+
+    /// Time to play so many samples: the board fills its buffer to the start level first, and again after an underrun.
+    fn playing_s(&self, samples: u64, underruns: u32) -> f64 {
+        let StreamSettings { sample_hz, start_level } = self.settings;
+        let filled = f64::from(start_level) * (1.0 + f64::from(underruns));
+        (samples as f64 + filled) / f64::from(sample_hz) + END_S
+    }
+
+    /// Reads samples from the source until [`AHEAD`] are pending. Returns whether there may be more.
+    fn fetch(&mut self) -> Result<bool, FeedError> {
+        let wanted = AHEAD.saturating_sub(self.pending.len());
+        match &mut self.source {
+            Source::Samples(samples, taken) => {
+                let rest = samples.get(*taken..).unwrap_or_default();
+                let piece = rest.get(..wanted).unwrap_or(rest);
+                self.pending.extend_from_slice(piece);
+                *taken += piece.len();
+                Ok(*taken < samples.len())
+            }
+            Source::Fetched(fetch) => fetch(&mut self.pending, AHEAD).map_err(FeedError::Source),
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! A board that plays a program: the one piece of code for the command, the page and the experiments.
+//!
+//! The input is a compiled [`Program`](frixel_scene::Program), changes of its layers, and the samples of a stream. The
+//! output is calls on a [`Device`](frixel_driver::Device) over any link, and calls to the [`PlayListener`] of that
+//! link, which records what is felt.
+//!
+//! - [`Player`]: plays a program, replaces it by another one, changes its layers, ends triggers, and streams samples.
+//! - [`LiveLayers`]: the settings of the layers while they play.
+//! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
+//! - [`Recorded`]: a link with a record of what the board plays.
+//!
+//! The crate opens no file, reads no clock and starts no thread: time is the link's clock. It compiles for
+//! `wasm32-unknown-unknown`.
+#![forbid(unsafe_code)]
+
+mod feed;
+mod live_layers;
+mod player;
+mod recorded;
+mod upload;
+
+pub use feed::{Feed, FeedError};
+pub use live_layers::{LayerChange, LiveError, LiveLayers};
+pub use player::{PlayError, Player, Replaced, StopReason};
+pub use recorded::{PlayListener, Recorded};
+pub use upload::{load, start};

@@ -1,0 +1,390 @@
+//! Plays a program on any board through its [`Device`], and changes what plays.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_driver::{Device, DeviceError, Event, Link, Progress};
+use frixel_model::ParameterError;
+use frixel_scene::Program;
+use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::message::{Refusal, Telemetry};
+use thiserror::Error;
+
+use crate::feed::{Feed, FeedError};
+use crate::live_layers::{LayerChange, LiveError, LiveLayers};
+use crate::recorded::{PlayListener, Recorded};
+use crate::upload;
+
+/// Longest time between two steps of a play.
+const STEP_MAX: Duration = Duration::from_millis(50);
+/// Longest time between two steps while samples are streamed: a board's buffer lasts 25 ms or more.
+const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
+/// Extra time beyond the last recorded tick, because the link's clock is rounded.
+const MARGIN: Duration = Duration::from_millis(5);
+/// Longer than any host is connected: pings with this period are never sent.
+const NEVER: Duration = Duration::from_hours(1);
+
+/// Why a play ended early, or a change of it was not made.
+#[derive(Debug, Error)]
+pub enum PlayError {
+    /// The contact model rejects the finger of the program.
+    #[error("the contact model rejects the scene's finger: {0}")]
+    Finger(#[from] ParameterError),
+    /// The board rejected a request, or stopped answering.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// The samples to stream could not be read or sent to their end.
+    #[error(transparent)]
+    Feed(#[from] FeedError),
+    /// The layer cannot be changed.
+    #[error(transparent)]
+    Live(#[from] LiveError),
+    /// No scene plays whose layers could be changed.
+    #[error("no scene plays: play one, then change its layers")]
+    NothingPlays,
+    /// The board does not switch off the layer of a trigger that has ended.
+    #[error("the end of the trigger of {layer}: {refused}")]
+    TriggerEnd {
+        /// Title of the layer.
+        layer: String,
+        /// The board's reason.
+        refused: DeviceError,
+    },
+    /// The board stopped without a stop command.
+    #[error("the board {0}")]
+    Stopped(StopReason),
+}
+
+impl PlayError {
+    /// Whether what was asked for is refused, by the board or before, and the play goes on as it was.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::Device(error) => is_refusal(error),
+            Self::Live(_) | Self::NothingPlays => true,
+            _ => false,
+        }
+    }
+}
+
+fn is_refusal(error: &DeviceError) -> bool {
+    matches!(error, DeviceError::Refused { .. })
+}
+
+/// Why a board stopped without a stop command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum StopReason {
+    /// A fault is latched.
+    #[error("stopped with its output at zero: {0}")]
+    Fault(Fault),
+    /// The board stopped because of the host timeout.
+    #[error("stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
+    HostSilent,
+}
+
+impl StopReason {
+    fn of(fault: Option<Fault>, flags: Flags) -> Option<Self> {
+        let silent = flags.contains(Flags::HOST_SILENT).then_some(Self::HostSilent);
+        fault.map(Self::Fault).or(silent)
+    }
+}
+
+/// How one program has replaced another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replaced {
+    /// Between two ticks.
+    AtOnce,
+    /// The pictures of both did not fit on the board together: an empty scene played until the new one was there, so
+    /// that the output faded out meanwhile.
+    AfterFadeOut,
+}
+
+/// A board, the program that plays on it, and the feed of streamed samples.
+///
+/// Call [`Self::start`], then [`Self::step`] or [`Self::wait`] until the play should end, then [`Self::stop`]. Dropping
+/// a player also stops the board.
+pub struct Player<L: Link + Recorded> {
+    device: Device<L>,
+    state: State,
+    fault: Option<Fault>,
+    stop_reason: Option<StopReason>,
+    playing: Option<LiveLayers>,
+    feed: Option<Feed>,
+    telemetry: Vec<Telemetry>,
+}
+
+impl<L: Link + Recorded> Player<L> {
+    /// Creates a player for a board, on which nothing plays.
+    pub fn new(device: Device<L>) -> Self {
+        let state = device.hello().state;
+        Self { device, state, fault: None, stop_reason: None, playing: None, feed: None, telemetry: Vec::new() }
+    }
+
+    /// Uploads the program and plays it, whatever state an earlier client left the board in. The board sends a telemetry
+    /// message every `telemetry_period_ticks` ticks; 0 disables telemetry. `progress` may break the upload off.
+    pub fn start(
+        &mut self,
+        program: Program,
+        telemetry_period_ticks: u32,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), PlayError> {
+        upload::start(&mut self.device, &program, progress)?;
+        self.playing = Some(LiveLayers::new(program));
+        self.begin()?;
+        if telemetry_period_ticks > 0 {
+            self.device.subscribe(telemetry_period_ticks)?;
+        }
+        Ok(())
+    }
+
+    /// Arms the board if it is disarmed, and plays the program of [`Self::replace`] if it does not play.
+    pub fn arm_and_play(&mut self) -> Result<(), DeviceError> {
+        if self.state == State::Disarmed {
+            self.device.arm()?;
+            self.state = State::Armed;
+        }
+        if self.state == State::Armed {
+            self.device.play()?;
+            self.begin()?;
+        }
+        Ok(())
+    }
+
+    /// The board has begun to play.
+    fn begin(&mut self) -> Result<(), DeviceError> {
+        self.state = State::Active;
+        self.device.link_mut().begin().map_err(|closed| DeviceError::Vanished { command: "play", closed })
+    }
+
+    /// Puts another program on the board, which plays it from now on if it plays. The change is made between two ticks,
+    /// unless the pictures of both do not fit on the board together.
+    ///
+    /// If the board refuses the program, the one before plays on. After any other error while the empty scene plays, it
+    /// stays.
+    pub fn replace(&mut self, program: Program) -> Result<Replaced, PlayError> {
+        let replaced = match self.upload(&program) {
+            Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => {
+                self.replace_alone(&program)?;
+                Replaced::AfterFadeOut
+            }
+            uploaded => uploaded.map(|()| Replaced::AtOnce)?,
+        };
+        self.set_playing(program)?;
+        Ok(replaced)
+    }
+
+    /// Puts a program on the board after its pictures were removed. Puts the one before back if the board refuses it.
+    fn replace_alone(&mut self, program: &Program) -> Result<(), PlayError> {
+        let empty = program.without_layers();
+        self.upload(&empty)?;
+        self.tell_replaced(&empty)?;
+        let before = self.playing.take();
+        let uploaded = self.upload(program);
+        if let Some(before) = before.filter(|_| uploaded.as_ref().is_err_and(is_refusal)) {
+            let before = before.into_program();
+            self.upload(&before)?;
+            self.set_playing(before)?;
+        }
+        Ok(uploaded?)
+    }
+
+    fn upload(&mut self, program: &Program) -> Result<(), DeviceError> {
+        upload::upload(&mut self.device, program, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// The board has this program from now on, its layers as the scene sets them.
+    fn set_playing(&mut self, program: Program) -> Result<(), ParameterError> {
+        self.tell_replaced(&program)?;
+        self.playing = Some(LiveLayers::new(program));
+        Ok(())
+    }
+
+    fn tell_replaced(&mut self, program: &Program) -> Result<(), ParameterError> {
+        let hello = *self.device.hello();
+        self.recorder_mut().scene_replaced(program, &hello)
+    }
+
+    /// Switches a layer by its name or number, or sets its gain; `None` leaves as it is. Returns the change, which has a
+    /// notice on what is clamped from now on.
+    pub fn change_layer(&mut self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, PlayError> {
+        let change = self.layers()?.change(layer, on, gain)?;
+        self.send(&change)?;
+        Ok(change)
+    }
+
+    /// Switches a layer that is off on, by its name or number, until `duration_s` seconds later.
+    pub fn trigger(&mut self, layer: &str, duration_s: f64) -> Result<LayerChange, PlayError> {
+        let now = self.device.now();
+        let change = self.layers()?.trigger(layer, now, duration_s)?;
+        self.send(&change)?;
+        Ok(change)
+    }
+
+    fn layers(&self) -> Result<&LiveLayers, PlayError> {
+        self.playing.as_ref().ok_or(PlayError::NothingPlays)
+    }
+
+    /// Sends a change to the board, and takes it over once the board has.
+    fn send(&mut self, change: &LayerChange) -> Result<(), DeviceError> {
+        let Self { device, playing, .. } = self;
+        let Some(layers) = playing else { return Ok(()) };
+        let LayerChange { record, setting, .. } = *change;
+        device.link_mut().recorder_mut().layer_changed(record, setting);
+        let sent = device.set_layer(record, setting.on, setting.gain);
+        match sent {
+            Ok(()) => layers.apply(change),
+            Err(_) => device.link_mut().recorder_mut().layer_changed(record, layers.setting(record)),
+        }
+        sent
+    }
+
+    /// Switches off the layers whose triggers have ended. [`Self::step`] and [`Self::wait`] do it too.
+    pub fn end_triggers(&mut self) -> Result<(), PlayError> {
+        let now = self.device.now();
+        while let Some(change) = self.playing.as_ref().and_then(|layers| layers.end_trigger(now)) {
+            if let Err(refused) = self.send(&change) {
+                let Some(layers) = &mut self.playing else { return Ok(()) };
+                layers.forget_trigger(change.record);
+                if !is_refusal(&refused) {
+                    return Err(refused.into());
+                }
+                let title = layers.program().titles.get(usize::from(change.record));
+                return Err(PlayError::TriggerEnd { layer: title.cloned().unwrap_or_default(), refused });
+            }
+        }
+        Ok(())
+    }
+
+    /// Starts streaming the samples of `feed` to the scene that is playing.
+    pub fn stream(&mut self, feed: Feed) -> Result<(), PlayError> {
+        Ok(self.feed.insert(feed).start(&mut self.device)?)
+    }
+
+    /// Whether the stream of [`Self::stream`] has ended and was played.
+    pub fn is_stream_over(&self) -> bool {
+        self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
+    }
+
+    /// Lets at most `time_max` pass on the board, until the next trigger ends; records the ticks, and sends samples.
+    ///
+    /// Returns how much time has passed. Fails when the connection is lost or when the board stopped without a stop
+    /// command; what happened until then has been recorded.
+    pub fn step(&mut self, time_max: Duration) -> Result<Duration, PlayError> {
+        self.end_triggers()?;
+        let time = self.step_max().min(time_max).min(self.time_left());
+        let listened = self.listen(time);
+        self.stop_reason.map_or(Ok(()), |reason| Err(PlayError::Stopped(reason)))?;
+        listened?;
+        self.pump()?;
+        Ok(time)
+    }
+
+    /// Lets `duration` pass on the board, as [`Self::step`] does. A board that stops by itself is no error: see
+    /// [`Self::state`].
+    pub fn wait(&mut self, duration: Duration) -> Result<(), PlayError> {
+        let end = self.device.now() + duration;
+        loop {
+            self.end_triggers()?;
+            let left = end.saturating_sub(self.device.now());
+            if left.is_zero() {
+                return Ok(());
+            }
+            self.listen(self.step_max().min(left))?;
+            self.pump()?;
+        }
+    }
+
+    /// Longest time until the player has something to send.
+    fn step_max(&self) -> Duration {
+        let step_max = if self.feed.is_some() { STREAM_STEP_MAX } else { STEP_MAX };
+        let next_end = self.playing.as_ref().and_then(LiveLayers::next_end);
+        next_end.map_or(step_max, |next_end| step_max.min(next_end.saturating_sub(self.device.now())))
+    }
+
+    /// Time to the end of the record, plus [`MARGIN`].
+    fn time_left(&mut self) -> Duration {
+        let tick_hz = self.device.hello().tick_hz;
+        let ticks = self.recorder_mut().ticks_left();
+        Duration::try_from_secs_f64(ticks as f64 / f64::from(tick_hz)).unwrap_or(Duration::MAX).saturating_add(MARGIN)
+    }
+
+    /// Waits for `time`, and handles the messages that the board sends meanwhile.
+    fn listen(&mut self, time: Duration) -> Result<(), DeviceError> {
+        let Self { device, state, fault, stop_reason, telemetry, .. } = self;
+        let listened = device.wait(time, &mut |event| match event {
+            Event::Telemetry(message) => telemetry.push(message),
+            Event::StateChanged { state: now, fault: latched, flags } => {
+                (*state, *fault, *stop_reason) = (now, latched, StopReason::of(latched, flags));
+            }
+        });
+        device.link_mut().record(telemetry);
+        telemetry.clear();
+        listened
+    }
+
+    fn pump(&mut self) -> Result<(), FeedError> {
+        let Self { device, feed, .. } = self;
+        feed.as_mut().map_or(Ok(()), |feed| feed.pump(device))
+    }
+
+    /// Sets the output to zero and disarms the board. With a latched fault the output is zero already.
+    ///
+    /// Nothing but the commands is sent until the board has answered, so a board that they do not reach falls silent by
+    /// its host timeout.
+    pub fn stop(&mut self) -> Result<(), DeviceError> {
+        if self.state == State::Faulted {
+            return Ok(());
+        }
+        self.device.link_mut().keep_alive(NEVER);
+        self.recorder_mut().stopped();
+        let stopped = if self.state == State::Active { self.device.stop() } else { Ok(()) };
+        // A board that has left the active state by itself refuses to stop.
+        let stopped = stopped.or_else(|error| if is_refusal(&error) { Ok(()) } else { Err(error) });
+        (self.state, self.fault) = match stopped.and_then(|()| self.device.disarm()) {
+            // The board has latched a fault that this host has not heard of.
+            Err(DeviceError::Refused { refusal: Refusal::Faulted(fault), .. }) => (State::Faulted, Some(fault)),
+            Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => (State::Faulted, None),
+            disarmed => disarmed.map(|()| (State::Disarmed, None))?,
+        };
+        Ok(())
+    }
+
+    /// Clears a latched fault whose cause is gone.
+    pub fn clear_fault(&mut self) -> Result<(), DeviceError> {
+        self.device.clear_fault()?;
+        (self.state, self.fault) = (State::Disarmed, None);
+        Ok(())
+    }
+
+    /// State and latched fault, as the board reported them last.
+    pub fn state(&self) -> (State, Option<Fault>) {
+        (self.state, self.fault)
+    }
+
+    /// The program that plays, with its layers; `None` before the first one.
+    pub fn playing(&self) -> Option<&LiveLayers> {
+        self.playing.as_ref()
+    }
+
+    /// The board that the scene plays on.
+    pub fn device(&self) -> &Device<L> {
+        &self.device
+    }
+
+    /// The board that the scene plays on, for requests that no method of this type makes.
+    pub fn device_mut(&mut self) -> &mut Device<L> {
+        &mut self.device
+    }
+
+    /// Records the ticks that still wait for telemetry, after the last call.
+    pub fn record_rest(&mut self) {
+        self.device.link_mut().record_rest();
+    }
+
+    /// The recorder of this play.
+    pub fn recorder_mut(&mut self) -> &mut L::Recorder {
+        self.device.link_mut().recorder_mut()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,178 @@
+use std::collections::BTreeMap;
+
+use frixel_driver::{ByteStream, LinkClosed, PollingLink};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_scene::{LayerSetting, Scene, compile};
+use frixel_wire::hello::Hello;
+
+use super::*;
+
+/// The line to a simulated board, and what the player has told of its play.
+struct Line<'a> {
+    rig: Rig<'a>,
+    told: Told,
+}
+
+/// What a listener is told, a word each.
+#[derive(Debug, Default, PartialEq)]
+struct Told(Vec<String>);
+
+impl PlayListener for Told {
+    fn scene_replaced(&mut self, program: &Program, _: &Hello) -> Result<(), ParameterError> {
+        self.0.push(format!("scene of {}", program.records.len()));
+        Ok(())
+    }
+
+    fn layer_changed(&mut self, record: u8, LayerSetting { on, gain }: LayerSetting) {
+        self.0.push(format!("layer {record} {on} {gain}"));
+    }
+
+    fn stream_started(&mut self, sample_hz: u32) {
+        self.0.push(format!("stream {sample_hz}"));
+    }
+
+    fn samples_sent(&mut self, samples: &[u16]) {
+        self.0.push(format!("{} samples", samples.len()));
+    }
+
+    fn stream_ended(&mut self) {
+        self.0.push("end".to_owned());
+    }
+
+    fn stopped(&mut self) {
+        self.0.push("stop".to_owned());
+    }
+}
+
+impl ByteStream for Line<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        self.rig.send(bytes);
+        Ok(())
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        let end = self.now() + wait;
+        while !self.rig.has_received() && self.now() < end {
+            self.rig.step();
+        }
+        self.rig.receive(buffer);
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_secs(self.rig.tick()) / self.rig.tick_hz()
+    }
+
+    fn name(&self) -> &'static str {
+        "the simulator"
+    }
+}
+
+impl Recorded for Line<'_> {
+    type Recorder = Told;
+
+    fn recorder_mut(&mut self) -> &mut Told {
+        &mut self.told
+    }
+}
+
+type Playing<'a> = Player<PollingLink<Line<'a>>>;
+
+fn program(layers: &str) -> Program {
+    let scene = Scene::parse(&format!("version = 2\n{layers}"), "test.toml", &BTreeMap::new()).unwrap();
+    let board = RigConfig::default().board;
+    compile(&scene, &board.limits, board.tick_hz).unwrap()
+}
+
+fn ping(live: bool) -> Program {
+    program(&format!("[[layer]]\nname = \"ping\"\nkind = \"constant\"\nfriction_fraction = 0.5\nlive = {live}\n"))
+}
+
+/// A board that plays a program.
+fn playing(memory: &mut BoardMemory, program: Program) -> Playing<'_> {
+    let rig = Rig::new(memory, &RigConfig::default(), Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
+    let mut player = Player::new(Device::connect(PollingLink::new(Line { rig, told: Told::default() })).unwrap());
+    player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+    player
+}
+
+/// Puts a program on the board behind the player's back, whose layers refuse every change.
+fn refuse_changes(player: &mut Playing) {
+    player.upload(&ping(false)).unwrap();
+}
+
+const MS: Duration = Duration::from_millis(1);
+
+#[test]
+fn a_change_that_the_board_refuses_is_not_kept() {
+    let mut memory = BoardMemory::new();
+    let mut player = playing(&mut memory, ping(true));
+    refuse_changes(&mut player);
+    assert!(player.change_layer("ping", Some(false), None).unwrap_err().is_refusal());
+    assert!(player.playing().unwrap().off().is_empty());
+    let told = ["layer 0 false 1", "layer 0 true 1"];
+    assert_eq!(player.recorder_mut().0, told, "and the recorder goes back to the setting before");
+}
+
+#[test]
+fn the_end_of_a_trigger_that_the_board_refuses_is_reported_once_with_its_layer() {
+    let mut memory = BoardMemory::new();
+    let mut player = playing(&mut memory, ping(true));
+    player.change_layer("ping", Some(false), None).unwrap();
+    player.trigger("ping", 0.05).unwrap();
+    refuse_changes(&mut player);
+    let refused = player.wait(100 * MS).unwrap_err().to_string();
+    assert!(refused.starts_with("the end of the trigger of layer 1 \"ping\": "), "{refused}");
+    player.wait(100 * MS).unwrap();
+}
+
+#[test]
+fn a_trigger_ends_at_its_time_on_the_clock_of_the_link() {
+    let mut memory = BoardMemory::new();
+    let mut player = playing(&mut memory, ping(true));
+    player.change_layer("ping", Some(false), None).unwrap();
+    player.trigger("ping", 0.05).unwrap();
+    let triggered = player.device().now();
+    while player.playing().unwrap().off().is_empty() {
+        player.step(MS).unwrap();
+    }
+    let lasted = player.device().now().saturating_sub(triggered);
+    assert!(lasted.abs_diff(50 * MS) < 2 * MS, "{lasted:?}");
+}
+
+#[test]
+fn the_recorder_is_told_what_plays() {
+    let stream = "[[layer]]\nkind = \"stream\"\nlow_n = 0.002\nhigh_n = 0.018\nlive = true\n";
+    let mut memory = BoardMemory::new();
+    let mut player = playing(&mut memory, ping(true));
+    assert_eq!(player.replace(program(stream)).unwrap(), Replaced::AtOnce);
+    player.change_layer("1", None, Some(0.5)).unwrap();
+    player.stream(Feed::of(vec![0; 100], 4_000)).unwrap();
+    player.wait(200 * MS).unwrap();
+    assert!(player.is_stream_over());
+    player.stop().unwrap();
+    let told = ["scene of 1", "layer 0 true 0.5", "stream 4000", "100 samples", "end", "stop"];
+    assert_eq!(player.recorder_mut().0, told);
+}
+
+/// Disarmed by its host timeout, the board refuses to stop, and its output is zero all the same.
+#[test]
+fn a_board_that_has_left_the_play_by_itself_is_stopped_without_an_error() {
+    let mut memory = BoardMemory::new();
+    let mut player = playing(&mut memory, ping(true));
+    let line = player.device_mut().link_mut().stream_mut();
+    for _ in 0..20_000 {
+        line.rig.step();
+    }
+    assert_eq!(player.state().0, State::Active, "the player has not heard of it");
+    player.stop().unwrap();
+    assert_eq!(player.state().0, State::Disarmed);
+}
+
+#[test]
+fn a_board_that_stopped_by_itself_says_why() {
+    assert_eq!(StopReason::of(None, Flags::default()), None);
+    assert_eq!(StopReason::of(None, Flags::HOST_SILENT), Some(StopReason::HostSilent));
+    let fault = Some(Fault::Deadline);
+    assert_eq!(StopReason::of(fault, Flags::HOST_SILENT), Some(StopReason::Fault(Fault::Deadline)));
+}
