@@ -48,7 +48,27 @@ impl PlayListener for () {}
 
 impl PlayListener for Recorder {
     fn scene_replaced(&mut self, program: &Program, hello: &Hello) -> Result<(), ParameterError> {
-        self.replace(program, &hello.limits, hello.tick_hz)
+        self.scene_replaced(program, &hello.limits)
+    }
+
+    fn layer_changed(&mut self, record: u8, setting: LayerSetting) {
+        self.layer_changed(record, setting);
+    }
+
+    fn stream_started(&mut self, sample_hz: u32) {
+        self.stream_started(sample_hz);
+    }
+
+    fn samples_sent(&mut self, samples: &[u16]) {
+        self.samples_sent(samples);
+    }
+
+    fn stream_ended(&mut self) {
+        self.stream_ended();
+    }
+
+    fn stopped(&mut self) {
+        self.stopped();
     }
 
     fn ticks_left(&self) -> u64 {

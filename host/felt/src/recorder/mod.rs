@@ -5,10 +5,10 @@
 //! [`FeltRow`]s and a [`MetricsSummary`]. A value that the source cannot observe is `None` in an observation, and an
 //! absent cell or number in the output.
 
-mod host_stream;
 mod inversion;
 mod observation;
 mod rows;
+mod stream;
 mod turning;
 
 use frixel_model::ParameterError;
@@ -16,13 +16,13 @@ use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
 
 use crate::metrics::{Metrics, MetricsSummary, Sample};
-use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference, StrokeReference};
-use host_stream::{HostStream, LayerChange};
+use frixel_scene::{LayerSetting, Program};
 use inversion::Inversion;
 pub use observation::{FeltFriction, FingerState, Observation};
 pub use rows::FeltRow;
 use rows::{Frictions, RowMaker};
+use stream::Stream;
 use turning::Turning;
 
 /// Records one play.
@@ -33,6 +33,7 @@ pub struct Recorder {
     comparison: Option<Comparison>,
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
+    tick_hz: u32,
     tick_period_s: f64,
     ticks_max: u64,
     start_tick: Option<u64>,
@@ -44,7 +45,7 @@ pub struct Recorder {
 struct Comparison {
     reference: StrokeReference,
     inversion: Inversion,
-    stream: HostStream,
+    stream: Stream,
     turning: Turning,
     metrics: Metrics,
 }
@@ -64,7 +65,7 @@ impl Recorder {
         let comparison = Comparison {
             reference: Reference::new(program).along_stroke(),
             inversion: Inversion::new(program, limits, tick_hz)?,
-            stream: HostStream::new(tick_hz),
+            stream: Stream::new(tick_hz),
             turning: Turning::default(),
             metrics: Metrics::new(program.half_period_ticks),
         };
@@ -77,6 +78,7 @@ impl Recorder {
             comparison: None,
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
+            tick_hz,
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_max: u64::MAX,
             start_tick: None,
@@ -95,25 +97,49 @@ impl Recorder {
         self.last_tick = u64::from(tick);
     }
 
-    /// Compares with another program from now on, for example when a scene is replaced while it plays. A recorder
-    /// without a reference stays without one.
-    pub fn replace(&mut self, program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<(), ParameterError> {
+    /// The board plays another program from now on. A recorder without a reference stays without one.
+    ///
+    /// Returns an error if the contact model refuses the program's finger. This does not happen for a compiled program.
+    pub fn scene_replaced(&mut self, program: &Program, limits: &BoardLimits) -> Result<(), ParameterError> {
         if let Some(comparison) = &mut self.comparison {
             comparison.reference = Reference::new(program).along_stroke();
-            comparison.inversion = Inversion::new(program, limits, tick_hz)?;
+            comparison.inversion = Inversion::new(program, limits, self.tick_hz)?;
             comparison.metrics.set_half_period(program.half_period_ticks);
         }
         Ok(())
     }
 
-    /// Reads bytes that the host sends to the board: whole frames or parts of them, in order. The samples of a stream
-    /// and the changes of layers in them are part of the reference.
-    pub fn record_sent(&mut self, bytes: &[u8]) {
+    /// The layer with this record number, from zero, has this setting from now on.
+    pub fn layer_changed(&mut self, record: u8, setting: LayerSetting) {
         if let Some(comparison) = &mut self.comparison {
-            comparison.stream.receive(bytes);
-            for LayerChange { layer, on, gain } in comparison.stream.take_layer_changes() {
-                comparison.reference.set_layer(layer.into(), on, gain.into());
-            }
+            comparison.reference.set_layer(record.into(), setting.on, setting.gain.into());
+        }
+    }
+
+    /// The host asks the board to play a stream of so many samples a second. The reference has it once the board reports
+    /// that it plays.
+    pub fn stream_started(&mut self, sample_hz: u32) {
+        self.with_stream(|stream| stream.start(sample_hz));
+    }
+
+    /// The host sends samples of the stream, which follow the earlier ones.
+    pub fn samples_sent(&mut self, samples: &[u16]) {
+        self.with_stream(|stream| stream.append(samples));
+    }
+
+    /// The stream ends after the samples sent so far.
+    pub fn stream_ended(&mut self) {
+        self.with_stream(Stream::end);
+    }
+
+    /// The host switches the output off.
+    pub fn stopped(&mut self) {
+        self.with_stream(Stream::stop);
+    }
+
+    fn with_stream(&mut self, change: impl FnOnce(&mut Stream)) {
+        if let Some(comparison) = &mut self.comparison {
+            change(&mut comparison.stream);
         }
     }
 

@@ -1,7 +1,5 @@
 use frixel_wire::fault::State;
-use frixel_wire::frame::FRAME_MAX_LEN;
-use frixel_wire::message::{Command, Request, Telemetry};
-use frixel_wire::payload::{request_frame, samples_frame};
+use frixel_wire::message::Telemetry;
 
 use super::*;
 use crate::tests::{LIMITS, TICK_HZ, program};
@@ -127,21 +125,14 @@ fn the_reference_of_telemetry_clicks() {
     assert!(wanted_mn[crossed + 60..].iter().chain(&wanted_mn[..crossed - 6]).all(|mn| mn.abs() < 1e-3));
 }
 
-fn request(command: Command) -> Vec<u8> {
-    let mut buffer = [0; FRAME_MAX_LEN];
-    request_frame(&Request { sequence: 1, command }, &mut buffer).unwrap().to_vec()
-}
-
-/// The bytes that a host sends to stream a ramp of 4,000 samples in a second.
-fn ramp() -> Vec<u8> {
+/// Streams a ramp of 4,000 samples in a second.
+fn stream_ramp(recorder: &mut Recorder) {
     let samples: Vec<u16> = (0..4_000).map(|index| 16 * index).collect();
-    let mut sent = request(Command::StartStream { sample_hz: 4_000, start_level: 200 });
-    for (number, few) in samples.chunks(50).enumerate() {
-        let mut buffer = [0; FRAME_MAX_LEN];
-        sent.extend_from_slice(samples_frame(50 * number as u32, few, &mut buffer).unwrap());
+    recorder.stream_started(4_000);
+    for few in samples.chunks(50) {
+        recorder.samples_sent(few);
     }
-    sent.extend(request(Command::EndStream));
-    sent
+    recorder.stream_ended();
 }
 
 /// Electric friction of the ramp `ticks` ticks after it began, faded in, N.
@@ -158,7 +149,7 @@ fn the_reference_of_telemetry_streams() {
         let dry = |tick| if (400..4_010).contains(&tick) { Flags::STREAM_DRY } else { Flags::default() };
         for tick in (0..44_000).step_by(period) {
             if tick == 200 {
-                recorder.record_sent(&ramp());
+                stream_ramp(&mut recorder);
             }
             let telemetry = Telemetry { flags: dry(tick), ..telemetry(tick) };
             recorder.record(&Observation::from_telemetry(&telemetry));
@@ -179,7 +170,7 @@ fn the_reference_of_telemetry_streams() {
 fn a_stream_that_began_between_two_messages_is_in_the_reference() {
     let program = program(STREAM);
     let mut recorder = recorder(&program, 400);
-    recorder.record_sent(&ramp());
+    stream_ramp(&mut recorder);
     (0..100).for_each(|message| recorder.record(&Observation::from_telemetry(&telemetry(400 * message))));
     let rows = recorder.rows();
     let last_n = rows[90].wanted_n.unwrap() - 0.25;
@@ -191,7 +182,7 @@ fn a_stream_that_began_between_two_messages_is_in_the_reference() {
 fn a_stream_that_a_board_refused_is_not_in_the_reference() {
     let program = program(STREAM);
     let mut recorder = recorder(&program, 400);
-    recorder.record_sent(&request(Command::StartStream { sample_hz: 4_000, start_level: 200 }));
+    recorder.stream_started(4_000);
     (0..100).for_each(|message| recorder.record(&Observation::from_telemetry(&telemetry(400 * message))));
     assert!(recorder.rows().iter().all(|row| in_mn(row.wanted_n) == Some(250_000)));
 }
@@ -200,7 +191,7 @@ fn a_stream_that_a_board_refused_is_not_in_the_reference() {
 fn another_program_is_compared_with_from_then_on() {
     let mut recorder = recorder(&program(CONSTANT), 1);
     recorder.record(&simulated(1, 0.25));
-    recorder.replace(&program(&CONSTANT.replace("0.26", "0.27")), &LIMITS, TICK_HZ).unwrap();
+    recorder.scene_replaced(&program(&CONSTANT.replace("0.26", "0.27")), &LIMITS).unwrap();
     recorder.record(&simulated(2, 0.25));
     let wanted: Vec<_> = recorder.rows().iter().map(|row| in_mn(row.wanted_n)).collect();
     assert_eq!(wanted, [Some(260_000), Some(270_000)]);

@@ -166,7 +166,6 @@ impl Recorded for EmulatedLink<'_> {
 
 impl Link for EmulatedLink<'_> {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
-        self.recorder.record_sent(frame);
         self.written_at = self.now();
         self.serial.write(frame)
     }

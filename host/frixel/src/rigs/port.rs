@@ -36,7 +36,6 @@ impl Recorded for PortLink {
 
 impl Link for PortLink {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
-        self.recorder.record_sent(frame);
         self.serial.write(frame)
     }
 

@@ -87,7 +87,6 @@ impl<'a> SimLink<'a> {
 
     fn send(&mut self, frame: &[u8]) {
         self.rig.send(frame);
-        self.recorder.record_sent(frame);
         self.written.add(frame);
         self.written_at = self.now();
         self.plan_ping();

@@ -1,11 +1,6 @@
-//! Decodes the stream that a host sends and computes how a finger should feel it, independently of the firmware that
-//! plays the stream.
+//! Computes how a finger should feel a stream of samples, independently of the firmware that plays the stream.
 
 use std::collections::VecDeque;
-
-use frixel_wire::frame::Decoder;
-use frixel_wire::message::{Command, Request};
-use frixel_wire::payload::Payload;
 
 /// Time in which a stream fades in and out, s (PROTOCOL, section 15).
 const FADE_S: f64 = 0.01;
@@ -16,8 +11,7 @@ const START_MISSED_AFTER_S: f64 = 0.05;
 /// A stream under way. The board decides when it plays and when it waits for samples, and reports this by a flag. While
 /// it plays, its value is interpolated linearly between the host's samples.
 #[derive(Debug)]
-pub(super) struct HostStream {
-    decoder: Decoder,
+pub(super) struct Stream {
     tick_hz: f64,
     /// Samples from the one that plays now; `first_index` is the index of the first.
     samples: VecDeque<u16>,
@@ -34,17 +28,6 @@ pub(super) struct HostStream {
     dry: bool,
     /// Ticks since the board may have begun to play.
     ticks_with_samples: u32,
-    /// Changes of layers that the caller has not taken yet.
-    layer_changes: Vec<LayerChange>,
-}
-
-/// A change of a layer while it plays.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LayerChange {
-    /// Number of the record, from zero.
-    pub(super) layer: u8,
-    pub(super) on: bool,
-    pub(super) gain: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,10 +43,9 @@ enum Phase {
     Playing,
 }
 
-impl HostStream {
+impl Stream {
     pub(super) fn new(tick_hz: u32) -> Self {
         Self {
-            decoder: Decoder::new(),
             tick_hz: f64::from(tick_hz),
             samples: VecDeque::new(),
             first_index: 0,
@@ -74,21 +56,30 @@ impl HostStream {
             weight: 0.0,
             dry: false,
             ticks_with_samples: 0,
-            layer_changes: Vec::new(),
         }
     }
 
-    /// Reads bytes that the host sends.
-    pub(super) fn receive(&mut self, mut bytes: &[u8]) {
-        let mut decoder = std::mem::take(&mut self.decoder);
-        while let Some(payload) = decoder.next_frame(&mut bytes) {
-            match Payload::parse_from_host(payload) {
-                Ok(Payload::Request(Request { command, .. })) => self.handle(command),
-                Ok(Payload::Samples { first_index, samples }) => self.append(first_index, samples),
-                _ => {}
-            }
-        }
-        self.decoder = decoder;
+    /// Starts a stream of so many samples a second.
+    pub(super) fn start(&mut self, sample_hz: u32) {
+        self.samples.clear();
+        self.samples_per_tick = f64::from(sample_hz) / self.tick_hz;
+        (self.phase, self.first_index, self.place, self.ended) = (Phase::Requested, 0, 0.0, false);
+        self.ticks_with_samples = 0;
+    }
+
+    /// Appends samples.
+    pub(super) fn append(&mut self, samples: &[u16]) {
+        self.samples.extend(samples);
+    }
+
+    /// Ends the stream after its last sample.
+    pub(super) fn end(&mut self) {
+        self.ended = true;
+    }
+
+    /// Ends the stream at once, as the output is off.
+    pub(super) fn stop(&mut self) {
+        (self.phase, self.weight) = (Phase::Over, 0.0);
     }
 
     /// Advances by `ticks` ticks. `dry` is the board's report after the last of them, whether it waits for samples;
@@ -106,36 +97,6 @@ impl HostStream {
             self.tick(if tick < ticks / 2 { before } else { self.dry });
         }
         (self.value(), self.weight)
-    }
-
-    /// The changes of layers that the host has sent since the last call.
-    pub(super) fn take_layer_changes(&mut self) -> Vec<LayerChange> {
-        std::mem::take(&mut self.layer_changes)
-    }
-
-    fn handle(&mut self, command: Command) {
-        match command {
-            Command::StartStream { sample_hz, .. } => {
-                self.samples.clear();
-                self.samples_per_tick = f64::from(sample_hz) / self.tick_hz;
-                (self.phase, self.first_index, self.place, self.ended) = (Phase::Requested, 0, 0.0, false);
-                self.ticks_with_samples = 0;
-            }
-            Command::EndStream => self.ended = true,
-            Command::SetLayer { layer, on, gain } => self.layer_changes.push(LayerChange { layer, on, gain }),
-            Command::Stop | Command::Disarm => (self.phase, self.weight) = (Phase::Over, 0.0),
-            _ => {}
-        }
-    }
-
-    /// Appends samples. If the index is already in the buffer, the new samples replace those from that index on.
-    fn append(&mut self, first_index: u32, samples: &[[u8; 2]]) {
-        // Indices on the line are modulo 2^32.
-        let offset = first_index.wrapping_sub(self.first_index as u32) as usize;
-        if offset <= self.samples.len() {
-            self.samples.truncate(offset);
-            self.samples.extend(samples.iter().map(|sample| u16::from_le_bytes(*sample)));
-        }
     }
 
     fn tick(&mut self, dry: bool) {
