@@ -1,3 +1,5 @@
+mod keep_alive;
+
 use std::collections::BTreeMap;
 
 use frixel_driver::{ByteStream, LinkClosed, PollingLink};
@@ -90,8 +92,16 @@ fn ping(live: bool) -> Program {
 
 /// A board that plays a program.
 fn playing(memory: &mut BoardMemory, program: Program) -> Playing<'_> {
-    let rig = Rig::new(memory, &RigConfig::default(), Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
-    let mut player = Player::new(Device::connect(PollingLink::new(Line { rig, told: Told::default() })).unwrap());
+    start(PollingLink::new(line(memory)), program)
+}
+
+fn line(memory: &mut BoardMemory) -> Line<'_> {
+    let stroke = Stroke::sweep(0.12, 0.08, 1.0).unwrap();
+    Line { rig: Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap(), told: Told::default() }
+}
+
+fn start<L: Link + Recorded>(link: L, program: Program) -> Player<L> {
+    let mut player = Player::new(Device::connect(link).unwrap());
     player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
     player
 }
