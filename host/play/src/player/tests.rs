@@ -3,9 +3,10 @@ mod keep_alive;
 use std::collections::BTreeMap;
 
 use frixel_driver::{ByteStream, LinkClosed, PollingLink};
+use frixel_felt::recorder::PlayListener;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::{LayerSetting, Scene, compile};
-use frixel_wire::hello::Hello;
+use frixel_wire::hello::BoardLimits;
 
 use super::*;
 
@@ -20,7 +21,7 @@ struct Line<'a> {
 struct Told(Vec<String>);
 
 impl PlayListener for Told {
-    fn scene_replaced(&mut self, program: &Program, _: &Hello) -> Result<(), ParameterError> {
+    fn scene_replaced(&mut self, program: &Program, _: &BoardLimits) -> Result<(), ParameterError> {
         self.0.push(format!("scene of {}", program.records.len()));
         Ok(())
     }
