@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
 import { cleanUp, endLeftovers, pageUrl } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio, undisturbed, wholeStroke } from "./page.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
@@ -101,6 +101,38 @@ test("what was changed is in Open after New, the gallery, a link and a closed ta
   await other.click("#open >> text=Delete for good");
   await other.waitForFunction(() => document.querySelectorAll("#open article").length === 1);
   assert.deepEqual(errors, []);
+});
+
+test("the map of a scene is not shown when another one was opened meanwhile", async () => {
+  const { page, errors, close } = await openStudio();
+  const shown = await page.evaluate(async () => {
+    const { engine, map, player } = studioPage;
+    const shown = [];
+    const { show } = map;
+    map.show = (picture, check) => {
+      shown.push(document.getElementById("scene-name").value);
+      show.call(map, picture, check);
+    };
+    // A map that is ready when another scene is open.
+    const isOpen = async (name) => {
+      while (document.getElementById("scene-name").value !== name) await new Promise((resolve) => setTimeout(resolve));
+    };
+    const drawn = engine.map.bind(engine);
+    engine.map = async (...scene) => {
+      engine.map = drawn;
+      document.getElementById("new").click();
+      const picture = await drawn(...scene);
+      await isOpen("untitled");
+      return picture;
+    };
+    player.now(studioPage.editor.text);
+    await isOpen("untitled");
+    while (shown.length === 0) await new Promise((resolve) => setTimeout(resolve));
+    return shown;
+  });
+  assert.deepEqual(shown, ["untitled"]);
+  assert.deepEqual(errors, []);
+  await close();
 });
 
 test("two tabs never write the same piece of work", async () => {
@@ -202,7 +234,7 @@ test("a press on the map ends a replay and is felt; the button stops one, too", 
     await wait(200);
     return samples.since(beginS).yMm.filter((mm) => Math.abs(mm - 20) < 2).length;
   };
-  const felt = await undisturbed(page, () => page.evaluate(pressOnReplay));
+  const felt = await page.evaluate(pressOnReplay);
   assert.ok(felt > 200, `${felt} samples of the new stroke`);
   await page.locator("text=Replay slowly").waitFor();
   await button.click();
