@@ -111,7 +111,7 @@ struct SpokesField {
 }
 
 impl SpokesField {
-    fn from_middle_m(&self, (x_m, y_m): (f64, f64)) -> (f64, f64) {
+    fn off_middle_m(&self, (x_m, y_m): (f64, f64)) -> (f64, f64) {
         (x_m - self.middle_m.0, y_m - self.middle_m.1)
     }
 
@@ -129,7 +129,7 @@ impl SpokesField {
 
 impl Field for SpokesField {
     fn at(&self, context: &Context) -> f64 {
-        let (x_m, y_m) = self.from_middle_m((context.x_m, context.y_m));
+        let (x_m, y_m) = self.off_middle_m((context.x_m, context.y_m));
         let fade = self.fade(libm::hypot(x_m, y_m));
         self.mean_n + fade * (self.wave_n(libm::atan2(y_m, x_m) / TAU) - self.mean_n)
     }
@@ -137,14 +137,14 @@ impl Field for SpokesField {
     /// From outside of a rectangle, its corners lie at the ends of the angles that it covers, and it covers less than
     /// half a turn.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
-        let corners = cell.corners().map(|corner| self.from_middle_m(corner));
-        let nearest = self.from_middle_m((
+        let corners = cell.corners().map(|corner| self.off_middle_m(corner));
+        let nearest = self.off_middle_m((
             self.middle_m.0.clamp(cell.left_m, cell.right_m),
             self.middle_m.1.clamp(cell.top_m, cell.bottom_m),
         ));
         let nearest_m = libm::hypot(nearest.0, nearest.1);
         let wave_n = if nearest_m > 0.0 {
-            let middle = self.from_middle_m(cell.middle());
+            let middle = self.off_middle_m(cell.middle());
             let middle_turns = libm::atan2(middle.1, middle.0) / TAU;
             // The angle from the direction of the cell's middle.
             let beside = corners.map(|(x_m, y_m)| {
@@ -164,7 +164,7 @@ impl Field for SpokesField {
 
     /// Where spokes fade, angle and distance reach their extremes at different places.
     fn doubts_in(&self, cell: Cell, _outline_m: [f64; 4]) -> usize {
-        let corners = cell.corners().map(|corner| self.from_middle_m(corner));
+        let corners = cell.corners().map(|corner| self.off_middle_m(corner));
         let fades = corners.into_iter().any(|(x_m, y_m)| self.fade(libm::hypot(x_m, y_m)) < 1.0);
         let has_middle = (cell.left_m..=cell.right_m).contains(&self.middle_m.0)
             && (cell.top_m..=cell.bottom_m).contains(&self.middle_m.1);
