@@ -22,5 +22,5 @@ mod upload;
 pub use feed::{Feed, FeedError};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{PlayError, Player, Replaced, StopReason};
-pub use recorded::{PlayListener, Recorded};
+pub use recorded::Recorded;
 pub use upload::{load, start};

@@ -7,6 +7,7 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
+use frixel_felt::recorder::Recorder;
 use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
 
@@ -19,12 +20,12 @@ const CLOSED: i32 = -1;
 pub(crate) struct LinkStream {
     buffer: Box<[u8; READ_MAX]>,
     telemetry: Vec<Telemetry>,
-    recorder: (),
+    recorder: Recorder,
 }
 
 impl LinkStream {
     pub(crate) fn new() -> Self {
-        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new(), recorder: () }
+        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new(), recorder: Recorder::idle() }
     }
 
     /// The telemetry since the last call.
@@ -62,9 +63,7 @@ impl ByteStream for LinkStream {
 }
 
 impl Recorded for LinkStream {
-    type Recorder = ();
-
-    fn recorder_mut(&mut self) -> &mut () {
+    fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }
 

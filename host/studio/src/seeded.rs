@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord};
 use frixel_layers::Header;
 use frixel_play::Recorded;
@@ -41,12 +42,12 @@ pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
 struct Hashing<'a> {
     rig: RigStream<'a>,
     hash: Hash,
-    recorder: (),
+    recorder: Recorder,
 }
 
 impl<'a> Hashing<'a> {
     fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
-        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new(), recorder: () })
+        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new(), recorder: Recorder::idle() })
     }
 
     /// Samples of the pointer from now on.
@@ -66,9 +67,7 @@ impl<'a> Hashing<'a> {
 }
 
 impl Recorded for Hashing<'_> {
-    type Recorder = ();
-
-    fn recorder_mut(&mut self) -> &mut () {
+    fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }
 }

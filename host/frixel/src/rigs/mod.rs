@@ -13,7 +13,6 @@ mod event_log;
 #[cfg(unix)]
 mod pace;
 mod port;
-mod recorded;
 #[cfg(unix)]
 mod server;
 #[cfg(unix)]
@@ -26,7 +25,14 @@ pub use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub use pace::Dropped;
 pub use port::PortLink;
-pub use recorded::RecordedLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
 pub use sim_link::SimLink;
+
+use frixel_driver::Link;
+use frixel_play::Recorded;
+
+/// A link to a board that plays a scene, with the recorder of that play.
+pub trait RecordedLink: Link + Recorded {}
+
+impl<L: Link + Recorded> RecordedLink for L {}

@@ -8,8 +8,6 @@ use frixel_hil_sim::{Rig, TickRecord};
 use frixel_play::Recorded;
 use frixel_wire::fault::State;
 
-use super::recorded::{ReferenceFinger, finger_and_felt};
-
 /// Is called with every tick that is recorded.
 type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
 
@@ -19,7 +17,6 @@ type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
 pub struct SimLink<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
-    reference_finger: ReferenceFinger,
     recording: bool,
     written: Written,
     written_at: Duration,
@@ -35,7 +32,6 @@ impl<'a> SimLink<'a> {
         Self {
             rig,
             recorder,
-            reference_finger: ReferenceFinger::Scene,
             recording: false,
             written: Written::default(),
             written_at: Duration::ZERO,
@@ -49,13 +45,6 @@ impl<'a> SimLink<'a> {
     #[must_use]
     pub fn observed(self, observer: impl FnMut(&TickRecord) + 'a) -> Self {
         Self { observer: Some(Box::new(observer)), ..self }
-    }
-
-    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
-    /// skin; without this, with the friction of the scene's finger in steady sliding.
-    #[must_use]
-    pub fn referring_to_simulated_finger(self) -> Self {
-        Self { reference_finger: ReferenceFinger::simulated(), ..self }
     }
 
     /// The recorder with all ticks.
@@ -74,7 +63,7 @@ impl<'a> SimLink<'a> {
         }
         let record = self.rig.step();
         if self.recording {
-            self.reference_finger.record(&mut self.recorder, &observation(&record), &record.felt);
+            self.recorder.record(&Observation::of_tick(&record));
             if let Some(observer) = &mut self.observer {
                 observer(&record);
             }
@@ -97,22 +86,7 @@ impl<'a> SimLink<'a> {
     }
 }
 
-/// Everything about a tick: on the simulator, both board and finger are observable.
-pub(super) fn observation(record: &TickRecord) -> Observation {
-    let telemetry = record.status.telemetry;
-    let (finger, felt) = finger_and_felt(&record.felt);
-    Observation {
-        tick: record.tick as u32,
-        finger,
-        felt,
-        dac_code: Some(telemetry.dac_code),
-        telemetry: Some(telemetry),
-    }
-}
-
 impl Recorded for SimLink<'_> {
-    type Recorder = Recorder;
-
     fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }
