@@ -8,17 +8,17 @@ use frixel_wire::message::{
 use frixel_wire::payload::{ParseError, Payload};
 use heapless::{Deque, Vec};
 
-use crate::bitmap_directory::Directory;
-use crate::commit::{BitmapNames, Commit};
-use crate::credit::Credit;
-use crate::fingers::{Fingers, ONLY_FINGER};
-use crate::live::Playing;
+use crate::link::credit::Credit;
+use crate::link::transmit_queue::TransmitQueue;
+use crate::motion::fingers::{Fingers, ONLY_FINGER};
+use crate::motion::tracker::Tracker;
+use crate::scene::bitmap_directory::Directory;
+use crate::scene::commit::{BitmapNames, Commit};
+use crate::scene::live::Playing;
 #[cfg(feature = "stream")]
-use crate::live::Stream;
+use crate::scene::live::Stream;
+use crate::scene::upload::{Staging, Upload};
 use crate::states::ORDERS_MAX;
-use crate::tracker::Tracker;
-use crate::transmit_queue::TransmitQueue;
-use crate::upload::{Staging, Upload};
 use frixel_control::Status;
 use frixel_control::{Active, Board, Order, TickMeter};
 use frixel_layers::BitmapPool;

@@ -4,7 +4,7 @@ use frixel_wire::fault::State;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature, notice};
 
 use crate::commands::Commands;
-use crate::transmit_queue::TransmitQueue;
+use crate::link::transmit_queue::TransmitQueue;
 use frixel_control::Status;
 use frixel_control::{Board, Order};
 

@@ -40,40 +40,28 @@
 //!
 //! # Cargo features
 //!
-//! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: layers of
-//! `grating`, `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed`, `stream` and `rings`, `polygon` regions,
-//! the `sine-carrier`, `telemetry`; and the `store`, which keeps a scene over power-off. An image without one of them
+//! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: the kinds of layers
+//! (`edge` has buttons, too), `polygon` regions, the `sine-carrier`, `telemetry`; and the `store`, which keeps a scene
+//! over power-off. An image without one of them
 //! is smaller, clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses,
 //! all blends and the square carrier are always included.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-mod autonomous;
-mod bitmap_directory;
 mod commands;
-mod commit;
-mod credit;
-mod estimator;
-mod fingers;
 mod hello;
-mod live;
-mod loading;
+mod link;
+mod motion;
 mod queues;
+mod scene;
 mod session;
-mod standstill;
 mod states;
 #[cfg(feature = "store")]
 pub mod store;
-#[cfg(feature = "store")]
-mod stored;
-mod storing;
-mod tracker;
-mod transmit_queue;
-mod upload;
 
-pub use loading::{TableRows, active_bytes_filled, table_rows};
+pub use motion::tracker::Touch;
 pub use queues::{Queues, SessionEnds, TickEnds};
-pub use session::Session;
+pub use scene::loading::{TableRows, active_bytes_filled, table_rows};
 #[cfg(feature = "store")]
-pub use stored::StoredScene;
-pub use tracker::Touch;
+pub use scene::stored::StoredScene;
+pub use session::Session;

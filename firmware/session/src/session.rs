@@ -10,9 +10,9 @@ use frixel_wire::payload::Payload;
 
 use crate::Touch;
 use crate::commands::Commands;
+use crate::link::transmit_queue::TransmitQueue;
 #[cfg(feature = "store")]
-use crate::stored::StoredScene;
-use crate::transmit_queue::TransmitQueue;
+use crate::scene::stored::StoredScene;
 use frixel_control::Status;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;

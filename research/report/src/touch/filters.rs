@@ -245,7 +245,7 @@ impl Kalman {
         }
     }
 
-    /// The constants of `firmware/session/src/estimator.rs`.
+    /// The constants of `firmware/session/src/motion/estimator.rs`.
     fn of_board(rate_hz: f64) -> Self {
         Self { by_speed: [6.0, 0.04 / rate_hz], leads_on_s: Some(1.0 / rate_hz), ..Self::fixed(0.04, 0.3) }
     }

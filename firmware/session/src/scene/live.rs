@@ -10,7 +10,7 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, FromBoard, STREAM_START_L
 
 use crate::commands::Commands;
 #[cfg(feature = "stream")]
-use crate::transmit_queue::TransmitQueue;
+use crate::link::transmit_queue::TransmitQueue;
 use frixel_control::{Order, Status};
 #[cfg(feature = "stream")]
 use frixel_control::{StreamBuffer, StreamIntake};

@@ -11,10 +11,10 @@ use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use heapless::Vec;
 
 use crate::commands::Commands;
-use crate::live::Playing;
-use crate::loading::Loading;
-use crate::transmit_queue::TransmitQueue;
-use crate::upload::Upload;
+use crate::link::transmit_queue::TransmitQueue;
+use crate::scene::live::Playing;
+use crate::scene::loading::Loading;
+use crate::scene::upload::Upload;
 use frixel_control::{Order, Status};
 
 /// Records that a step of a commit checks.

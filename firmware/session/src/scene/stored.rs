@@ -9,7 +9,7 @@ use frixel_wire::scene::{RECORDS_MAX, bitmap_digest};
 use heapless::Vec;
 
 use crate::commands::Commands;
-use crate::commit::BitmapNames;
+use crate::scene::commit::BitmapNames;
 use crate::store::WORD_LEN;
 use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 

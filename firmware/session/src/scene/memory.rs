@@ -6,9 +6,9 @@ use frixel_wire::message::{Accepted, FromBoard, Refusal};
 use frixel_wire::scene::POINTS_MAX;
 
 use crate::commands::Commands;
-use crate::live::Playing;
-use crate::transmit_queue::TransmitQueue;
-use crate::upload::{ChunkReport, Destination, Upload};
+use crate::link::transmit_queue::TransmitQueue;
+use crate::scene::live::Playing;
+use crate::scene::upload::{ChunkReport, Destination, Upload};
 use frixel_control::Order;
 
 impl Commands<'_> {

@@ -1,10 +1,12 @@
 //! The board's state: the commands that change it, the orders to the ticker, and the reports to the host.
 
+mod autonomous;
+
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::{Accepted, Command, FromBoard, Refusal};
 
 use crate::commands::Commands;
-use crate::transmit_queue::TransmitQueue;
+use crate::link::transmit_queue::TransmitQueue;
 use frixel_control::Order;
 use frixel_control::Status;
 

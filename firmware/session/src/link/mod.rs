@@ -1,0 +1,4 @@
+//! The serial line's side of the session.
+
+pub(crate) mod credit;
+pub(crate) mod transmit_queue;
