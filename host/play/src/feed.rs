@@ -4,6 +4,7 @@ use std::error::Error;
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Link, StreamSettings, StreamStatus};
+use frixel_felt::recorder::PlayListener as _;
 use thiserror::Error;
 
 use crate::recorded::Recorded;

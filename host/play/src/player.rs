@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Progress};
-use frixel_felt::recorder::Recorder;
+use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
 use frixel_scene::Program;
 use frixel_wire::fault::{Fault, Flags, State};
@@ -382,7 +382,7 @@ impl<L: Link + Recorded> Player<L> {
     }
 
     /// The recorder of this play.
-    pub fn recorder_mut(&mut self) -> &mut Recorder {
+    pub fn recorder_mut(&mut self) -> &mut L::Recorder {
         self.device.link_mut().recorder_mut()
     }
 }

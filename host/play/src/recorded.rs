@@ -1,13 +1,16 @@
 //! The record of a play, beside the link to the board.
 
 use frixel_driver::{ByteStream, LinkClosed, PollingLink};
-use frixel_felt::recorder::Recorder;
+use frixel_felt::recorder::PlayListener;
 use frixel_wire::message::Telemetry;
 
 /// A link, or a byte stream, with a record of what the board at its other end plays.
 pub trait Recorded {
-    /// What records the play, and is told what the board is made to play: [`Recorder::idle`] where nothing is recorded.
-    fn recorder_mut(&mut self) -> &mut Recorder;
+    /// What records the play.
+    type Recorder: PlayListener;
+
+    /// What records the play.
+    fn recorder_mut(&mut self) -> &mut Self::Recorder;
 
     /// The scene begins to play: starts the record, and the stroke of a finger that is simulated beside the board.
     fn begin(&mut self) -> Result<(), LinkClosed> {
@@ -24,7 +27,9 @@ pub trait Recorded {
 }
 
 impl<S: ByteStream + Recorded> Recorded for PollingLink<S> {
-    fn recorder_mut(&mut self) -> &mut Recorder {
+    type Recorder = S::Recorder;
+
+    fn recorder_mut(&mut self) -> &mut S::Recorder {
         self.stream_mut().recorder_mut()
     }
 

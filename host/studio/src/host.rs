@@ -180,6 +180,8 @@ mod tests {
     }
 
     impl Recorded for Line<'_> {
+        type Recorder = Recorder;
+
         fn recorder_mut(&mut self) -> &mut Recorder {
             self.rig.recorder_mut()
         }

@@ -7,7 +7,6 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_felt::recorder::Recorder;
 use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
 
@@ -20,12 +19,12 @@ const CLOSED: i32 = -1;
 pub(crate) struct LinkStream {
     buffer: Box<[u8; READ_MAX]>,
     telemetry: Vec<Telemetry>,
-    recorder: Recorder,
+    recorder: (),
 }
 
 impl LinkStream {
     pub(crate) fn new() -> Self {
-        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new(), recorder: Recorder::idle() }
+        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new(), recorder: () }
     }
 
     /// The telemetry since the last call.
@@ -63,7 +62,9 @@ impl ByteStream for LinkStream {
 }
 
 impl Recorded for LinkStream {
-    fn recorder_mut(&mut self) -> &mut Recorder {
+    type Recorder = ();
+
+    fn recorder_mut(&mut self) -> &mut () {
         &mut self.recorder
     }
 

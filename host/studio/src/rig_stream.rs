@@ -94,6 +94,8 @@ impl RigStream<'_> {
 }
 
 impl Recorded for RigStream<'_> {
+    type Recorder = Recorder;
+
     fn recorder_mut(&mut self) -> &mut Recorder {
         self.felt.recorder_mut()
     }

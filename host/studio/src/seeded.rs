@@ -4,7 +4,6 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord};
 use frixel_layers::Header;
 use frixel_play::Recorded;
@@ -42,12 +41,12 @@ pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
 struct Hashing<'a> {
     rig: RigStream<'a>,
     hash: Hash,
-    recorder: Recorder,
+    recorder: (),
 }
 
 impl<'a> Hashing<'a> {
     fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
-        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new(), recorder: Recorder::idle() })
+        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new(), recorder: () })
     }
 
     /// Samples of the pointer from now on.
@@ -67,7 +66,9 @@ impl<'a> Hashing<'a> {
 }
 
 impl Recorded for Hashing<'_> {
-    fn recorder_mut(&mut self) -> &mut Recorder {
+    type Recorder = ();
+
+    fn recorder_mut(&mut self) -> &mut () {
         &mut self.recorder
     }
 }

@@ -21,6 +21,8 @@ impl PortLink {
 }
 
 impl Recorded for PortLink {
+    type Recorder = Recorder;
+
     fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }

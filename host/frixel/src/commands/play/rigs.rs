@@ -1,7 +1,7 @@
 //! The boards that `--port` can name, and how to open them.
 
-use frixel::rigs::SimLink;
-use frixel_driver::Device;
+use frixel::rigs::SimStream;
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
@@ -88,7 +88,7 @@ pub(super) fn play_on_simulator(
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
     plan.world = Some(world.report());
-    let device = Device::connect(SimLink::new(rig, Recorder::idle()))?;
+    let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle())))?;
     follow(args, plan, device, outputs, interrupt)
 }
 
