@@ -3,7 +3,6 @@
 
 pub mod chart;
 mod default_stroke;
-mod finger_reference;
 pub mod input;
 pub mod output;
 pub mod output_file;

@@ -31,6 +31,8 @@ pub(super) struct Plan {
     pub(super) feed: Option<Feed>,
     /// The world that is simulated beside the board; `None` for a board at a port.
     pub(super) world: Option<WorldReport>,
+    /// Whether the reference goes through the simulated finger.
+    pub(super) has_own_reference: bool,
     ticks_per_row: u32,
     /// Ticks between two telemetry messages; 0 for rigs whose ticks are observed directly.
     pub(super) telemetry_period_ticks: u32,
@@ -89,7 +91,18 @@ impl Plan {
         }
         note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
-        Ok(Self { target, program, feed, world: None, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
+        Ok(Self {
+            target,
+            program,
+            feed,
+            world: None,
+            has_own_reference: false,
+            ticks_per_row,
+            telemetry_period_ticks,
+            limits,
+            tick_hz,
+            seconds,
+        })
     }
 
     /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
@@ -138,16 +151,17 @@ impl Plan {
         let ticks = (self.seconds() * f64::from(self.tick_hz)).round() as u64;
         let ticks_max = if self.target.is_virtual_time() { ticks } else { u64::MAX };
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks_max, self.ticks_per_row);
-        recorder.map_err(CommandError::Finger)
+        let recorder = recorder.map_err(CommandError::Finger)?;
+        Ok(if self.has_own_reference { recorder.through_finger() } else { recorder })
     }
 }
 
 /// Prints the warnings of the compiler, and the values that it converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
-    for warning in &program.warnings {
+    for warning in program.warnings() {
         note(format_args!("warning: {warning}"));
     }
-    for sentence in &program.notes {
+    for sentence in program.notes() {
         note(sentence);
     }
 }
@@ -164,7 +178,7 @@ fn note_streams(program: &Program, has_feed: bool) {
 
 /// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
 pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
-    match program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
+    match program.warnings().find(|warning| warning.is_refused_by_boards()) {
         Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: warning.clone() }),
         _ => Ok(()),
     }
@@ -230,7 +244,7 @@ mod tests {
         let board = RigConfig::default().board;
         let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).unwrap();
         let program = Target::Port.compile(&scene, &board.limits, board.tick_hz).unwrap();
-        assert_eq!(program.warnings.len(), 1);
+        assert_eq!(program.warnings().count(), 1);
         check_measured(&program, BoardKind::Simulator).unwrap();
         let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();
         assert!(
