@@ -18,7 +18,7 @@ mod with_log;
 
 use std::path::PathBuf;
 
-use frixel::output::Report;
+use crate::output::Report;
 
 use super::PlayArgs;
 use super::error::CommandError;

@@ -1,6 +1,6 @@
 //! The boards that `--port` can name, and how to open them.
 
-use frixel::rigs::SimLink;
+use crate::rigs::SimLink;
 use frixel_driver::Device;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
