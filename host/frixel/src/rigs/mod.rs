@@ -2,7 +2,7 @@
 //!
 //! - [`SimLink`]: a simulated board in this process, in virtual time.
 //! - [`EmulatedLink`]: the firmware in an emulator, on the emulator's clock.
-//! - [`PortLink`]: a board on a serial port.
+//! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
 //! The emulated and the virtual board need pseudo-terminals, which Unix systems provide.
@@ -22,11 +22,11 @@ mod sim_link;
 
 #[cfg(unix)]
 pub use emulated::EmulatedLink;
-pub use event_log::{BoardEvent, EventKind, EventLog};
+pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
-pub use pace::Dropped;
-pub use port::PortLink;
-pub use recorded::RecordedLink;
+pub(crate) use pace::Dropped;
+pub(crate) use port::PortLink;
+pub(crate) use recorded::RecordedLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
 pub use sim_link::SimLink;
