@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use frixel_driver::Device;
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger};
@@ -14,7 +14,7 @@ use crate::commands::fit::screen;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::waiting;
 use crate::output_file::{FileWriter, Recording};
-use crate::rigs::SimLink;
+use crate::rigs::SimStream;
 
 /// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
 const FORCES_LATE: Duration = Duration::from_millis(500);
@@ -38,8 +38,8 @@ pub(super) fn on_simulator(
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     rig.world_mut().set_own_finger(contact);
     let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
-    let link = SimLink::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
-    let mut player = plan.start(Device::connect(link)?, 0)?;
+    let line = SimStream::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
+    let mut player = plan.start(Device::connect(PollingLink::new(line))?, 0)?;
     // What is simulated needs no file until it is whole.
     let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
     drop(player);

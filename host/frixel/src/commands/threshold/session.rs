@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use frixel_driver::Device;
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::Protocol;
@@ -24,7 +24,7 @@ use crate::commands::terminal::{print, print_line};
 use crate::commands::waiting;
 use crate::input;
 use crate::player::player;
-use crate::rigs::{RecordedLink, SimLink};
+use crate::rigs::{RecordedLink, SimStream};
 
 /// Arrows that show the pace of a stroke.
 const ARROWS: u32 = 8;
@@ -49,7 +49,8 @@ pub(super) fn measure(
         let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
-        session(args, interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol, answers)
+        let line = SimStream::new(rig, Recorder::idle());
+        session(args, interrupt, Device::connect(PollingLink::new(line))?, protocol, answers)
     } else {
         let device = experiment::connect(port, args.arm)?;
         let protocol = protocol(args, &device.hello().limits)?;
