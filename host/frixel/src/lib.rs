@@ -5,7 +5,6 @@
 pub mod chart;
 mod commands;
 mod default_stroke;
-mod finger_reference;
 mod input;
 pub mod output;
 pub mod output_file;

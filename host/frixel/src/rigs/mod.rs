@@ -14,7 +14,6 @@ mod event_log;
 #[cfg(unix)]
 mod pace;
 mod port;
-mod recorded;
 #[cfg(unix)]
 mod server;
 #[cfg(unix)]
@@ -27,7 +26,15 @@ pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;
 pub(crate) use port::PortLink;
-pub(crate) use recorded::RecordedLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
 pub use sim_stream::SimStream;
+
+use frixel_driver::Link;
+use frixel_felt::recorder::Recorder;
+use frixel_play::Recorded;
+
+/// A link to a board that plays a scene, with the [`Recorder`] of that play. It is idle until a play has its own.
+pub trait RecordedLink: Link + Recorded<Recorder = Recorder> {}
+
+impl<L: Link + Recorded<Recorder = Recorder>> RecordedLink for L {}
