@@ -14,13 +14,13 @@ use thiserror::Error;
 use crate::rigs::{RecordedLink, SimStream};
 
 /// A player for `device` that records into `recorder` from the start of the play.
-pub fn player<L: RecordedLink>(mut device: Device<L>, recorder: Recorder) -> Player<L> {
+pub(crate) fn player<L: RecordedLink>(mut device: Device<L>, recorder: Recorder) -> Player<L> {
     *device.link_mut().recorder_mut() = recorder;
     Player::new(device)
 }
 
 /// Ends the record with the data received so far, and returns the recorder. Stops the board first if it plays.
-pub fn into_recorder<L: RecordedLink>(mut player: Player<L>) -> Recorder {
+pub(crate) fn into_recorder<L: RecordedLink>(mut player: Player<L>) -> Recorder {
     player.record_rest();
     std::mem::replace(player.recorder_mut(), Recorder::idle())
 }

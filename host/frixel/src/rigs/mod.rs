@@ -3,7 +3,7 @@
 //!
 //! - [`SimStream`]: a simulated board in this process, in virtual time.
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.
-//! - [`PortLink`]: a board on a serial port.
+//! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
 //! The emulated and the virtual board need pseudo-terminals, which Unix systems provide.
@@ -22,10 +22,10 @@ mod sim_stream;
 
 #[cfg(unix)]
 pub use emulated::EmulatedStream;
-pub use event_log::{BoardEvent, EventKind, EventLog};
+pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
-pub use pace::Dropped;
-pub use port::PortLink;
+pub(crate) use pace::Dropped;
+pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
 pub use sim_stream::SimStream;

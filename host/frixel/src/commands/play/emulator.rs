@@ -2,7 +2,7 @@
 
 use std::sync::mpsc;
 
-use frixel::rigs::EmulatedStream;
+use crate::rigs::EmulatedStream;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};

@@ -4,9 +4,9 @@ use std::io::stdin;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel::default_stroke;
-use frixel::output::WorldReport;
-use frixel::stream;
+use crate::default_stroke;
+use crate::output::WorldReport;
+use crate::stream;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
 use frixel_play::Feed;

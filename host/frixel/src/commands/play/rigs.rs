@@ -1,6 +1,6 @@
 //! The boards that `--port` can name, and how to open them.
 
-use frixel::rigs::SimStream;
+use crate::rigs::SimStream;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
