@@ -6,8 +6,8 @@
 
 use frixel_layers::range::LENGTH_MAX_M;
 
-use crate::motion::estimator::{Estimate, Estimator};
-use crate::motion::standstill::{Standstill, StandstillTiming};
+use super::estimator::{Estimate, Estimator};
+use super::standstill::{Standstill, StandstillTiming};
 use frixel_control::STALE_AFTER_PERIODS;
 use frixel_control::is_past;
 use frixel_control::{Board, Order, Track};
