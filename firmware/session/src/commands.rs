@@ -56,8 +56,7 @@ impl<'a> Commands<'a> {
             Ok(Payload::Samples { first_index, samples }) => {
                 self.states.host_heard();
                 // Samples behind a `StartStream` that waits for a commit belong to a stream that has not begun.
-                let starts = |waiting: &Request| matches!(waiting.command, Command::StartStream { .. });
-                if !self.link.waiting().any(starts) {
+                if cfg!(feature = "stream") && !self.link.has_waiting_stream() {
                     self.scenes.stream.take(first_index, samples);
                 }
                 self.report_stream(status);
@@ -93,7 +92,7 @@ impl<'a> Commands<'a> {
         if matches!(request.command, Command::Stop | Command::Disarm) {
             self.link.refuse_waiting(self.states.state());
         }
-        let must_keep_order = self.scenes.is_committing() || self.link.waiting().next().is_some();
+        let must_keep_order = self.scenes.is_committing() || self.link.has_waiting();
         if !must_keep_order || may_overtake_a_commit(request.command) {
             self.carry_out(request, status);
         } else {
@@ -133,10 +132,15 @@ impl<'a> Commands<'a> {
             // `carry_out` handles a commit; it does not get here.
             Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => link.subscribe(period_ticks),
+            Command::Touch { .. } | Command::Lift | Command::TouchFinger { .. } | Command::LiftFinger { .. }
+                if !board.touch_from_host =>
+            {
+                Err(Refusal::TouchSource)
+            }
             Command::Touch { x_m, y_m, age_ticks } => {
                 motion.touch(ONLY_FINGER, (x_m, y_m), age_ticks, scenes.leader(), status)
             }
-            Command::Lift => motion.lift(ONLY_FINGER, scenes.leader(), status),
+            Command::Lift => Ok(motion.lift(ONLY_FINGER, scenes.leader(), status)),
             Command::FaultText { offset } => Ok(fault_text(board.reset_text, offset)),
             Command::SetLayer { layer, on, gain } => {
                 states.check_active(status)?;
@@ -150,7 +154,7 @@ impl<'a> Commands<'a> {
             Command::TouchFinger { finger, x_m, y_m, age_ticks } => {
                 motion.touch(finger, (x_m, y_m), age_ticks, scenes.leader(), status)
             }
-            Command::LiftFinger { finger } => motion.lift(finger, scenes.leader(), status),
+            Command::LiftFinger { finger } => Ok(motion.lift(finger, scenes.leader(), status)),
             Command::TickTimes if cfg!(feature = "telemetry") => Ok(Accepted::TickTimes(self.tick_times(status))),
             // Their features are disabled.
             Command::Subscribe { .. } | Command::StartStream { .. } | Command::TickTimes => {

@@ -70,7 +70,7 @@ impl<'a> Session<'a> {
 
     /// Takes a report of the board's touch source that arrived at `tick`.
     pub fn touch(&mut self, touch: Touch, tick: u32) {
-        self.commands.motion.report(touch, tick);
+        self.commands.motion.report(touch, tick, &self.commands.board);
     }
 
     /// The next order for the ticker, which takes one before each tick.

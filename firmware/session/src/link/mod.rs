@@ -11,7 +11,9 @@ mod transmit_queue;
 use frixel_control::Status;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::hello::Hello;
-use frixel_wire::message::{Accepted, Answer, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS, Telemetry};
+use frixel_wire::message::{
+    Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS, Telemetry,
+};
 use heapless::Deque;
 
 use credit::Credit;
@@ -91,9 +93,14 @@ impl Link {
         }
     }
 
-    /// The requests that wait.
-    pub(crate) fn waiting(&self) -> impl Iterator<Item = &Request> {
-        self.waiting.iter()
+    /// Whether a request waits.
+    pub(crate) fn has_waiting(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    /// Whether a request waits that begins a stream.
+    pub(crate) fn has_waiting_stream(&self) -> bool {
+        self.waiting.iter().any(|waiting| matches!(waiting.command, Command::StartStream { .. }))
     }
 
     /// The request that has waited longest.

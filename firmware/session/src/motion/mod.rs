@@ -33,9 +33,6 @@ pub(crate) struct Motion {
     /// Fingers that the host reported.
     fingers: Fingers,
     tracker: Tracker,
-    /// The host reports the finger's position.
-    from_host: bool,
-    own_touch_age_max_ticks: u32,
     /// The tick from which on the last report of the board's own touch source is too old to show that the source works;
     /// `None` without one.
     own_touch_until_tick: Option<u32>,
@@ -43,13 +40,7 @@ pub(crate) struct Motion {
 
 impl Motion {
     pub(crate) fn new(board: &Board) -> Self {
-        Self {
-            fingers: Fingers::new(),
-            tracker: Tracker::new(board),
-            from_host: board.touch_from_host,
-            own_touch_age_max_ticks: board.ticks(OWN_TOUCH_AGE_MAX_S),
-            own_touch_until_tick: None,
-        }
+        Self { fingers: Fingers::new(), tracker: Tracker::new(board), own_touch_until_tick: None }
     }
 
     /// Takes a finger's place that the host reports, as of the next tick.
@@ -61,9 +52,6 @@ impl Motion {
         rule: Leader,
         status: &Status,
     ) -> Result<Accepted, Refusal> {
-        if !self.from_host {
-            return Err(Refusal::TouchSource);
-        }
         for place_m in [x_m, y_m] {
             let field = ConfigField::TouchPlace;
             within(field, place_m, -LENGTH_MAX_M as f32, LENGTH_MAX_M as f32, ConfigRefusal::WHOLE_SCENE)
@@ -80,13 +68,10 @@ impl Motion {
     }
 
     /// Takes a finger's lift that the host reports.
-    pub(crate) fn lift(&mut self, finger: u8, rule: Leader, status: &Status) -> Result<Accepted, Refusal> {
-        if !self.from_host {
-            return Err(Refusal::TouchSource);
-        }
+    pub(crate) fn lift(&mut self, finger: u8, rule: Leader, status: &Status) -> Accepted {
         self.fingers.lift(finger, rule);
         self.report_fingers(status);
-        Ok(Accepted::Done)
+        Accepted::Done
     }
 
     /// Forgets all fingers of the host, because a new client has connected.
@@ -103,8 +88,8 @@ impl Motion {
     }
 
     /// Takes a report of the board's own touch source that arrived at `tick`.
-    pub(crate) fn report(&mut self, touch: Touch, tick: u32) {
-        self.own_touch_until_tick = Some(tick.wrapping_add(self.own_touch_age_max_ticks));
+    pub(crate) fn report(&mut self, touch: Touch, tick: u32, board: &Board) {
+        self.own_touch_until_tick = Some(tick.wrapping_add(board.ticks(OWN_TOUCH_AGE_MAX_S)));
         self.tracker.report(touch, tick);
     }
 

@@ -150,19 +150,14 @@ impl<'a> Scenes<'a> {
 }
 
 impl Committed {
-    #[cfg_attr(not(feature = "stream"), allow(unused_variables, reason = "no layer is streamed"))]
     fn new(crc32: u32, scene: &Scene, active: &ActiveLayers) -> Self {
-        #[cfg(feature = "stream")]
-        let has_stream = active.has_stream();
-        #[cfg(not(feature = "stream"))]
-        let has_stream = false;
         Self {
             crc32,
             bitmaps: bitmaps_of(scene),
             header: Some(*scene.header()),
             // This fits: a scene has at most `RECORDS_MAX` records.
             layers: scene.record_count() as u8,
-            has_stream,
+            has_stream: active.has_stream(),
         }
     }
 }
