@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("constant speed", Stroke::constant_speed(left, right, 0.1)?),
         ("minimum jerk", Stroke::minimum_jerk(left, right, SECONDS)?),
         ("sweep", Stroke::sweep(0.1, 0.06, SECONDS)?),
-        ("CSV, 1 kHz", Stroke::from_csv(&csv(SECONDS))?),
+        ("rows, 1 kHz", Stroke::through(&rows(SECONDS))?),
     ];
     for (name, stroke) in strokes {
         for (world, config) in [("ideal", WorldConfig::IDEAL), ("realistic", WorldConfig::IDEAL.realistic())] {
@@ -52,10 +52,10 @@ fn measure(name: &str, mut world: World) {
 }
 
 /// A finger that goes round in zigzags, a row every millisecond.
-fn csv(seconds: f64) -> String {
-    let rows = (seconds * 1000.0) as u32;
-    (0..=rows).fold("t_s,x_mm,y_mm\n".to_owned(), |text, row| {
-        let place_mm = f64::from((row % 1600).min(1600 - row % 1600)) * 0.1;
-        text + &format!("{},{place_mm},30\n", f64::from(row) * 1e-3)
-    })
+fn rows(seconds: f64) -> Vec<(f64, Option<Point>)> {
+    let place = |row: u32| {
+        let x_m = f64::from((row % 1600).min(1600 - row % 1600)) * 1e-4;
+        (f64::from(row) * 1e-3, Some(Point { x_m, y_m: 0.03 }))
+    };
+    (0..=(seconds * 1000.0) as u32).map(place).collect()
 }

@@ -5,11 +5,10 @@ mod human;
 mod rows;
 mod straight;
 mod sweep;
-mod text;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 pub use error::StrokeError;
-use rows::{Row, Rows};
+use rows::Rows;
 use straight::Straight;
 use sweep::Sweep;
 
@@ -31,6 +30,17 @@ pub struct FingerState {
     pub y_m: f64,
     /// Sliding speed, regardless of direction, m/s.
     pub speed_m_per_s: f64,
+}
+
+/// A point in time of a stroke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrokeRow {
+    /// Time from the start of the stroke, s.
+    pub t_s: f64,
+    /// Where the finger is; `None` while it is off the screen.
+    pub place: Option<Point>,
+    /// Normal load, N; `None` if it is not known.
+    pub normal_load_n: Option<f64>,
 }
 
 /// The motion of a finger over the screen, with the finger up before its start and after its end.
@@ -125,33 +135,24 @@ impl Stroke {
     /// A motion through places at times that rise from 0 or later; `None` is a finger off the screen. Between two
     /// places the finger goes straight and at constant speed.
     pub fn through(places: &[(f64, Option<Point>)]) -> Result<Self, StrokeError> {
-        let rows: Vec<Row> =
-            places.iter().map(|(t_s, place)| Row { t_s: *t_s, place: *place, load_n: f64::NAN }).collect();
+        let row = |(t_s, place): &(f64, Option<Point>)| StrokeRow { t_s: *t_s, place: *place, normal_load_n: None };
+        Self::through_rows(&places.iter().map(row).collect::<Vec<_>>())
+    }
+
+    /// As [`Self::through`], with the normal loads that are known.
+    pub fn through_rows(rows: &[StrokeRow]) -> Result<Self, StrokeError> {
         let mut before_s = -f64::MIN_POSITIVE;
-        for row in &rows {
+        for row in rows {
             if !(row.t_s > before_s && row.t_s.is_finite()) {
                 let expected = "finite, 0 or later, and rising";
                 return Err(OutOfRange { name: "time of a place in s", expected, found: row.t_s }.into());
             }
             before_s = row.t_s;
         }
-        let motion = Rows::new(&rows).map_err(|_| {
-            let found = f64::INFINITY;
-            StrokeError::OutOfRange(OutOfRange { name: "speed between two places", expected: "finite", found })
-        })?;
+        let found = f64::INFINITY;
+        let jump = OutOfRange { name: "speed between two places", expected: "finite", found };
+        let motion = Rows::new(rows).ok_or(jump)?;
         Ok(Self::once(motion.end_s(), Path::Rows(motion)))
-    }
-
-    /// Parses a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load
-    /// is known, in N and above 0. Other columns are ignored. The finger is off the screen in a row whose cells `x_mm`
-    /// and `y_mm` are empty, as in `felt.csv`.
-    ///
-    /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
-    /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
-    /// be as close as the motion needs: every 10 ms or less for a hand.
-    pub fn from_csv(text: &str) -> Result<Self, StrokeError> {
-        let rows = text::rows(text)?;
-        Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
     /// Repeats the stroke, with the finger off the screen for `pause_s` seconds (0 to 10) between rounds.

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
 
+use std::iter;
+
 use crate::emulator;
 use crate::script;
 
@@ -11,9 +13,9 @@ use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
 use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
 use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point as Corner, Record,
-    Region, Rings, Speed, Stream, Vibration, Wave, Waveform,
+    Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
 };
+use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 use script::{HEADER, Script, record, samples, scene, scene_with_points};
@@ -198,83 +200,25 @@ fn every_kind_of_layer_is_the_same() {
     assert_same(&image, &journal);
 }
 
+/// A ground, and the samples of all kinds with each region and each blend.
 fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
     let rectangle = Region::Rectangle { x_m: 0.03, y_m: 0.025, width_m: 0.03, height_m: 0.03 };
     let ellipse = Region::Ellipse { x_m: 0.06, y_m: 0.02, width_m: 0.05, height_m: 0.05 };
-    let polygon = Region::Polygon { first: 3, count: 5 };
-    let click = Click { height_n: 0.004, decay_s: 0.05 };
-    let grating = |wave, trough_n, crest_n| {
-        Layer::Grating(Grating {
-            wave,
-            cycles_per_m_x: 230.0,
-            cycles_per_m_y: -70.0,
-            phase_turns: 0.4,
-            trough_n,
-            crest_n,
-        })
-    };
-    let bitmap = |tiled, angle_turns| {
-        Layer::Bitmap(Bitmap {
-            crc32,
-            x_m: 0.04,
-            y_m: 0.02,
-            pitch_m: 5e-4,
-            black_n: 0.0,
-            white_n: 0.005,
-            pitch_y_m: 6e-4,
-            angle_turns,
-            tiled,
-        })
-    };
-    let noise = Layer::Noise(Noise {
-        seed: 0xfeed_5eed,
-        wavelength_min_m: 1e-3,
-        wavelength_max_m: 6e-3,
-        low_n: 0.0,
-        high_n: 0.006,
+    // After the points of the samples.
+    let polygon = Region::Polygon { first: POINTS.len() as u8, count: 5 };
+    let corners = [(0.01, 0.01), (0.11, 0.015), (0.06, 0.04), (0.1, 0.07), (0.02, 0.06)];
+    let points = POINTS.into_iter().chain(corners.map(|(x, y)| Corner { x, y })).collect();
+    let regions = [Region::Screen, polygon, rectangle, ellipse];
+    let blends = [Blend::Add, Blend::Max, Blend::Add, Blend::Multiply, Blend::Replace];
+    let ground = record(Layer::Constant(Constant { electric_friction_n: 0.003 }));
+    let layers = sample_records().zip(regions.into_iter().cycle()).zip(blends.into_iter().cycle());
+    let records = layers.map(|((sample, region), blend)| {
+        let Record { layer, gain, .. } = sample.record;
+        let region = if matches!(layer, Layer::Button(_)) { ellipse } else { region };
+        let blend = if matches!(layer, Layer::Speed(_)) { Blend::Multiply } else { blend };
+        Record { region, blend, gain, layer: with_picture(layer, crc32) }
     });
-    let vibration =
-        |beat, burst| Layer::Vibration(Vibration { beat, frequency_hz: 87.3, low_n: 0.0, high_n: 0.003, burst });
-    let edge = Layer::Edge(Edge {
-        x_m: 0.05,
-        y_m: 0.04,
-        angle_turns: 0.07,
-        width_m: 0.006,
-        level_n: 0.0,
-        ridge_n: 0.004,
-        click,
-    });
-    let button = Layer::Button(Button { rim_width_m: 0.004, rim_n: 0.012, face_n: 0.002, click });
-    let rings =
-        |wave| Layer::Rings(Rings { wave, x_m: 0.055, y_m: 0.045, cycles_per_m: 310.0, trough_n: 0.0, crest_n: 0.004 });
-    let records = [
-        (Region::Screen, Blend::Replace, Layer::Constant(Constant { electric_friction_n: 0.003 })),
-        (polygon, Blend::Add, grating(Wave::Sine, 0.0, 0.004)),
-        (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 }, 0.001, 0.006)),
-        (ellipse, Blend::Multiply, grating(Wave::Triangle, 0.5, 1.5)),
-        (Region::Screen, Blend::Add, grating(Wave::Saw, 0.0, 0.002)),
-        (Region::Screen, Blend::Add, bitmap(true, -0.06)),
-        (rectangle, Blend::Replace, bitmap(false, 0.11)),
-        (Region::Screen, Blend::Add, noise),
-        (Region::Screen, Blend::Add, edge),
-        (rectangle, Blend::Max, button),
-        (ellipse, Blend::Max, button),
-        (Region::Screen, Blend::Add, vibration(Beat::Sine, Burst { period_s: 0.09, on_s: 0.05, ramp_s: 0.02 })),
-        (ellipse, Blend::Add, vibration(Beat::Square, Burst::default())),
-        (polygon, Blend::Add, Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 })),
-        (Region::Screen, Blend::Multiply, Layer::Speed(Speed { first: 0, count: 3 })),
-        (ellipse, Blend::Add, rings(Wave::Sine)),
-        (Region::Screen, Blend::Max, rings(Wave::Square { duty: 0.4 })),
-    ];
-    for kind in Layer::NUMBERS {
-        assert!(records.iter().any(|(_, _, layer)| layer.number() == *kind), "kind {kind} is not among them");
-    }
-    let points =
-        [(0.02, 0.4), (0.09, 1.1), (0.2, 0.8), (0.01, 0.01), (0.11, 0.015), (0.06, 0.04), (0.1, 0.07), (0.02, 0.06)];
-    (
-        records.map(|(region, blend, layer)| Record { region, blend, gain: 1.0, layer }).to_vec(),
-        points.map(|(x, y)| Corner { x, y }).to_vec(),
-    )
+    (iter::once(ground).chain(records).collect(), points)
 }
 
 #[test]

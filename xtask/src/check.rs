@@ -55,7 +55,7 @@ pub(crate) const M3_TARGET: Need = Need::Target(M3);
 pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 
 /// All checks, in the order in which they run: a cheap one fails first.
-const STAGES: [Stage; 13] = [
+const STAGES: [Stage; 14] = [
     Stage { name: "format", tier: Tier::First, needs: &[FORMAT], run: format },
     Stage { name: "lints", tier: Tier::First, needs: &[CLIPPY], run: lints },
     Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET], run: feature_sets },
@@ -64,6 +64,7 @@ const STAGES: [Stage; 13] = [
     Stage { name: "documentation tests", tier: Tier::First, needs: &[], run: test_programs::run_documentation },
     Stage { name: "documentation", tier: Tier::First, needs: &[], run: documentation },
     Stage { name: "crates of the page for WebAssembly", tier: Tier::First, needs: &[WASM_TARGET, CLIPPY], run: page },
+    Stage { name: "scripts of the studio", tier: Tier::First, needs: &studio_tests::SCRIPT_NEEDS, run: studio_scripts },
     Stage { name: "studio in a browser", tier: Tier::First, needs: &studio_tests::NEEDS, run: studio_in_a_browser },
     Stage {
         name: "tests on emulators",
@@ -136,6 +137,11 @@ fn documentation() -> Result<Outcome, String> {
 
 fn page() -> Result<Outcome, String> {
     unless_host_unchanged("page", || passed(portability::page_crates()))
+}
+
+fn studio_scripts() -> Result<Outcome, String> {
+    let inputs = ["host/studio", "xtask"].map(str::to_owned);
+    stamps::unless_unchanged("studio-scripts", &inputs, || passed(studio_tests::check_scripts()))
 }
 
 fn studio_in_a_browser() -> Result<Outcome, String> {

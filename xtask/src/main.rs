@@ -37,7 +37,8 @@ cargo xtask portability
                      the crates of a page for WebAssembly; the command for Windows and macOS
 cargo xtask studio   the studio as one HTML file; its path is the last line
 cargo xtask studio-test
-                     the studio in a browser: needs node, npm and Chromium
+                     types and lints of the studio's scripts, and the studio in a browser: needs node,
+                     npm and Chromium
 cargo xtask fuzz SECONDS
                      each fuzz target for this time, with libFuzzer; needs a C++ compiler
 cargo xtask programs PACE FIRST COUNT
@@ -65,7 +66,9 @@ fn main() -> ExitCode {
             .and_then(|()| portability::other_systems()),
         ["studio"] => require(&[WASM_TARGET]).and_then(|()| studio::build()).map(|path| println!("{}", path.display())),
         ["studio-test"] => {
-            let result = require(&studio_tests::NEEDS).and_then(|()| studio_tests::run_all());
+            let result = require(&studio_tests::NEEDS)
+                .and_then(|()| studio_tests::check_scripts())
+                .and_then(|()| studio_tests::run_all());
             results::print();
             result
         }

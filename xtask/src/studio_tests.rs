@@ -1,4 +1,5 @@
-//! The browser tests of the studio: `host/studio/test`, in Chromium, driven by node and playwright-core.
+//! The checks of the studio: types and lints of its scripts, and its tests in Chromium (`host/studio/test`), driven by
+//! node and playwright-core.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,19 +9,28 @@ use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
 use crate::needs::Need;
 use crate::{results, studio};
 
+/// What types and lints need.
+pub(crate) const SCRIPT_NEEDS: [Need; 2] = [Need::Node, Need::Npm];
 /// What the tests need.
 pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
-/// Longest time of a file of tests, ms: of those that repeat each stroke until the machine does not disturb it, too.
+/// Longest time of a file of tests, ms.
 const TEST_TIMEOUT_MS: u32 = 600_000;
 
-/// Compares the vendored bundle with its lock file, builds the page, and runs the tests in it.
+/// Compares the vendored bundle with its lock file, and checks types and lints of all scripts.
+pub(crate) fn check_scripts() -> Result<(), String> {
+    for (name, folder) in [("vendored bundle", "host/studio/vendor"), ("scripts of the studio", "host/studio/test")] {
+        let folder = root().join(folder);
+        install(&folder)?;
+        run(name, Command::new("npm").current_dir(&folder).args(["run", "--silent", "check"]))?;
+    }
+    Ok(())
+}
+
+/// Builds the page, and runs the tests in it.
 pub(crate) fn run_all() -> Result<(), String> {
-    let vendor = root().join("host/studio/vendor");
-    install(&vendor)?;
-    run("vendored bundle", Command::new("npm").current_dir(&vendor).args(["run", "--silent", "check"]))?;
     let page = studio::build()?;
     // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
     let native = ["build", "--locked", "--workspace", "--bin", "frixel", "--example", HASHES, "--example", REAL_BOARD];

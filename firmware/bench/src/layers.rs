@@ -4,8 +4,7 @@ use core::array;
 
 use frixel_layers::cost;
 use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, Header, Layer, Noise, Point, Record, Region,
-    Rings, Speed, Stream, Vibration, Wave, Waveform,
+    Bitmap, Blend, Constant, Grating, Header, Layer, Point, Record, Region, Speed, Stream, Wave, Waveform,
 };
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
@@ -13,23 +12,27 @@ use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
+use frixel_testkit::samples::{samples, with_picture};
 use frixel_testkit::{HEADER, SceneBytes, scene_with_points};
 
 use crate::tick::Bench;
 
-pub(crate) const GRATING: Layer = grating(Wave::Sine);
+pub(crate) const GRATING: Layer = Layer::Grating(Grating {
+    wave: Wave::Sine,
+    cycles_per_m_x: 500.0,
+    cycles_per_m_y: 100.0,
+    phase_turns: 0.2,
+    trough_n: 0.0,
+    crest_n: 0.026,
+});
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
-const RINGS: Layer =
-    Layer::Rings(Rings { wave: Wave::Sine, x_m: 0.06, y_m: 0.05, cycles_per_m: 500.0, trough_n: 0.0, crest_n: 0.026 });
 const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
 /// The part of the screen where the finger is. Layers that are away from the finger are outside it.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
 const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 });
 /// More friction than the drive can give; every tick counts as saturated.
 const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
-/// Short enough that ticks during the click and ticks after its end are both counted.
-const CLICK: Click = Click { height_n: 0.005, decay_s: 0.05 };
 
 /// One of many regions that the finger never touches, most of them in a grid cell of their own.
 fn away(number: usize) -> Region {
@@ -57,18 +60,8 @@ pub(crate) fn largest_scene() -> SceneBytes {
     scene_with_points(&HEADER, &records, &points)
 }
 
-const fn grating(wave: Wave) -> Layer {
-    Layer::Grating(Grating {
-        wave,
-        cycles_per_m_x: 500.0,
-        cycles_per_m_y: 100.0,
-        phase_turns: 0.2,
-        trough_n: 0.0,
-        crest_n: 0.026,
-    })
-}
-
-const fn picture(crc32: u32, tiled: bool) -> Layer {
+/// A picture over the screen.
+pub(crate) const fn bitmap(crc32: u32) -> Layer {
     Layer::Bitmap(Bitmap {
         crc32,
         x_m: 0.01,
@@ -77,19 +70,9 @@ const fn picture(crc32: u32, tiled: bool) -> Layer {
         black_n: 0.0,
         white_n: 0.026,
         pitch_y_m: 1e-3,
-        angle_turns: if tiled { 0.05 } else { 0.0 },
-        tiled,
+        angle_turns: 0.0,
+        tiled: false,
     })
-}
-
-/// A picture over the screen.
-pub(crate) const fn bitmap(crc32: u32) -> Layer {
-    picture(crc32, false)
-}
-
-const fn vibration(beat: Beat) -> Layer {
-    let burst = Burst { period_s: 0.05, on_s: 0.03, ramp_s: 0.01 };
-    Layer::Vibration(Vibration { beat, frequency_hz: 90.0, low_n: 0.001, high_n: 0.02, burst })
 }
 
 /// A layer in a region under the finger, with the most expensive blend.
@@ -106,39 +89,12 @@ impl Bench {
         self.slide(counter.case("tick_two_constants"));
         self.play(&Header { waveform: Waveform::Sine, ..HEADER }, &two);
         self.slide(counter.case("tick_two_constants_sine_carrier"));
-        let edge = Layer::Edge(Edge {
-            x_m: 0.03,
-            y_m: 0.03,
-            angle_turns: 0.02,
-            width_m: 0.05,
-            level_n: 0.0,
-            ridge_n: 0.02,
-            click: CLICK,
-        });
-        let button = Layer::Button(Button { rim_width_m: 0.02, rim_n: 0.02, face_n: 0.001, click: CLICK });
-        let noise =
-            Layer::Noise(Noise { seed: 7, wavelength_min_m: 1e-3, wavelength_max_m: 5e-3, low_n: 0.001, high_n: 0.02 });
-        let entered = Region::Rectangle { x_m: 0.025, y_m: 0.0, width_m: 0.09, height_m: 0.11 };
-        for (name, region, layer) in [
-            ("tick_constant_alone", AROUND, CONSTANT),
-            ("tick_out_of_reach_alone", AROUND, OUT_OF_REACH),
-            ("tick_sine_alone", AROUND, GRATING),
-            ("tick_square_alone", AROUND, grating(Wave::Square { duty: 0.5 })),
-            ("tick_triangle_alone", AROUND, grating(Wave::Triangle)),
-            ("tick_saw_alone", AROUND, grating(Wave::Saw)),
-            ("tick_rings_alone", AROUND, RINGS),
-            ("tick_bitmap_alone", AROUND, bitmap(crc32)),
-            ("tick_bitmap_tiled_alone", AROUND, picture(crc32, true)),
-            ("tick_noise_alone", AROUND, noise),
-            ("tick_edge_alone", AROUND, edge),
-            ("tick_button_alone", entered, button),
-            ("tick_vibration_sine_alone", AROUND, vibration(Beat::Sine)),
-            ("tick_vibration_square_alone", AROUND, vibration(Beat::Square)),
-            ("tick_stream_alone", AROUND, STREAM),
-            ("tick_ellipse_alone", Region::Ellipse { x_m: -0.05, y_m: -0.05, width_m: 0.2, height_m: 0.2 }, CONSTANT),
-        ] {
-            self.alone(counter, name, under(region, layer), &[]);
+        for case in samples().flat_map(|sample| sample.costs) {
+            self.alone(counter, case.name, under(case.region, with_picture(case.layer, crc32)), &[]);
         }
+        let ellipse = Region::Ellipse { x_m: -0.05, y_m: -0.05, width_m: 0.2, height_m: 0.2 };
+        self.alone(counter, "tick_ellipse_alone", under(ellipse, CONSTANT), &[]);
+        self.alone(counter, "tick_out_of_reach_alone", under(AROUND, OUT_OF_REACH), &[]);
         self.play(&HEADER, &[under(AROUND, CONSTANT), under(away(0), STREAM)]);
         self.start_stream();
         self.slide(counter.case("tick_stream_elsewhere"));
@@ -148,7 +104,7 @@ impl Bench {
         self.polygons(counter);
         self.curves(counter);
         for kind in Layer::NUMBERS {
-            assert!(self.kinds_counted & 1 << kind != 0, "the cost of layer kind {kind} is not counted: add a case");
+            assert!(self.kinds_counted & 1 << kind != 0, "the cost of layer kind {kind} is not counted: its sample has no case");
         }
     }
 

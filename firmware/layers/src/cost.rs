@@ -49,6 +49,9 @@ impl Worst {
     }
 }
 
+/// Name and core cycles of each layer that was measured, or of the part of it that another does not have.
+pub const MEASURED_LAYERS: &[(&str, u32)] = measured::LAYERS;
+
 /// Converts core cycles to cycles of code that runs from flash, rounded up.
 pub const fn cycles(core_cycles: u32) -> u32 {
     core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100)

@@ -6,6 +6,7 @@ use frixel_wire::scene::SceneError;
 use crate::click::Click;
 use crate::context::Context;
 use crate::interval::Interval;
+use crate::measured;
 use crate::parameters::Parameters;
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -58,6 +59,29 @@ pub(crate) trait Kind: Parameters + Copy {
 
     /// Computes the coefficients of layer number `layer`. Its parameters have been checked.
     fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Self::Coefficients, Refusal>;
+}
+
+/// Core cycles of the layer that the benchmark counts under this name: `tick_NAME_alone`. 0 until it has been measured,
+/// which the tests of the samples find.
+pub(crate) const fn core_cycles(name: &str) -> u32 {
+    let mut number = 0;
+    while number < measured::LAYERS.len() {
+        let (measured, core_cycles) = measured::LAYERS[number];
+        if is_same(measured.as_bytes(), name.as_bytes()) {
+            return core_cycles;
+        }
+        number += 1;
+    }
+    0
+}
+
+/// `==` of slices, which no constant can use.
+const fn is_same(one: &[u8], other: &[u8]) -> bool {
+    let mut at = 0;
+    while at < one.len() && at < other.len() && one[at] == other[at] {
+        at += 1;
+    }
+    at == one.len() && at == other.len()
 }
 
 /// Coefficients of a layer, as the tick evaluates them.

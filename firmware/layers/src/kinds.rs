@@ -20,8 +20,6 @@ pub(crate) mod stream;
 #[cfg(feature = "vibration")]
 pub(crate) mod vibration;
 
-#[cfg_attr(not(feature = "bitmap"), allow(unused_imports, reason = "constant layers have no bit"))]
-use frixel_wire::hello::feature;
 use frixel_wire::message::{ConfigRefusal, Refusal};
 use frixel_wire::scene::SceneError;
 
@@ -35,27 +33,33 @@ use crate::point::Point;
 use crate::prepare::Preparation;
 use crate::region::{ActiveRegion, Region};
 
-/// Generates the enums of all kinds, and the functions that dispatch on them, from one list.
+/// Generates the enums of all kinds, and the functions that dispatch on them, from one list: the kind's number in
+/// records, its type and module, its Cargo feature, and the number of its bit in the features of the hello. Numbers are
+/// never used again.
 macro_rules! kinds {
     ($(
         $(#[doc = $doc:literal])*
-        $(#[cfg($cfg:meta)])?
-        $number:literal => $kind:ident in $module:ident, $bit:expr;
+        $number:literal => $kind:ident in $module:ident $(, feature $feature:literal bit $bit:literal)?;
     )*) => {
-        $( $(#[cfg($cfg)])? pub use $module::$kind; )*
+        $( $(#[cfg(feature = $feature)])? pub use $module::$kind; )*
 
         /// Kind and parameters of a layer. Frictions are electric, in newtons, before the gain; dimensionless factors
         /// in a layer with multiplicative blend.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Layer {
-            $( $(#[doc = $doc])* $(#[cfg($cfg)])? $kind($kind), )*
+            $( $(#[doc = $doc])* $(#[cfg(feature = $feature)])? $kind($kind), )*
         }
 
         /// Coefficients of a layer. Its tag is a byte of its own, so that the tick finds the kind at once.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[repr(u8)]
         pub(crate) enum Coefficients {
-            $( $(#[cfg($cfg)])? $kind(<$kind as Kind>::Coefficients), )*
+            $( $(#[cfg(feature = $feature)])? $kind(<$kind as Kind>::Coefficients), )*
+        }
+
+        /// Number in records and name of each kind, whether or not its feature is enabled.
+        pub fn kind_names() -> impl Iterator<Item = (u8, &'static str)> {
+            [$( ($number, stringify!($kind)), )*].into_iter()
         }
 
         /// Whether this crate knows a kind with this number, whether or not its feature is enabled.
@@ -65,42 +69,46 @@ macro_rules! kinds {
             known
         }
 
-        /// Bits of [`frixel_wire::hello::feature`] of the kinds whose features are enabled.
-        pub(crate) const KIND_FEATURES: u32 = {
+        /// Number, feature and bit of the kinds that have a feature, whether or not it is enabled.
+        pub const KIND_FEATURES: &[KindFeature] =
+            &[$( $( KindFeature { number: $number, name: $feature, bit: 1 << $bit }, )? )*];
+
+        /// The bits of the kinds whose features are enabled.
+        pub(crate) const KIND_FEATURES_ON: u32 = {
             let mut bits = 0;
-            $( $(#[cfg($cfg)])? { bits |= $bit; } )*
+            $( $( if cfg!(feature = $feature) { bits |= 1 << $bit; } )? )*
             bits
         };
 
         impl Layer {
             /// Numbers in records of the kinds whose features are enabled.
-            pub const NUMBERS: &'static [u8] = &[$( $(#[cfg($cfg)])? $number, )*];
+            pub const NUMBERS: &'static [u8] = &[$( $(#[cfg(feature = $feature)])? $number, )*];
 
             /// The kind's number in records.
             pub const fn number(&self) -> u8 {
-                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => $number, )* }
+                match self { $( $(#[cfg(feature = $feature)])? Self::$kind(_) => $number, )* }
             }
 
-            /// The bit of [`frixel_wire::hello::feature`] that a board needs to play the layer, or 0.
+            /// The bit of the hello's features that a board needs to play the layer, or 0.
             pub const fn feature(&self) -> u32 {
-                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => $bit, )* }
+                match self { $( $(#[cfg(feature = $feature)])? Self::$kind(_) => 0 $( | 1 << $bit )?, )* }
             }
 
             /// Whether the layer plays the host's stream, and fades with it.
             pub const fn is_streamed(&self) -> bool {
-                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => <$kind as Kind>::STREAMED, )* }
+                match self { $( $(#[cfg(feature = $feature)])? Self::$kind(_) => <$kind as Kind>::STREAMED, )* }
             }
 
             pub(crate) fn read(number: u8, bytes: &RecordBytes, record: u8) -> Result<Self, SceneError> {
                 match number {
-                    $( $(#[cfg($cfg)])? $number => Parameters::read(bytes).map(Self::$kind), )*
+                    $( $(#[cfg(feature = $feature)])? $number => Parameters::read(bytes).map(Self::$kind), )*
                     kind => return Err(SceneError::UnknownKind { record, kind }),
                 }
                 .map_err(|UnknownForm(value)| SceneError::UnknownChoice { record, offset: FORM_AT as u8, value })
             }
 
             pub(crate) const fn cost_elsewhere(&self) -> u32 {
-                match self { $( $(#[cfg($cfg)])? Self::$kind(_) => <$kind as Kind>::COST_ELSEWHERE, )* }
+                match self { $( $(#[cfg(feature = $feature)])? Self::$kind(_) => <$kind as Kind>::COST_ELSEWHERE, )* }
             }
 
             pub(crate) fn prepare(
@@ -109,7 +117,7 @@ macro_rules! kinds {
                 preparation: &mut Preparation,
             ) -> Result<Coefficients, Refusal> {
                 match self {
-                    $( $(#[cfg($cfg)])? Self::$kind(kind) => {
+                    $( $(#[cfg(feature = $feature)])? Self::$kind(kind) => {
                         Kind::prepare(kind, layer, preparation).map(Coefficients::$kind)
                     } )*
                 }
@@ -120,19 +128,19 @@ macro_rules! kinds {
             /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
             #[inline]
             pub(crate) fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32 {
-                match self { $( $(#[cfg($cfg)])? Self::$kind(kind) => evaluate(kind, region, context), )* }
+                match self { $( $(#[cfg(feature = $feature)])? Self::$kind(kind) => evaluate(kind, region, context), )* }
             }
         }
 
         /// Name of each kind, with its parameters' names, offsets and lengths.
         #[cfg(test)]
         const LAYOUTS: &[(&str, &[(&str, usize, usize)])] =
-            &[$( $(#[cfg($cfg)])? (stringify!($kind), <$kind as Parameters>::LAYOUT), )*];
+            &[$( $(#[cfg(feature = $feature)])? (stringify!($kind), <$kind as Parameters>::LAYOUT), )*];
 
         /// Calls a function of whichever kind a layer is.
         macro_rules! of_kind {
             ($layer:expr, $named:ident => $call:expr) => {
-                match $layer { $( $(#[cfg($cfg)])? Layer::$kind($named) => $call, )* }
+                match $layer { $( $(#[cfg(feature = $feature)])? Layer::$kind($named) => $call, )* }
             };
         }
     };
@@ -140,34 +148,39 @@ macro_rules! kinds {
 
 kinds! {
     /// The same friction everywhere.
-    1 => Constant in constant, 0;
+    1 => Constant in constant;
     /// Parallel stripes.
-    #[cfg(feature = "grating")]
-    2 => Grating in grating, feature::GRATING;
+    2 => Grating in grating, feature "grating" bit 0;
     /// A picture.
-    #[cfg(feature = "bitmap")]
-    3 => Bitmap in bitmap, feature::BITMAP;
+    3 => Bitmap in bitmap, feature "bitmap" bit 1;
     /// Band-limited noise.
-    #[cfg(feature = "noise")]
-    4 => Noise in noise, feature::NOISE;
+    4 => Noise in noise, feature "noise" bit 5;
     /// A line with a ridge or a well along it, and a click when the finger crosses it.
-    #[cfg(feature = "edge")]
-    5 => Edge in edge, feature::EDGE;
+    5 => Edge in edge, feature "edge" bit 6;
     /// A button that fills its region, and a click when the finger slides in.
-    #[cfg(feature = "edge")]
-    6 => Button in button, feature::EDGE;
+    6 => Button in button, feature "edge" bit 6;
     /// Friction that changes with time.
-    #[cfg(feature = "vibration")]
-    7 => Vibration in vibration, feature::VIBRATION;
+    7 => Vibration in vibration, feature "vibration" bit 7;
     /// A curve over sliding speed.
-    #[cfg(feature = "speed")]
-    8 => Speed in speed, feature::SPEED;
+    8 => Speed in speed, feature "speed" bit 8;
     /// What the host sends while the scene plays.
-    #[cfg(feature = "stream")]
-    9 => Stream in stream, feature::STREAM;
+    9 => Stream in stream, feature "stream" bit 9;
     /// Rings around a middle.
-    #[cfg(feature = "rings")]
-    10 => Rings in rings, feature::RINGS;
+    10 => Rings in rings, feature "rings" bit 11;
+}
+
+// The session answers for streams, too.
+const _: () = assert!(frixel_wire::hello::feature::STREAM == 1 << 9);
+
+/// The Cargo feature of a kind of layer. Several kinds may share one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KindFeature {
+    /// The kind's number in records.
+    pub number: u8,
+    /// Name of the Cargo feature.
+    pub name: &'static str,
+    /// Its bit in the features of the hello.
+    pub bit: u32,
 }
 
 impl Layer {

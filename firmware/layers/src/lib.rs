@@ -36,13 +36,14 @@
 //! 1. numbers: `interval`, `cosine`, `square_root`, `measured` (what evaluations cost);
 //! 2. bytes: `layout` (what all records have in common), `parameters`, `point`, `header`;
 //! 3. what an evaluation reads and changes: `bitmap_pool`, `clicks`, `noise_waves`, `tables`, `context`, `prepare`;
-//! 4. the parts of a layer: `blend`, `region`, `wave`, `click`, `kind`, `kinds`, `record`;
+//! 4. the parts of a layer: `blend`, `region`, `click`, `kind`, `wave`, `kinds`, `record`;
 //! 5. a scene: `scene`, `grid`, `cost`, `bounds`, `active`.
 //!
 //! # Features
 //!
 //! Every Cargo feature is a kind of layer or of region, and all are enabled by default. A board without one of them is
-//! smaller, and refuses a scene that needs it ([`disabled_record`]). [`FEATURES`] are the feature bits in its hello.
+//! smaller, and refuses a scene that needs it ([`disabled_record`]). [`FEATURES`] are the feature bits in its hello,
+//! and [`KIND_FEATURES`] those of all kinds. A test writes the features of the kinds into the manifests.
 //! Constant layers, rectangles, ellipses and all blends are always included.
 //!
 //! # Speed and size
@@ -110,5 +111,12 @@ pub use wave::Wave;
 
 use frixel_wire::hello::feature;
 
-/// Bits of [`frixel_wire::hello::feature`] of the kinds of layers and regions whose Cargo features are enabled.
-pub const FEATURES: u32 = kinds::KIND_FEATURES | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 };
+/// Bits of the hello's features of the kinds of layers and regions whose Cargo features are enabled.
+pub const FEATURES: u32 = kinds::KIND_FEATURES_ON | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 };
+
+/// Name of each feature of the hello, by its bit, in the order of the bits: that of the board's Cargo feature, where
+/// there is one.
+pub fn feature_names() -> impl Iterator<Item = (u32, &'static str)> {
+    let all = || KIND_FEATURES.iter().map(|kind| (kind.bit, kind.name)).chain(feature::NAMES);
+    (0..u32::BITS).filter_map(move |bit| all().find(|(named, _)| *named == 1 << bit))
+}

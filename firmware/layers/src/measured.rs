@@ -8,25 +8,9 @@ pub(crate) const EMPTY: u32 = 832;
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: u32 = 37;
 
-// Layers, in a rectangle.
-pub(crate) const CONSTANT: u32 = 72;
-pub(crate) const SINE: u32 = 139;
-pub(crate) const SQUARE: u32 = 145;
-pub(crate) const TRIANGLE: u32 = 123;
-pub(crate) const SAW: u32 = 118;
-pub(crate) const RINGS: u32 = 58;
-pub(crate) const BITMAP: u32 = 223;
-pub(crate) const BITMAP_TILED: u32 = 274;
-pub(crate) const NOISE: u32 = 402;
-pub(crate) const EDGE: u32 = 253;
-pub(crate) const BUTTON: u32 = 281;
-pub(crate) const VIBRATION_SINE: u32 = 178;
-pub(crate) const VIBRATION_SQUARE: u32 = 147;
-
 // A curve, and each of its points.
 pub(crate) const SPEED: u32 = 147;
 pub(crate) const SPEED_POINT: u32 = 11;
-pub(crate) const STREAM: u32 = 97;
 
 // The stream's own work, wherever the finger is.
 pub(crate) const STREAM_ELSEWHERE: u32 = 143;
@@ -38,3 +22,21 @@ pub(crate) const ELLIPSE: u32 = 8;
 pub(crate) const POLYGON: u32 = 33;
 pub(crate) const POLYGON_EDGE: u32 = 19;
 pub(crate) const POLYGON_EDGE_LEVEL: u32 = 26;
+
+/// Layers, in a rectangle; `kind::core_cycles` finds one by its name.
+pub(crate) const LAYERS: &[(&str, u32)] = &[
+    ("bitmap", 223),
+    ("bitmap_tiled", 274),
+    ("button", 281),
+    ("constant", 72),
+    ("edge", 253),
+    ("noise", 402),
+    ("rings", 58),
+    ("saw", 118),
+    ("sine", 139),
+    ("square", 145),
+    ("stream", 97),
+    ("triangle", 123),
+    ("vibration_sine", 178),
+    ("vibration_square", 147),
+];

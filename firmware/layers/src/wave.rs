@@ -1,14 +1,11 @@
 //! Periodic waves over an angle in turns, for kinds that repeat over the screen.
-#![cfg_attr(
-    not(any(feature = "grating", feature = "rings")),
-    allow(dead_code, reason = "no kind that is on repeats over the screen")
-)]
+#![allow(dead_code, reason = "which of these is used depends on the features that are on")]
 
 use frixel_wire::message::ConfigRefusal;
 
 use crate::cosine::{centred, cosine};
+use crate::kind::core_cycles;
 use crate::layout::RecordBytes;
-use crate::measured;
 use crate::parameters::{Parameter, UnknownForm, form, put_form, range};
 
 const SINE: u8 = 0;
@@ -39,10 +36,10 @@ impl Wave {
     /// Most core cycles of a grating of this shape.
     pub(crate) fn cost(&self) -> u32 {
         match self {
-            Self::Sine => measured::SINE,
-            Self::Square { .. } => measured::SQUARE,
-            Self::Triangle => measured::TRIANGLE,
-            Self::Saw => measured::SAW,
+            Self::Sine => const { core_cycles("sine") },
+            Self::Square { .. } => const { core_cycles("square") },
+            Self::Triangle => const { core_cycles("triangle") },
+            Self::Saw => const { core_cycles("saw") },
         }
     }
 }

@@ -2,7 +2,7 @@
 //! To see it refused: `cargo test -p frixel-layers --no-default-features --test disabled`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use frixel_layers::{Blend, Constant, FEATURES, Layer, Record, Region, disabled_record};
+use frixel_layers::{Blend, Constant, FEATURES, KIND_FEATURES, KindFeature, Layer, Record, Region, disabled_record};
 use frixel_wire::hello::feature;
 use frixel_wire::scene::SceneError;
 
@@ -15,18 +15,7 @@ const RECORD: Record = Record {
 
 #[test]
 fn a_kind_is_read_or_known_to_be_disabled() {
-    for (kind, bit) in (1..).zip([
-        0,
-        feature::GRATING,
-        feature::BITMAP,
-        feature::NOISE,
-        feature::EDGE,
-        feature::EDGE,
-        feature::VIBRATION,
-        feature::SPEED,
-        feature::STREAM,
-        feature::RINGS,
-    ]) {
+    for KindFeature { number: kind, bit, .. } in KIND_FEATURES.iter().copied() {
         let mut bytes = RECORD.write();
         bytes[0] = kind;
         let found = Record::parse(&bytes, 3).err();

@@ -2,9 +2,7 @@
 
 mod bounds;
 mod cost;
-mod golden;
 mod grid;
-mod parsers;
-mod protocol_ranges;
-mod scene;
+mod manifests;
+mod protocol;
 mod support;

@@ -47,9 +47,9 @@
 //!
 //! # Cargo features
 //!
-//! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: layers of
-//! `grating`, `bitmap`, `noise`, `edge` (with buttons), `vibration`, `speed`, `stream` and `rings`, `polygon` regions,
-//! the `sine-carrier`, `telemetry`; and the `store`, which keeps a scene over power-off. An image without one of them
+//! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: the kinds of layers
+//! (`edge` has buttons, too), `polygon` regions, the `sine-carrier`, `telemetry`; and the `store`, which keeps a scene
+//! over power-off. An image without one of them
 //! is smaller, clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses,
 //! all blends and the square carrier are always included.
 #![cfg_attr(not(test), no_std)]

@@ -3,88 +3,24 @@
 
 use crate::support;
 
-use frixel_layers::{
-    Beat, Bitmap, Blend, Burst, Button, Click, Constant, Edge, Grating, HEADER_LEN, Layer, Noise, Point, RECORD_LEN,
-    Record, Region, Speed, Stream, Vibration, Wave,
-};
+use frixel_layers::{Blend, Constant, HEADER_LEN, Layer, Point, RECORD_LEN, Record, Region, Speed};
+use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
 use support::{HEADER, Memory, TestBoard, scene_with_points};
 
-const CLICK: Click = Click { height_n: 0.004, decay_s: 0.02 };
 const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
 
-/// A record of every kind, region and blend.
+/// The samples of all kinds, in every region.
 fn records() -> Vec<Record> {
-    let rectangle = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
-    let ellipse = Region::Ellipse { x_m: 0.01, y_m: 0.01, width_m: 0.1, height_m: 0.05 };
-    let grating = |wave| {
-        Layer::Grating(Grating {
-            wave,
-            cycles_per_m_x: 300.0,
-            cycles_per_m_y: 40.0,
-            phase_turns: 0.3,
-            trough_n: 0.001,
-            crest_n: 0.006,
-        })
-    };
-    let bitmap = |tiled| {
-        Layer::Bitmap(Bitmap {
-            crc32: bitmap_crc32(3, 2, &SAMPLES),
-            x_m: 0.02,
-            y_m: 0.01,
-            pitch_m: 2e-3,
-            black_n: 0.0,
-            white_n: 0.004,
-            pitch_y_m: 3e-3,
-            angle_turns: 0.1,
-            tiled,
-        })
-    };
-    [
-        (Region::Screen, Blend::Replace, Layer::Constant(Constant { electric_friction_n: 0.004 })),
-        (Region::Polygon { first: 2, count: 4 }, Blend::Add, grating(Wave::Triangle)),
-        (rectangle, Blend::Max, grating(Wave::Square { duty: 0.3 })),
-        (ellipse, Blend::Add, grating(Wave::Sine)),
-        (ellipse, Blend::Multiply, grating(Wave::Saw)),
-        (Region::Screen, Blend::Add, bitmap(true)),
-        (rectangle, Blend::Add, bitmap(false)),
-        (
-            Region::Screen,
-            Blend::Add,
-            Layer::Noise(Noise { seed: 3, wavelength_min_m: 1e-3, wavelength_max_m: 4e-3, low_n: 0.0, high_n: 0.003 }),
-        ),
-        (
-            Region::Screen,
-            Blend::Add,
-            Layer::Edge(Edge {
-                x_m: 0.03,
-                y_m: 0.03,
-                angle_turns: 0.05,
-                width_m: 2e-3,
-                level_n: 0.0,
-                ridge_n: 0.005,
-                click: CLICK,
-            }),
-        ),
-        (rectangle, Blend::Max, Layer::Button(Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK })),
-        (ellipse, Blend::Max, Layer::Button(Button { rim_width_m: 2e-3, rim_n: 0.02, face_n: 0.0, click: CLICK })),
-        (
-            Region::Screen,
-            Blend::Add,
-            Layer::Vibration(Vibration {
-                beat: Beat::Sine,
-                frequency_hz: 80.0,
-                low_n: 0.0,
-                high_n: 0.002,
-                burst: Burst { period_s: 0.05, on_s: 0.02, ramp_s: 0.005 },
-            }),
-        ),
-        (Region::Screen, Blend::Multiply, Layer::Speed(Speed { first: 0, count: 2 })),
-        (Region::Screen, Blend::Add, Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 })),
-    ]
-    .map(|(region, blend, layer)| Record { region, blend, gain: 1.0, layer })
-    .to_vec()
+    let with_picture = |layer| with_picture(layer, bitmap_crc32(3, 2, &SAMPLES));
+    let records = sample_records().map(|sample| sample.record);
+    records.map(|record| Record { layer: with_picture(record.layer), ..record }).collect()
+}
+
+#[track_caller]
+fn record_that(is: impl Fn(&Record) -> bool) -> Record {
+    records().into_iter().find(is).unwrap()
 }
 
 /// A layer, and one below it that is always felt.
@@ -93,22 +29,8 @@ fn on_a_ground(record: Record) -> Vec<Record> {
     vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer: ground }, record]
 }
 
-fn points() -> Vec<Point> {
-    [(0.02, 0.5), (0.2, 1.5), (0.01, 0.01), (0.1, 0.015), (0.09, 0.05), (0.02, 0.04)]
-        .map(|(x, y)| Point { x, y })
-        .to_vec()
-}
-
-#[cfg(all(
-    feature = "grating",
-    feature = "bitmap",
-    feature = "noise",
-    feature = "edge",
-    feature = "vibration",
-    feature = "speed",
-    feature = "stream",
-    feature = "polygon"
-))]
+// Uploading pictures and starting streams are the session's own features.
+#[cfg(all(feature = "bitmap", feature = "stream"))]
 mod whole {
     use frixel_wire::message::{Command, ConfigField, ConfigRefusal, Refusal};
     use support::record;
@@ -135,7 +57,10 @@ mod whole {
         board.upload_bitmap(3, 2, &SAMPLES).unwrap();
         // One after another: all of them under one finger are refused, for what a tick would take.
         for record in records() {
-            board.play(&scene_with_points(&HEADER, &on_a_ground(record), &points()));
+            // As it is felt everywhere: some samples take friction away.
+            let blend = if matches!(record.layer, Layer::Speed(_)) { Blend::Multiply } else { Blend::Add };
+            let record = Record { blend, gain: 1.0, ..record };
+            board.play(&scene_with_points(&HEADER, &on_a_ground(record), &POINTS));
             assert!(board.slide(8_000)[400..].iter().all(|drive| drive.dac_code.bits() != 0), "{record:?}");
             board.command(Command::Disarm).unwrap();
             board.press_switch();
@@ -154,25 +79,28 @@ mod whole {
         };
         let mut judged = 0;
         for record in records() {
-            assert_eq!(refusal(record, &points()), None, "{record:?}");
+            assert_eq!(refusal(record, &POINTS), None, "{record:?}");
             for at in parameters(&record) {
                 let mut bytes = record.write();
                 bytes[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
                 let record = Record::parse(&bytes, 0).unwrap();
                 assert!(
-                    refusal(record, &points()).is_some_and(|refusal| refusal.found.is_nan()),
+                    refusal(record, &POINTS).is_some_and(|refusal| refusal.found.is_nan()),
                     "byte {at}: {record:?}"
                 );
                 judged += 1;
             }
         }
         assert!(judged > 80, "{judged}");
-        for at in 0..6 {
+        let is_polygon = |record: &Record| matches!(record.region, Region::Polygon { .. });
+        // A curve of the first two points, and a triangle of the others.
+        let users = [record_that(|record| matches!(record.layer, Layer::Speed(_))), record_that(is_polygon)];
+        for at in 0..POINTS.len() {
             for axis in 0..2 {
-                let mut points = points();
+                let mut points = POINTS;
                 let number = if axis == 0 { &mut points[at].x } else { &mut points[at].y };
                 *number = f32::NAN;
-                let user = if at < 2 { records()[12] } else { records()[1] };
+                let user = users[usize::from(at >= 2)];
                 assert!(refusal(user, &points).is_some(), "point {at}");
             }
         }
@@ -200,13 +128,13 @@ mod whole {
             let records: Vec<Record> = (0..count).map(beside).collect();
             board.load(&scene_with_points(&HEADER, &records, &[])).err()
         };
-        let noise = records()[7].layer;
+        let noise = record_that(|record| matches!(record.layer, Layer::Noise(_))).layer;
         assert_eq!(of(noise, 8), None);
         let full = |field, max: f32| {
             Some(Refusal::Config(ConfigRefusal { field, found: max + 1.0, min: 0.0, max, layer: max as u8 }))
         };
         assert_eq!(of(noise, 9), full(ConfigField::NoiseLayers, 8.0));
-        let edge = records()[8].layer;
+        let edge = record_that(|record| matches!(record.layer, Layer::Edge(_))).layer;
         assert_eq!(of(edge, 16), None);
         assert_eq!(of(edge, 17), full(ConfigField::ClickLayers, 16.0));
     }
@@ -214,7 +142,7 @@ mod whole {
 
 /// A whole scene with some of its bytes changed.
 fn nearly() -> impl Strategy<Value = Vec<u8>> {
-    let good = |record: Record| scene_with_points(&HEADER, &on_a_ground(record), &points());
+    let good = |record: Record| scene_with_points(&HEADER, &on_a_ground(record), &POINTS);
     let byte = (any::<prop::sample::Index>(), any::<u8>()).prop_map(|(at, byte)| (at, vec![byte]));
     let small = (any::<prop::sample::Index>(), 0..12u8).prop_map(|(at, byte)| (at, vec![byte]));
     let number =

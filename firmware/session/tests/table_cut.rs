@@ -1,15 +1,5 @@
 //! A table that ends at the largest friction that the header names plays the scene as the whole table does.
-#![cfg(all(
-    feature = "grating",
-    feature = "bitmap",
-    feature = "noise",
-    feature = "edge",
-    feature = "vibration",
-    feature = "speed",
-    feature = "stream",
-    feature = "polygon",
-    feature = "sine-carrier"
-))]
+#![cfg(all(feature = "bitmap", feature = "stream", feature = "sine-carrier"))]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use crate::support;

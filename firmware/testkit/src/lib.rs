@@ -1,6 +1,7 @@
 //! Test support that several crates share, on desktop and chip. No board image contains it.
 //!
 //! - [`HEADER`], [`record`], [`scene`]: scenes to begin with.
+//! - [`samples`]: a sample of each kind of layer, from which tests and benchmarks make what they need of every kind.
 //! - [`IdealMonitor`]: the monitor readings of an ideal amplifier.
 //! - [`Random`]: random numbers that depend on the seed only, not on the platform.
 //! - [`RandomScene`], [`RandomFinger`]: scenes that a board accepts, and fingers to play them under.
@@ -34,6 +35,8 @@ mod monitor;
 mod random;
 #[cfg(feature = "scenes")]
 mod random_scene;
+#[cfg(feature = "scenes")]
+pub mod samples;
 #[cfg(feature = "scenes")]
 mod scenes;
 

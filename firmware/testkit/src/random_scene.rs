@@ -1,13 +1,14 @@
 //! Random scenes that a board accepts.
 
 use frixel_layers::cost::{Worst, worst_of_scene};
-use frixel_layers::{Button, Click, Edge, Header, Layer, Leader, Point, Record, Waveform, electric_friction_max_n};
+use frixel_layers::{Header, Layer, Leader, Point, Record, Waveform, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
-use crate::layers::{NewPoints, ground, record};
+use crate::layers::{ground, record};
 use crate::random::Random;
+use crate::samples::NewPoints;
 use crate::scenes::{HEADER, SceneBytes, scene_with_points};
 
 /// Rejected draws after which no further layer is tried: the time that remains in a tick is too short for most layers.
@@ -78,18 +79,9 @@ impl RandomScene {
     fn is_accepted(&self) -> bool {
         let number = |is: fn(&Layer) -> bool| self.records.iter().filter(|record| is(&record.layer)).count();
         number(|layer| matches!(layer, Layer::Noise(_))) <= NOISES_MAX
-            && number(clicks) <= CLICKS_MAX
+            && number(|layer| layer.click().is_some()) <= CLICKS_MAX
             && self.worst_tick().cycles() <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
     }
-}
-
-fn clicks(layer: &Layer) -> bool {
-    let (Layer::Edge(Edge { click: Click { height_n, .. }, .. })
-    | Layer::Button(Button { click: Click { height_n, .. }, .. })) = layer
-    else {
-        return false;
-    };
-    height_n.abs() > 0.0
 }
 
 fn header(random: &mut Random) -> Header {

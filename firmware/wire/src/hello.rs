@@ -103,48 +103,25 @@ impl Hello {
 }
 
 /// Bits of [`Hello::features`]: the features enabled in the firmware build, in addition to constant layers and the
-/// square carrier, which every build has.
+/// square carrier, which every build has. `frixel-layers` has the bits of the other kinds of layers.
 pub mod feature {
-    /// Grating layers.
-    pub const GRATING: u32 = 1;
-    /// Bitmap layers.
-    pub const BITMAP: u32 = 1 << 1;
     /// The sine carrier.
     pub const SINE_CARRIER: u32 = 1 << 2;
     /// Telemetry.
     pub const TELEMETRY: u32 = 1 << 3;
     /// Touch reported by the host.
     pub const HOST_TOUCH: u32 = 1 << 4;
-    /// Noise layers.
-    pub const NOISE: u32 = 1 << 5;
-    /// Edge and button layers.
-    pub const EDGE: u32 = 1 << 6;
-    /// Vibration layers.
-    pub const VIBRATION: u32 = 1 << 7;
-    /// Speed layers.
-    pub const SPEED: u32 = 1 << 8;
     /// Stream layers, and receiving their samples while a scene plays.
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
 
-    /// Rings layers. Since protocol 1.3.
-    pub const RINGS: u32 = 1 << 11;
-
-    /// The name of each feature: that of the board's Cargo feature, where there is one.
-    pub const NAMES: [(u32, &str); 12] = [
-        (GRATING, "grating"),
-        (BITMAP, "bitmap"),
+    /// The name of each feature that is no kind of layer: that of the board's Cargo feature, where there is one.
+    pub const NAMES: [(u32, &str); 4] = [
         (SINE_CARRIER, "sine-carrier"),
         (TELEMETRY, "telemetry"),
         (HOST_TOUCH, "touch from the host"),
-        (NOISE, "noise"),
-        (EDGE, "edge"),
-        (VIBRATION, "vibration"),
-        (SPEED, "speed"),
-        (STREAM, "stream"),
         (POLYGON, "polygon"),
-        (RINGS, "rings"),
     ];
 }
 

@@ -8,7 +8,7 @@ use std::fmt::Debug;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
 use frixel_wire::hello::{
-    BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, PROTOCOL_MAJOR, PROTOCOL_MINOR, ResetCause, feature, notice,
+    BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, PROTOCOL_MAJOR, PROTOCOL_MINOR, ResetCause, notice,
 };
 use frixel_wire::message::{
     Accepted, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal,
@@ -114,26 +114,6 @@ fn flags_have_the_bits_that_the_table_says() {
         (Flags::CARRIER_BALANCED, "CARRIER_BALANCED"),
         (Flags::HOST_SILENT, "HOST_SILENT"),
         (Flags::STREAM_DRY, "STREAM_DRY"),
-    ];
-    assert_eq!(page, code);
-}
-
-#[test]
-fn features_have_the_bits_that_the_table_says() {
-    let page: Vec<(u32, &str)> = numbered("Features").into_iter().map(|(bit, name)| (1 << bit, name)).collect();
-    let code = [
-        (feature::GRATING, "GRATING"),
-        (feature::BITMAP, "BITMAP"),
-        (feature::SINE_CARRIER, "SINE_CARRIER"),
-        (feature::TELEMETRY, "TELEMETRY"),
-        (feature::HOST_TOUCH, "HOST_TOUCH"),
-        (feature::NOISE, "NOISE"),
-        (feature::EDGE, "EDGE"),
-        (feature::VIBRATION, "VIBRATION"),
-        (feature::SPEED, "SPEED"),
-        (feature::STREAM, "STREAM"),
-        (feature::POLYGON, "POLYGON"),
-        (feature::RINGS, "RINGS"),
     ];
     assert_eq!(page, code);
 }

@@ -2,9 +2,9 @@
 
 use core::f64::consts::TAU;
 
-use super::rows::{Row, Rows};
+use super::rows::Rows;
 use super::straight::minimum_jerk;
-use super::{Point, StrokeError};
+use super::{Point, StrokeError, StrokeRow};
 use crate::error::{OutOfRange, above_zero};
 use crate::random::{Purpose, Random};
 
@@ -78,17 +78,17 @@ pub(super) fn rows(
     let submovements = hand.moves(1.5 * duration_s + 2.0);
     let nominal = places(start, &submovements, 1.0, duration_s);
     let scale = (median_m_per_s(&nominal) / speed_m_per_s).clamp(0.5, 1.5);
-    let rows: Vec<Row> = places(start, &submovements, scale, duration_s)
+    let rows: Vec<StrokeRow> = places(start, &submovements, scale, duration_s)
         .into_iter()
         .enumerate()
         .map(|(index, place)| {
             let t_s = ROW_S * index as f64;
             let [x, y] = &tremor;
             let place = Some(Point { x_m: place.x_m + x.at(t_s), y_m: place.y_m + y.at(t_s) });
-            Row { t_s, place, load_n: f64::NAN }
+            StrokeRow { t_s, place, normal_load_n: None }
         })
         .collect();
-    Rows::new(&rows).map_err(|_| {
+    Rows::new(&rows).ok_or_else(|| {
         OutOfRange { name: "median speed in m/s", expected: "a speed of a finger", found: speed_m_per_s }.into()
     })
 }

@@ -1,15 +1,6 @@
 //! Motion through given rows of time and place.
 
-use super::{FingerState, Point};
-
-/// A point in time and the finger's place then; `None` while it is off the screen.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub(super) t_s: f64,
-    pub(super) place: Option<Point>,
-    /// Normal load, in N; not a number if it is unknown.
-    pub(super) load_n: f64,
-}
+use super::{FingerState, Point, StrokeRow};
 
 /// The motion from one row to the next: straight, at constant speed.
 #[derive(Clone, Copy, Debug)]
@@ -39,19 +30,20 @@ pub(super) struct Rows {
 impl Rows {
     /// Makes a motion through `rows`, whose times rise.
     ///
-    /// The error is the index of a row that the finger cannot reach at a finite speed. The finger touches the screen
-    /// only between two consecutive rows that both have a place.
-    pub(super) fn new(rows: &[Row]) -> Result<Self, usize> {
+    /// `None` if the finger cannot reach one of them at a finite speed. The finger touches the screen only between two
+    /// consecutive rows that both have a place.
+    pub(super) fn new(rows: &[StrokeRow]) -> Option<Self> {
         let mut pieces = Vec::with_capacity(rows.len());
-        for (number, (start, end)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
-            let (start_s, end_s, start_load_n, end_load_n) = (start.t_s, end.t_s, start.load_n, end.load_n);
+        for (start, end) in rows.iter().zip(rows.iter().skip(1)) {
+            let (start_s, end_s) = (start.t_s, end.t_s);
+            let [start_load_n, end_load_n] = [start, end].map(|row| row.normal_load_n.unwrap_or(f64::NAN));
             let Some((start, end)) = start.place.zip(end.place) else { continue };
             let time_s = end_s - start_s;
             let x_speed_m_per_s = (end.x_m - start.x_m) / time_s;
             let y_speed_m_per_s = (end.y_m - start.y_m) / time_s;
             let speed_m_per_s = libm::hypot(x_speed_m_per_s, y_speed_m_per_s);
             if !speed_m_per_s.is_finite() {
-                return Err(number + 1);
+                return None;
             }
             let load_slope_n_per_s = (end_load_n - start_load_n) / time_s;
             pieces.push(Piece {
@@ -66,11 +58,11 @@ impl Rows {
             });
         }
         let end_s = rows.last().map_or(0.0, |row| row.t_s);
-        let has_loads = rows.iter().any(|row| row.load_n.is_finite());
+        let has_loads = rows.iter().any(|row| row.normal_load_n.is_some());
         let mut motion =
             Self { slots_per_s: pieces.len() as f64 / end_s, before_slot: Vec::new(), pieces, end_s, has_loads };
         motion.before_slot = motion.count_before_slots();
-        Ok(motion)
+        Some(motion)
     }
 
     pub(super) fn end_s(&self) -> f64 {

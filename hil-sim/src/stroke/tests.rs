@@ -52,7 +52,7 @@ fn constant_speed_is_constant_and_ends_where_it_should() {
 #[test]
 fn the_finger_is_up_before_the_start_and_after_the_end() {
     let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap();
-    let rows = Stroke::from_csv("t_s,x_mm,y_mm\n0.5,1,2\n1,2,3").unwrap();
+    let rows = Stroke::through(&[(0.5, Some(LEFT)), (1.0, Some(RIGHT))]).unwrap();
     for (stroke, times_s) in [(&stroke, [-1e-9, 1.000_001]), (&rows, [0.499_999, 1.000_001])] {
         for t_s in times_s {
             assert_eq!(stroke.at(t_s), None);
@@ -156,8 +156,8 @@ proptest! {
             t_s += step_s.powi(power) + 1e-6;
             (t_s, x_mm, y_mm)
         }).collect();
-        let text = rows.iter().fold("t_s,x_mm,y_mm\n".to_owned(), |text, (t, x, y)| text + &format!("{t:?},{x:?},{y:?}\n"));
-        let stroke = Stroke::from_csv(&text).unwrap();
+        let place = |(t_s, x_mm, y_mm): &(f64, f64, f64)| (*t_s, Some(Point { x_m: 1e-3 * x_mm, y_m: 1e-3 * y_mm }));
+        let stroke = Stroke::through(&rows.iter().map(place).collect::<Vec<_>>()).unwrap();
         prop_assert_eq!(stroke.duration_s(), t_s);
         for pair in rows.windows(2) {
             let ((t0, x0, y0), (t1, x1, y1)) = (pair[0], pair[1]);
@@ -250,68 +250,6 @@ fn a_human_stroke_comes_from_its_seed_and_has_the_speed_of_its_places() {
 }
 
 #[test]
-fn columns_may_stand_in_any_order_among_others_with_quotes_spaces_and_windows_line_ends() {
-    let plain = Stroke::from_csv("t_s,x_mm,y_mm\n0,10,20\n1,30,40\n").unwrap();
-    let other = Stroke::from_csv("\u{feff}note, y_mm ,t_s,x_mm\r\n\"a, b\",20,\"0\",10\r\n\r\n,40, 1 ,3e1").unwrap();
-    for t_s in [0.0, 0.3, 1.0] {
-        assert_eq!(plain.at(t_s), other.at(t_s));
-        assert!(plain.at(t_s).is_some());
-    }
-}
-
-#[test]
-fn bad_text_is_refused_by_line_and_column() {
-    for (text, message) in [
-        ("", "the stroke is empty: expected a header `t_s,x_mm,y_mm` and at least two rows below it"),
-        ("t_s,x_mm,y_mm\n", "the stroke is empty: expected a header `t_s,x_mm,y_mm` and at least two rows below it"),
-        (
-            "t_s,x_mm,y_mm\n0,1,2\n",
-            "line 2: the stroke has one row only: expected at least two, so that the finger moves in time",
-        ),
-        ("0,1,2\n1,2,3\n", "line 1: no column `t_s` in the header `0,1,2`: expected `t_s,x_mm,y_mm`"),
-        ("t_s,x_mm,z_mm\n0,1,2\n", "line 1: no column `y_mm` in the header `t_s,x_mm,z_mm`: expected `t_s,x_mm,y_mm`"),
-        ("t_s,x_mm,y_mm\n0,1,2\n1,2\n", "line 3, column `y_mm`: empty: expected a number"),
-        ("t_s,x_mm,y_mm\n0,,2\n1,2,3\n", "line 2, column `x_mm`: empty: expected a number"),
-        ("t_s,x_mm,y_mm\n0,1,2\n\n1,two,3\n", "line 4, column `x_mm`: `two` is no number: expected one such as `12.5`"),
-        (
-            "\r\n\r\nt_s,x_mm,y_mm\r\n0,1,2\r\n\r\n1,two,3\r\n",
-            "line 6, column `x_mm`: `two` is no number: expected one such as `12.5`",
-        ),
-        (
-            "\u{feff}t_s,x_mm,y_mm\n\n0,1,2\n\n\n1,two,3\n",
-            "line 6, column `x_mm`: `two` is no number: expected one such as `12.5`",
-        ),
-        ("\n\nt_s,x_mm\n", "line 3: no column `y_mm` in the header `t_s,x_mm`: expected `t_s,x_mm,y_mm`"),
-        (
-            "t_s,x_mm,y_mm\n0,1,2\n1,2,nan\n",
-            "line 3, column `y_mm`: `nan` is not finite: expected a number such as `12.5`",
-        ),
-        (
-            "t_s,x_mm,y_mm\n0,1,2\n1,1e999,3\n",
-            "line 3, column `x_mm`: `1e999` is not finite: expected a number such as `12.5`",
-        ),
-        (
-            "t_s,x_mm,y_mm\n-0.1,1,2\n1,2,3\n",
-            "line 2, column `t_s`: -0.1 is below 0: expected time from the start of the stroke",
-        ),
-        (
-            "t_s,x_mm,y_mm\n0,1,2\n0.2,2,3\n0.1,3,3\n",
-            "line 4, column `t_s`: 0.1 comes after 0.2: expected time to rise from row to row",
-        ),
-        (
-            "t_s,x_mm,y_mm\n0,1,2\n0.2,2,3\n0.2,3,3\n",
-            "line 4, column `t_s`: 0.2 comes after 0.2: expected time to rise from row to row",
-        ),
-        (
-            "t_s,x_mm,y_mm\n0,0,0\n1,1,1\n2,1,1e308\n2.000001,1,-1e308\n",
-            "line 5: the finger would jump here in no time: expected a finite speed from the row before",
-        ),
-    ] {
-        assert_eq!(Stroke::from_csv(text).unwrap_err().to_string(), message, "{text:?}");
-    }
-}
-
-#[test]
 fn numbers_that_make_no_stroke_are_refused_by_name() {
     let message = |result: Result<Stroke, StrokeError>| result.unwrap_err().to_string();
     assert_eq!(
@@ -334,18 +272,6 @@ fn numbers_that_make_no_stroke_are_refused_by_name() {
         message(Stroke::sweep(0.1, -0.1, 1.0)),
         "stroke: screen height in m must be finite and above 0, found -0.1"
     );
-}
-
-#[test]
-fn a_row_without_a_place_lifts_the_finger() {
-    let stroke =
-        Stroke::from_csv("t_s,x_mm,y_mm,felt_n\n0,,,\n1,10,20,0.25\n2,20,20,\n3,,,\n4,,,\n5,30,30,\n6,30,40,\n")
-            .unwrap();
-    assert_eq!(stroke.duration_s(), 6.0);
-    for (t_s, down) in [(0.5, false), (1.0, true), (1.9, true), (2.0, true), (2.5, false), (4.9, false), (5.5, true)] {
-        assert_eq!(stroke.at(t_s).is_some(), down, "{t_s} s");
-    }
-    assert!((stroke.at(1.5).unwrap().x_m - 0.015).abs() < 1e-12);
 }
 
 #[test]

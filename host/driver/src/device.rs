@@ -5,7 +5,7 @@ mod stream;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_layers::{Scene, features_of};
+use frixel_layers::{Scene, feature_names, features_of};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::{Hello, feature};
@@ -143,8 +143,8 @@ impl<L: Link> Device<L> {
     /// Refuses a scene that needs features which the board does not have.
     fn check_features(&self, needed: u32) -> Result<(), DeviceError> {
         let Hello { features, firmware, protocol, .. } = self.hello;
-        let missing = feature::NAMES.iter().filter(|(bit, _)| needed & !features & bit != 0);
-        let missing: Vec<&str> = missing.map(|(_, name)| *name).collect();
+        let missing = feature_names().filter(|(bit, _)| needed & !features & bit != 0);
+        let missing: Vec<&str> = missing.map(|(_, name)| name).collect();
         if missing.is_empty() {
             return Ok(());
         }

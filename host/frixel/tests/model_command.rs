@@ -214,8 +214,14 @@ fn reasons_say_what_was_expected_and_found_and_where() {
             "invalid: voltage_v of 1e300 leads to numbers too large or too small for this precision",
         ),
         (changed(GOOD[0], "voltage_v", "1e150"), "invalid: the answer is too large or too small for this precision"),
-        (changed(GOOD[2], "normal_force_n", "-inf"), "invalid: normal_force_n must be finite, but is -inf"),
-        (changed(GOOD[2], "normal_force_n", "nan"), "invalid: normal_force_n must be finite, but is NaN"),
+        (
+            changed(GOOD[2], "normal_force_n", "-inf"),
+            "invalid: row 2, column normal_force_n: expected a number, found \"-inf\"",
+        ),
+        (
+            changed(GOOD[2], "normal_force_n", "nan"),
+            "invalid: row 2, column normal_force_n: expected a number, found \"nan\"",
+        ),
         (
             changed(GOOD[2], "normal_force_n", "-1e308"),
             "invalid: normal_force_n of -1e308 leads to numbers too large or too small for this precision",
@@ -236,7 +242,7 @@ fn reasons_say_what_was_expected_and_found_and_where() {
     };
     assert_eq!(
         f32_status(&changed(GOOD[0], "voltage_v", "1e-50")),
-        "invalid: row 3, column voltage_v: 1e-50 is out of the range of f32; use --precision f64"
+        "invalid: row 5, column voltage_v: 1e-50 is out of the range of f32; use --precision f64"
     );
     // Friction and contact radius are in range, and the contact attraction is not.
     assert_eq!(
@@ -372,7 +378,7 @@ fn lines_of_blanks_are_no_rows() {
     let text = format!("{HEADER}\r\n\r\n{}\r\n \t \r\n{}\r\n   \r\n", GOOD[0], changed(GOOD[0], "radius_m", "x"));
     let (rows, summary) = transformed(eval, Precision::F64, &text);
     assert_eq!((summary.rows, summary.invalid_rows), (2, 1));
-    assert!(rows[1]["status"].starts_with("invalid: row 3, column radius_m"), "{:?}", rows[1]);
+    assert!(rows[1]["status"].starts_with("invalid: row 5, column radius_m"), "{:?}", rows[1]);
 }
 
 /// Rows without end.

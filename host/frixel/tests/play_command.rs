@@ -263,13 +263,13 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
 }
 
 #[test]
-fn a_wrong_stroke_is_refused_with_line_and_column() {
+fn a_wrong_stroke_is_refused_with_row_and_column() {
     let folder = TempDir::new().unwrap();
     for (text, parts) in [
-        ("t_s,x_mm,y_mm\n", ["stroke.csv", "empty"]),
-        ("t_s,x_mm,y_mm\n0,1,1\n1,50,50\n0.5,60,60\n", ["line 4, column `t_s`", "rise"]),
-        ("t_s,x_mm\n0,1\n1,2\n", ["stroke.csv", "`y_mm`"]),
-        ("t_s,x_mm,y_mm\n0,1,1\n1,fifty,50\n", ["line 3, column `x_mm`", "fifty"]),
+        ("t_s,x_mm,y_mm\n", ["stroke.csv", "no rows"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n1,50,50\n0.5,60,60\n", ["row 4, column t_s", "rise"]),
+        ("t_s,x_mm\n0,1\n1,2\n", ["stroke.csv", "no column y_mm"]),
+        ("t_s,x_mm,y_mm\n0,1,1\n1,fifty,50\n", ["row 3, column x_mm", "fifty"]),
         ("t_s,x_mm,y_mm\n0,1,1\n86401,50,50\n", ["stroke.csv lasts 86401 s", "a day"]),
         ("t_s,x_mm,y_mm\n0,-50,1\n1,-1,50\n", ["stroke.csv is nowhere on the screen", "120 by 110 mm"]),
         ("t_s,x_mm,y_mm\n0,1,1\n1e-6,1,1\n", ["shorter than one tick", "0.000025 s"]),

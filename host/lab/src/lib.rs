@@ -5,6 +5,8 @@
 //! - [`threshold`]: what a person just feels, from a staircase of answers.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`model_csv`]: the contact model over rows of CSV.
+//! - [`stroke_file`]: a finger's motion from a file.
+//! - [`table`]: the one reader of CSV columns.
 //!
 //! Files, ports, clocks and the terminal are the caller's: the `frixel` command is one.
 #![forbid(unsafe_code)]
@@ -13,4 +15,6 @@ pub mod calibration;
 pub mod fit;
 pub mod model_csv;
 pub mod score;
+pub mod stroke_file;
+pub mod table;
 pub mod threshold;

@@ -83,7 +83,7 @@ pub use compile_error::{CompileError, Located};
 pub use file::Scene;
 pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
-pub use kinds::layer_kinds;
+pub use kinds::{layer_kinds, without_place};
 pub use layer_map::{LayerError, LayerMap};
 pub use layer_tables::LayerTable;
 pub use live_change::{Clamped, LayerSetting};

@@ -16,11 +16,13 @@ use frixel_wire::message::Telemetry;
 use serde_json::{Value, json};
 
 use crate::answer;
+use crate::felt::COLUMNS;
 use crate::host::{self, Host, HostError, stream_mut};
 use crate::link_stream::LinkStream;
+use crate::map::MAP_HEAD;
 use crate::pointer::PointerSample;
 use crate::request::Request;
-use crate::simulator::Simulator;
+use crate::simulator::{FRAME_HEAD, Simulator};
 
 /// Ticks between two telemetry messages of a board outside of the page: 100 a second.
 const TELEMETRY_TICKS: u32 = 400;
@@ -77,6 +79,12 @@ pub extern "C" fn check() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn map() -> i32 {
     respond_bytes(|| crate::map::map(&request()?))
+}
+
+/// The names of the numbers in answers that are no JSON, in their order: `mapHead`, `frameHead` and `frameColumns`.
+#[unsafe(no_mangle)]
+pub extern "C" fn layouts() -> i32 {
+    respond(|| Ok(json!({ "mapHead": MAP_HEAD, "frameHead": FRAME_HEAD, "frameColumns": COLUMNS })))
 }
 
 /// [`crate::used_files`].
@@ -165,10 +173,9 @@ pub extern "C" fn simulator_lift() {
 
 /// Lets so many ticks pass; the host lives in them only if `is_alive` is not 0. The answer is what was felt:
 ///
-/// - eight 64-bit floats: tick, first tick of the samples, ticks per sample, number of samples, number of sound
-///   samples, state, fault (0 for none), whether the finger is down;
-/// - 32-bit floats, all samples of one quantity after another: place x and y in mm, speed in mm/s, reference and felt
-///   friction in N, voltage in V rms; then the sound in N, one for each tick.
+/// - 64-bit floats, as `frameHead` of [`layouts`] names them;
+/// - 32-bit floats, all samples of one quantity after another, as `frameColumns` names them; then the sound in N, one
+///   for each tick.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_run(ticks: u32, is_alive: u32) -> i32 {
     respond_bytes(|| {

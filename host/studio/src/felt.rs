@@ -20,12 +20,12 @@ pub(crate) struct FeltRecorder {
     sum: Sums,
     first_tick: u64,
     /// Samples since the last [`Self::take`], in the order of the columns.
-    columns: [Vec<f32>; COLUMNS],
+    columns: [Vec<f32>; COLUMNS.len()],
     sound: Sound,
 }
 
-/// Place x and y in mm, speed in mm/s, reference and felt friction in N, voltage in V rms.
-const COLUMNS: usize = 6;
+/// The names of the columns, with their units: the page has no other list of them. The voltage is the rms.
+pub(crate) const COLUMNS: [&str; 6] = ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
@@ -40,9 +40,8 @@ struct Sums {
 pub(crate) struct FeltSamples {
     /// Tick of the first sample's first tick.
     pub(crate) first_tick: u64,
-    /// Place x and y in mm, speed in mm/s, reference and felt friction in N, voltage in V rms; place and speed are
-    /// not-a-number while the finger is up.
-    pub(crate) columns: [Vec<f32>; COLUMNS],
+    /// As [`COLUMNS`] names them; place and speed are not-a-number while the finger is up.
+    pub(crate) columns: [Vec<f32>; COLUMNS.len()],
     /// The change of the felt friction at every tick, N.
     pub(crate) sound_n: Vec<f32>,
 }

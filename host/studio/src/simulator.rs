@@ -17,6 +17,10 @@ use crate::rig_stream::RigStream;
 /// Line rate of the simulated port, bits a second: as fast as the rig's line takes bytes. A scene that is replaced is
 /// uploaded in virtual time, ahead of the page's clock, so the upload has to be shorter than the pointer's delay.
 const BAUD: u32 = 20_000_000;
+/// The names of the numbers before the columns of a frame: ticks, how many samples of friction and of sound it has,
+/// state, fault (0 for none), and 1 while the finger is down.
+pub(crate) const FRAME_HEAD: [&str; 8] =
+    ["tick", "firstTick", "ticksPerSample", "samples", "soundSamples", "state", "fault", "contact"];
 
 /// The simulated board, its world, and its host.
 pub(crate) struct Simulator {
@@ -118,7 +122,7 @@ impl Simulator {
         let is_touched = self.is_touched();
         let tick = self.tick();
         let FeltSamples { first_tick, columns, sound_n } = self.take_felt();
-        let head = [
+        let head: [f64; FRAME_HEAD.len()] = [
             tick as f64,
             first_tick as f64,
             f64::from(TICKS_PER_SAMPLE),

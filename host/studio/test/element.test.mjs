@@ -8,7 +8,6 @@ import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { cleanUp, endLeftovers, openPage, required } from "./harness.mjs";
-import { addWatch, undisturbed } from "./page.mjs";
 
 const SCRIPT = path.join(path.dirname(required("STUDIO_PAGE")), "frixel-scene.js");
 /** Duration of a stroke, ms. */
@@ -41,63 +40,40 @@ async function lineOf(page, selector) {
   return line.textContent();
 }
 
-/** Slides over an element with the mouse; returns felt friction and voltage at each sample. */
+/** Slides over an element; returns felt friction and voltage at each sample. */
 async function slideOver(page, selector) {
-  const canvas = page.locator(`${selector} #map-finger`);
-  await canvas.scrollIntoViewIfNeeded();
-  const { x, y, width, height } = await canvas.boundingBox();
-  const moveTo = (part) => page.mouse.move(x + part * width, y + 0.5 * height);
-  await page.evaluate((selector) => {
-    globalThis.eachFrame = (listen) => {
-      const element = document.querySelector(selector);
-      const feel = ({ detail }) => listen(detail);
-      element.addEventListener("feel", feel);
-      return () => element.removeEventListener("feel", feel);
-    };
-  }, selector);
-  await page.evaluate(addWatch);
-  // The scene under the pointer is the one that plays.
-  await moveTo(0.2);
-  await page.evaluate(
-    () =>
-      new Promise((resolve) => {
-        const leave = eachFrame(({ state, feltN }) => {
-          if (state !== "active" || feltN.length === 0) return;
-          leave();
-          resolve();
-        });
-      }),
-  );
-  return undisturbed(page, async () => {
-    await moveTo(0.2);
-    await page.mouse.down();
-    const samples = await page.evaluate(slideOn, [selector, [0.2, 0.8], STROKE_MS]);
-    await moveTo(0.8);
-    await page.mouse.up();
-    return samples;
-  });
+  await page.locator(`${selector} #map-finger`).scrollIntoViewIfNeeded();
+  return page.evaluate(slideOn, [selector, [0.2, 0.8], STROKE_MS]);
 }
 
-/** Runs in the page. The events are sent ahead with their times, so that the stroke is even on a busy machine. */
+/** Runs in the page. */
 async function slideOn([selector, [from, to], durationMs]) {
-  const samples = { feltN: [], voltageV: [] };
-  const leave = eachFrame((frame) => {
-    for (const name of ["feltN", "voltageV"]) samples[name].push(...frame[name]);
-  });
-  const canvas = document.querySelector(selector).shadowRoot.querySelector("#map-finger");
-  const { left, top, width, height } = canvas.getBoundingClientRect();
-  const begin = performance.now() + AHEAD_MS;
-  for (let ms = 8; ms <= durationMs; ms += 8) {
-    const part = from + ((to - from) * ms) / durationMs;
+  const element = document.querySelector(selector);
+  const canvas = element.shadowRoot.querySelector("#map-finger");
+  const send = (type, part) => {
+    const { left, top, width, height } = canvas.getBoundingClientRect();
     const place = { clientX: left + part * width, clientY: top + 0.5 * height };
-    const event = new PointerEvent("pointermove", { ...place, pointerId: 1, bubbles: true });
-    Object.defineProperty(event, "timeStamp", { value: begin + ms });
-    canvas.dispatchEvent(event);
+    canvas.dispatchEvent(new PointerEvent(type, { ...place, pointerId: 1, button: 0, bubbles: true }));
+  };
+  const samples = { feltN: [], voltageV: [] };
+  let isPlaying = false;
+  const feel = ({ detail }) => {
+    isPlaying ||= detail.state === "active" && detail.feltN.length > 0;
+    for (const name of ["feltN", "voltageV"]) samples[name].push(...detail[name]);
+  };
+  element.addEventListener("feel", feel);
+  // The scene under the pointer is the one that plays.
+  send("pointerenter", from);
+  while (!isPlaying) await wait(8);
+  send("pointerdown", from);
+  for (let ms = 8; ms <= durationMs; ms += 8) {
+    await wait(8);
+    send("pointermove", from + ((to - from) * ms) / durationMs);
   }
-  sentUntil(begin);
   // What is felt comes 40 ms later.
-  await new Promise((resolve) => setTimeout(resolve, AHEAD_MS + durationMs + 100));
-  leave();
+  await wait(100);
+  send("pointerup", to);
+  element.removeEventListener("feel", feel);
   return samples;
 }
 
@@ -116,7 +92,8 @@ test("from a file, bundled scenes and scenes inside of the element play", async 
     <frixel-scene id="wrong">version = 2\n[[layer]]\nkind = "gratin"</frixel-scene>
     <frixel-scene id="absent" src="other.toml"></frixel-scene>
     <frixel-scene id="empty"></frixel-scene>`);
-  const { page, errors, close } = await openPage(pathToFileURL(path.join(folder, "index.html")).href);
+  const url = pathToFileURL(path.join(folder, "index.html")).href;
+  const { page, errors, close } = await openPage(url, { isSimulated: true });
   assert.equal(await lineOf(page, "#bundled"), "constant.toml");
   assertFelt(await slideOver(page, "#bundled"));
   assert.equal(await lineOf(page, "#inside"), "scene.toml");
@@ -143,7 +120,7 @@ test("from a server, `src` names a scene with its files", async (context) => {
   });
   context.after(() => server.close());
   await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  const { page, close } = await openPage(`http://127.0.0.1:${server.address().port}/index.html`);
+  const { page, close } = await openPage(`http://127.0.0.1:${server.address().port}/index.html`, { isSimulated: true });
   assert.equal(await lineOf(page, "#there"), "mine.toml");
   assertFelt(await slideOver(page, "#there"));
   await page.evaluate(() => document.querySelector("#there").setAttribute("src", "none.toml"));

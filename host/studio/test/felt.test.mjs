@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import { cleanUp, endLeftovers } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio, undisturbed, wholeStroke } from "./page.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
 
 /**
  * The goal of DESIGN 8: error of the felt friction below 40 Hz over the reference's own AC rms, and correlation. The
@@ -60,12 +60,8 @@ function compared(felt, reference) {
   return shifts.reduce((best, each) => (each.error < best.error ? each : best));
 }
 
-/** Stops the board; its strokes are whole without an output. */
-const stopOutput = (page) =>
-  page.evaluate(() => {
-    globalThis.expectedState = "disarmed";
-    return studioPage.engine.stop();
-  });
+/** Stops the board. */
+const stopOutput = (page) => page.evaluate(() => studioPage.engine.stop());
 
 /** Felt friction and reference along strokes over the scene that plays, below 40 Hz and registered in place. */
 async function feltAlong(page, linesMm) {
@@ -120,7 +116,7 @@ test("a lifted finger gets nothing, and a still one is driven less than while it
     await wait(300);
     return { still, lifted: samples.since(samples.nowS - 0.1) };
   };
-  const found = await undisturbed(page, () => page.evaluate(slideAndRest, SPEED_MM_PER_S));
+  const found = await page.evaluate(slideAndRest, SPEED_MM_PER_S);
   const { voltageV, speedMmPerS } = found.still;
   const stoodAt = speedMmPerS.findLastIndex((speed) => speed > 5);
   assert.ok(mean(voltageV.slice(stoodAt - 120, stoodAt - 20)) > 50, "there was a drive while it moved");
@@ -138,34 +134,58 @@ test("a lifted finger gets nothing, and a still one is driven less than while it
   await close();
 });
 
+/** Runs in the page: the sound of a slide, as the processor makes it of what the engine gives, and its spectrum. */
+async function soundOf(speedMmPerS) {
+  const [RATE_HZ, LENGTH, BLOCK] = [48_000, 16_384, 128];
+  let Processor;
+  globalThis.AudioWorkletProcessor = class {
+    port = {};
+  };
+  globalThis.registerProcessor = (_name, processor) => (Processor = processor);
+  globalThis.sampleRate = RATE_HZ;
+  const source = await studio.text("page/sound_processor.js");
+  await import(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
+  const processor = new Processor();
+  const heard = [];
+  let isOver = false;
+  const { engine } = studioPage;
+  const feel = engine.onAudio;
+  engine.onAudio = (samples, _tick, slowness) => {
+    processor.port.onmessage({ data: { samples, slowness } });
+    for (let at = 0; !isOver && at < (samples.length * RATE_HZ) / 40_000; at += BLOCK) {
+      const block = new Float32Array(BLOCK);
+      processor.process([], [[block]]);
+      heard.push(...block);
+    }
+  };
+  await slide(5, 112, 40, speedMmPerS);
+  isOver = true;
+  engine.onAudio = feel;
+  lift(112, 40);
+  await wait(300);
+  const last = heard.slice(-LENGTH);
+  const width = RATE_HZ / LENGTH;
+  // Blackman's window, as that of an AnalyserNode.
+  const cosine = (at) => Math.cos((2 * Math.PI * at) / LENGTH);
+  const window = (at) => 0.42 - 0.5 * cosine(at) + 0.08 * cosine(2 * at);
+  const windowed = last.map((value, at) => value * window(at));
+  const levelDb = (bin) => {
+    let [real, imaginary] = [0, 0];
+    for (const [at, value] of windowed.entries()) {
+      real += value * Math.cos((2 * Math.PI * bin * at) / LENGTH);
+      imaginary += value * Math.sin((2 * Math.PI * bin * at) / LENGTH);
+    }
+    return 20 * Math.log10(Math.hypot(real, imaginary) / LENGTH);
+  };
+  const bins = Array.from({ length: Math.floor(1000 / width) }, (_, bin) => bin).filter((bin) => bin * width > 20);
+  const levels = bins.map((bin) => ({ hz: bin * width, db: levelDb(bin) }));
+  return levels.reduce((best, each) => (each.db > best.db ? each : best));
+}
+
 /** Slides over a grating of 2 mm: the peak of the sound is at speed over wavelength. Returns its frequency, Hz. */
 async function assertSoundPeakHz(page, speedMmPerS) {
-  const slideAndHear = async (speedMmPerS) => {
-    const { analyser } = studioPage.sound;
-    const width = analyser.context.sampleRate / analyser.fftSize;
-    const bins = [...Array(analyser.frequencyBinCount).keys()].filter((bin) => bin * width > 20 && bin * width < 1000);
-    let found = { peak: -Infinity };
-    const listen = () => {
-      const levels = new Float32Array(analyser.frequencyBinCount);
-      analyser.getFloatFrequencyData(levels);
-      const peak = bins.reduce((best, bin) => (levels[bin] > levels[best] ? bin : best));
-      const sorted = bins.map((bin) => levels[bin]).sort((a, b) => a - b);
-      if (levels[peak] > found.peak)
-        found = { peak: levels[peak], floor: sorted[sorted.length >> 1], hz: peak * width };
-    };
-    // What was heard before dies away: the analyser holds a third of a second.
-    await wait(500);
-    let isOver = false;
-    slide(5, 112, 40, speedMmPerS).then(() => (isOver = true));
-    while (!isOver) {
-      await wait(30);
-      listen();
-    }
-    lift(112, 40);
-    return found;
-  };
-  const { peak, floor, hz } = await undisturbed(page, () => page.evaluate(slideAndHear, speedMmPerS));
-  assert.ok(peak > -30, `no sound: peak ${peak} dB, median ${floor} dB`);
+  const { db, hz } = await page.evaluate(soundOf, speedMmPerS);
+  assert.ok(db > -30, `no sound: peak ${db} dB`);
   assert.ok(Math.abs(hz - speedMmPerS / 2) <= 0.1 * (speedMmPerS / 2), `${hz} Hz at ${speedMmPerS} mm/s`);
   return hz;
 }
@@ -173,9 +193,6 @@ async function assertSoundPeakHz(page, speedMmPerS) {
 test("the sound's peak is speed over wavelength; without output there is none", async (context) => {
   const { page, errors, close } = await openStudio();
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
-  await page.click("#tab-sound");
-  await page.click("text=Sound on");
-  await page.locator("text=Sound off").waitFor();
   for (const speedMmPerS of [100, 150]) {
     const hz = await assertSoundPeakHz(page, speedMmPerS);
     context.diagnostic(`${speedMmPerS} mm/s over 2 mm: ${hz.toFixed(1)} Hz`);
@@ -183,5 +200,41 @@ test("the sound's peak is speed over wavelength; without output there is none", 
   await stopOutput(page);
   await assert.rejects(assertSoundPeakHz(page, 100), /no sound| Hz at/, "with the output at zero");
   assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a slide is heard where sound is on", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("#tab-sound");
+  await page.click("text=Sound on");
+  await page.locator("text=Sound off").waitFor();
+  const isHeard = () => {
+    const { analyser } = studioPage.sound;
+    const levels = new Float32Array(analyser.frequencyBinCount);
+    analyser.getFloatFrequencyData(levels);
+    return Math.max(...levels) > -40;
+  };
+  assert.ok(!(await page.evaluate(isHeard)), "nothing is heard without a finger");
+  await page.evaluate(() => {
+    const slideOn = () => slide(5, 112, 40, 100).then(slideOn);
+    slideOn();
+  });
+  await page.waitForFunction(isHeard);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the page keeps each column that the module gives to a frame", async () => {
+  const { page, close } = await openStudio();
+  const { given, kept } = await page.evaluate(async () => {
+    const { engine, samples } = studioPage;
+    const take = engine.onFrames;
+    const frame = await new Promise((resolve) => (engine.onFrames = resolve));
+    engine.onFrames = take;
+    const given = Object.keys(frame).filter((name) => frame[name] instanceof Float32Array);
+    return { given, kept: Object.keys(samples.since(samples.nowS)).filter((name) => name !== "timeS") };
+  });
+  assert.deepEqual(kept, given);
   await close();
 });

@@ -10,10 +10,10 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import readline from "node:readline";
-import { test } from "node:test";
 import tty from "node:tty";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
+import { addSimulatedClock } from "./simulated_clock.mjs";
 
 const FLAGS = [
   "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -56,26 +56,6 @@ export async function cleanUp() {
   await browser?.close();
 }
 
-/** How a test fails in which the machine was held up for long: a line without answers, or a time that is too long. */
-const HELD_UP = /was not answered by|before the host timeout|does not get past 0 of|too late/;
-/** A test is tried so often. */
-const TRIES_MAX = 4;
-
-/** A test that depends on the speed of the machine: it is tried again only if it fails as HELD_UP says. */
-export function timedTest(name, body) {
-  test(name, async (context) => {
-    for (let tries = 1; ; tries += 1) {
-      try {
-        return await body(context);
-      } catch (error) {
-        if (tries === TRIES_MAX || !HELD_UP.test(error.message)) throw error;
-        context.diagnostic(`tried again: ${error.message.split("\n")[0]}`);
-        await endLeftovers();
-      }
-    }
-  });
-}
-
 /** Makes a program end with `quit`, and waits until it has ended. */
 async function endProgram(program, quit) {
   if (program.exitCode !== null || program.signalCode !== null) return;
@@ -86,9 +66,9 @@ async function endProgram(program, quit) {
 
 /**
  * Opens the page, and returns it with the list of errors that it reports. `init`, if given, runs in the page before its
- * scripts.
+ * scripts. With `isSimulated`, its time is that of `simulated_clock.mjs`.
  */
-export async function openPage(url = pageUrl, { init } = {}) {
+export async function openPage(url = pageUrl, { init, isSimulated = false } = {}) {
   browser ??= await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
   context.setDefaultTimeout(WAIT_MAX_MS);
@@ -96,6 +76,7 @@ export async function openPage(url = pageUrl, { init } = {}) {
   const errors = [];
   page.on("pageerror", (error) => errors.push(error.message));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  if (isSimulated) await page.addInitScript(addSimulatedClock);
   await page.addInitScript(() => {
     // The tests end workers as a crash would.
     globalThis.workersOfPage = {};
@@ -103,7 +84,8 @@ export async function openPage(url = pageUrl, { init } = {}) {
     globalThis.Worker = class extends Native {
       constructor(url, options) {
         super(url, options);
-        (workersOfPage[options?.name] ??= []).push(this);
+        workersOfPage[options?.name] ??= [];
+        workersOfPage[options?.name].push(this);
       }
     };
     globalThis.setVisibility = (value) => {
@@ -118,8 +100,8 @@ export async function openPage(url = pageUrl, { init } = {}) {
 }
 
 /** Opens the page with an engine of the test's own: see `addOnlyEngine`. */
-export async function openOnlyEngine(url) {
-  const opened = await openPage(url);
+export async function openOnlyEngine(url, options) {
+  const opened = await openPage(url, options);
   await addOnlyEngine(opened.page);
   return opened;
 }
@@ -145,14 +127,14 @@ export async function addOnlyEngine(page) {
       }
       return files;
     };
-    /** Slides where constant.toml drives, as long as the page is open, with a sample every 8 ms. */
+    /** Slides where constant.toml drives, as long as the page is open, with a sample every 8 ms of the test's clock. */
     globalThis.keepSliding = async () => {
-      const begin = performance.now();
+      const beginMs = studioClock.nowMs();
       for (;;) {
-        const t = ((performance.now() - begin) / 1000) % 2;
-        const xMm = 65 + 30 * Math.abs(t - 1);
-        tested.pointer({ timeMs: performance.now(), xMm, yMm: 30, down: true });
-        await new Promise((resolve) => setTimeout(resolve, 8));
+        const timeMs = studioClock.nowMs();
+        const xMm = 65 + 30 * Math.abs((((timeMs - beginMs) / 1000) % 2) - 1);
+        tested.pointer({ timeMs, xMm, yMm: 30, down: true });
+        await wait(8);
       }
     };
   });
@@ -195,8 +177,14 @@ export const stateOf = {
   silent: ({ isSilent }) => isSilent,
 };
 
+/** The clock of a virtual board that says it is real is so much slower than the machine's (examples/real_board.rs). */
+export const BOARD_SLOWNESS = 4;
+
+/** Waits until so much time has passed on the clock of such a board, ms. */
+export const boardTime = (ms) => new Promise((resolve) => setTimeout(resolve, BOARD_SLOWNESS * ms));
+
 /**
- * Starts a virtual board that says it is real, on a line of `baud` bits a second. Returns its terminal, its `events`
+ * Starts a virtual board that says it is real, on a line of `baud` bits a second of the board's time. Returns its terminal, its `events`
  * `{ ms, board: { state, fault, isSilent, isDriving } }` as they come, `fail()`, which makes the amplifier report a
  * fault, `hang(isHanging)`, `stop()`, `until(what, isMet)`, which waits until its last event is as `isMet` says, and
  * `assertDisarmed(from, how)`: from its event number `from` on it is disarmed by a command, and stays so.
@@ -226,7 +214,7 @@ export async function startRealBoard({ baud = 2_000_000 } = {}) {
   };
   const assertDisarmed = async (from, how) => {
     await until(`disarmed by ${how}`, stateOf.disarmed);
-    await new Promise((resolve) => setTimeout(resolve, 300));
+    await boardTime(300);
     const states = events.slice(from).map((event) => event.board);
     const found = `${how}: ${JSON.stringify(states)}`;
     assert.ok(!states.some(stateOf.silent), `before the host timeout, ${found}`);
@@ -285,11 +273,17 @@ export async function addSerialPort(page, terminal) {
         let incoming;
         let outgoing;
         port.readable = new ReadableStream({
-          start: (controller) => void (incoming = controller),
-          cancel: () => (incoming = null),
+          start(controller) {
+            incoming = controller;
+          },
+          cancel() {
+            incoming = null;
+          },
         });
         port.writable = new WritableStream({
-          start: (controller) => void (outgoing = controller),
+          start(controller) {
+            outgoing = controller;
+          },
           write(bytes) {
             port.sent.push(Array.from(bytes));
             serialWrite(btoa(String.fromCharCode(...bytes)));

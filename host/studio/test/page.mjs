@@ -6,40 +6,37 @@ import path from "node:path";
 import assert from "node:assert/strict";
 import { openPage, pageUrl } from "./harness.mjs";
 
-/** Opens the page, as `openPage` does, and waits until its first scene plays. */
-export async function openStudio(url = pageUrl, options) {
-  const opened = await openPage(url, options);
+/**
+ * Opens the page, as `openPage` does, and waits until its first scene plays. Its time is simulated, unless the options
+ * say otherwise: nothing that the tests of the page look at depends on the speed of the machine.
+ */
+export async function openStudio(url = pageUrl, options = {}) {
+  const opened = await openPage(url, { isSimulated: true, ...options });
   await opened.page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
   await opened.page.waitForFunction(() => document.getElementById("check").textContent === "plays");
   await opened.page.evaluate(addHelpers);
-  await opened.page.evaluate(addWatch);
   return opened;
 }
 
 /** Runs in the page. */
 function addHelpers() {
   const canvas = document.getElementById("map-finger");
-  const send = (type, xMm, yMm, timeStamp) => {
+  const send = (type, xMm, yMm) => {
     const box = canvas.getBoundingClientRect();
     const { scale } = studioPage.map;
     const place = { clientX: box.left + xMm * scale, clientY: box.top + yMm * scale };
     const event = new PointerEvent(type, { ...place, pointerId: 1, button: 0, bubbles: true });
-    if (timeStamp !== undefined) Object.defineProperty(event, "timeStamp", { value: timeStamp });
     canvas.dispatchEvent(event);
   };
-  /**
-   * Slides along x at a constant speed, with an event for each 8 ms, and leaves the finger down. The events are sent
-   * ahead with their times, so that the stroke is even however busy the machine is. Resolves at its end.
-   */
-  globalThis.slide = (fromMm, toMm, yMm, speedMmPerS) => {
-    const begin = performance.now() + AHEAD_MS;
+  globalThis.wait ??= (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+  /** Slides along x at a constant speed, an event for each 8 ms, and leaves the finger down. Resolves at its end. */
+  globalThis.slide = async (fromMm, toMm, yMm, speedMmPerS) => {
     const durationMs = (1000 * (toMm - fromMm)) / speedMmPerS;
-    send("pointerdown", fromMm, yMm, begin);
+    send("pointerdown", fromMm, yMm);
     for (let ms = 8; ms <= durationMs; ms += 8) {
-      send("pointermove", fromMm + (speedMmPerS * ms) / 1000, yMm, begin + ms);
+      await wait(8);
+      send("pointermove", fromMm + (speedMmPerS * ms) / 1000, yMm);
     }
-    sentUntil(begin);
-    return wait(AHEAD_MS + durationMs);
   };
   globalThis.lift = (xMm, yMm) => send("pointerup", xMm, yMm);
   const listeners = new Set();
@@ -53,7 +50,6 @@ function addHelpers() {
     listeners.add(listen);
     return () => listeners.delete(listen);
   };
-  globalThis.wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
   globalThis.played = (text) =>
     new Promise((resolve) => {
       const { player, editor } = studioPage;
@@ -62,71 +58,13 @@ function addHelpers() {
         before(now);
         if (now !== text) return;
         player.onPlay = before;
-        resolve(performance.now());
+        resolve();
       };
       editor.text = text;
     });
 }
 
-/** A stroke is tried so often. */
-const STROKES_MAX = 20;
 const SPEED_MM_PER_S = 80;
-
-/** Runs in the page, which has a function `eachFrame(listen)` that returns how to listen no more. */
-export function addWatch() {
-  /** The samples of a stroke are sent so long before the first of them, ms: a busy machine takes its time. */
-  globalThis.AHEAD_MS = 300;
-  let isSentInTime = true;
-  /** All samples of a stroke have been sent, of which the first one is at `ms`. */
-  globalThis.sentUntil = (ms) => (isSentInTime &&= performance.now() < ms);
-  const FRAMES = 10;
-  /** A worker that is held up skips more time than this, and frames are rarely so late, ms. */
-  const SKIPPED_MS = 50;
-  /** The state that the board has in a stroke. */
-  globalThis.expectedState = "active";
-  /** Resolves once the simulator runs in this state: a busy machine may hold the page up. */
-  globalThis.running = () =>
-    new Promise((resolve) => {
-      let begin;
-      const leave = eachFrame(({ tick, state }) => {
-        if (state !== expectedState) begin = undefined;
-        else begin ??= tick;
-        if (begin === undefined || tick < begin + 100 * 40) return;
-        leave();
-        resolve();
-      });
-    });
-  /** From now on, `isUndisturbed()` says whether strokes came in time, and the board's state and clock did not jump. */
-  globalThis.watchBoard = async () => {
-    await running();
-    isSentInTime = true;
-    const [lagsMs, states] = [[], new Set()];
-    const leave = eachFrame(({ tick, slowness, state }) => {
-      states.add(state);
-      // In the slow time of a replay, the lag grows.
-      if (slowness === 1) lagsMs.push(performance.now() - tick / 40);
-      else lagsMs.length = 0;
-    });
-    globalThis.isUndisturbed = () => {
-      leave();
-      if (!isSentInTime || states.size !== 1 || !states.has(expectedState)) return false;
-      return Math.min(...lagsMs.slice(-FRAMES)) < Math.min(...lagsMs) + SKIPPED_MS;
-    };
-  };
-}
-
-/**
- * Does `act()`, and returns its value. A busy machine holds the page up, so that its board is disarmed or its samples
- * come late, or the board itself, which then skips time: `act` is repeated until nothing of this has happened.
- */
-export async function undisturbed(page, act) {
-  for (let tries = 0; tries < STROKES_MAX; tries += 1) {
-    await page.evaluate(() => watchBoard());
-    const value = await act();
-    if (await page.evaluate(() => isUndisturbed())) return value;
-  }
-  throw new Error(`the machine is too busy: the board was held up in each of ${STROKES_MAX} tries`);
-}
 
 /** Slides over the map along x, lifts, and returns the samples of this stroke. */
 export function wholeStroke(page, yMm) {
@@ -139,7 +77,7 @@ export function wholeStroke(page, yMm) {
     await wait(200);
     return samples.since(beginS);
   };
-  return undisturbed(page, () => page.evaluate(stroke, [yMm, SPEED_MM_PER_S]));
+  return page.evaluate(stroke, [yMm, SPEED_MM_PER_S]);
 }
 
 /** The page is there, plays, and says this. */

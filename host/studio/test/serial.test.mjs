@@ -84,7 +84,10 @@ test("a scene is played, changed and stopped on a board at a serial port", async
 test("a killed worker: the board is at zero within its host timeout", async () => {
   const { page, board, close } = await playOnVirtualBoard("constant.toml");
   await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)));
-  await silenceAfter(board, () => page.evaluate(() => workersOfPage.host.forEach((worker) => worker.terminate())));
+  const kill = () => {
+    for (const worker of workersOfPage.host) worker.terminate();
+  };
+  await silenceAfter(board, () => page.evaluate(kill));
   await board.stop();
   const silent = silencesOf(board).at(-1);
   const silence_s = Number(silent.t_s) - Number(silent.last_frame_t_s);

@@ -20,7 +20,6 @@ async function open({ size = { width: 1440, height: 900 }, scheme = "light" } = 
 /** Slides twice to the right, and leaves the finger down. */
 async function slide(page, yMm = 44) {
   await page.evaluate(async (yMm) => {
-    await running();
     await slide(15, 105, yMm - 12, 90);
     await wait(120);
     lift(105, yMm - 12);

@@ -21,11 +21,10 @@ test("what is asked while the simulator is reset is rejected, and only one reset
   const outcomes = await page.evaluate(async (text) => {
     const play = () => tested.play({ "a.toml": text }, "a.toml", {});
     const [first, second] = [tested.simulate(), tested.simulate()].map(outcome);
-    let asked;
     const { board } = workersOfPage;
     const count = board.length;
     while (board.length === count) await new Promise((resolve) => setTimeout(resolve, 0));
-    asked = outcome(play());
+    const asked = outcome(play());
     return { asked: await asked, first: await first, second: await second, after: await outcome(play()) };
   }, CONSTANT);
   assert.match(outcomes.asked, /done|reset meanwhile/);

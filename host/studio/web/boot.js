@@ -9,11 +9,18 @@
 //   studio.names("scenes/")                    the names that begin so, sorted
 //
 // Modules import each other by relative paths; here they become blob URLs, because a page from a file has no others.
+// @ts-check
 "use strict";
 
+/**
+ * @param {Record<string, string>} packed
+ * @param {string} entry
+ */
 function boot(packed, entry) {
+  /** @type {Map<string, Promise<string>>} */
   const urls = new Map();
 
+  /** @param {string} name */
   async function bytes(name) {
     if (!(name in packed)) throw new Error(`this page carries no file ${name}`);
     const zipped = Uint8Array.from(atob(packed[name]), (character) => character.charCodeAt(0));
@@ -21,6 +28,7 @@ function boot(packed, entry) {
     return new Uint8Array(await new Response(stream).arrayBuffer());
   }
 
+  /** @param {string} name */
   async function text(name) {
     return new TextDecoder().decode(await bytes(name));
   }
@@ -29,20 +37,29 @@ function boot(packed, entry) {
     return Object.keys(packed).filter((name) => name.startsWith(start)).sort();
   }
 
-  /** The URL of a module, whose imports are URLs, too. */
+  /**
+   * The URL of a module, whose imports are URLs, too.
+   * @param {string} name
+   */
   function moduleUrl(name) {
-    if (!urls.has(name)) urls.set(name, makeUrl(name));
-    return urls.get(name);
+    const url = urls.get(name) ?? makeUrl(name);
+    urls.set(name, url);
+    return url;
   }
 
+  /** @param {string} name */
   async function makeUrl(name) {
-    const parts = (await text(name)).split(/(\b(?:from|import)\s*\(?\s*)"(\.{1,2}\/[^"]+)"/);
-    // Each import splits the text into what is before it, its word, and its path.
+    const parts = (await text(name)).split(/^((?:import|export)\s[\w\s{},*$]*?from\s*)"(\.{1,2}\/[^"]+)"/m);
+    // Each import splits the text into what is before it, its names, and its path. Those of types stand in comments.
     for (let at = 2; at < parts.length; at += 3) parts[at] = JSON.stringify(await moduleUrl(resolved(parts[at], name)));
     return URL.createObjectURL(new Blob([parts.join("")], { type: "text/javascript" }));
   }
 
-  /** The name of the file that a module calls `path`. */
+  /**
+   * The name of the file that a module calls `path`.
+   * @param {string} path
+   * @param {string} module
+   */
   function resolved(path, module) {
     return new URL(path, `file:///${module}`).pathname.slice(1);
   }

@@ -1,13 +1,13 @@
 // The studio's page: makes its parts and tells each what the others found out.
+// @ts-check
 
 import { createEngine } from "./engine/engine.js";
 import { makeAbout } from "./page/about.js";
-import { projectOf, zipOf } from "./page/archive.js";
-import { Autosave } from "./page/autosave.js";
+import { followLinks, makeBar, openLink } from "./page/bar.js";
 import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
-import { attempt, byId, download, element, forgetNotice, notify } from "./page/dom.js";
+import { byId, element, notify, sentenceOf } from "./page/dom.js";
 import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
@@ -16,77 +16,90 @@ import { Incoming } from "./page/incoming.js";
 import { Layers } from "./page/layers.js";
 import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
-import { Open } from "./page/open.js";
-import { showPictures } from "./page/pictures.js";
-import { Player } from "./page/player.js";
+import { OpenScene } from "./page/open_scene.js";
+import { Player, isPlayable } from "./page/player.js";
 import { showCheck, showOutcome, showStatus } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
-import { Project, isPicture, isToml } from "./page/project.js";
+import { Project } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
-import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./page/share.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
 import { makeView } from "./page/view.js";
 import { Works } from "./page/works.js";
 
+/** @import { Engine } from "./engine/engine.js" */
+/** @import { Layer, Reach } from "./engine/types" */
+/** @typedef {Awaited<ReturnType<typeof makeParts>>} Parts */
+
 const FIRST_SCENE = "brick";
 /** Height of header, tools, numbers and scope, CSS pixels: in a low window they are seen together with the map. */
 const AROUND_MAP_PX = 530;
-const NEW_SCENE = `version = 2
-
-# Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
-`;
 
 async function start() {
   const engine = await createEngine();
-  const project = new Project(engine);
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
+  const parts = await makeParts(engine);
+  const scene = new OpenScene(parts);
+  makeControls(parts);
+  makeBar({ ...parts, scene });
+  showWhatPlays(parts, scene);
+  showWhatIsFelt(parts);
+  takeScenes(parts, scene);
+  followLinks(scene);
+  const last = await scene.last();
+  await scene.open(last ?? { name: FIRST_SCENE, text: await sceneText(FIRST_SCENE), files: [] });
+  // A reload keeps what was changed since the link was opened.
+  const [navigation] = performance.getEntriesByType("navigation");
+  const isReload = navigation instanceof PerformanceNavigationTiming && navigation.type === "reload";
+  if (!(isReload && last)) openLink(scene);
+  const { editor, sound, samples, map, player } = parts;
+  // The tests look at the page's parts through this.
+  globalThis.studioPage = { engine, editor, sound, samples, map, player };
+}
+
+/** @param {Engine} engine */
+async function makeParts(engine) {
+  const project = new Project(engine);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema(), (file, text) => {
-    compare.cancel();
-    if (file !== undefined) project.files.set(file, text);
-    autosave.changed();
-    player.later(editor.text);
-  });
-  const current = () => {
-    const { name, entry, profiles, files } = project;
-    return { name, entry, profiles: { ...profiles }, text: editor.text, files: [...files] };
-  };
-  const works = new Works();
-  const autosave = new Autosave(works, current);
-  const last = await autosave.last();
-  editor.onHistory = () => {
-    byId("undo").disabled = !editor.canUndo;
-    byId("redo").disabled = !editor.canRedo;
-  };
-  new FileTabs(editor, project);
+  const editor = new Editor(byId("editor"), await schema());
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   map.reservedPx = AROUND_MAP_PX;
-  const finger = new Finger(engine, map, byId("map-finger"));
   const samples = new Samples();
-  const scope = new Scope(samples, byId("scope"));
-  const numbers = new Numbers();
   const sound = new Sound();
-  const layers = new Layers(engine, editor);
-  const board = new Board(engine);
-  const gallery = new Gallery(engine);
-  const incoming = new Incoming(async (files, entry) =>
-    engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
-  );
-  const compare = new Compare(player, editor, sound);
-  compare.onChange = () => map.draw();
-  const replay = () => {
-    compare.cancel();
-    player.now(editor.text);
+  return {
+    engine,
+    project,
+    player,
+    editor,
+    map,
+    samples,
+    sound,
+    works: new Works(),
+    finger: new Finger(engine, map, byId("map-finger")),
+    scope: new Scope(samples, byId("scope")),
+    numbers: new Numbers(),
+    layers: new Layers(engine, editor),
+    board: new Board(engine),
+    gallery: new Gallery(engine),
+    compare: new Compare(player, editor, sound),
+    profiles: new Profiles(project, fingerNames()),
+    /** What can be felt of the scene that plays, as its check said. */
+    reach: /** @type {Reach} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38 }),
+    /** Whether there was a stroke. */
+    hasSlid: false,
   };
-  const profiles = new Profiles(project, fingerNames(), () => {
-    autosave.changed();
-    replay();
-  });
+}
+
+/**
+ * What needs nothing but the parts that it controls.
+ * @param {Parts} parts
+ */
+function makeControls({ engine, project, editor, map, finger, scope, compare }) {
+  new FileTabs(editor, project);
   new RealSize(map);
   makeAbout();
   makeTabs(byId("tools"));
@@ -95,26 +108,31 @@ async function start() {
     scope.restyle();
   });
   makeView({ map, finger, scope, engine });
+  compare.onChange = () => map.draw();
+}
 
+/**
+ * Shows what became of each version of the scene: its mistakes, its map, and whether it plays.
+ * @param {Parts} parts
+ * @param {OpenScene} scene
+ */
+function showWhatPlays(parts, scene) {
+  const { player, editor, map, scope, layers, board, compare } = parts;
   const hint = byId("map-hint");
-  let hasSlid = false;
-  /** Whether a scene without a mistake has come. */
-  let isPlayable = false;
-  let reach = { naturalN: 0.25, lowN: 0.25, highN: 0.38 };
+  /** @type {Layer[] | undefined} */
+  let shown;
   player.onCheck = (check) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
-    if (!check.ok && !check.isDraft) {
-      if (!isPlayable) hint.textContent = "nothing to feel yet: mend the mistake under the text";
-      return;
-    }
-    isPlayable = true;
-    reach = check;
-    scope.isDraft = check.isDraft;
+    if (isPlayable(check)) {
+      parts.reach = check;
+      scope.isDraft = check.isDraft;
+      shown = check.layers;
+    } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
   };
   player.onPlay = () => {
     layers.reset();
-    if (!compare.isRunning) layers.show(reach);
+    if (!compare.isRunning && shown) layers.show(shown);
   };
   layers.onLive = (changes) => {
     const note = byId("map-note");
@@ -122,10 +140,10 @@ async function start() {
     note.textContent = `The map shows the scene as it is written. Now: ${changes.join(", ")}.`;
   };
   player.onMap = (picture, check) => {
-    if (!hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
+    if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
     if (compare.isRunning) return;
     map.show(picture, check);
-    map.thumbnail().then((thumbnail) => autosave.show(thumbnail));
+    map.thumbnail().then((thumbnail) => scene.show(thumbnail));
   };
   player.onFailure = notify;
   player.onStatus = (status) => {
@@ -133,155 +151,50 @@ async function start() {
     layers.isSceneLoading = status === "loading";
     showStatus(status);
   };
+  board.onBoard = () => scene.replay();
+}
 
+/**
+ * Shows what the finger feels, and lets it be heard.
+ * @param {Parts} parts
+ */
+function showWhatIsFelt(parts) {
+  const { engine, samples, scope, numbers, finger, sound, board } = parts;
+  const hint = byId("map-hint");
   engine.onFrames = (frame) => {
     samples.add(frame);
     scope.feel(frame);
-    numbers.feel(frame, reach.naturalN);
-    finger.feel(frame, reach);
+    numbers.feel(frame, parts.reach.naturalN);
+    finger.feel(frame, parts.reach);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
-    hasSlid = true;
+    parts.hasSlid = true;
     hint.hidden = board.isPlaying;
     hint.textContent = "nothing plays: press Play or Arm, at the top";
     byId("replay").disabled = false;
   };
   board.onState = () => {
     showOutcome();
-    if (hasSlid && board.isPlaying) hint.hidden = true;
+    if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
-  board.onBoard = replay;
+}
 
-  /**
-   * Runs an action that brings something from elsewhere into the scene. A real board is disarmed before, and nothing
-   * can be armed until it has the scene that is shown then.
-   */
-  function bringIn(action) {
-    return player.expect(async () => {
-      try {
-        await engine.forget();
-        await action();
-      } catch (error) {
-        // The board gets the scene back that is still shown.
-        replay();
-        throw error;
-      }
-    });
-  }
-
-  /** Opens a scene from elsewhere. A changed scene can be brought back. */
-  const open = (scene) => bringIn(() => replaceScene(scene));
-
-  async function replaceScene({ name, text, files = [], profiles: chosen, ...work }) {
-    const before = { ...current(), ...autosave.state };
-    forgetNotice();
-    await autosave.leave();
-    await project.replaceFiles(files);
-    project.name = name;
-    showName();
-    if (chosen) profiles.choose(chosen);
-    editor.open(text);
-    showFiles();
-    await autosave.opened(work);
-    if (before.isEdited)
-      notify(`${project.name} is open.`, { words: `Back to ${before.name}`, action: () => open(before) });
-  }
-
-  function showName() {
-    const { name } = project;
-    Object.assign(byId("scene-name"), { value: name, size: Math.max(4, Math.min(name.length, 24)) });
-    document.title = `${project.name} · frixel studio`;
-  }
-
-  function rename(name) {
-    const before = project.name;
-    project.name = name.trim();
-    if (project.files.has(project.entry)) {
-      notify(`${project.entry} is a file of this scene already: choose another name.`);
-      project.name = before;
-    }
-    showName();
-    if (project.name === before) return;
-    autosave.changed();
-    showFiles();
-    replay();
-  }
-
-  function showFiles() {
-    showPictures(project, editor, removePicture);
-    editor.setFiles([...project.files].filter(([name]) => isToml(name)));
-  }
-
-  function removePicture(name) {
-    project.files.delete(name);
-    autosave.changed();
-    showFiles();
-    replay();
-  }
-
-  gallery.onScene = (name, text) => open({ name, text });
-  gallery.onLayer = (text) => bringIn(() => editor.append(text));
-  incoming.onFiles = ({ scene, files, finger: own, screen }) =>
-    bringIn(async () => {
-      if (own) profiles.addFinger(own);
-      if (screen) profiles.addScreen(screen);
-      if (scene) await replaceScene(scene);
-      else {
-        for (const [name, content] of files) project.add(name, content);
-        autosave.changed();
-        showFiles();
-        replay();
-      }
-      if (files.some(([name]) => isPicture(name))) byId("tab-pictures").click();
-    });
-
-  const openDialog = new Open(works, () => byId("files").click());
-  openDialog.onWork = async (id) => open(await autosave.work(id));
-  byId("open-gallery").onclick = () => attempt(() => gallery.open());
-  byId("new").onclick = () => attempt(() => open({ name: "untitled", text: NEW_SCENE }));
-  byId("scene-name").onchange = ({ target }) => rename(target.value);
-  byId("undo").onclick = () => editor.undo();
-  byId("redo").onclick = () => editor.redo();
-  byId("save").onclick = () =>
-    attempt(async () => {
-      const files = await project.filesForZip(editor.text);
-      const zip = zipOf({ ...current(), files });
-      download(`${project.name}.zip`, zip, "application/zip");
-      // Throws what a person is told where the studio would not open the zip again.
-      projectOf(zip);
-    });
-  byId("share").onclick = () =>
-    attempt(async () => {
-      const link = linkOf(project.name, editor.text, await project.filesForLink(editor.text));
-      history.replaceState(null, "", new URL(link).hash);
-      const place = await navigator.clipboard.writeText(link).then(
-        () => "The link is copied.",
-        () => "The link stands in the address line: copy it from there.",
-      );
-      notify(`${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`);
-    });
-
-  const openLink = () => isLink(location.hash) && attempt(() => open(sceneOf(location.hash)));
-  addEventListener("hashchange", openLink);
-  const takeLink = (event) => {
-    const fragment = fragmentIn(event.clipboardData?.getData("text/plain") ?? "");
-    if (fragment === undefined) return;
-    event.preventDefault();
-    event.stopPropagation();
-    attempt(() => open(sceneOf(fragment)));
-  };
-  addEventListener("paste", takeLink, { capture: true });
-  await open(last ?? { name: FIRST_SCENE, text: await sceneText(FIRST_SCENE) });
-  // A reload keeps what was changed since the link was opened.
-  const isReload = performance.getEntriesByType("navigation")[0]?.type === "reload";
-  if (!(isReload && last)) openLink();
-  // The tests look at the page's parts through this.
-  globalThis.studioPage = { engine, editor, sound, samples, map, player };
+/**
+ * Takes scenes, layers and files from elsewhere.
+ * @param {Parts} parts
+ * @param {OpenScene} scene
+ */
+function takeScenes({ engine, project, editor, gallery }, scene) {
+  gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
+  gallery.onLayer = (text) => scene.append(text);
+  const incoming = new Incoming(async (files, entry) =>
+    engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
+  );
+  incoming.onFiles = (found) => scene.take(found);
 }
 
 start().catch((error) => {
-  document
-    .querySelector("main")
-    .replaceChildren(element("p", { className: "card" }, `The studio cannot start: ${error.message}`));
+  const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
+  document.querySelector("main")?.replaceChildren(why);
 });

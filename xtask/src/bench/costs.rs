@@ -1,8 +1,6 @@
 //! The file with the cost of each kind of layer, which compiler and board read. It is generated from measurements, and
 //! checked against them.
 
-use std::cell::RefCell;
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 
@@ -26,8 +24,13 @@ const LEVEL_POLYGON_POINTS: u64 = 6;
 /// that takes more.
 const RARE: u64 = 40;
 
-/// Name, description and core cycles of a cost.
-type Cost = (&'static str, &'static str, u64);
+/// Core cycles, as in the file.
+struct Costs {
+    /// Name, description and core cycles of what is no layer of its own.
+    parts: Vec<(&'static str, &'static str, u64)>,
+    /// Name and core cycles of a layer, or of the part of it that another does not have.
+    layers: Vec<(String, u64)>,
+}
 
 /// Regenerates the file.
 pub(crate) fn bless(figures: &Figures) -> Result<(), String> {
@@ -39,17 +42,14 @@ pub(crate) fn bless(figures: &Figures) -> Result<(), String> {
 pub(crate) fn check(figures: &Figures) -> Result<(), String> {
     let path = root().join(PATH);
     let found = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    if found == text(&costs(figures)?) {
+    let measured = text(&costs(figures)?);
+    if found == measured {
         return Ok(());
     }
-    let drifted: Vec<String> = costs(figures)?
-        .into_iter()
-        .filter(|cost| !found.contains(&line(cost)))
-        .map(|(name, _, core_cycles)| format!("{name} is {core_cycles}"))
-        .collect();
+    let drifted: Vec<&str> = measured.lines().filter(|line| !found.contains(line)).map(str::trim).collect();
     Err(format!(
         "{PATH} is not what was measured; `FRIXEL_BLESS=1 cargo xtask bench` writes it anew: {}",
-        drifted.join(", ")
+        drifted.join(" ")
     ))
 }
 
@@ -57,31 +57,37 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
 const TICK: &str = "m4f.tick_";
 /// Suffix of the names of ticks that are counted only to find the cost of a layer.
 const ALONE: &str = "_alone";
+/// Between the names of two layers: the tick with the first costs as much as one with the second, and a part of its
+/// own.
+const OVER: &str = "_over_";
+/// Ticks of one layer from which a part is computed.
+const OF_PARTS: [&str; 8] =
+    ["out_of_reach", "disturbed", "ellipse", "speed_2", "speed_8", "polygon_4", "polygon_12", "polygon_6_level"];
+/// The layer whose work wherever the finger is counts once for all layers.
+const STREAM: &str = "stream";
 
 /// Computes the costs from measured ticks with one constant layer, two constant layers, or one layer of another kind.
-/// Fails if no cost uses a tick with one layer: a new kind of layer needs a line here.
-fn costs(figures: &Figures) -> Result<Vec<Cost>, String> {
-    let used = RefCell::new(BTreeSet::new());
-    let costs = costs_of_ticks(|name| {
+fn costs(figures: &Figures) -> Result<Costs, String> {
+    let tick = |name: &str| {
         let name = format!("{TICK}{name}{CYCLES}");
-        let tick = figures.get(&name).ok_or_else(|| format!("{name} was not measured"));
-        used.borrow_mut().insert(name);
-        tick
-    })?;
-    let end = format!("{ALONE}{CYCLES}");
-    let mut alone = figures.names().filter(|name| name.starts_with(TICK) && name.ends_with(&end));
-    match alone.find(|name| !used.borrow().contains(*name)) {
-        Some(name) => Err(format!("{name} was measured, and no cost uses it: add a line to `costs_of_ticks`")),
-        None => Ok(costs),
-    }
-}
-
-/// [`costs`] from a function that finds the core cycles of a tick by its name.
-fn costs_of_ticks(tick: impl Fn(&str) -> Result<u64, String>) -> Result<Vec<Cost>, String> {
+        figures.get(&name).ok_or_else(|| format!("{name} was not measured"))
+    };
     let two = tick("two_constants")?;
     let constant = two.saturating_sub(tick("constant_alone")?);
     let base = two.saturating_sub(2 * constant);
     let alone = |name: &str| tick(&format!("{name}{ALONE}")).map(|core_cycles| core_cycles.saturating_sub(base));
+    let stream_elsewhere = tick("stream_elsewhere")?.saturating_sub(tick("constant_alone")?);
+    let end = format!("{ALONE}{CYCLES}");
+    let counted = figures.names().filter_map(|name| name.strip_prefix(TICK)?.strip_suffix(&end));
+    let layer = |name: &str| {
+        let cost = alone(name)?;
+        Ok(match name.split_once(OVER) {
+            _ if name == STREAM => (name.to_owned(), cost.saturating_sub(stream_elsewhere)),
+            Some((own, other)) => (own.to_owned(), cost.saturating_sub(alone(other)?)),
+            None => (name.to_owned(), cost),
+        })
+    };
+    let layers: Result<_, String> = counted.filter(|name| !OF_PARTS.contains(name)).map(layer).collect();
     // Ticks with the envelope at its slew limit, and ticks whose target exceeds the reachable friction, are longer
     // than others: take the longest.
     let longest =
@@ -89,32 +95,17 @@ fn costs_of_ticks(tick: impl Fn(&str) -> Result<u64, String>) -> Result<Vec<Cost
     // In any of them, the amplifier may be switching on.
     let switching = tick("disturbed_alone")?.saturating_sub(tick("constant_alone")?);
     let empty = longest + switching + RARE;
-    let stream_elsewhere = tick("stream_elsewhere")?.saturating_sub(tick("constant_alone")?);
     let (speed, speed_point) = line_through(SPEED_POINTS, alone("speed_2")?, alone("speed_8")?);
     let (polygon, polygon_edge) = line_through(POLYGON_POINTS, alone("polygon_4")?, alone("polygon_12")?);
     let more_level = LEVEL_POLYGON_POINTS - POLYGON_EDGES_LEVEL;
     let with_two_level = polygon + LEVEL_POLYGON_POINTS * polygon_edge;
     let polygon_edge_level = alone("polygon_6_level")?.saturating_sub(with_two_level).div_ceil(more_level);
     let polygon = polygon.saturating_sub(constant + POLYGON_EDGES_LEVEL * polygon_edge_level);
-    Ok(vec![
+    let parts = vec![
         ("EMPTY", "A tick that looks at layers and finds none.", empty),
         ("SINE_CARRIER", "What a sine carrier adds.", tick("two_constants_sine_carrier")?.saturating_sub(two)),
-        ("CONSTANT", "Layers, in a rectangle.", constant),
-        ("SINE", "", alone("sine")?),
-        ("SQUARE", "", alone("square")?),
-        ("TRIANGLE", "", alone("triangle")?),
-        ("SAW", "", alone("saw")?),
-        ("RINGS", "", alone("rings")?.saturating_sub(alone("sine")?)),
-        ("BITMAP", "", alone("bitmap")?),
-        ("BITMAP_TILED", "", alone("bitmap_tiled")?),
-        ("NOISE", "", alone("noise")?),
-        ("EDGE", "", alone("edge")?),
-        ("BUTTON", "", alone("button")?),
-        ("VIBRATION_SINE", "", alone("vibration_sine")?),
-        ("VIBRATION_SQUARE", "", alone("vibration_square")?),
         ("SPEED", "A curve, and each of its points.", speed),
         ("SPEED_POINT", "", speed_point),
-        ("STREAM", "", alone("stream")?.saturating_sub(stream_elsewhere)),
         ("STREAM_ELSEWHERE", "The stream's own work, wherever the finger is.", stream_elsewhere),
         ("ELLIPSE", "What other regions add to a rectangle.", alone("ellipse")?.saturating_sub(constant)),
         (
@@ -124,7 +115,8 @@ fn costs_of_ticks(tick: impl Fn(&str) -> Result<u64, String>) -> Result<Vec<Cost
         ),
         ("POLYGON_EDGE", "", polygon_edge),
         ("POLYGON_EDGE_LEVEL", "", polygon_edge_level),
-    ])
+    ];
+    Ok(Costs { parts, layers: layers? })
 }
 
 /// Cost without points and cost per point, chosen so that neither of the two measured cases exceeds the line.
@@ -133,24 +125,23 @@ fn line_through((few, many): (u64, u64), at_few: u64, at_many: u64) -> (u64, u64
     (at_few.saturating_sub(few * each).max(at_many.saturating_sub(many * each)), each)
 }
 
-fn line((name, _, core_cycles): &Cost) -> String {
-    format!("pub(crate) const {name}: u32 = {core_cycles};")
-}
-
-fn text(costs: &[Cost]) -> String {
+fn text(costs: &Costs) -> String {
     let mut text = String::from(
         "//! Core cycles on a Cortex-M4F at the worst input, estimated. Written by `FRIXEL_BLESS=1 cargo xtask bench`;\n\
          //! `cargo xtask test` measures again and fails when it finds others.\n\
          #![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n",
     );
-    for cost in costs {
-        let (_, comment, _) = cost;
+    for (name, comment, core_cycles) in &costs.parts {
+        let comment = if comment.is_empty() { String::new() } else { format!("\n// {comment}\n") };
         // Writing to a string cannot fail.
-        let _ = match *comment {
-            "" => writeln!(text, "{}", line(cost)),
-            comment => writeln!(text, "\n// {comment}\n{}", line(cost)),
-        };
+        let _ = writeln!(text, "{comment}pub(crate) const {name}: u32 = {core_cycles};");
     }
+    text += "\n/// Layers, in a rectangle; `kind::core_cycles` finds one by its name.\n\
+             pub(crate) const LAYERS: &[(&str, u32)] = &[\n";
+    for (name, core_cycles) in &costs.layers {
+        let _ = writeln!(text, "    (\"{name}\", {core_cycles}),");
+    }
+    text += "];\n";
     text
 }
 
@@ -177,10 +168,13 @@ mod tests {
     }
 
     #[test]
-    fn a_kind_that_was_counted_must_have_a_cost() {
+    fn a_layer_that_was_counted_has_a_cost_and_a_part_is_no_layer() {
         let mut figures = complete();
-        figures.put("m4f.tick_dots_alone_cycles".to_owned(), 1_000);
-        let message = costs(&figures).unwrap_err();
-        assert!(message.contains("m4f.tick_dots_alone_cycles") && message.contains("add a line"), "{message}");
+        figures.put("m4f.tick_dots_alone_cycles".to_owned(), 1_600);
+        figures.put("m4f.tick_stars_over_dots_alone_cycles".to_owned(), 1_650);
+        let names = |costs: Costs| costs.layers.into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+        assert_eq!(names(costs(&figures).unwrap()), ["constant", "dots", "stars"]);
+        let text = text(&costs(&figures).unwrap());
+        assert!(text.contains("(\"dots\", 600)") && text.contains("(\"stars\", 50)"), "{text}");
     }
 }

@@ -6,8 +6,7 @@ use frixel_wire::message::Refusal;
 use crate::context::Context;
 use crate::cosine::{centred, direction};
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
-use crate::measured;
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -41,7 +40,7 @@ impl Kind for Bitmap {
     type Coefficients = BitmapCoefficients;
 
     fn cost(&self) -> u32 {
-        if self.tiled { measured::BITMAP_TILED } else { measured::BITMAP }
+        if self.tiled { const { core_cycles("bitmap_tiled") } } else { const { core_cycles("bitmap") } }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -8,8 +8,7 @@ use crate::clicks::ClickNumber;
 use crate::context::Context;
 use crate::cosine::cosine;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
-use crate::measured;
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -41,7 +40,7 @@ impl Kind for Button {
     }
 
     fn cost(&self) -> u32 {
-        measured::BUTTON
+        const { core_cycles("button") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -4,8 +4,7 @@ use frixel_wire::message::Refusal;
 
 use crate::context::Context;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
-use crate::measured;
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -23,7 +22,7 @@ impl Kind for Constant {
     type Coefficients = Self;
 
     fn cost(&self) -> u32 {
-        measured::CONSTANT
+        const { core_cycles("constant") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -7,8 +7,7 @@ use crate::clicks::ClickNumber;
 use crate::context::Context;
 use crate::cosine::{cosine, direction};
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
-use crate::measured;
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -38,7 +37,7 @@ impl Kind for Edge {
     type Coefficients = EdgeCoefficients;
 
     fn cost(&self) -> u32 {
-        measured::EDGE
+        const { core_cycles("edge") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -5,8 +5,7 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use crate::context::Context;
 use crate::cosine::cosine;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
-use crate::measured;
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::noise_waves::{WAVES, Waves};
 use crate::parameters::{parameters, range, within};
 use crate::point::Point;
@@ -43,7 +42,7 @@ impl Kind for Noise {
     }
 
     fn cost(&self) -> u32 {
-        measured::NOISE
+        const { core_cycles("noise") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

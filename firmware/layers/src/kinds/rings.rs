@@ -4,8 +4,7 @@ use frixel_wire::message::Refusal;
 
 use crate::context::Context;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
-use crate::measured;
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -36,7 +35,7 @@ impl Kind for Rings {
     type Coefficients = RingsCoefficients;
 
     fn cost(&self) -> u32 {
-        self.wave.cost() + measured::RINGS
+        self.wave.cost() + const { core_cycles("rings") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -4,7 +4,7 @@ use frixel_wire::message::Refusal;
 
 use crate::context::Context;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::measured;
 use crate::parameters::{parameters, range};
 use crate::point::Point;
@@ -28,7 +28,7 @@ impl Kind for Stream {
     const STREAMED: bool = true;
 
     fn cost(&self) -> u32 {
-        measured::STREAM
+        const { core_cycles("stream") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

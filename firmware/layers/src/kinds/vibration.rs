@@ -7,9 +7,8 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use crate::context::Context;
 use crate::cosine::cosine;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind};
+use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::layout::RecordBytes;
-use crate::measured;
 use crate::parameters::{Parameter, UnknownForm, form, parameters, put_form, range, within};
 use crate::point::Point;
 use crate::prepare::{Preparation, ticks};
@@ -97,8 +96,8 @@ impl Kind for Vibration {
 
     fn cost(&self) -> u32 {
         match self.beat {
-            Beat::Sine => measured::VIBRATION_SINE,
-            Beat::Square => measured::VIBRATION_SQUARE,
+            Beat::Sine => const { core_cycles("vibration_sine") },
+            Beat::Square => const { core_cycles("vibration_square") },
         }
     }
 

@@ -68,7 +68,7 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
     scene[53] = 3;
     scene.extend(record.write());
     scene.extend([0; 24]);
-    for (features, refused) in [(feature::GRATING, true), (feature::STREAM | feature::POLYGON, false)] {
+    for (features, refused) in [(feature::TELEMETRY, true), (feature::STREAM | feature::POLYGON, false)] {
         let mut board = FakeBoard::new();
         board.hello.features = features;
         board.hello.protocol = (1, 2);

@@ -1,5 +1,6 @@
 //! The smallest firmware image that plays a scene.
 
+use frixel_layers::feature_names;
 use frixel_scene::Program;
 use frixel_wire::hello::feature;
 use serde::Serialize;
@@ -20,8 +21,7 @@ impl BoardImage {
     pub(super) fn of(program: &Program) -> Self {
         // `frixel play` subscribes to telemetry.
         let needed = program.features() | feature::TELEMETRY;
-        let features: Vec<&str> =
-            feature::NAMES.iter().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| *name).collect();
+        let features: Vec<&str> = feature_names().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| name).collect();
         let list = if features.is_empty() { String::new() } else { format!(" --features {}", features.join(",")) };
         let command = format!("cd {FOLDER} && cargo build --release --no-default-features{list}");
         Self { features, command }

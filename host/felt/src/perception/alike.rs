@@ -1,10 +1,9 @@
 //! Layers that a person cannot tell apart by their strength.
 
-use frixel_layers::Layer;
+use frixel_scene::{Program, without_place};
 use serde::Serialize;
 
 use super::{JudgedLayer, Texture, USUAL_M_PER_S, VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps};
-use frixel_scene::Program;
 
 /// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
 const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
@@ -46,17 +45,7 @@ fn acts_on(one: &JudgedLayer, other: &JudgedLayer) -> bool {
 
 /// Whether two layers have the same parameters, but for their place.
 pub(super) fn are_copies(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
-    let placeless = |judged: &JudgedLayer| {
-        let mut layer = program.records.get(judged.layer)?.layer;
-        match &mut layer {
-            Layer::Edge(edge) => (edge.x_m, edge.y_m) = (0.0, 0.0),
-            Layer::Rings(rings) => (rings.x_m, rings.y_m) = (0.0, 0.0),
-            Layer::Bitmap(bitmap) => (bitmap.x_m, bitmap.y_m) = (0.0, 0.0),
-            Layer::Grating(grating) => grating.phase_turns = 0.0,
-            _ => {}
-        }
-        Some(layer)
-    };
+    let placeless = |judged: &JudgedLayer| program.records.get(judged.layer).map(|record| without_place(record.layer));
     placeless(one) == placeless(other)
 }
 

@@ -13,7 +13,7 @@ use frixel::player::player;
 use frixel::rigs::{RecordedLink, SimLink};
 use frixel_driver::Device;
 use frixel_felt::recorder::{FeltRow, Recorder};
-use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig};
 use frixel_lab::calibration::{
     BoardRow, CalibrationError, ForceRow, ForceSensor, Protocol, align, read_board, read_forces, write_board, write_csv,
 };
@@ -133,7 +133,7 @@ fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interru
     let mut config = RigConfig { world: rig.world.realistic(), ..rig };
     config.world.fingertip = fingertip;
     let plan = Plan::new(args, recording, &config.board.limits, config.board.tick_hz)?;
-    let stroke = Stroke::from_csv(&plan.protocol.stroke_csv()).map_err(CommandError::GeneratedStroke)?;
+    let stroke = plan.protocol.stroke().map_err(CommandError::GeneratedStroke)?;
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     rig.world_mut().set_own_finger(contact);

@@ -19,6 +19,7 @@ use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::model_csv::CsvError;
+use frixel_lab::stroke_file::StrokeFileError;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
@@ -63,7 +64,7 @@ pub(crate) enum CommandError {
     #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
     #[error("{}: {source}", path.display())]
-    Stroke { path: PathBuf, source: StrokeError },
+    Stroke { path: PathBuf, source: StrokeFileError },
     #[error("no stroke can be generated for this scene's screen: {0}")]
     GeneratedStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]
@@ -99,13 +100,13 @@ pub(crate) enum CommandError {
     Noise(hound::Error),
     #[error("{source}; what was recorded until then is in {}: {advice}", partial.display())]
     RecordingCutOff { source: Box<CommandError>, partial: PathBuf, advice: &'static str },
-    #[error("{}: row {row} {reason}: give the options of the session that was cut off, or begin a new one with --overwrite", partial.display())]
-    OtherSession { partial: PathBuf, row: usize, reason: String },
+    #[error("{}: {reason}: give the options of the session that was cut off, or begin a new one with --overwrite", partial.display())]
+    OtherSession { partial: PathBuf, reason: String },
     #[error(
-        "{}: row {row} is no row of a recorded stroke, which has t_s,x_mm,y_mm: correct or delete it, or record anew with \
+        "{} is no recorded stroke, which has t_s,x_mm,y_mm ({found}): correct or delete the row, or record anew with \
          --overwrite", partial.display()
     )]
-    OtherRow { partial: PathBuf, row: usize },
+    OtherRow { partial: PathBuf, found: String },
     #[error("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")]
     NoForces { port: String },
     #[error("{rows} no answer; the column `status` says why")]

@@ -1,7 +1,8 @@
 //! `frixel info`.
 
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
-use frixel_wire::hello::{Hello, feature};
+use frixel_layers::feature_names;
+use frixel_wire::hello::Hello;
 
 use super::InfoArgs;
 use super::error::CommandError;
@@ -46,9 +47,9 @@ fn describe(hello: &Hello) -> String {
 
 /// Names of the firmware's features; unknown features are printed as bits.
 fn features(bits: u32) -> String {
-    let named = feature::NAMES.iter().filter(|(bit, _)| bits & bit != 0);
-    let unnamed = feature::NAMES.iter().fold(bits, |left, (bit, _)| left & !bit);
-    let names = named.map(|(_, name)| (*name).to_owned());
+    let named = feature_names().filter(|(bit, _)| bits & bit != 0);
+    let unnamed = feature_names().fold(bits, |left, (bit, _)| left & !bit);
+    let names = named.map(|(_, name)| name.to_owned());
     let names: Vec<String> = names.chain((unnamed != 0).then(|| format!("{unnamed:#x}"))).collect();
     if names.is_empty() { "none".into() } else { names.join(", ") }
 }

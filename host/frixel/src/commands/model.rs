@@ -85,7 +85,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
         Err(source) => {
             let (path, stream) = match source {
                 CsvError::Write(_) => (&args.output, "standard output"),
-                _ => (&args.input, "standard input"),
+                CsvError::Table(_) => (&args.input, "standard input"),
             };
             let input = path.as_ref().map_or(stream.to_owned(), |path| path.display().to_string());
             return Err(CommandError::ModelCsv { input, source });

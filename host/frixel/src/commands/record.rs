@@ -9,6 +9,7 @@ use clap::Args;
 use frixel::output_file::{FileWriter, Inputs, Recording};
 use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
 use frixel_felt::recorder::Observation;
+use frixel_lab::table::{Column, Table, TableError};
 
 use super::error::CommandError;
 use super::experiment::cut_off;
@@ -48,11 +49,8 @@ pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
     let recording = Recording::new(&args.output, "-o", &Inputs::default(), args.overwrite, CUT_OFF)?;
     if args.finish {
         let (writer, text) = recording.resume()?;
-        if let Some(row) = other_row(&text) {
-            return Err(CommandError::OtherRow { partial: recording.partial(), row });
-        }
-        let touched = text.lines().skip(1).filter(|row| !row.ends_with(",,")).count() as u64;
-        return finish(&recording, writer, touched);
+        let other = |error: TableError| CommandError::OtherRow { partial: recording.partial(), found: error.found() };
+        return finish(&recording, writer, touched(&text).map_err(other)?);
     }
     // Without a port, the recording is finished above.
     let port = args.port.as_deref().unwrap_or_default();
@@ -91,19 +89,23 @@ fn record<L: Link>(
     Ok(device.subscribe(0)?)
 }
 
-/// The number of the first row, the header included, that no record writes: another command has, or a crash of the
-/// machine has left zeros in its place.
-fn other_row(text: &str) -> Option<usize> {
-    let is_number = |cell: &str| cell.parse::<f64>().is_ok_and(f64::is_finite);
-    let is_row = |row: &str| match row.split(',').collect::<Vec<_>>()[..] {
-        [t_s, "", ""] => is_number(t_s),
-        [t_s, x_mm, y_mm] => [t_s, x_mm, y_mm].into_iter().all(is_number),
-        _ => false,
-    };
-    text.lines()
-        .enumerate()
-        .position(|(index, row)| if index == 0 { row != HEADER } else { !is_row(row) })
-        .map(|at| at + 1)
+/// The number of the rows with a touch. The error says where there is a row that no record writes: another command has,
+/// or a crash of the machine has left zeros in its place.
+fn touched(text: &str) -> Result<u64, TableError> {
+    let mut table = Table::new(text.as_bytes())?;
+    let t = table.need(Column::new("t_s", "seconds"))?;
+    let (x, y) = (table.need(Column::new("x_mm", "mm"))?, table.need(Column::new("y_mm", "mm"))?);
+    let mut touched = 0;
+    while let Some(row) = table.next_row()? {
+        row.check_length()?;
+        row.real(t)?;
+        if row.real_if_filled(x)?.is_some() || row.real_if_filled(y)?.is_some() {
+            row.real(x)?;
+            row.real(y)?;
+            touched += 1;
+        }
+    }
+    Ok(touched)
 }
 
 /// Gives the file its name.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use frixel::input;
 use frixel_hil_sim::{Point, Stroke, StrokeError};
+use frixel_lab::stroke_file::StrokeFile;
 
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
@@ -24,21 +25,6 @@ const HUMAN: &str = "human";
 /// Duration of a person's stroke unless another is given, s, and the longest.
 const HUMAN_S: f64 = 10.0;
 const HUMAN_MAX_S: f64 = 600.0;
-/// Columns of a stroke file, load in N included, and those of `felt.csv`, which may be played as a stroke.
-const KNOWN_COLUMNS: [&str; 11] = [
-    "t_s",
-    "x_mm",
-    "y_mm",
-    "force_n",
-    "speed_mm_s",
-    "wanted_n",
-    "asked_n",
-    "felt_n",
-    "voltage_v_rms",
-    "dac_code",
-    "flags",
-];
-
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
@@ -142,28 +128,20 @@ pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
         ErrorKind::InvalidData => CommandError::StrokeNotText { path: path.into() },
         _ => CommandError::reading(path)(error),
     })?;
-    let stroke = Stroke::from_csv(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
+    let file = StrokeFile::parse(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
+    let StrokeFile { stroke, ignored_columns } = file;
     let seconds = stroke.duration_s();
     if seconds > STROKE_MAX_S {
         return Err(CommandError::StrokeTooLong { name: path.display().to_string(), seconds });
     }
-    note_ignored_columns(path, &text);
-    Ok(stroke)
-}
-
-/// Names the columns of a stroke file that are not read.
-fn note_ignored_columns(path: &Path, text: &str) {
-    let text = text.trim_start_matches('\u{feff}');
-    let header = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    let names = header.split(',').map(|name| name.trim().trim_matches('"'));
-    let ignored: Vec<&str> = names.filter(|name| !KNOWN_COLUMNS.contains(name)).collect();
-    if !ignored.is_empty() {
-        let names = ignored.join(", ");
+    if !ignored_columns.is_empty() {
+        let names = ignored_columns.join(", ");
         note(format_args!(
             "warning: {}: ignored column {names}: a stroke has t_s, x_mm, y_mm and force_n",
             path.display()
         ));
     }
+    Ok(stroke)
 }
 
 /// Parses a place in mm, such as `12,34.5`.

@@ -16,7 +16,7 @@ use frixel::player::player;
 use frixel::rigs::{RecordedLink, SimLink};
 use frixel_driver::Device;
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::Protocol;
 use frixel_lab::threshold::{Staircase, Threshold};
 use frixel_play::{Feed, Player};
@@ -130,7 +130,7 @@ fn measure(
     if port == "sim" {
         let config = RigConfig::default();
         let protocol = protocol(args, &config.board.limits)?;
-        let stroke = Stroke::from_csv(&protocol.stroke_csv()).and_then(|stroke| stroke.looped(0.0));
+        let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
         session(args, interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol, answers)

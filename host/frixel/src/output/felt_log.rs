@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-use thiserror::Error;
-
 use frixel_felt::recorder::FeltRow;
+use frixel_lab::table::{Column, Table, TableError, whole_rows};
+use thiserror::Error;
 
 use crate::input;
 
@@ -22,7 +21,7 @@ pub struct FeltLogError {
 pub struct FeltLog(Vec<LogRow>);
 
 /// The columns that are joined.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 struct LogRow {
     t_s: f64,
     x_mm: Option<f64>,
@@ -36,10 +35,7 @@ impl FeltLog {
     pub fn read(path: &Path) -> Result<Self, FeltLogError> {
         let error = |reason: String| FeltLogError { path: path.to_owned(), reason };
         let text = input::read_text(path, input::CSV_MAX_BYTES).map_err(|source| error(source.to_string()))?;
-        let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
-        let mut reader = csv::Reader::from_reader(whole.as_bytes());
-        let rows: Result<Vec<LogRow>, csv::Error> = reader.deserialize().collect();
-        Ok(Self(rows.map_err(|source| error(source.to_string()))?))
+        Ok(Self(rows(whole_rows(&text)).map_err(|source| error(source.found()))?))
     }
 
     /// Time of the last row since the power-on of the board, s.
@@ -69,3 +65,23 @@ impl FeltLog {
 
 /// Longest time between a client's row and the row of the log that belongs to it, s. The log has a row a millisecond.
 const APART_MAX_S: f64 = 1e-3;
+
+fn rows(text: &str) -> Result<Vec<LogRow>, TableError> {
+    let mut table = Table::new(text.as_bytes())?;
+    let t = table.need(Column::new("t_s", "seconds"))?;
+    let (x, y) = (table.need(Column::new("x_mm", "mm"))?, table.need(Column::new("y_mm", "mm"))?);
+    let speed = table.need(Column::new("speed_mm_s", "mm/s"))?;
+    let felt = table.need(Column::new("felt_n", "newtons"))?;
+    let mut rows = Vec::new();
+    while let Some(row) = table.next_row()? {
+        row.check_length()?;
+        rows.push(LogRow {
+            t_s: row.real(t)?,
+            x_mm: row.real_if_filled(x)?,
+            y_mm: row.real_if_filled(y)?,
+            speed_mm_s: row.real_if_filled(speed)?,
+            felt_n: row.real_if_filled(felt)?,
+        });
+    }
+    Ok(rows)
+}

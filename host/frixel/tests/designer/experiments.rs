@@ -170,7 +170,10 @@ fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
     for (arguments, words) in [
         (&["-o", "d.csv"][..], "measures no forces"),
         (&["-o", "d.csv", "--forces", "nowhere.csv"], "nowhere.csv cannot be read"),
-        (&["-o", "d.csv", "--forces", "volts.csv"], "give CSV with the columns time_s,normal_force_n,friction_n"),
+        (
+            &["-o", "d.csv", "--forces", "volts.csv"],
+            "volts.csv: the header has no column normal_force_n: name the column so, in newtons",
+        ),
         (&["-o", "d.csv", "--forces", "back.csv"], "row 3 of the forces goes back in time"),
         (&["-o", "nowhere/d.csv", "--forces", "board/forces.csv"], "nowhere/d.csv cannot be written"),
         (&["-o", "d.csv", "--forces", "board/forces.csv", "--finger-seed", "3"], "leave --finger-seed out"),

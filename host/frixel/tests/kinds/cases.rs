@@ -1,6 +1,8 @@
-//! One scene for each kind of layer, region and blend, with what it means.
+//! One scene for each form of a layer, each region and each blend, with what it means.
 
-use super::expected::{At, Expected, along, hill, noise, sine, turn};
+use frixel_testkit::samples::{Formula, along_deg, samples, sine, turn};
+
+use super::expected::{At, Expected, hill};
 
 /// A finger's way over the screen, mm.
 #[derive(Clone, Copy)]
@@ -15,7 +17,9 @@ pub struct Case {
     pub name: &'static str,
     pub layers: &'static str,
     pub path: Path,
-    /// Electric friction, mN.
+    /// Electric friction at a place in mm, mN, where nothing else plays a part.
+    pub of_place: Option<fn(f64, f64) -> f64>,
+    /// Electric friction, mN; not used for a case with a friction of the place.
     pub expected: fn(&mut Expected, At) -> f64,
     /// How far the library's evaluation may be away, mN: it begins with frictions rounded to `f32`.
     pub agreement_mn: f64,
@@ -33,6 +37,7 @@ const CASE: Case = Case {
     name: "",
     layers: "",
     path: ACROSS,
+    of_place: None,
     expected: |_, _| 0.0,
     agreement_mn: 2e-4,
     jumps: false,
@@ -41,77 +46,16 @@ const CASE: Case = Case {
 };
 
 pub fn all() -> Vec<Case> {
-    [spatial(), pictures(), borders(), in_time(), regions(), blends()].into_iter().flatten().collect()
+    [of_samples(), pictures(), borders(), in_time(), regions(), blends()].into_iter().flatten().collect()
 }
 
-fn spatial() -> Vec<Case> {
-    vec![
-        Case {
-            name: "constant",
-            layers: "[[layer]]\nkind = \"constant\"\nfriction_n = 0.262\ngain = 1.5",
-            expected: |_, _| 18.0,
-            bound: 0.0013,
-            ..CASE
-        },
-        Case {
-            name: "sine grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\nangle_deg = 30\nphase_deg = 45\n\
-                     low_n = 0.002\nhigh_n = 0.022",
-            expected: |_, at| 2.0 + 20.0 * sine(along(at.x, at.y, 30.0) / 5.0 + 0.125),
-            bound: 0.0392,
-            ..CASE
-        },
-        Case {
-            name: "square grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwave = \"square\"\nduty = 0.3\nwavelength_mm = 10\n\
-                     low_n = 0.002\nhigh_n = 0.022",
-            expected: |_, at| if turn(at.x / 10.0) < 0.3 { 22.0 } else { 2.0 },
-            jumps: true,
-            bound: 0.074,
-            ..CASE
-        },
-        Case {
-            name: "triangle grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwave = \"triangle\"\nwavelength_mm = 6\nangle_deg = 90\n\
-                     low_n = 0.002\nhigh_n = 0.022",
-            path: Path::Steady((20.0, 5.0), (60.0, 75.0)),
-            expected: |_, at| 2.0 + 20.0 * (1.0 - (2.0 * turn(at.y / 6.0) - 1.0).abs()),
-            bound: 0.0309,
-            ..CASE
-        },
-        Case {
-            name: "rings",
-            layers: "[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 6\nlow_n = 0.002\nhigh_n = 0.022",
-            expected: |_, at| 2.0 + 20.0 * sine((at.x - 50.0).hypot(at.y - 20.0) / 6.0),
-            bound: 0.0272,
-            ..CASE
-        },
-        Case {
-            name: "square rings",
-            layers: "[[layer]]\nkind = \"rings\"\nwave = \"square\"\nduty = 0.3\nx_mm = 50\ny_mm = 20\nwavelength_mm = 10\nlow_n = 0.002\nhigh_n = 0.022",
-            expected: |_, at| if turn((at.x - 50.0).hypot(at.y - 20.0) / 10.0) < 0.3 { 22.0 } else { 2.0 },
-            jumps: true,
-            bound: 0.0903,
-            ..CASE
-        },
-        Case {
-            name: "saw grating",
-            layers: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\n\
-                     high_n = 0.022",
-            expected: |_, at| 2.0 + 20.0 * turn(at.x / 12.0),
-            jumps: true,
-            bound: 0.0853,
-            ..CASE
-        },
-        Case {
-            name: "noise",
-            layers: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\n\
-                     low_n = 0.002\nhigh_n = 0.026",
-            expected: |_, at| 2.0 + 24.0 * noise(20260, 4.0, 12.0, at.x, at.y),
-            bound: 0.0125,
-            ..CASE
-        },
-    ]
+/// The formulas of the samples, of kinds whose friction depends on the place alone.
+fn of_samples() -> Vec<Case> {
+    let case = |formula: &Formula| {
+        let &Formula { name, words: layers, stroke_mm: [from, to], friction_mn, jumps, bound } = formula;
+        Case { name, layers, path: Path::Steady(from, to), of_place: Some(friction_mn), jumps, bound, ..CASE }
+    };
+    samples().flat_map(|sample| sample.formulas).map(case).collect()
 }
 
 fn pictures() -> Vec<Case> {
@@ -146,7 +90,7 @@ fn pictures() -> Vec<Case> {
             expected: |scene, at| {
                 // 31 (30.5, rounded) by 33 samples, turned about the middle.
                 let (x, y) = (at.x - 50.5, at.y - 33.0);
-                let (u, v) = (along(x, y, 20.0) + 30.5, along(x, y, 110.0) + 33.0);
+                let (u, v) = (along_deg(x, y, 20.0) + 30.5, along_deg(x, y, 110.0) + 33.0);
                 26.0 * scene.level(u / 61.0 * 31.0, v / 2.0, true)
             },
             bound: 0.0044,
@@ -159,7 +103,7 @@ fn pictures() -> Vec<Case> {
                      pitch_mm = 2\nangle_deg = -15\nwhite_n = 0.026",
             expected: |scene, at| {
                 let (x, y) = (at.x - 60.0, at.y - 40.0);
-                let (u, v) = (along(x, y, -15.0) + 25.0, along(x, y, 75.0) + 25.0);
+                let (u, v) = (along_deg(x, y, -15.0) + 25.0, along_deg(x, y, 75.0) + 25.0);
                 let inside = (0.0..50.0).contains(&u) && (0.0..50.0).contains(&v);
                 if inside { 26.0 * scene.level(u / 2.0, v / 2.0, false) } else { 0.0 }
             },
@@ -177,7 +121,7 @@ fn borders() -> Vec<Case> {
             layers: "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nangle_deg = 20\nwidth_mm = 12\n\
                      ridge_n = 0.015\nclick_n = 0.01\nclick_ms = 60",
             expected: |scene, at| {
-                let away = along(at.x - 60.0, at.y - 40.0, 20.0);
+                let away = along_deg(at.x - 60.0, at.y - 40.0, 20.0);
                 15.0 * hill(away, 12.0) + scene.click_on_change(away >= 0.0, at, 10.0, 0.06)
             },
             bound: 0.005,

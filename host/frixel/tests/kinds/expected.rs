@@ -78,40 +78,7 @@ impl<'a> Expected<'a> {
     }
 }
 
-/// Part of a turn, from 0 to 1, at so many turns.
-pub fn turn(turns: f64) -> f64 {
-    turns - turns.floor()
-}
-
-pub fn sine(turns: f64) -> f64 {
-    0.5 + 0.5 * (TAU * turns).sin()
-}
-
 /// A hill of height 1 and of this width about 0.
 pub fn hill(away: f64, width: f64) -> f64 {
     if away.abs() < width / 2.0 { 0.5 + 0.5 * (TAU * away / width).cos() } else { 0.0 }
-}
-
-/// Where a place lies along a direction in degrees, from x towards y.
-pub fn along(x: f64, y: f64, degrees: f64) -> f64 {
-    x * degrees.to_radians().cos() + y * degrees.to_radians().sin()
-}
-
-/// Noise between 0 and 1 as PROTOCOL.md has it: wavelengths in mm.
-pub fn noise(seed: u32, shortest: f64, longest: f64, x: f64, y: f64) -> f64 {
-    let hash = |number: u32| {
-        let mut v = seed.wrapping_add(number.wrapping_mul(0x9e37_79b9));
-        v = (v ^ v >> 16).wrapping_mul(0x7feb_352d);
-        v = (v ^ v >> 15).wrapping_mul(0x846c_a68b);
-        f64::from((v ^ v >> 16) >> 8) / f64::from(1 << 24)
-    };
-    let sum: f64 = (0..8_u32)
-        .map(|i| {
-            let direction = 360.0 * (f64::from(i) + hash(3 * i + 1)) / 16.0;
-            let number =
-                1.0 / longest + (1.0 / shortest - 1.0 / longest) * (f64::from(5 * i % 8) + hash(3 * i + 2)) / 8.0;
-            (TAU * (number * along(x, y, direction) + hash(3 * i + 3))).cos()
-        })
-        .sum();
-    0.5 + 0.5 * sum / 8.0
 }

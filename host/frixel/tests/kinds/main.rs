@@ -75,7 +75,14 @@ fn expected_mn(case: &Case, program: &Program, rows: &[FeltRow], start_ticks: us
         t: (start_ticks + number) as f64 * TICK_S,
         speed: row.speed_mm_s.unwrap(),
     };
-    rows.iter().enumerate().map(|row| (case.expected)(&mut expected, at(row))).collect()
+    rows.iter()
+        .enumerate()
+        .map(at)
+        .map(|at| match case.of_place {
+            Some(of_place) => of_place(at.x, at.y),
+            None => (case.expected)(&mut expected, at),
+        })
+        .collect()
 }
 
 /// How many rows the library's evaluation is away from what is expected, by more than it may be.

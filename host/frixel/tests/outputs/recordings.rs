@@ -279,17 +279,17 @@ fn a_play_does_not_replace_what_a_finger_did_on_a_board() {
 #[test]
 fn a_record_is_not_finished_with_rows_that_no_record_writes() {
     let whole = "t_s,x_mm,y_mm\n0.000000,1.0000,2.0000\n0.005000,1.5000,2.0000\n0.010000,,\n";
-    for (text, row) in [
-        ("time_s,speed_mm_s,voltage_v_rms\n0,1,2\n".to_owned(), 1),
-        (format!("{whole}\0\0\0\0\0\0\n0.020000,2.0000,2.0000\n"), 5),
-        (format!("{whole}0.015000,nan,2.0000\n"), 5),
-        (format!("{whole}0.015000,2.0000\n"), 5),
+    for (text, found) in [
+        ("time_s,speed_mm_s,voltage_v_rms\n0,1,2\n".to_owned(), "the header has no column t_s"),
+        (format!("{whole}\0\0\0\0\0\0\n0.020000,2.0000,2.0000\n"), "row 5: expected 3 cells as in the header, found 1"),
+        (format!("{whole}0.015000,nan,2.0000\n"), "row 5, column x_mm: expected a number, found \"nan\""),
+        (format!("{whole}0.015000,2.0000\n"), "row 5: expected 3 cells as in the header, found 2"),
     ] {
         let folder = Folder::new();
         folder.write("me.csv.partial", &text);
         let before = folder.names();
         let ran = folder.run("record --finish -o me.csv");
-        let says = format!("me.csv.partial: row {row} is no row of a recorded stroke");
+        let says = format!("me.csv.partial is no recorded stroke, which has t_s,x_mm,y_mm ({found}");
         assert!(ran.code == Some(1) && ran.notes.contains(&says), "{text:?}: {}", ran.notes);
         assert_eq!(folder.names(), before, "{text:?}");
         assert_eq!(folder.text("me.csv.partial"), text);

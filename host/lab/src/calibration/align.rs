@@ -1,7 +1,5 @@
 //! Puts the clock of the force sensor on the board's clock, and joins what both saw.
 
-use serde::Deserialize;
-
 use super::{CalibrationError, ForceRow};
 use crate::fit::Row;
 
@@ -25,7 +23,7 @@ const STILL_MM_S: f64 = 5.0;
 const STROKE_MIN_S: f64 = 0.4;
 
 /// What the board reported at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardRow {
     /// Time on the board's clock, in seconds.
     pub time_s: f64,

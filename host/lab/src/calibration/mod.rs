@@ -11,7 +11,7 @@ mod protocol;
 use std::fmt::Write as _;
 use std::io::{Read, Write};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
 pub use align::{BoardRow, align};
@@ -19,9 +19,10 @@ pub use force_sensor::ForceSensor;
 pub use protocol::Protocol;
 
 use crate::fit::Row;
+use crate::table::{Column, Table, TableError, whole_rows};
 
 /// A sample of a force sensor, on the sensor's own clock.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceRow {
     /// Time, in seconds.
     pub time_s: f64,
@@ -35,21 +36,16 @@ pub struct ForceRow {
 #[derive(Debug, Error)]
 pub enum CalibrationError {
     /// The forces cannot be read.
-    #[error(
-        "the forces cannot be read ({0}): give CSV with the columns time_s,normal_force_n,friction_n in seconds and \
-         newtons"
-    )]
-    Forces(csv::Error),
+    #[error(transparent)]
+    Forces(#[from] TableError),
     /// What the board reported cannot be read.
-    #[error("what the board reported cannot be read ({0}): it was changed")]
-    Board(csv::Error),
-    /// A force is not a number, or time goes backwards.
-    #[error("row {row} of the forces {found}: give finite numbers, sorted by time")]
-    Row {
+    #[error("what the board reported cannot be read ({}): it was changed", .0.found())]
+    Board(TableError),
+    /// Time goes backwards.
+    #[error("row {row} of the forces goes back in time: sort the rows by time")]
+    Backwards {
         /// Number of the row; the header is row 1.
-        row: usize,
-        /// What is wrong with it.
-        found: &'static str,
+        row: u64,
     },
     /// The sensor is too slow.
     #[error("the forces have {found:.0} rows a second, fewer than 200: half-periods of 20 ms need at least 200")]
@@ -92,24 +88,27 @@ pub enum CalibrationError {
     Write(csv::Error),
 }
 
+const TIME: Column = Column::new("time_s", "seconds");
+const LOAD: Column = Column::new("normal_force_n", "newtons");
+const FRICTION: Column = Column::new("friction_n", "newtons");
+const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms");
+const SPEED: Column = Column::new("speed_mm_s", "mm/s");
+
 /// Reads the forces of a sensor from CSV with the columns `time_s,normal_force_n,friction_n`, in any order.
 ///
 /// A last line without a line feed is left out: the sensor is still writing it.
 pub fn read_forces(mut input: impl Read) -> Result<Vec<ForceRow>, CalibrationError> {
     let mut text = String::new();
-    input.read_to_string(&mut text).map_err(|error| CalibrationError::Forces(error.into()))?;
-    let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(whole.as_bytes());
-    let rows: Vec<ForceRow> = reader.deserialize().collect::<Result<_, _>>().map_err(CalibrationError::Forces)?;
-    let mut last_s = f64::NEG_INFINITY;
-    for (row, number) in rows.iter().zip(2..) {
-        if ![row.time_s, row.normal_force_n, row.friction_n].iter().all(|value| value.is_finite()) {
-            return Err(CalibrationError::Row { row: number, found: "has a cell that is not finite" });
+    input.read_to_string(&mut text).map_err(TableError::Read)?;
+    let mut table = Table::new(whole_rows(&text).as_bytes())?;
+    let (time, load, friction) = (table.need(TIME)?, table.need(LOAD)?, table.need(FRICTION)?);
+    let mut rows: Vec<ForceRow> = Vec::new();
+    while let Some(row) = table.next_row()? {
+        let time_s = row.real(time)?;
+        if rows.last().is_some_and(|last| time_s < last.time_s) {
+            return Err(CalibrationError::Backwards { row: row.number() });
         }
-        if row.time_s < last_s {
-            return Err(CalibrationError::Row { row: number, found: "goes back in time" });
-        }
-        last_s = row.time_s;
+        rows.push(ForceRow { time_s, normal_force_n: row.real(load)?, friction_n: row.real(friction)? });
     }
     Ok(rows)
 }
@@ -143,7 +142,22 @@ pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> Result<
 
 /// Reads what [`write_board`] wrote.
 pub fn read_board(input: impl Read) -> Result<Vec<BoardRow>, CalibrationError> {
-    csv::Reader::from_reader(input).deserialize().collect::<Result<_, _>>().map_err(CalibrationError::Board)
+    board_rows(input).map_err(CalibrationError::Board)
+}
+
+fn board_rows(input: impl Read) -> Result<Vec<BoardRow>, TableError> {
+    let mut table = Table::new(input)?;
+    let (time, voltage, speed) = (table.need(TIME)?, table.need(VOLTAGE)?, table.need(SPEED)?);
+    let mut rows = Vec::new();
+    while let Some(row) = table.next_row()? {
+        row.check_length()?;
+        rows.push(BoardRow {
+            time_s: row.real(time)?,
+            voltage_v_rms: row.real(voltage)?,
+            speed_mm_s: row.real(speed)?,
+        });
+    }
+    Ok(rows)
 }
 
 /// Writes a recording as CSV.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use frixel_hil_sim::{Point, Stroke, StrokeError};
 use frixel_model::{Contact, Finger, ParameterError};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -152,20 +153,18 @@ impl Protocol {
         ))
     }
 
-    /// Where the simulated finger goes: strokes of minimum jerk, back and forth, as CSV with the columns
-    /// `t_s,x_mm,y_mm`.
-    pub fn stroke_csv(&self) -> String {
-        let mut text = String::from("t_s,x_mm,y_mm\n");
+    /// Where the simulated finger goes: strokes of minimum jerk, back and forth.
+    pub fn stroke(&self) -> Result<Stroke, StrokeError> {
         let period_s = self.stroke_s + self.pause_s;
-        for step in 0..=(self.duration_s() * PLACE_HZ) as u32 {
+        let place = |step: u32| {
             let time_s = f64::from(step) / PLACE_HZ;
             let stroke = (time_s / period_s).floor();
             let part = ((time_s - stroke * period_s) / self.stroke_s).clamp(0.0, 1.0);
             let way = part * part * part * (10.0 - 15.0 * part + 6.0 * part * part);
             let way = if (stroke as u64).is_multiple_of(2) { way } else { 1.0 - way };
-            let _ = writeln!(text, "{time_s},{},40", 25.0 + self.length_mm * way);
-        }
-        text
+            (time_s, Some(Point { x_m: (25.0 + self.length_mm * way) / 1e3, y_m: 40.0 / 1e3 }))
+        };
+        Stroke::through(&(0..=(self.duration_s() * PLACE_HZ) as u32).map(place).collect::<Vec<_>>())
     }
 }
 

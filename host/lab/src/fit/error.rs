@@ -1,52 +1,15 @@
 //! Why data are refused: what was found, and what to do about it.
 
-use std::io;
-
 use thiserror::Error;
+
+use crate::table::TableError;
 
 /// Why data cannot be fitted.
 #[derive(Debug, Error)]
 pub enum FitError {
-    /// The file cannot be read.
-    #[error("the data cannot be read ({0}): give a CSV file with a header row")]
-    Read(io::Error),
-    /// The header has other separators than commas.
-    #[error(
-        "{found} separate the columns of the header: save the file with commas between columns, and points in numbers"
-    )]
-    Separator {
-        /// Name of the separator.
-        found: &'static str,
-    },
-    /// The header has no column that is needed.
-    #[error(
-        "the header has no column {column}{}: name the column so, in {unit}",
-        .nearest.as_ref().map(|name| format!(" (it has {name})")).unwrap_or_default()
-    )]
-    ColumnMissing {
-        /// The column.
-        column: &'static str,
-        /// Its unit.
-        unit: &'static str,
-        /// A column with a similar name.
-        nearest: Option<String>,
-    },
-    /// The header has a column twice.
-    #[error("the header has the column {column} twice: leave one of them out")]
-    ColumnTwice {
-        /// The column.
-        column: &'static str,
-    },
-    /// A cell is not a finite number.
-    #[error("row {row}, column {column}: expected a number, found {found:?}: correct the cell or delete the row")]
-    NotANumber {
-        /// Number of the row; the header is row 1.
-        row: u64,
-        /// The column.
-        column: &'static str,
-        /// What the cell contains.
-        found: String,
-    },
+    /// The file is no table of the columns that are needed, or a cell is no number.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// A voltage is negative.
     #[error(
         "row {row}, column voltage_v_rms: {found} V is below zero: give the root mean square of the drive, which has \

@@ -30,7 +30,7 @@
 //! voltage, possibly negative), `unstable`, or `invalid: REASON` with empty cells. An invalid row does not stop the
 //! others. The file as a whole is rejected ([`CsvError`]) when its header lacks a column that every row needs, or
 //! repeats a column that the model reads. A missing column that only some variants need makes the rows of those
-//! variants invalid. Messages count rows from the header, which is row 1; blank lines do not count.
+//! variants invalid.
 
 mod columns;
 mod error;
@@ -40,12 +40,13 @@ mod variant;
 
 use std::io::{Read, Write};
 
-use csv::{ByteRecord, ReaderBuilder, WriterBuilder};
+use csv::WriterBuilder;
 use frixel_model::{InverseError, StateError, contact_attraction_pa};
 
 pub use error::CsvError;
 pub use number::Precision;
 
+use crate::table::{Column, Table, system_error};
 use columns::{Columns, FRICTIONS, VOLTAGE};
 use error::Refusal;
 use number::Number;
@@ -94,15 +95,18 @@ pub fn invert(precision: Precision, input: impl Read, output: impl Write) -> Res
 /// The columns that one direction of the model reads and writes.
 struct Direction {
     /// The input needs at least one of these columns, besides the common ones.
-    given: &'static [&'static str],
+    given: &'static [Column],
     answers: &'static [&'static str],
 }
 
 const EVAL: Direction = Direction {
-    given: &[VOLTAGE],
+    given: &[Column::new(VOLTAGE, "volts rms")],
     answers: &["sigma0_pa", "contact_radius_m", "effective_stiffness_pa_per_m", "friction_n"],
 };
-const INVERT: Direction = Direction { given: &FRICTIONS, answers: &["voltage_v"] };
+const INVERT: Direction = Direction {
+    given: &[Column::new(FRICTIONS[0], "newtons"), Column::new(FRICTIONS[1], "newtons")],
+    answers: &["voltage_v"],
+};
 
 /// The cells that are appended to a row.
 struct Answer {
@@ -118,21 +122,16 @@ fn transform(
     input: impl Read,
     output: impl Write,
 ) -> Result<Summary, CsvError> {
-    let mut reader = ReaderBuilder::new().flexible(true).from_reader(input);
+    let mut table = Table::new(input)?;
     let mut writer = WriterBuilder::new().from_writer(output);
-    let header = reader.byte_headers().map_err(CsvError::read)?.clone();
-    let columns = Columns::new(&header, direction.given)?;
+    let columns = Columns::new(&mut table, direction.given)?;
     let names = direction.answers.iter().map(|name| name.as_bytes());
-    write(&mut writer, header.iter().chain(names).chain([b"status".as_slice()]))?;
+    write(&mut writer, table.header()?.iter().chain(names).chain([b"status".as_slice()]))?;
 
     let mut summary = Summary::default();
-    let mut record = ByteRecord::new();
-    while reader.read_byte_record(&mut record).map_err(CsvError::read)? {
-        if is_blank(&record) && columns.len() > 1 {
-            continue;
-        }
+    while let Some(row) = table.next_row()? {
         summary.rows += 1;
-        let (cells, status) = match answer(&Row::new(1 + summary.rows, &columns, &record)) {
+        let (cells, status) = match answer(&Row::new(row, &columns)) {
             Ok(answer) => {
                 summary.beyond_finger_rows += u64::from(answer.beyond_finger);
                 (answer.cells, answer.status.to_owned())
@@ -143,20 +142,14 @@ fn transform(
             }
         };
         // A row of the wrong length is invalid, and is padded or cut so that its status is in the status column.
-        let passed = (0..columns.len()).map(|place| record.get(place).unwrap_or_default());
-        write(&mut writer, passed.chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]))?;
+        write(&mut writer, row.cells().chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]))?;
     }
     writer.flush().map_err(CsvError::Write)?;
     Ok(summary)
 }
 
-/// Whether a line is blank, such as some editors leave at the end of a file.
-fn is_blank(record: &ByteRecord) -> bool {
-    record.len() == 1 && record.iter().all(|cell| cell.trim_ascii().is_empty())
-}
-
 fn write<'a>(writer: &mut csv::Writer<impl Write>, cells: impl Iterator<Item = &'a [u8]>) -> Result<(), CsvError> {
-    writer.write_record(cells).map_err(CsvError::write)
+    writer.write_record(cells).map_err(|error| CsvError::Write(system_error(error)))
 }
 
 fn evaluated<T: Number>(row: &Row) -> Result<Answer, Refusal> {

@@ -2,52 +2,40 @@
 
 use std::borrow::Cow;
 
-use csv::ByteRecord;
-
 use super::columns::{Columns, VARIANT};
 use super::error::Refusal;
 use super::number::Number;
+use crate::table::{self, Place};
 
-/// Number of characters of a cell that a message quotes.
-const QUOTED_CHARS: usize = 40;
-
-/// A row with the positions of its columns.
+/// A row with the places of its columns.
 pub(super) struct Row<'a> {
-    number: u64,
+    cells: table::Row<'a>,
     columns: &'a Columns,
-    cells: &'a ByteRecord,
 }
 
 impl<'a> Row<'a> {
-    pub(super) fn new(number: u64, columns: &'a Columns, cells: &'a ByteRecord) -> Self {
-        Self { number, columns, cells }
+    pub(super) fn new(cells: table::Row<'a>, columns: &'a Columns) -> Self {
+        Self { cells, columns }
     }
 
-    /// Number of the row; the header is row 1.
+    /// Its line in the file.
     pub(super) fn number(&self) -> u64 {
-        self.number
+        self.cells.number()
     }
 
     /// Fails if the row has more or fewer cells than the header.
     pub(super) fn check_length(&self) -> Result<(), Refusal> {
-        let (expected, found) = (self.columns.len(), self.cells.len());
-        if found == expected { Ok(()) } else { Err(Refusal::Length { row: self.number, expected, found }) }
+        Ok(self.cells.check_length()?)
     }
 
     /// A cell without surrounding blanks; empty if the column does not exist.
     pub(super) fn text(&self, column: &str) -> Cow<'a, str> {
-        let cell = self.columns.place(column).and_then(|place| self.cells.get(place)).unwrap_or_default();
-        String::from_utf8_lossy(cell.trim_ascii())
+        self.columns.place(column).map_or(Cow::Borrowed(""), |place| self.cells.text(place))
     }
 
     /// The beginning of a cell, for a message.
     pub(super) fn quoted(&self, column: &str) -> String {
-        let text = self.text(column);
-        let mut quoted: String = text.chars().take(QUOTED_CHARS).collect();
-        if quoted.len() < text.len() {
-            quoted.push_str("...");
-        }
-        quoted
+        self.columns.place(column).map_or(String::new(), |place| self.cells.quoted(place))
     }
 
     /// Whether a cell is not blank.
@@ -57,23 +45,14 @@ impl<'a> Row<'a> {
 
     /// The number in a required cell.
     pub(super) fn real<T: Number>(&self, column: &'static str) -> Result<T, Refusal> {
-        let row = self.number;
-        if !self.columns.has(column) {
-            return Err(Refusal::ColumnMissing { row, column, variant: self.quoted(VARIANT) });
-        }
-        let text = self.text(column);
-        if text.is_empty() {
-            return Err(Refusal::CellEmpty { row, column });
-        }
-        let not_a_number = || Refusal::NotANumber { row, column, found: self.quoted(column) };
-        let number: T = text.parse().map_err(|_| not_a_number())?;
-        let wide: f64 = text.parse().map_err(|_| not_a_number())?;
-        let overflowed = wide.is_finite() && !number.is_finite();
-        let vanished = wide.abs() > 0.0 && number == T::ZERO;
-        if overflowed || vanished {
-            return Err(Refusal::OutOfF32 { row, column, found: self.quoted(column) });
-        }
-        Ok(number)
+        let row = self.number();
+        let missing = || Refusal::ColumnMissing { row, column, variant: self.quoted(VARIANT) };
+        let place: Place = self.columns.place(column).ok_or_else(missing)?;
+        let wide = self.cells.real(place)?;
+        // From the digits, not from `wide`, which is rounded already.
+        let number = self.cells.text(place).parse::<T>().ok();
+        let fits = |number: &T| number.is_finite() && (*number != T::ZERO || !(wide.abs() > 0.0));
+        number.filter(fits).ok_or_else(|| Refusal::OutOfF32 { row, column, found: self.cells.quoted(place) })
     }
 
     /// The number in an optional cell; zero if it is empty.

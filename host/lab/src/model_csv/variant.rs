@@ -1,8 +1,6 @@
 //! The variants of the model by name, each built from the cells of a row.
 
-use frixel_model::{
-    Contact, ContactModel, Expected, Finger, ParameterError, Slab, SoftContact, SoftFinger, effective_gap_m,
-};
+use frixel_model::{Contact, ContactModel, Finger, Slab, SoftContact, SoftFinger, effective_gap_m};
 
 use super::columns::{
     COATING, FRICTION_COEFFICIENT, MODULUS, NORMAL_FORCE, OUTER_RADIUS, PERMITTIVITY, RADIUS, SHAPE_CONSTANT,
@@ -68,10 +66,6 @@ fn winkler_fuss<T: Number>(row: &Row, variant: &str, radius_m: T, gap_m: T) -> R
         "wf-finite" => Box::new(contact.within(row.real(OUTER_RADIUS)?, row.real_or_zero(NORMAL_FORCE)?)?),
         "wf-loaded" => {
             let normal_load_n: T = row.real(NORMAL_FORCE)?;
-            if !normal_load_n.is_finite() {
-                let found = normal_load_n.into();
-                return Err(ParameterError { parameter: NORMAL_FORCE, expected: Expected::Finite, found }.into());
-            }
             if normal_load_n < T::ZERO {
                 Box::new(contact.under_pull(-normal_load_n)?)
             } else {

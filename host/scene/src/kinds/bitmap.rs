@@ -7,7 +7,7 @@ use frixel_layers::{Bitmap as Record, Interval, Layer as RecordLayer, Region as 
 
 use super::constant::ConstantField;
 use super::samples::Samples;
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -154,11 +154,17 @@ impl Words for Bitmap {
 }
 
 /// The reference of a bitmap layer; not-a-number everywhere if the program does not have the bitmap.
-pub(super) fn field(record: &Record, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
-    let bitmap = program.bitmap(record.crc32).filter(|bitmap| bitmap.width > 0 && bitmap.height > 0);
-    match bitmap {
-        Some(bitmap) => Arc::new(Samples::new(bitmap, record)),
-        None => Arc::new(ConstantField(f64::NAN)),
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
+        let bitmap = program.bitmap(self.crc32).filter(|bitmap| bitmap.width > 0 && bitmap.height > 0);
+        match bitmap {
+            Some(bitmap) => Arc::new(Samples::new(bitmap, self)),
+            None => Arc::new(ConstantField(f64::NAN)),
+        }
+    }
+
+    fn without_place(self) -> Self {
+        Self { x_m: 0.0, y_m: 0.0, ..self }
     }
 }
 

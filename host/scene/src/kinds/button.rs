@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_layers::{Button as Record, Click as RecordClick, Interval, Layer as RecordLayer, Region as RecordRegion};
 
 use super::click::Click;
-use super::{Clicked, Field, Lowered, Words, click_interval};
+use super::{Clicked, Field, IntoField, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake};
@@ -83,22 +83,24 @@ impl Words for Button {
     }
 }
 
-pub(super) fn field(record: &Record, region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    let (x_m, y_m, width_m, height_m, is_ellipse) = match region {
-        RecordRegion::Rectangle { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, false),
-        RecordRegion::Ellipse { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, true),
-        RecordRegion::Screen | RecordRegion::Polygon { .. } => (f32::NAN, f32::NAN, f32::NAN, f32::NAN, false),
-    };
-    let half_m = (0.5 * f64::from(width_m), 0.5 * f64::from(height_m));
-    Arc::new(ButtonField {
-        middle_m: (f64::from(x_m) + half_m.0, f64::from(y_m) + half_m.1),
-        half_m,
-        is_ellipse,
-        rim_width_m: f64::from(record.rim_width_m),
-        rim_n: f64::from(record.rim_n),
-        face_n: f64::from(record.face_n),
-        click: record.click,
-    })
+impl IntoField for Record {
+    fn field(&self, region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        let (x_m, y_m, width_m, height_m, is_ellipse) = match region {
+            RecordRegion::Rectangle { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, false),
+            RecordRegion::Ellipse { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, true),
+            RecordRegion::Screen | RecordRegion::Polygon { .. } => (f32::NAN, f32::NAN, f32::NAN, f32::NAN, false),
+        };
+        let half_m = (0.5 * f64::from(width_m), 0.5 * f64::from(height_m));
+        Arc::new(ButtonField {
+            middle_m: (f64::from(x_m) + half_m.0, f64::from(y_m) + half_m.1),
+            half_m,
+            is_ellipse,
+            rim_width_m: f64::from(self.rim_width_m),
+            rim_n: f64::from(self.rim_n),
+            face_n: f64::from(self.face_n),
+            click: self.click,
+        })
+    }
 }
 
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Constant as Record, Interval, Layer as RecordLayer, Region as RecordRegion};
 
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
@@ -43,8 +43,10 @@ impl Words for Constant {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    Arc::new(ConstantField(f64::from(record.electric_friction_n)))
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(ConstantField(f64::from(self.electric_friction_n)))
+    }
 }
 
 /// The same friction everywhere, N.

@@ -8,7 +8,7 @@ use frixel_layers::{
 };
 
 use super::click::Click;
-use super::{Clicked, Field, Lowered, Words, click_interval};
+use super::{Clicked, Field, IntoField, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -105,15 +105,21 @@ impl Edge {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    Arc::new(EdgeField {
-        place_m: (f64::from(record.x_m), f64::from(record.y_m)),
-        angle_turns: f64::from(record.angle_turns),
-        width_m: f64::from(record.width_m),
-        level_n: f64::from(record.level_n),
-        ridge_n: f64::from(record.ridge_n),
-        click: record.click,
-    })
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(EdgeField {
+            place_m: (f64::from(self.x_m), f64::from(self.y_m)),
+            angle_turns: f64::from(self.angle_turns),
+            width_m: f64::from(self.width_m),
+            level_n: f64::from(self.level_n),
+            ridge_n: f64::from(self.ridge_n),
+            click: self.click,
+        })
+    }
+
+    fn without_place(self) -> Self {
+        Self { x_m: 0.0, y_m: 0.0, ..self }
+    }
 }
 
 #[derive(Debug)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -94,13 +94,19 @@ impl Words for Grating {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    Arc::new(GratingField {
-        cycles_per_m_x: f64::from(record.cycles_per_m_x),
-        cycles_per_m_y: f64::from(record.cycles_per_m_y),
-        phase_turns: f64::from(record.phase_turns),
-        wave: WaveField { wave: record.wave, trough_n: f64::from(record.trough_n), crest_n: f64::from(record.crest_n) },
-    })
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(GratingField {
+            cycles_per_m_x: f64::from(self.cycles_per_m_x),
+            cycles_per_m_y: f64::from(self.cycles_per_m_y),
+            phase_turns: f64::from(self.phase_turns),
+            wave: WaveField { wave: self.wave, trough_n: f64::from(self.trough_n), crest_n: f64::from(self.crest_n) },
+        })
+    }
+
+    fn without_place(self) -> Self {
+        Self { phase_turns: 0.0, ..self }
+    }
 }
 
 #[derive(Debug)]

@@ -150,6 +150,18 @@ pub(crate) trait Field: Debug + Send + Sync {
     }
 }
 
+/// The parameters of a kind in a record, and their reference.
+pub(crate) trait IntoField: Copy {
+    /// The friction over plane and time.
+    fn field(&self, region: RecordRegion, program: &Program) -> Arc<dyn Field>;
+
+    /// The same at another place: what differs between a layer and its copies is left out.
+    #[must_use]
+    fn without_place(self) -> Self {
+        self
+    }
+}
+
 /// The values of the field `kind` of a layer.
 pub fn layer_kinds() -> impl Iterator<Item = &'static str> {
     KindName::ALL.iter().map(|(word, _)| *word)
@@ -243,7 +255,12 @@ macro_rules! kinds {
 
         /// The reference of a record's layer.
         pub(crate) fn field(layer: &Record, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
-            match layer { $( Record::$kind(layer) => $module::field(layer, region, program), )* }
+            match layer { $( Record::$kind(layer) => IntoField::field(layer, region, program), )* }
+        }
+
+        /// The layer of a record without its place: the same for a layer and its copies.
+        pub fn without_place(layer: Record) -> Record {
+            match layer { $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )* }
         }
     };
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Interval, Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
 
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Mistake as Required, Number};
@@ -87,17 +87,19 @@ impl Words for Noise {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    let (wavelength_min_m, wavelength_max_m) = (f64::from(record.wavelength_min_m), f64::from(record.wavelength_max_m));
-    let waves = (0..8).map(|wave| {
-        let draw = |number: u32| drawn(record.seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + number)));
-        let direction = TAU * (f64::from(wave) + draw(1)) / 16.0;
-        let part = (f64::from(5 * wave % 8) + draw(2)) / 8.0;
-        let cycles_per_m = (1.0 - part) / wavelength_max_m + part / wavelength_min_m;
-        [cycles_per_m * libm::cos(direction), cycles_per_m * libm::sin(direction), draw(3)]
-    });
-    let (low_n, high_n) = (f64::from(record.low_n), f64::from(record.high_n));
-    Arc::new(NoiseField { waves: waves.collect(), wavelength_min_m, low_n, high_n })
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        let (wavelength_min_m, wavelength_max_m) = (f64::from(self.wavelength_min_m), f64::from(self.wavelength_max_m));
+        let waves = (0..8).map(|wave| {
+            let draw = |number: u32| drawn(self.seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + number)));
+            let direction = TAU * (f64::from(wave) + draw(1)) / 16.0;
+            let part = (f64::from(5 * wave % 8) + draw(2)) / 8.0;
+            let cycles_per_m = (1.0 - part) / wavelength_max_m + part / wavelength_min_m;
+            [cycles_per_m * libm::cos(direction), cycles_per_m * libm::sin(direction), draw(3)]
+        });
+        let (low_n, high_n) = (f64::from(self.low_n), f64::from(self.high_n));
+        Arc::new(NoiseField { waves: waves.collect(), wavelength_min_m, low_n, high_n })
+    }
 }
 
 #[derive(Debug)]

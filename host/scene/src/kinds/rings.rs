@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
@@ -70,12 +70,18 @@ impl Words for Rings {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    Arc::new(RingsField {
-        middle_m: (f64::from(record.x_m), f64::from(record.y_m)),
-        cycles_per_m: f64::from(record.cycles_per_m),
-        wave: WaveField { wave: record.wave, trough_n: f64::from(record.trough_n), crest_n: f64::from(record.crest_n) },
-    })
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(RingsField {
+            middle_m: (f64::from(self.x_m), f64::from(self.y_m)),
+            cycles_per_m: f64::from(self.cycles_per_m),
+            wave: WaveField { wave: self.wave, trough_n: f64::from(self.trough_n), crest_n: f64::from(self.crest_n) },
+        })
+    }
+
+    fn without_place(self) -> Self {
+        Self { x_m: 0.0, y_m: 0.0, ..self }
+    }
 }
 
 #[derive(Debug)]

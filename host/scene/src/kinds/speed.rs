@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Blend, Interval, Layer as RecordLayer, Point, Region as RecordRegion, Speed as Record, range};
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake as Required;
 use crate::grammar::{FieldSpec, Holds, Range};
@@ -76,9 +76,11 @@ impl Words for Speed {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
-    let own = program.points.iter().skip(usize::from(record.first)).take(usize::from(record.count));
-    Arc::new(SpeedField(own.map(|point| (f64::from(point.x), f64::from(point.y))).collect()))
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
+        let own = program.points.iter().skip(usize::from(self.first)).take(usize::from(self.count));
+        Arc::new(SpeedField(own.map(|point| (f64::from(point.x), f64::from(point.y))).collect()))
+    }
 }
 
 /// Speeds in m/s, and the factor at each.

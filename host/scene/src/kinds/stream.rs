@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Stream as Record};
 
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
 use crate::grammar::AmountFields;
@@ -49,8 +49,10 @@ impl Words for Stream {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    Arc::new(StreamField { low_n: f64::from(record.low_n), high_n: f64::from(record.high_n) })
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(StreamField { low_n: f64::from(self.low_n), high_n: f64::from(self.high_n) })
+    }
 }
 
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use frixel_layers::{
     Beat, Burst as RecordBurst, Interval, Layer as RecordLayer, Region as RecordRegion, Vibration as Record, range,
 };
 
-use super::{Field, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words};
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake as Required, Number};
 use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
@@ -124,14 +124,16 @@ impl Burst {
     }
 }
 
-pub(super) fn field(record: &Record, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-    Arc::new(VibrationField {
-        beat: record.beat,
-        frequency_hz: f64::from(record.frequency_hz),
-        low_n: f64::from(record.low_n),
-        high_n: f64::from(record.high_n),
-        burst: record.burst,
-    })
+impl IntoField for Record {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(VibrationField {
+            beat: self.beat,
+            frequency_hz: f64::from(self.frequency_hz),
+            low_n: f64::from(self.low_n),
+            high_n: f64::from(self.high_n),
+            burst: self.burst,
+        })
+    }
 }
 
 #[derive(Debug)]

@@ -1,14 +1,21 @@
 // <frixel-scene>: map, finger and scope of a scene, for any document. docs/studio.md says how to use it.
 //
 // All elements of a document share one simulated board: the scene under the pointer plays on it.
+// @ts-check
 
 import { createEngine } from "../engine/engine.js";
 import { carriedFiles } from "../page/bundled.js";
-import { element, forgetColours } from "../page/dom.js";
+import { element, forgetColours, sentenceOf } from "../page/dom.js";
 import { Finger } from "../page/finger.js";
 import { FrictionMap, mapSizePx } from "../page/map.js";
+import { isPlayable } from "../page/player.js";
 import { Samples } from "../page/samples.js";
 import { Scope } from "../page/scope.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Checked, Files, Frame, Profiles } from "../engine/types" */
+/** @typedef {{ files: Files, entry: string }} Source */
+/** @typedef {{ engine: Engine, map: FrictionMap, finger: Finger, scope: Scope }} Parts */
 
 /** Longer side of the map's picture, pixels. */
 const MAP_LONG_SIDE_PX = 640;
@@ -24,8 +31,12 @@ const STYLE = `
 .bad { color: var(--danger); white-space: pre-line; }
 `;
 
+/** @type {Promise<Engine> | undefined} */
 let shared;
-/** The element whose scene plays. */
+/**
+ * The element whose scene plays.
+ * @type {FrixelScene | undefined}
+ */
 let playing;
 
 /** The engine of all elements, started for the first one. */
@@ -41,25 +52,32 @@ function engineOfAll() {
 class FrixelScene extends HTMLElement {
   static observedAttributes = ["scene", "src", "finger", "screen"];
 
-  #engine;
-  #map;
-  #finger;
+  /**
+   * What shows the scene, once it is near the window.
+   * @type {Parts | undefined}
+   */
+  #parts;
+  /** @type {ShadowRoot | undefined} */
+  #root;
   #samples = new Samples();
-  #scope;
   #line = element("p", { className: "line fine", role: "status" });
   #hint = element("p", { className: "hint" }, "press and slide");
-  /** What the engine needs for the scene: files, name of the scene's file, profiles. */
+  /**
+   * What the engine needs for the scene: files, name of the scene's file, profiles.
+   * @type {[Files, string, Profiles] | undefined}
+   */
   #scene;
+  /** @type {Checked | undefined} */
   #check;
 
   connectedCallback() {
-    if (this.shadowRoot) return;
-    this.attachShadow({ mode: "open" });
+    if (this.#root) return;
+    this.#root = this.attachShadow({ mode: "open" });
     const nearby = new IntersectionObserver(
       ([{ isIntersecting }]) => {
         if (!isIntersecting) return;
         nearby.disconnect();
-        this.#start().catch((error) => this.say(error.message));
+        this.#start().catch((error) => this.say(sentenceOf(error)));
       },
       { rootMargin: NEARBY },
     );
@@ -69,11 +87,11 @@ class FrixelScene extends HTMLElement {
   disconnectedCallback() {
     if (playing !== this) return;
     playing = undefined;
-    this.#engine.stop();
+    this.#parts?.engine.stop();
   }
 
   attributeChangedCallback() {
-    if (this.#map) this.#load().catch((error) => this.say(error.message));
+    if (this.#parts) this.#load(this.#parts).catch((error) => this.say(sentenceOf(error)));
   }
 
   async #start() {
@@ -85,62 +103,79 @@ class FrixelScene extends HTMLElement {
     const map = element("div", { className: "map" }, picture, touched, this.#hint);
     const scope = element("div", { className: "scope" });
     const card = element("div", { className: "card" }, map, this.#line, scope);
-    this.shadowRoot.replaceChildren(element("style", {}, ...styles, STYLE), card);
-    this.#engine = await engineOfAll();
-    this.#map = new FrictionMap(map, picture);
-    this.#finger = new Finger(this.#engine, this.#map, touched);
-    this.#scope = new Scope(this.#samples, scope);
-    this.#finger.onDown = () => (this.#hint.hidden = true);
+    this.#root?.replaceChildren(element("style", {}, ...styles, STYLE), card);
+    const engine = await engineOfAll();
+    const shown = new FrictionMap(map, picture);
+    const finger = new Finger(engine, shown, touched);
+    const parts = { engine, map: shown, finger, scope: new Scope(this.#samples, scope) };
+    this.#parts = parts;
+    finger.onDown = () => (this.#hint.hidden = true);
     for (const type of ["pointerenter", "pointerdown", "focus"])
-      touched.addEventListener(type, () => this.#play().catch((error) => this.say(error.message)));
+      touched.addEventListener(type, () => this.#play(parts).catch((error) => this.say(sentenceOf(error))));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       forgetColours();
-      this.#map.draw();
-      this.#scope.restyle();
+      parts.map.draw();
+      parts.scope.restyle();
     });
-    await this.#load();
+    await this.#load(parts);
   }
 
-  /** Reads the scene, checks it and draws its map. */
-  async #load() {
-    const profiles = {};
-    for (const name of ["finger", "screen"]) if (this.hasAttribute(name)) profiles[name] = this.getAttribute(name);
-    const { files, entry } = await this.#read();
-    const check = await this.#engine.check(files, entry, profiles);
-    if (!check.ok && !check.isDraft) {
+  /**
+   * Reads the scene, checks it and draws its map.
+   * @param {Parts} parts
+   */
+  async #load(parts) {
+    const { engine, map } = parts;
+    const profiles = {
+      finger: this.getAttribute("finger") ?? undefined,
+      screen: this.getAttribute("screen") ?? undefined,
+    };
+    const { files, entry } = await this.#read(engine);
+    const check = await engine.check(files, entry, profiles);
+    if (!isPlayable(check)) {
       const places = check.problems.map(({ file, line, message }) => `${file ?? entry}:${line ?? 1}: ${message}`);
       throw new Error(places.join("\n"));
     }
     this.#scene = [files, entry, profiles];
     this.#check = check;
     const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
-    this.#map.show(await this.#engine.map(...this.#scene, { ...sizePx, speedMmPerS: 100 }), check);
+    map.show(await engine.map(files, entry, profiles, { ...sizePx, speedMmPerS: 100 }), check);
     this.#line.className = "line fine";
     this.#line.textContent = check.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;
     this.dispatchEvent(new CustomEvent("ready", { detail: check }));
     if (playing === this) {
       playing = undefined;
-      await this.#play();
+      await this.#play(parts);
     }
   }
 
-  /** The files of the scene that the attributes name, or that stands in the element. */
-  async #read() {
+  /**
+   * The files of the scene that the attributes name, or that stands in the element.
+   * @param {Engine} engine
+   * @returns {Promise<Source>}
+   */
+  async #read(engine) {
     const carried = await carriedFiles();
     const [name, src, text] = [this.getAttribute("scene"), this.getAttribute("src"), this.textContent.trim()];
     if (name !== null) {
       if (`${name}.toml` in carried) return { files: carried, entry: `${name}.toml` };
       throw new Error(`scene="${name}": no bundled scene has this name`);
     }
-    if (src !== null) return this.#fetched(new URL(src, document.baseURI), carried);
+    if (src !== null) return this.#fetched(engine, new URL(src, document.baseURI), carried);
     if (text !== "") return { files: { ...carried, "scene.toml": text }, entry: "scene.toml" };
     throw new Error('<frixel-scene> has no scene: give it scene="brick", src="my.toml", or a scene\'s text inside');
   }
 
-  /** The scene at an address, and the files that it names, from there. */
-  async #fetched(url, carried) {
-    const entry = decodeURIComponent(url.pathname.split("/").pop()) || "scene.toml";
-    const content = async (address) => {
+  /**
+   * The scene at an address, and the files that it names, from there.
+   * @param {Engine} engine
+   * @param {URL} url
+   * @param {Files} carried
+   * @returns {Promise<Source>}
+   */
+  async #fetched(engine, url, carried) {
+    const entry = decodeURIComponent(url.pathname.split("/").at(-1) ?? "") || "scene.toml";
+    const content = async (/** @type {URL} */ address) => {
       const answer = await fetch(address);
       if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
       return new Uint8Array(await answer.arrayBuffer());
@@ -151,38 +186,50 @@ class FrixelScene extends HTMLElement {
           "put the scene's text inside of the element",
       );
     }
+    /** @type {Files} */
     const files = { ...carried, [entry]: await content(url) };
+    /** @type {Set<string>} */
     const sought = new Set();
     for (;;) {
-      const { names } = await this.#engine.usedFiles(files, entry);
+      const { names } = await engine.usedFiles(files, entry);
       const missing = names.filter((name) => !sought.has(name) && !(name in files));
       if (missing.length === 0) return { files, entry };
       for (const name of missing) {
         sought.add(name);
         // Of a file that is not there, the compiler says so.
-        await content(new URL(name, url)).then((bytes) => (files[name] = bytes)).catch(() => {});
+        await content(new URL(name, url)).then(
+          (bytes) => (files[name] = bytes),
+          () => {},
+        );
       }
     }
   }
 
-  async #play() {
+  /** @param {Parts} parts */
+  async #play({ engine }) {
     if (playing === this || !this.#scene) return;
     playing = this;
-    await this.#engine.play(...this.#scene);
+    await engine.play(...this.#scene);
   }
 
-  /** Takes what was felt. Documents get it as the event `feel`. */
+  /**
+   * Takes what was felt. Documents get it as the event `feel`.
+   * @param {Frame} frame
+   */
   feel(frame) {
     this.#samples.add(frame);
-    this.#finger.feel(frame, this.#check);
+    if (this.#check) this.#parts?.finger.feel(frame, this.#check);
     this.dispatchEvent(new CustomEvent("feel", { detail: frame }));
   }
 
-  /** Shows a sentence. */
+  /**
+   * Shows a sentence.
+   * @param {string} sentence
+   */
   say(sentence) {
     this.#line.className = "line bad";
     this.#line.textContent = sentence;
-    if (!this.#line.isConnected) this.shadowRoot.append(this.#line);
+    if (!this.#line.isConnected) this.#root?.append(this.#line);
   }
 }
 

@@ -2,6 +2,7 @@
 //
 // Virtual time follows the page's clock. A sample of the pointer is played DELAY_MS after it was taken, so that the
 // next sample is here in time and the finger can be interpolated between both.
+// @ts-check
 "use strict";
 
 const TICKS_PER_MS = 40;
@@ -16,20 +17,28 @@ const REST_AFTER_MS = 2000;
 /** Samples of a stroke that a replay can have. */
 const STROKE_MAX = 4000;
 
+/** @type {Engine} */
 let engine;
 /** Virtual time: tick `tick` was at `ms`, and time passes `rate` times as fast as the clock. */
 let clock = { tick: 0, ms: 0, rate: 1 };
-let lastLifeMs = -Infinity;
-/** The samples of the last stroke, and whether it is still under way. */
+/**
+ * The samples of the last stroke, and whether it is still under way.
+ * @type {{ samples: T.PointerSample[], isOver: boolean }}
+ */
 let stroke = { samples: [], isOver: true };
-/** The end of a replay, and what to do then. */
+/**
+ * The end of a replay, and what to do then.
+ * @type {{ endTick: number, resolve: (answer: { isWhole: boolean }) => void } | null}
+ */
 let replay = null;
 let reported = "";
 
+/** @param {number} ms */
 function tickAt(ms) {
   return clock.tick + (ms - clock.ms) * TICKS_PER_MS * clock.rate;
 }
 
+/** @param {number} rate How fast time passes. */
 function setClock(rate) {
   clock = { tick: engine.plain("simulator_tick"), ms: epochMs(), rate };
 }
@@ -50,39 +59,64 @@ function step() {
   if (replay && engine.plain("simulator_tick") >= replay.endTick) endReplay(true);
 }
 
+/**
+ * @param {number} ticks
+ * @param {boolean} isAlive
+ */
 function run(ticks, isAlive) {
   const buffer = engine.callForBytes("simulator_run", null, ticks, isAlive ? 1 : 0);
-  const [tick, firstTick, ticksPerSample, count, soundCount, state, fault, contact] = new Float64Array(buffer, 0, 8);
-  const column = (index) => new Float32Array(buffer, 64 + 4 * count * index, count);
-  const frame = { tick, firstTick, ticksPerSample, contact: contact !== 0, simulated: true };
-  Object.assign(frame, { slowness: 1 / clock.rate, delayMs: DELAY_MS });
-  for (const [index, name] of ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"].entries()) {
-    frame[name] = column(index);
-  }
-  const sound = new Float32Array(buffer, 64 + 4 * count * 6, soundCount);
-  reportState(state, fault);
-  self.postMessage({ type: "frame", frame, sound, soundTick: tick - soundCount + 1 }, [buffer]);
+  const { frameHead, frameColumns } = engine.layouts;
+  const head = named(frameHead, new Float64Array(buffer, 0, frameHead.length));
+  const { tick, firstTick, ticksPerSample, samples, soundSamples } = head;
+  const after = (/** @type {number} */ columns) => 8 * frameHead.length + 4 * samples * columns;
+  const columns = frameColumns.map((_, index) => new Float32Array(buffer, after(index), samples));
+  const sound = new Float32Array(buffer, after(frameColumns.length), soundSamples);
+  const frame = {
+    .../** @type {T.Columns} */ (named(frameColumns, columns)),
+    tick,
+    firstTick,
+    ticksPerSample,
+    contact: head.contact !== 0,
+    simulated: true,
+    slowness: 1 / clock.rate,
+    delayMs: DELAY_MS,
+  };
+  reportState(head.state, head.fault);
+  tell({ type: "frame", frame, sound, soundTick: tick - soundSamples + 1 }, [buffer]);
 }
 
+/**
+ * @param {number} state
+ * @param {number} fault
+ */
 function reportState(state, fault) {
   const now = `${state} ${fault}`;
   if (now === reported) return;
   reported = now;
-  self.postMessage({ type: "state", ...engine.call("state_words", null, state, fault) });
+  tell({ type: "state", ...engine.call("state_words", null, state, fault) });
 }
 
+/**
+ * @param {T.PointerSample} sample
+ * @param {number} tick
+ */
 function addSample({ xMm, yMm, down, loadN }, tick) {
   engine.plain("simulator_pointer", tick, xMm, yMm, down ? 1 : 0, loadN ?? 0);
 }
 
-/** Remembers the samples from one touch to its lift. */
+/**
+ * Remembers the samples from one touch to its lift.
+ * @param {T.PointerSample} sample
+ */
 function remember(sample) {
   if (stroke.isOver && sample.down) stroke = { samples: [], isOver: false };
   if (!stroke.isOver && stroke.samples.length < STROKE_MAX) stroke.samples.push(sample);
   stroke.isOver = !sample.down;
 }
 
+/** @param {boolean} isWhole */
 function endReplay(isWhole) {
+  if (!replay) return;
   const { resolve } = replay;
   replay = null;
   if (!isWhole) engine.plain("simulator_lift");
@@ -91,11 +125,12 @@ function endReplay(isWhole) {
 }
 
 serve({
-  async start({ module, seed }) {
-    engine = await Engine.start(module);
-    engine.call("simulator_start", null, seed ?? 1);
+  async start(message) {
+    compiled = message.module;
+    engine = await Engine.start();
+    engine.call("simulator_start", null, message.seed ?? 1);
     setClock(1);
-    setInterval(step, STEP_MS);
+    repeat(step, STEP_MS);
     return {};
   },
 
@@ -121,7 +156,7 @@ serve({
     setClock(1 / slowness);
     engine.plain("simulator_lift");
     const start = clock.tick + STEP_MS * TICKS_PER_MS;
-    const tickOf = (sample) => start + (sample.epochMs - samples[0].epochMs) * TICKS_PER_MS;
+    const tickOf = (/** @type {T.PointerSample} */ { epochMs }) => start + (epochMs - samples[0].epochMs) * TICKS_PER_MS;
     const last = samples[samples.length - 1];
     for (const sample of samples) addSample(sample, tickOf(sample));
     const endTick = tickOf(last) + STEP_MS * TICKS_PER_MS;

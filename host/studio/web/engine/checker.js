@@ -1,14 +1,15 @@
 // The worker of the compiler: checks scenes, draws their maps, and measures the simulator. It has no board, so a long
 // compile delays nothing that a board waits for.
+// @ts-check
 "use strict";
 
-let module;
+/** @type {Engine} */
 let checker;
 
 serve({
   async start(message) {
-    module = message.module;
-    checker = await Engine.start(module);
+    compiled = message.module;
+    checker = await Engine.start();
     return {};
   },
 
@@ -18,10 +19,11 @@ serve({
 
   map({ scene }) {
     const values = new Float32Array(checker.callForBytes("map", requestOf(scene)));
-    const [widthPx, heightPx, lowN, highN] = values;
-    const count = widthPx * heightPx;
-    const [frictionN, outOfReach] = [values.slice(4, 4 + count), Int8Array.from(values.subarray(4 + count))];
-    return { widthPx, heightPx, lowN, highN, frictionN, outOfReach };
+    const { mapHead } = checker.layouts;
+    const head = /** @type {Omit<T.FrictionField, "frictionN" | "outOfReach">} */ (named(mapHead, values));
+    const count = head.widthPx * head.heightPx;
+    const pixels = values.subarray(mapHead.length);
+    return { ...head, frictionN: pixels.slice(0, count), outOfReach: Int8Array.from(pixels.subarray(count)) };
   },
 
   /**
@@ -29,7 +31,7 @@ serve({
    * some stretches, because other programs on the machine only slow it.
    */
   async speed({ scene, stretches, stretchMs }) {
-    const engine = await Engine.start(module);
+    const engine = await Engine.start();
     engine.call("simulator_start", null, 1);
     engine.call("simulator_play", requestOf(scene));
     const times = Array.from({ length: stretches }, () => {

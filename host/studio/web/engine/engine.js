@@ -1,10 +1,17 @@
 // The engine of the studio, as the page uses it: README.md has the contract.
+// @ts-check
 
-import { after, serialLine, socketLine } from "./lines.js";
+/** @import * as T from "./types" */
+
+import { after, clock } from "../clock.js";
+import { serialLine, socketLine } from "./lines.js";
 
 export { bridgeUrl } from "./lines.js";
 
-/** Creates the engine with the simulator as its board. `seed` is that of the simulated world. */
+/**
+ * Creates the engine with the simulator as its board. `seed` is that of the simulated world.
+ * @param {{ seed?: number }} options
+ */
 export async function createEngine({ seed = 1 } = {}) {
   const module = await WebAssembly.compile(await studio.bytes("engine.wasm"));
   const engine = new Engine(module, seed);
@@ -22,48 +29,67 @@ const THIS_PAGE = "the simulator in this page";
 /** Longest wait for the end of a line whose board the host has disconnected, ms. */
 const LINE_END_MAX_MS = 1000;
 
-class Engine {
+export class Engine {
   #module;
   #seed;
+  /** @type {WorkerClient<T.FromBoard>} */
   #board;
+  /** @type {WorkerClient<T.FromHost>} */
   #host;
+  /** @type {WorkerClient<T.FromChecker>} */
   #checker;
-  /** The line to the board outside of the page, if there is one. */
+  /**
+   * The line to the board outside of the page, if there is one.
+   * @type {T.Line | null}
+   */
   #line = null;
-  /** "simulator", "serial", "socket" or "none" */
+  /** @type {T.State["link"]} */
   #link = "simulator";
+  /** @type {Omit<T.State, "link">} */
   #state = { state: "disarmed", fault: undefined, needsArm: false, driving: THIS_PAGE };
   /** The link and the state that the page knows of, as JSON. */
   #reported = "";
 
+  /** @type {(frame: T.Frame) => void} */
   onFrames = () => {};
+  /** @type {(change: Float32Array, firstTick: number, slowness: number) => void} */
   onAudio = () => {};
+  /** @type {(state: T.State) => void} */
   onState = () => {};
-  /** A worker has failed: `{ error }`, a sentence. */
+  /**
+   * A worker has failed: `{ error }`, a sentence.
+   * @type {(failure: { error: string }) => void}
+   */
   onFailure = ({ error }) => console.error(error);
 
+  /**
+   * @param {WebAssembly.Module} module
+   * @param {number} seed
+   */
   constructor(module, seed) {
     this.#module = module;
     this.#seed = seed;
+    this.#board = this.#newBoard();
+    this.#host = new WorkerClient("host", (message) => this.#fromHost(message));
+    this.#checker = new WorkerClient("checker", (message) => this.onFailure(message));
   }
 
   async start() {
-    [this.#host, this.#checker, this.#board] = await Promise.all([
-      WorkerClient.start("host", { module: this.#module }, (message) => this.#fromHost(message)),
-      WorkerClient.start("checker", { module: this.#module }, (message) => this.onFailure(message)),
-      this.#newBoard(),
-    ]);
+    const module = this.#module;
+    const board = this.#board.start({ module, seed: this.#seed });
+    await Promise.all([board, this.#host.start({ module }), this.#checker.start({ module })]);
     keepAlive((type) => {
       this.#board.send({ type });
       this.#host.send({ type });
     });
   }
 
+  /** @returns {WorkerClient<T.FromBoard>} */
   #newBoard() {
-    const settings = { module: this.#module, seed: this.#seed };
-    return WorkerClient.start("board", settings, (message) => this.#fromBoard(message));
+    return new WorkerClient("board", (message) => this.#fromBoard(message));
   }
 
+  /** @param {T.FromBoard} message */
   #fromBoard(message) {
     if (message.type === "failure") this.onFailure(message);
     if (this.#link !== "simulator") return;
@@ -77,6 +103,7 @@ class Engine {
     }
   }
 
+  /** @param {T.FromHost} message */
   #fromHost(message) {
     if (message.type === "failure") {
       this.onFailure(message);
@@ -94,16 +121,24 @@ class Engine {
     }
   }
 
-  /** No board is there: the one before was lost, or could not be reached. */
+  /**
+   * No board is there: the one before was lost, or could not be reached.
+   * @param {string} [why]
+   */
   #reportNoBoard(why) {
     this.#link = "none";
     this.#report({ state: "disarmed", fault: why, needsArm: false, driving: "no board" });
   }
 
+  /**
+   * @param {T.BoardState} state
+   * @param {string} [fault]
+   */
   #reportSimulator(state, fault) {
     this.#report({ state, fault, needsArm: false, driving: THIS_PAGE });
   }
 
+  /** @param {Omit<T.State, "link">} state */
   #report(state) {
     this.#state = state;
     const now = { link: this.#link, ...state };
@@ -112,32 +147,65 @@ class Engine {
     this.onState(now);
   }
 
+  /**
+   * @param {T.Files} files
+   * @param {string} entry
+   * @param {T.Profiles} profiles
+   * @returns {Promise<T.Check>}
+   */
   check(files, entry, profiles) {
     return this.#checker.ask({ type: "check", scene: { files, entry, ...profiles } });
   }
 
+  /**
+   * @param {T.Files} files
+   * @param {string} entry
+   */
   usedFiles(files, entry) {
     return this.#checker.ask({ type: "usedFiles", scene: { files, entry } });
   }
 
+  /**
+   * @param {T.Files} files
+   * @param {string} entry
+   * @param {T.Profiles} profiles
+   * @param {Partial<T.MapSize> & { speedMmPerS?: number }} options
+   */
   map(files, entry, profiles, { widthPx = 1000, heightPx = 800, speedMmPerS = 100 } = {}) {
     return this.#checker.ask({ type: "map", scene: { files, entry, ...profiles, widthPx, heightPx, speedMmPerS } });
   }
 
+  /**
+   * @param {T.Files} files
+   * @param {string} entry
+   * @param {number} seed
+   * @param {number} durationMs
+   * @param {T.Profiles} [profiles]
+   */
   async seeded(files, entry, seed, durationMs, profiles) {
     const scene = { files, entry, ...profiles, seed, durationMs };
     return (await this.#checker.ask({ type: "seeded", scene })).hash;
   }
 
-  /** How many times faster than real time the simulator runs a scene in a worker. */
+  /**
+   * How many times faster than real time the simulator runs a scene in a worker.
+   * @param {T.Files} files
+   * @param {string} entry
+   */
   async speed(files, entry, { stretches = 10, stretchMs = 480 } = {}) {
     return (await this.#checker.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
   }
 
+  /**
+   * @param {T.Files} files
+   * @param {string} entry
+   * @param {T.Profiles} profiles
+   */
   play(files, entry, profiles) {
     return this.#player.ask({ type: "play", scene: { files, entry, ...profiles } });
   }
 
+  /** @param {string} line */
   control(line) {
     return this.#player.ask({ type: "control", line });
   }
@@ -169,8 +237,9 @@ class Engine {
     return this.#host.ask({ type: "clearFault" });
   }
 
+  /** @param {Omit<T.PointerSample, "epochMs"> & { timeMs: number }} sample `timeMs` is an event's `timeStamp`. */
   pointer({ timeMs, xMm, yMm, down, loadN }) {
-    const sample = { epochMs: performance.timeOrigin + timeMs, xMm, yMm, down, loadN };
+    const sample = { epochMs: clock.startMs() + timeMs, xMm, yMm, down, loadN };
     this.#board.send({ type: "pointer", sample });
   }
 
@@ -194,20 +263,28 @@ class Engine {
       await this.#disconnect();
       this.#board.terminate();
       this.#link = "simulator";
-      this.#board = await this.#newBoard();
+      const board = this.#newBoard();
+      await board.start({ module: this.#module, seed: this.#seed });
+      this.#board = board;
       this.#reportSimulator("disarmed");
     });
   }
 
+  /** @param {SerialPort} port */
   connectSerial(port) {
     return this.#connect("serial", () => serialLine(port));
   }
 
+  /** @param {string} url */
   connectSocket(url) {
     return this.#connect("socket", () => socketLine(url));
   }
 
-  /** Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on. */
+  /**
+   * Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on.
+   * @param {T.State["link"]} link
+   * @param {() => Promise<T.Line>} open
+   */
   async #connect(link, open) {
     if (!canSuspend) throw new Error(NO_JSPI);
     await this.#change(async () => {
@@ -227,7 +304,10 @@ class Engine {
     });
   }
 
-  /** Changes the board, one change at a time. */
+  /**
+   * Changes the board, one change at a time.
+   * @param {() => Promise<void>} action
+   */
   async #change(action) {
     if (this.#isChanging) throw new Error("the board is being changed: wait until that is done");
     this.#isChanging = true;
@@ -261,46 +341,75 @@ class Engine {
   }
 }
 
-/** A worker, with promises for its answers. */
+/**
+ * A worker, with promises for its answers.
+ * @template {T.FromWorker} Message What it tells unasked.
+ */
 class WorkerClient {
+  #name;
+  #onMessage;
+  /** @type {Worker | undefined} */
   #worker;
+  /** @type {Map<number, { resolve: (value: any) => void, reject: (error: Error) => void }>} */
   #asked = new Map();
   #lastId = 0;
-  /** Why the worker answers no more, once it has failed or was ended. */
+  /**
+   * Why the worker answers no more, once it has failed or was ended.
+   * @type {string | undefined}
+   */
   #whyEnded;
 
-  /** Starts the worker of a file of this folder. */
-  static async start(name, settings, onMessage) {
+  /**
+   * @param {string} name That of a file of this folder.
+   * @param {(message: Message) => void} onMessage
+   */
+  constructor(name, onMessage) {
+    this.#name = name;
+    this.#onMessage = onMessage;
+  }
+
+  /** @param {T.Questions["start"]["asked"]} settings */
+  async start(settings) {
+    const name = this.#name;
     // One classic script: from a file, a browser starts no worker that imports modules.
     const source = `${await studio.text("engine/wasm.js")}\n${await studio.text(`engine/${name}.js`)}`;
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    const client = new WorkerClient();
-    client.#worker = new Worker(url, { name });
-    client.#worker.onmessage = ({ data }) => (data.type === "answer" ? client.#settle(data) : onMessage(data));
-    client.#worker.onerror = ({ message }) => {
+    const worker = new Worker(url, { name });
+    this.#worker = worker;
+    worker.onmessage = ({ data }) => (data.type === "answer" ? this.#settle(data) : this.#onMessage(data));
+    worker.onerror = ({ message }) => {
       // What is left of it must not keep a board alive.
       const error = `the ${name} worker: ${message}`;
-      client.terminate(error);
-      onMessage({ type: "failure", error });
+      this.terminate(error);
+      this.#onMessage(/** @type {Message} */ ({ type: "failure", error }));
     };
-    await client.ask({ type: "start", ...settings });
+    await this.ask({ type: "start", ...settings });
     URL.revokeObjectURL(url);
-    return client;
   }
 
+  /** @param {T.Note} message */
   send(message) {
-    this.#worker.postMessage(message);
+    this.#worker?.postMessage(message);
   }
 
+  /**
+   * @template {keyof T.Questions} Type
+   * @param {{ type: Type } & T.Questions[Type]["asked"]} message
+   * @param {Transferable[]} transfer
+   * @returns {Promise<T.Questions[Type]["answer"]>}
+   */
   ask(message, transfer = []) {
     if (this.#whyEnded !== undefined) return Promise.reject(new Error(this.#whyEnded));
+    const worker = this.#worker;
+    if (!worker) return Promise.reject(new Error(`the ${this.#name} worker has not started`));
     const id = ++this.#lastId;
     return new Promise((resolve, reject) => {
       this.#asked.set(id, { resolve, reject });
-      this.#worker.postMessage({ ...message, id }, transfer);
+      worker.postMessage({ ...message, id }, transfer);
     });
   }
 
+  /** @param {T.Answer} answer */
   #settle({ id, value, error, problems = [], canLoadAgain = false }) {
     const asked = this.#asked.get(id);
     this.#asked.delete(id);
@@ -310,20 +419,23 @@ class WorkerClient {
 
   /** Ends the worker: what it was asked and has not answered is rejected, and what it will be asked. */
   terminate(why = "the board was reset meanwhile") {
-    this.#worker.terminate();
+    this.#worker?.terminate();
     this.#whyEnded ??= why;
     for (const { reject } of this.#asked.values()) reject(new Error(why));
     this.#asked.clear();
   }
 }
 
-/** Sends a sign of life from each animation frame of a visible page, and a farewell when it is hidden or left. */
+/**
+ * Sends a sign of life from each animation frame of a visible page, and a farewell when it is hidden or left.
+ * @param {(type: "alive" | "gone") => void} send
+ */
 function keepAlive(send) {
   const frame = () => {
     if (document.visibilityState === "visible") send("alive");
-    requestAnimationFrame(frame);
+    clock.nextFrame(frame);
   };
-  requestAnimationFrame(frame);
+  clock.nextFrame(frame);
   document.addEventListener("visibilitychange", () => {
     if (document.visibilityState !== "visible") send("gone");
   });

@@ -3,6 +3,7 @@
 // The board's bytes come and go through a MessagePort, whatever carries them beyond it. A call to the module that waits
 // for bytes is suspended, and no other export may be called meanwhile, so calls wait for each other in a queue. A stop
 // breaks off the call under way and those in the queue. README.md says how a board is disarmed.
+// @ts-check
 "use strict";
 
 /** Time in which one call keeps the board alive, ms. */
@@ -18,9 +19,8 @@ const ARRIVED_MAX_BYTES = 1_000_000;
 const CLOSED = -1;
 const STOPPED = "stopped: the board was disarmed meanwhile";
 
-let module;
+/** @type {Board | null} */
 let board = null;
-let lastLifeMs = -Infinity;
 
 function pageLives() {
   return epochMs() - lastLifeMs <= LIFE_MS;
@@ -28,21 +28,24 @@ function pageLives() {
 
 /** Wakes those that wait for something to have changed. */
 class Signal {
+  /** @type {Set<() => void>} */
   #waiting = new Set();
 
   give() {
     for (const wake of this.#waiting) wake();
   }
 
-  /** Resolves when the signal is given, or after `waitMs`. */
+  /**
+   * Resolves when the signal is given, or after `waitMs`.
+   * @param {number} [waitMs]
+   */
   async wait(waitMs) {
-    let wake;
-    let timer;
-    await new Promise((resolve) => {
-      wake = resolve;
-      this.#waiting.add(wake);
-      if (waitMs !== undefined) timer = setTimeout(wake, waitMs);
-    });
+    /** @type {PromiseWithResolvers<void>} */
+    const { promise, resolve } = Promise.withResolvers();
+    const wake = () => resolve();
+    this.#waiting.add(wake);
+    const timer = waitMs === undefined ? undefined : setTimeout(wake, waitMs);
+    await promise;
     clearTimeout(timer);
     this.#waiting.delete(wake);
   }
@@ -54,23 +57,26 @@ const changed = new Signal();
 /** A byte stream over a MessagePort. Empty bytes mean that the other end has closed. */
 class Stream {
   #port;
+  /** @type {Uint8Array[]} */
   #arrived = [];
   #arrivedLength = 0;
   isClosed = false;
   /** Bytes were dropped since this was last set to false. */
   hasDropped = false;
 
+  /** @param {MessagePort} port */
   constructor(port) {
     this.#port = port;
     port.onmessage = ({ data }) => this.#take(data);
   }
 
+  /** @param {Uint8Array} bytes */
   #take(bytes) {
     if (bytes.length === 0) this.isClosed = true;
     else this.#arrived.push(bytes);
     this.#arrivedLength += bytes.length;
     while (this.#arrivedLength > ARRIVED_MAX_BYTES) {
-      this.#arrivedLength -= this.#arrived.shift().length;
+      this.#arrivedLength -= this.#arrived.shift()?.length ?? 0;
       this.hasDropped = true;
     }
     changed.give();
@@ -87,13 +93,19 @@ class Stream {
     changed.give();
   }
 
-  /** Whether the bytes were sent. */
+  /**
+   * Whether the bytes were sent.
+   * @param {Uint8Array} bytes
+   */
   write(bytes) {
     if (!this.isClosed) this.#port.postMessage(bytes);
     return !this.isClosed;
   }
 
-  /** At most `max` of the bytes that have arrived; null when there are none and the stream is closed. */
+  /**
+   * At most `max` of the bytes that have arrived; null when there are none and the stream is closed.
+   * @param {number} max
+   */
   read(max) {
     const first = this.#arrived.shift();
     if (first === undefined) return this.isClosed ? null : new Uint8Array();
@@ -106,9 +118,13 @@ class Stream {
 
 /** A board at the other end of a stream. */
 class Board {
-  #engine;
+  /** The instance of the module, once it has started. */
+  #engine = /** @type {Engine | undefined} */ (undefined);
   #stream;
-  /** The calls under way: one at a time. */
+  /**
+   * The calls under way: one at a time.
+   * @type {Promise<unknown>}
+   */
   #queue = Promise.resolve();
   /** Each stop begins a new round, which breaks off the calls of the one before. */
   #round = 0;
@@ -119,20 +135,29 @@ class Board {
   #isOpen = true;
   /** The number of the newest scene: each load, and each `forget`, begins another. */
   #newest = 0;
+  /** @type {string | null} */
   #fault = null;
   isSimulated = true;
   isWanted = false;
   /** Whether the board has the newest scene: nothing else can be armed. */
   isLoaded = false;
+  /** @type {T.BoardState} */
   state = "disarmed";
   driving = "";
 
-  /** Connects to the board at the other end of `port`. Closes the port if that fails. */
+  /** @param {Stream} stream */
+  constructor(stream) {
+    this.#stream = stream;
+  }
+
+  /**
+   * Connects to the board at the other end of `port`. Closes the port if that fails.
+   * @param {MessagePort} port
+   */
   static async connect(port) {
-    const board = new Board();
-    board.#stream = new Stream(port);
+    const board = new Board(new Stream(port));
     try {
-      board.#engine = await Engine.start(module, board.#imports());
+      board.#engine = await Engine.start(board.#imports());
       Object.assign(board, await board.#call("host_connect"));
     } catch (error) {
       await board.disconnect();
@@ -145,8 +170,8 @@ class Board {
   #imports() {
     const stream = this.#stream;
     return {
-      link_write: (address, length) => {
-        const isSent = !this.#isBrokenOff && stream.write(this.#engine.bytes.slice(address, address + length));
+      link_write: (/** @type {number} */ address, /** @type {number} */ length) => {
+        const isSent = !this.#isBrokenOff && stream.write(this.#instance.bytes.slice(address, address + length));
         return isSent ? 0 : CLOSED;
       },
       link_read: new WebAssembly.Suspending(async (address, length, waitMs) => {
@@ -154,11 +179,16 @@ class Board {
         await this.#pageToLive();
         const bytes = this.#isBrokenOff ? null : stream.read(length);
         if (bytes === null) return CLOSED;
-        this.#engine.bytes.set(bytes, address);
+        this.#instance.bytes.set(bytes, address);
         return bytes.length;
       }),
       link_now_ms: () => performance.now() - this.#leftOutMs,
     };
+  }
+
+  get #instance() {
+    if (!this.#engine) throw new Error("the engine has not started");
+    return this.#engine;
   }
 
   get #isBrokenOff() {
@@ -177,10 +207,21 @@ class Board {
     this.#leftOutMs += Math.max(0, performance.now() - begin - PAUSE_MAX_MS);
   }
 
+  /**
+   * @param {string} name
+   * @param {Uint8Array | null} [input]
+   * @param {number[]} numbers
+   */
   #call(name, input, ...numbers) {
     return this.#enqueue({ round: this.#round, isStop: false }, name, input, numbers);
   }
 
+  /**
+   * @param {{ round: number, isStop: boolean }} call
+   * @param {string} name
+   * @param {Uint8Array | null | undefined} input
+   * @param {number[]} numbers
+   */
   #enqueue(call, name, input, numbers) {
     const isOver = () => !call.isStop && call.round !== this.#round;
     const called = this.#queue.then(async () => {
@@ -188,10 +229,10 @@ class Board {
       if (isOver()) throw this.#stopped();
       this.#current = call;
       try {
-        return await this.#engine.callSuspending(name, input, ...numbers);
+        return await this.#instance.callSuspending(name, input, ...numbers);
       } catch (error) {
         if (isOver() && !this.#stream.isClosed) throw this.#stopped();
-        if (error.isLinkLost) this.#lose(error);
+        if (error instanceof Error && "isLinkLost" in error && error.isLinkLost) this.#lose(error);
         throw error;
       }
     });
@@ -211,7 +252,7 @@ class Board {
         if (!pageLives()) await changed.wait();
         else await this.#keepAlive();
       } catch (error) {
-        if (error.message !== STOPPED) this.#lose(error);
+        if (error instanceof Error && error.message !== STOPPED) this.#lose(error);
       }
     }
   }
@@ -227,13 +268,13 @@ class Board {
     this.state = state;
     this.#fault = fault;
     this.report();
-    if (telemetry.length > 0) self.postMessage({ type: "frame", frame: frameOf(telemetry) });
+    if (telemetry.length > 0) tell({ type: "frame", frame: frameOf(telemetry) });
   }
 
   report() {
     if (!this.#isOpen) return;
     const needsArm = !this.isSimulated && this.isLoaded && this.state === "disarmed";
-    self.postMessage({ type: "state", state: this.state, fault: this.#fault, needsArm, driving: this.driving });
+    tell({ type: "state", state: this.state, fault: this.#fault, needsArm, driving: this.driving });
   }
 
   /** A scene is about to come: until the board has it, nothing can be armed. Returns the scene's number. */
@@ -243,6 +284,7 @@ class Board {
     return this.#newest;
   }
 
+  /** @param {T.Request} scene */
   async play(scene) {
     const round = this.#round;
     const number = this.#expectScene();
@@ -297,6 +339,7 @@ class Board {
     changed.give();
   }
 
+  /** @param {string} line */
   control(line) {
     return this.#call("host_control", new TextEncoder().encode(line));
   }
@@ -313,19 +356,22 @@ class Board {
     this.#close();
   }
 
-  /** The line, or the instance of the module, is of no more use: disconnects, and tells the page. */
+  /**
+   * The line, or the instance of the module, is of no more use: disconnects, and tells the page.
+   * @param {Error} error
+   */
   #lose(error) {
     if (!this.#isOpen) return;
     if (board === this) board = null;
     this.disconnect();
-    self.postMessage({ type: "lost", error: error.message });
+    tell({ type: "lost", error: error.message });
   }
 
   #close() {
     this.#current = { round: this.#round, isStop: true };
     try {
       // Dropping the host sends the frames that stop and disarm, if the line still takes them.
-      this.#engine.plain("host_disconnect");
+      this.#engine?.plain("host_disconnect");
     } catch {
       // The instance has failed; the board notices the silence.
     }
@@ -333,9 +379,16 @@ class Board {
   }
 }
 
-/** Telemetry as a frame of samples. What the finger feels, a board cannot know. */
+/** @typedef {"xMm" | "yMm" | "speedMmPerS" | "referenceN" | "voltageV"} Told The columns that a board tells. */
+/** @typedef {Record<Told | "tick", number> & { isTouched: boolean }} Telemetry */
+
+/**
+ * Telemetry as a frame of samples. What the finger feels, a board cannot know.
+ * @param {Telemetry[]} telemetry
+ * @returns {T.WorkerFrame}
+ */
 function frameOf(telemetry) {
-  const column = (name) => Float32Array.from(telemetry, (sample) => sample[name]);
+  const column = (/** @type {Told} */ name) => Float32Array.from(telemetry, (sample) => sample[name]);
   const [first, second] = telemetry;
   return {
     firstTick: first.tick,
@@ -368,7 +421,7 @@ async function disconnect() {
 
 serve({
   start(message) {
-    module = message.module;
+    compiled = message.module;
     return {};
   },
 

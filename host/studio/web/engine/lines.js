@@ -1,4 +1,9 @@
 // Lines to boards outside of the page, each as a MessagePort that carries bytes. Empty bytes close it.
+// @ts-check
+
+/** @import { Line } from "./types" */
+
+import { after } from "../clock.js";
 
 /** Line rate of a serial port, bits a second; native USB ignores it. */
 const BAUD = 2_000_000;
@@ -11,8 +16,8 @@ const CLOSE_MAX_MS = 500;
 const OPEN_MAX_MS = 5000;
 
 /**
- * A line over Web Serial: `{ remote, close, closed }`. `remote` is the MessagePort; `closed` resolves once the port can
- * be opened again, whichever end has closed the line. `port` is a SerialPort that the user has chosen.
+ * A line over Web Serial.
+ * @param {SerialPort} port The user has chosen it.
  */
 export async function serialLine(port) {
   await port.open({ baudRate: BAUD, bufferSize: 16384 });
@@ -27,6 +32,10 @@ export async function serialLine(port) {
   });
 }
 
+/**
+ * @param {ReadableStreamDefaultReader<Uint8Array<ArrayBuffer>>} reader
+ * @param {Local} local
+ */
 async function readAll(reader, local) {
   try {
     for (;;) {
@@ -40,7 +49,12 @@ async function readAll(reader, local) {
   local.close();
 }
 
-/** Sends what is still to be sent, for a moment, and closes the port, which has to be free of readers and writers. */
+/**
+ * Sends what is still to be sent, for a moment, and closes the port, which has to be free of readers and writers.
+ * @param {SerialPort} port
+ * @param {ReadableStreamDefaultReader<Uint8Array<ArrayBuffer>>} reader
+ * @param {WritableStreamDefaultWriter<Uint8Array<ArrayBuffer>>} writer
+ */
 async function closePort(port, reader, writer) {
   await ended(reader.cancel());
   await ended(writer.close());
@@ -50,14 +64,12 @@ async function closePort(port, reader, writer) {
   await ended(port.close());
 }
 
-/** Waits for a promise, but not for ever, and not for its outcome. */
+/**
+ * Waits for a promise, but not for ever, and not for its outcome.
+ * @param {Promise<unknown>} promise
+ */
 function ended(promise) {
   return Promise.race([promise.catch(() => {}), after(CLOSE_MAX_MS)]);
-}
-
-/** Resolves, to nothing, after this time. */
-export function after(ms) {
-  return new Promise((resolve) => setTimeout(resolve, ms));
 }
 
 /** The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. */
@@ -66,7 +78,10 @@ export function bridgeUrl({ protocol, host, hash } = location) {
   return protocol === "http:" && token ? `ws://${host}/serial?token=${token}` : null;
 }
 
-/** A line over a WebSocket to the bridge of `frixel studio`, as `serialLine` returns one. */
+/**
+ * A line over a WebSocket to the bridge of `frixel studio`.
+ * @param {string} url
+ */
 export async function socketLine(url) {
   const socket = new WebSocket(url);
   socket.binaryType = "arraybuffer";
@@ -81,7 +96,7 @@ export async function socketLine(url) {
     closed.then(() => local.close());
     socket.onmessage = ({ data }) => local.receive(new Uint8Array(data));
     return {
-      write(bytes) {
+      async write(bytes) {
         if (socket.readyState === WebSocket.OPEN) socket.send(bytes);
       },
       async close() {
@@ -93,11 +108,20 @@ export async function socketLine(url) {
 }
 
 /**
- * A line whose far end `open` connects: it gets `receive(bytes)` and `close()`, and returns `write(bytes)` and
- * `close()`, which may fail or take their time.
+ * The end of a line in the page: takes what has arrived, and closes the line.
+ * @typedef {{ receive: (bytes: Uint8Array<ArrayBuffer>) => void, close: () => void }} Local
+ */
+
+/**
+ * A line whose far end `open` connects: both functions that it returns may fail or take their time.
+ * @param {(local: Local) => {
+ *   write: (bytes: Uint8Array<ArrayBuffer>) => Promise<void>, close: () => Promise<void>,
+ * }} open
+ * @returns {Line}
  */
 function line(open) {
   const { port1: local, port2: remote } = new MessageChannel();
+  /** @type {PromiseWithResolvers<void>} */
   const { promise: closed, resolve } = Promise.withResolvers();
   let isOpen = true;
   const close = () => {

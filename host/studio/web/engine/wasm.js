@@ -1,6 +1,9 @@
 // What the workers share, above all the WebAssembly module with values in place of buffers. A classic script, which the
 // script of each worker follows in the worker's source: from a file, a browser starts no worker that imports modules.
+// @ts-check
 "use strict";
+
+/** @import * as T from "./types" */
 
 /** The page sends a sign of life from each animation frame. The host lives this long after one, ms. */
 const LIFE_MS = 25;
@@ -10,6 +13,7 @@ const LIFE_MS = 25;
  * can no longer be talked to over this line.
  */
 class EngineError extends Error {
+  /** @param {{ error: string, problems?: T.Problem[], isLinkLost?: boolean }} answer */
   constructor({ error, problems, isLinkLost }) {
     super(error);
     this.problems = problems ?? [];
@@ -18,57 +22,99 @@ class EngineError extends Error {
 }
 
 /** The imports of an instance that is connected to no stream. */
+/** @typedef {Record<"link_write" | "link_read" | "link_now_ms", WebAssembly.ImportValue>} Link */
+/** @type {Link} */
 const NO_LINK = { link_write: () => -1, link_read: () => -1, link_now_ms: () => 0 };
+
+/** @typedef {(...numbers: number[]) => number} Export An export of the module. */
 
 /** One instance of the module. */
 class Engine {
+  #memory;
   #exports;
+  /** @type {Map<string, (...numbers: number[]) => Promise<number>>} */
   #suspending = new Map();
+  /**
+   * The names of the numbers in answers that are no JSON.
+   * @type {{ mapHead: string[], frameHead: string[], frameColumns: string[] }}
+   */
+  layouts;
 
-  static async start(module, link = NO_LINK) {
-    const engine = new Engine();
-    const { exports } = await WebAssembly.instantiate(module, { link });
-    engine.#exports = exports;
+  /**
+   * @param {WebAssembly.Memory} memory
+   * @param {Record<string, Export>} exports
+   */
+  constructor(memory, exports) {
+    this.#memory = memory;
+    this.#exports = exports;
     exports.report_panics();
-    return engine;
+    this.layouts = this.call("layouts");
+  }
+
+  /** @param {Link} link */
+  static async start(link = NO_LINK) {
+    const { exports } = await WebAssembly.instantiate(compiled, { link });
+    const { memory, ...functions } = exports;
+    return new Engine(/** @type {WebAssembly.Memory} */ (memory), /** @type {Record<string, Export>} */ (functions));
   }
 
   /** Memory of the instance. The view is valid until the next call. */
   get bytes() {
-    return new Uint8Array(this.#exports.memory.buffer);
+    return new Uint8Array(this.#memory.buffer);
   }
 
-  /** Calls an export that returns nothing or a number of its own. */
+  /**
+   * Calls an export that returns nothing or a number of its own.
+   * @param {string} name
+   * @param {number[]} numbers
+   */
   plain(name, ...numbers) {
     return this.#exports[name](...numbers);
   }
 
-  /** Calls an export, and returns its answer, an object. */
+  /**
+   * Calls an export, and returns its answer, an object.
+   * @param {string} name
+   * @param {Uint8Array | null} [input]
+   * @param {number[]} numbers
+   */
   call(name, input, ...numbers) {
     this.#put(input);
-    return JSON.parse(this.#text(this.#guarded(name, () => this.#exports[name](...numbers))));
+    return JSON.parse(this.#text(this.#guarded(() => this.#exports[name](...numbers))));
   }
 
-  /** Calls an export, and returns its answer, an ArrayBuffer. */
+  /**
+   * Calls an export, and returns its answer, an ArrayBuffer.
+   * @param {string} name
+   * @param {Uint8Array | null} input
+   * @param {number[]} numbers
+   */
   callForBytes(name, input, ...numbers) {
     this.#put(input);
-    return this.#output(this.#guarded(name, () => this.#exports[name](...numbers)));
+    return this.#output(this.#guarded(() => this.#exports[name](...numbers)));
   }
 
-  /** Calls an export that suspends. Until the promise settles, no other export may be called. */
+  /**
+   * Calls an export that suspends. Until the promise settles, no other export may be called.
+   * @param {string} name
+   * @param {Uint8Array | null} [input]
+   * @param {number[]} numbers
+   */
   async callSuspending(name, input, ...numbers) {
-    if (!this.#suspending.has(name)) this.#suspending.set(name, WebAssembly.promising(this.#exports[name]));
+    const act = this.#suspending.get(name) ?? WebAssembly.promising(this.#exports[name]);
+    this.#suspending.set(name, act);
     this.#put(input);
     let code;
     try {
-      code = await this.#suspending.get(name)(...numbers);
+      code = await act(...numbers);
     } catch (trap) {
       throw this.#failure(trap);
     }
     return JSON.parse(this.#text(code));
   }
 
-  #guarded(name, act) {
+  /** @param {() => number} act */
+  #guarded(act) {
     try {
       return act();
     } catch (trap) {
@@ -79,36 +125,56 @@ class Engine {
   /**
    * The error of a trap: the module has written the message of a panic, if it was one. The instance is of no more use,
    * and neither is its board.
+   * @param {unknown} trap
    */
   #failure(trap) {
     try {
       const { error } = JSON.parse(new TextDecoder().decode(this.#output(0)));
       return new EngineError({ error, isLinkLost: true });
     } catch {
-      return Object.assign(trap, { isLinkLost: true });
+      return Object.assign(/** @type {Error} */ (trap), { isLinkLost: true });
     }
   }
 
+  /** @param {Uint8Array | null} [input] */
   #put(input) {
     const bytes = input ?? new Uint8Array();
     const address = this.#exports.input(bytes.length);
     this.bytes.set(bytes, address);
   }
 
+  /** @param {number} code */
   #text(code) {
     return new TextDecoder().decode(this.#output(code));
   }
 
-  /** The answer. Throws an EngineError for a code other than 0. */
+  /**
+   * The answer. Throws an EngineError for a code other than 0.
+   * @param {number} code
+   */
   #output(code) {
     const address = this.#exports.output();
-    const bytes = this.#exports.memory.buffer.slice(address, address + this.#exports.output_len());
+    const bytes = this.#memory.buffer.slice(address, address + this.#exports.output_len());
     if (code !== 0) throw new EngineError(JSON.parse(new TextDecoder().decode(bytes)));
     return bytes;
   }
 }
 
-/** The bytes of a request for a scene: { files, entry, finger, screen } and numbers. */
+/**
+ * Values by their names, which the module gives in the order of the values.
+ * @template Value
+ * @param {string[]} names
+ * @param {ArrayLike<Value>} values
+ * @returns {Record<string, Value>}
+ */
+function named(names, values) {
+  return Object.fromEntries(names.map((name, at) => [name, values[at]]));
+}
+
+/**
+ * The bytes of a request for a scene.
+ * @param {T.Request} request
+ */
 function requestOf({ files, ...rest }) {
   const encoder = new TextEncoder();
   const contents = Object.entries(files).map(([name, content]) => {
@@ -121,6 +187,7 @@ function requestOf({ files, ...rest }) {
   return joined([length, json, ...contents.map(({ bytes }) => bytes)]);
 }
 
+/** @param {Uint8Array[]} parts */
 function joined(parts) {
   const all = new Uint8Array(parts.reduce((length, part) => length + part.length, 0));
   let at = 0;
@@ -131,24 +198,74 @@ function joined(parts) {
   return all;
 }
 
+/**
+ * The time since 1970 that a test has given to this worker, ms; undefined where the machine's clock counts.
+ * @type {number | undefined}
+ */
+let givenMs;
+/**
+ * What is done again and again.
+ * @type {(() => void)[]}
+ */
+const repeated = [];
+
 /** Time since 1970 in ms, on the clock that the page and its workers share. */
 function epochMs() {
-  return performance.timeOrigin + performance.now();
+  return givenMs ?? performance.timeOrigin + performance.now();
 }
 
-/** Answers the requests of the page with `actions[type](message)`; messages without `id` get no answer. */
+/**
+ * Calls `act` every so many ms, or each time that a test gives the time.
+ * @param {() => void} act
+ * @param {number} everyMs
+ */
+function repeat(act, everyMs) {
+  repeated.push(act);
+  setInterval(() => {
+    if (givenMs === undefined) act();
+  }, everyMs);
+}
+
+/** @type {Required<T.Actions>["time"]} */
+function takeTime({ epochMs }) {
+  givenMs = epochMs;
+  for (const act of repeated) act();
+  return {};
+}
+
+/**
+ * The module, from the message that starts the worker.
+ * @type {WebAssembly.Module}
+ */
+let compiled;
+/** The last sign of life of the page, since 1970, ms. */
+let lastLifeMs = -Infinity;
+
+/**
+ * Answers the requests of the page with `actions[type](message)`; messages without `id` get no answer.
+ * @param {T.Actions} actions
+ */
 function serve(actions) {
+  /** @type {Record<string, ((message: never) => unknown) | undefined>} */
+  const all = { ...actions, time: takeTime };
   self.onmessage = async ({ data: message }) => {
+    const { type, id } = message;
     try {
-      const value = await actions[message.type](message);
-      if (message.id !== undefined) self.postMessage({ type: "answer", id: message.id, value });
+      const value = await all[type]?.(/** @type {never} */ (message));
+      if (id !== undefined) tell({ type: "answer", id, value });
     } catch (error) {
-      const { message: sentence, problems, canLoadAgain } = error;
-      if (message.id !== undefined) {
-        self.postMessage({ type: "answer", id: message.id, error: sentence, problems, canLoadAgain });
-      } else {
-        self.postMessage({ type: "failure", error: sentence });
-      }
+      const { message: sentence, problems, canLoadAgain } = /** @type {T.EngineFailure} */ (error);
+      if (id !== undefined) tell({ type: "answer", id, error: sentence, problems, canLoadAgain });
+      else tell({ type: "failure", error: sentence });
     }
   };
+}
+
+/**
+ * Sends a message to the page.
+ * @param {T.Answer | T.FromWorker} message
+ * @param {Transferable[]} [transfer]
+ */
+function tell(message, transfer = []) {
+  self.postMessage(message, { transfer });
 }

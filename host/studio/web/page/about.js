@@ -1,4 +1,5 @@
 // What the page is, what it simulates and what not, and whose work it carries.
+// @ts-check
 
 import { byId, element } from "./dom.js";
 

@@ -1,7 +1,12 @@
 // Keeps the scene that a person works on in the browser (works.js), a moment after each change.
+// @ts-check
 
+import { clock } from "../clock.js";
 import { projectOf, zipOf } from "./archive.js";
 import { notify } from "./dom.js";
+
+/** @import { OpenWork, SavedScene, SceneToOpen } from "./project.js" */
+/** @import { Work, Works } from "./works.js" */
 
 /** Name under which a page remembers its piece of work over a reload. */
 const OWN = "frixel.work";
@@ -12,16 +17,27 @@ export class Autosave {
   #current;
   #works;
   #id = newId();
-  #changedMs = Date.now();
-  /** A picture of the scene's map, or null. */
+  #changedMs = dateMs();
+  /**
+   * A picture of the scene's map, or null.
+   * @type {Blob | null}
+   */
   #picture = null;
+  /** @type {number | undefined} */
   #timer;
-  /** Why the scene is not kept, if it is not. */
+  /**
+   * Why the scene is not kept, if it is not.
+   * @type {string | undefined}
+   */
   #problem;
   /** Whether the scene was changed since it was opened. */
   isEdited = false;
 
-  /** `current()` gives the project as archive.js packs it. */
+  /**
+   * `current()` gives the project as archive.js packs it.
+   * @param {Works} works
+   * @param {() => SavedScene & { entry: string }} current
+   */
   constructor(works, current) {
     this.#works = works;
     this.#current = current;
@@ -32,7 +48,10 @@ export class Autosave {
     });
   }
 
-  /** What this page had before its reload, or else what was changed last and no other page has; or undefined. */
+  /**
+   * What this page had before its reload, or else what was changed last and no other page has; or undefined.
+   * @returns {Promise<SceneToOpen | undefined>}
+   */
   async last() {
     try {
       const own = sessionStorage.getItem(OWN);
@@ -44,7 +63,10 @@ export class Autosave {
     return undefined;
   }
 
-  /** A piece of work that is kept, as a scene to open. */
+  /**
+   * A piece of work that is kept, as a scene to open.
+   * @param {string} id
+   */
   async work(id) {
     return sceneOf(await this.#works.get(id));
   }
@@ -57,11 +79,14 @@ export class Autosave {
   /** The scene was changed by hand. */
   changed() {
     this.isEdited = true;
-    this.#changedMs = Date.now();
+    this.#changedMs = dateMs();
     this.#later();
   }
 
-  /** The scene's map has this picture. */
+  /**
+   * The scene's map has this picture.
+   * @param {Blob} picture
+   */
   show(picture) {
     this.#picture = picture;
     this.#later();
@@ -73,8 +98,11 @@ export class Autosave {
     else await this.#forget();
   }
 
-  /** Another scene is open; with `id`, a piece of work that is kept, unless another page has it. */
-  async opened({ id, isEdited = false, changedMs = Date.now() }) {
+  /**
+   * Another scene is open; with `id`, a piece of work that is kept, unless another page has it.
+   * @param {Partial<OpenWork>} work
+   */
+  async opened({ id, isEdited = false, changedMs = dateMs() }) {
     this.#begin({ isEdited, changedMs });
     if (id !== undefined && (await this.#claim(id))) this.#id = id;
     else await this.#claim(this.#id);
@@ -89,9 +117,10 @@ export class Autosave {
   /**
    * From here on nothing is written to the entry of the scene before, and until a claim is answered nothing to one that
    * another page may have.
+   * @param {Omit<OpenWork, "id">} work
    */
   #begin({ isEdited, changedMs }) {
-    clearTimeout(this.#timer);
+    clock.cancel(this.#timer);
     this.#timer = undefined;
     this.#id = newId();
     this.isEdited = isEdited;
@@ -100,19 +129,20 @@ export class Autosave {
     this.#problem = undefined;
   }
 
+  /** @param {string} id */
   #claim(id) {
     return this.#works.claim(id).catch(() => false);
   }
 
   async #forget() {
-    clearTimeout(this.#timer);
+    clock.cancel(this.#timer);
     this.#timer = undefined;
     await this.#works.delete(this.#id).catch(() => {});
   }
 
   #later() {
-    clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.#keep(), PAUSE_MS);
+    clock.cancel(this.#timer);
+    this.#timer = clock.later(PAUSE_MS, () => this.#keep());
   }
 
   /** Keeps what waits to be kept, or could not be. */
@@ -121,7 +151,7 @@ export class Autosave {
   }
 
   async #keep() {
-    clearTimeout(this.#timer);
+    clock.cancel(this.#timer);
     this.#timer = undefined;
     const project = this.#current();
     try {
@@ -132,9 +162,13 @@ export class Autosave {
     }
   }
 
-  /** Says once for each scene that it is not kept, and why. */
+  /**
+   * Says once for each scene that it is not kept, and why.
+   * @param {unknown} error
+   */
   #isNotKept(error) {
-    const why = error?.name === "QuotaExceededError" ? "its store is full" : "it keeps nothing for this page";
+    const isFull = error instanceof Error && error.name === "QuotaExceededError";
+    const why = isFull ? "its store is full" : "it keeps nothing for this page";
     if (this.isEdited && this.#problem !== why) {
       const cure = "Save it before you close the page; Open deletes pieces of work that you no longer need.";
       notify(`The browser does not keep ${this.#current().name}: ${why}. ${cure}`);
@@ -143,8 +177,19 @@ export class Autosave {
   }
 }
 
-function sceneOf({ id, isEdited, changedMs, zip }) {
+/**
+ * @param {Work | undefined} work
+ * @returns {SceneToOpen}
+ */
+function sceneOf(work) {
+  if (!work) throw new Error("The browser no longer keeps this scene.");
+  const { id, isEdited, changedMs, zip } = work;
   return { ...projectOf(zip, { isOwn: true }), id, isEdited, changedMs };
+}
+
+/** Time since 1970, ms. */
+function dateMs() {
+  return Math.round(clock.startMs() + clock.nowMs());
 }
 
 function newId() {

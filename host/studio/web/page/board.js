@@ -1,26 +1,42 @@
 // The board that plays: the simulator in the page, or one on a serial port or behind `frixel studio`.
+// @ts-check
 
+import { clock } from "../clock.js";
 import { bridgeUrl } from "../engine/engine.js";
 import { attempt, byId, element, notify } from "./dom.js";
 
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { BoardState, State } from "../engine/types" */
+/** @import { Status } from "./player.js" */
+
 /** For so long after Arm has appeared it cannot be pressed, ms: a press was meant for what stood in its place. */
 const ARM_REST_MS = 1000;
-/** Why a scene that is shown cannot be armed, by its status as player.js reports it. */
+/**
+ * Why a scene that is shown cannot be armed, by its status as player.js reports it.
+ * @type {Record<Status, string>}
+ */
 const WHY_NOT_ARMED = {
+  loaded: "",
   loading: "The scene is on its way to the board.",
   mistaken: "The scene has mistakes: mend them, then arm.",
   failed: "The board does not have the scene that is shown.",
 };
+/** @type {Record<BoardState, string>} */
 const WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 
 export class Board {
   #engine;
   #dialog = byId("board-dialog");
+  /** @type {State["link"]} */
   #link = "simulator";
-  /** Where the scene that is shown is, as player.js reports it. */
+  /**
+   * Where the scene that is shown is, as player.js reports it.
+   * @type {Status}
+   */
   #status = "loading";
   /** Arm has only just appeared. */
   #isArmResting = false;
+  /** @type {number | undefined} */
   #armRestTimer;
   /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
   #bridge = bridgeUrl();
@@ -29,6 +45,7 @@ export class Board {
   /** The board plays, or no longer. */
   onState = () => {};
 
+  /** @param {Engine} engine */
   constructor(engine) {
     this.#engine = engine;
     engine.onState = (state) => this.#show(state);
@@ -44,7 +61,10 @@ export class Board {
     return document.documentElement.dataset.state === "active";
   }
 
-  /** Lets nothing be armed but the scene that is shown: `status` is where that is, as player.js reports it. */
+  /**
+   * Lets nothing be armed but the scene that is shown: `status` is where that is, as player.js reports it.
+   * @param {Status} status
+   */
   allowArm(status) {
     this.#status = status;
     this.#enableArm();
@@ -52,23 +72,25 @@ export class Board {
 
   #enableArm() {
     const disabled = this.#status !== "loaded" || this.#isArmResting;
-    Object.assign(byId("arm"), { disabled, title: WHY_NOT_ARMED[this.#status] ?? "" });
+    Object.assign(byId("arm"), { disabled, title: WHY_NOT_ARMED[this.#status] });
   }
 
+  /** @param {boolean} isShown */
   #showArm(isShown) {
     const arm = byId("arm");
     if (isShown && arm.hidden) {
       this.#isArmResting = true;
-      clearTimeout(this.#armRestTimer);
-      this.#armRestTimer = setTimeout(() => {
+      clock.cancel(this.#armRestTimer);
+      this.#armRestTimer = clock.later(ARM_REST_MS, () => {
         this.#isArmResting = false;
         this.#enableArm();
-      }, ARM_REST_MS);
+      });
       this.#enableArm();
     }
     arm.hidden = !isShown;
   }
 
+  /** @param {State} state */
   #show({ link, state, fault, needsArm, driving }) {
     if (link === "none" && this.#link !== "none" && fault) notify(fault);
     this.#link = link;
@@ -77,7 +99,7 @@ export class Board {
     document.documentElement.dataset.state = state;
     const name = link === "simulator" ? "Simulator" : driving;
     const details = fault && link !== "none" ? `, ${fault}` : "";
-    board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state] ?? state}${details}`;
+    board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state]}${details}`;
     this.#showArm(needsArm);
     byId("arm").textContent = `Arm: drive ${driving}`;
     // A board latches a fault also when its arm switch is let go.
@@ -93,22 +115,18 @@ export class Board {
 
   #open() {
     const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
-    const connect = (words, action, isPossible, why) => {
-      const button = element("button", { disabled: !isPossible }, words);
-      button.onclick = () =>
-        attempt(async () => {
-          this.#dialog.close();
-          await action();
-          this.onBoard();
-        });
-      return element(
-        "p",
-        { className: "row" },
-        button,
-        element("span", { className: "soft" }, isPossible ? why[0] : why[1]),
-      );
-    };
     const serial = async () => this.#engine.connectSerial(await navigator.serial.requestPort());
+    const hasSerial = "serial" in navigator;
+    const whySerial = hasSerial ? "over Web Serial" : "this browser has no Web Serial (Chrome 89 or newer has it)";
+    const choices = [
+      this.#choice("Simulator", () => this.#engine.simulate(), "the same firmware, in this page"),
+      this.#choice("Board on a USB port…", hasSerial && serial, whySerial),
+    ];
+    const bridge = this.#bridge;
+    if (bridge) {
+      const connect = () => this.#engine.connectSocket(bridge);
+      choices.push(this.#choice("Board of frixel studio", connect, "the serial port that the command was given"));
+    }
     this.#dialog.replaceChildren(
       element("div", { className: "head" }, element("h2", {}, "Board"), close),
       element(
@@ -117,19 +135,25 @@ export class Board {
         "A board with an electrode drives hundreds of volts. It plays only after you press Arm here and hold the " +
           "switch on the board. It is disarmed when this page is hidden or closed, and before a foreign scene opens.",
       ),
-      connect("Simulator", () => this.#engine.simulate(), true, ["the same firmware, in this page"]),
-      connect("Board on a USB port…", serial, "serial" in navigator, [
-        "over Web Serial",
-        "this browser has no Web Serial (Chrome 89 or newer has it)",
-      ]),
-      ...(this.#bridge
-        ? [
-            connect("Board of frixel studio", () => this.#engine.connectSocket(this.#bridge), true, [
-              "the serial port that the command was given",
-            ]),
-          ]
-        : []),
+      ...choices,
     );
     this.#dialog.showModal();
+  }
+
+  /**
+   * A board to connect; `connect` is false where the browser cannot.
+   * @param {string} words
+   * @param {false | (() => Promise<void>)} connect
+   * @param {string} why
+   */
+  #choice(words, connect, why) {
+    const button = element("button", { disabled: !connect }, words);
+    button.onclick = () =>
+      attempt(async () => {
+        this.#dialog.close();
+        if (connect) await connect();
+        this.onBoard();
+      });
+    return element("p", { className: "row" }, button, element("span", { className: "soft" }, why));
   }
 }

@@ -1,4 +1,5 @@
 // The scenes, pictures, fingers and screens that the page carries.
+// @ts-check
 
 /** Names of the bundled scenes, without ending. */
 export function sceneNames() {
@@ -8,6 +9,7 @@ export function sceneNames() {
     .map((name) => name.slice(7, -5));
 }
 
+/** @param {string} name */
 export function sceneText(name) {
   return studio.text(`scenes/${name}.toml`);
 }
@@ -17,9 +19,10 @@ export function fingerNames() {
 }
 
 export function schema() {
-  return studio.text("docs/scene.schema.json").then(JSON.parse);
+  return studio.text("docs/scene.schema.json").then((text) => JSON.parse(text));
 }
 
+/** @type {Promise<Record<string, Uint8Array<ArrayBuffer>>> | undefined} */
 let carried;
 
 /** The files of the page that scenes may name, by the names that the bundled scenes use. */

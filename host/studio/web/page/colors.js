@@ -1,4 +1,7 @@
 // The colour scale of friction: viridis, even in lightness and told apart by all common kinds of colour vision.
+// @ts-check
+
+/** @import { FrictionField } from "../engine/types" */
 
 const STOPS = [
   "#440154",
@@ -23,20 +26,30 @@ for (let at = 0; at < 256; at += 1) {
   }
 }
 
-/** The friction map as an image; what is out of reach is hatched. */
-export function imageOf({ widthPx, heightPx, frictionN, outOfReach, lowN, highN }, alpha = 255) {
+/**
+ * The friction map as an image; what is out of reach is hatched.
+ * @param {FrictionField} map
+ */
+export function imageOf({ widthPx, heightPx, frictionN, outOfReach, lowN, highN }) {
   const image = new ImageData(widthPx, heightPx);
   const range = Math.max(highN - lowN, 1e-9);
   for (let at = 0; at < frictionN.length; at += 1) {
     const level = Math.max(0, Math.min(255, Math.round((255 * (frictionN[at] - lowN)) / range)));
     image.data.set(SCALE.subarray(3 * level, 3 * level + 3), 4 * at);
-    image.data[4 * at + 3] = alpha;
+    image.data[4 * at + 3] = 255;
     if (outOfReach[at] !== 0) hatch(image.data, 4 * at, at % widthPx, Math.floor(at / widthPx), outOfReach[at]);
   }
   return image;
 }
 
-/** Stripes: rising where the scene asks for too much, falling where it asks for less than natural friction. */
+/**
+ * Stripes: rising where the scene asks for too much, falling where it asks for less than natural friction.
+ * @param {Uint8ClampedArray} data
+ * @param {number} offset
+ * @param {number} x
+ * @param {number} y
+ * @param {number} side 1 for too much, -1 for too little.
+ */
 function hatch(data, offset, x, y, side) {
   const phase = (((side > 0 ? x + y : x - y) % 12) + 12) % 12;
   if (phase < 5) data.set(phase < 2 ? [0, 0, 0, 255] : [255, 255, 255, 255], offset);

@@ -1,20 +1,47 @@
 // Two versions of a scene, compared blind: neither text nor map says which one is felt.
+// @ts-check
 
 import { attempt, byId, element } from "./dom.js";
+
+/** @import { Editor } from "./editor.js" */
+/** @import { Player } from "./player.js" */
+/** @import { Sound } from "./sound.js" */
+
+/** @typedef {"a" | "b"} Version */
+/**
+ * Which version X and Y are, the texts of both, which were felt, and the buttons that choose and answer.
+ * @typedef {object} Trial
+ * @property {Version[]} order
+ * @property {Record<Version, string>} texts
+ * @property {Set<number>} felt
+ * @property {HTMLButtonElement[]} feel
+ * @property {HTMLButtonElement[]} answers
+ */
 
 export class Compare {
   #panel = byId("panel-compare");
   #player;
   #editor;
   #sound;
-  /** The text that was put aside. */
+  /**
+   * The text that was put aside.
+   * @type {string | undefined}
+   */
   #kept;
-  /** During a comparison: which text X and Y are, and what is played. */
+  /**
+   * During a comparison: which text X and Y are, and what is played.
+   * @type {Trial | undefined}
+   */
   #trial;
   #tally = { a: 0, b: 0, same: 0 };
   /** A comparison begins or ends. */
   onChange = () => {};
 
+  /**
+   * @param {Player} player
+   * @param {Editor} editor
+   * @param {Sound} sound
+   */
   constructor(player, editor, sound) {
     this.#player = player;
     this.#editor = editor;
@@ -34,12 +61,16 @@ export class Compare {
     this.#show(why);
   }
 
-  /** Hides what says which version is felt. */
+  /**
+   * Hides what says which version is felt.
+   * @param {boolean} isBlind
+   */
   #hide(isBlind) {
     document.body.classList.toggle("blind", isBlind);
     this.onChange();
   }
 
+  /** @param {string} [lastAnswer] */
   #show(lastAnswer) {
     const keep = element("button", {}, this.#kept ? "Keep the scene as it is now as A" : "Keep this scene as A");
     keep.onclick = () => {
@@ -62,18 +93,24 @@ export class Compare {
 
   #start() {
     const current = this.#editor.text;
-    if (current === this.#kept) {
+    const kept = this.#kept;
+    if (kept === undefined) return;
+    if (current === kept) {
       this.#show("A and the scene now are the same text: change the scene first.");
       return;
     }
+    /** @type {Version[]} */
     const order = Math.random() < 0.5 ? ["a", "b"] : ["b", "a"];
-    this.#trial = { order, texts: { a: this.#kept, b: current }, felt: new Set() };
+    this.#trial = { order, texts: { a: kept, b: current }, felt: new Set(), ...this.#trialPanel(current) };
     this.#hide(true);
-    this.#trialPanel();
     this.#feel(0);
   }
 
-  #trialPanel() {
+  /**
+   * Shows the buttons of a comparison, and returns those that choose and answer.
+   * @param {string} current The text to go back to.
+   */
+  #trialPanel(current) {
     const feel = ["X", "Y"].map((name, at) =>
       element("button", { "aria-pressed": "false", onclick: () => this.#feel(at) }, `Feel ${name}`),
     );
@@ -84,9 +121,8 @@ export class Compare {
     const same = element("button", { ...why, onclick: () => this.#answer() }, "No difference");
     const cancel = element("button", {}, "Cancel");
     cancel.onclick = () => {
-      const { b } = this.#trial.texts;
       this.cancel("The comparison is cancelled; it does not count.");
-      this.#player.now(b);
+      this.#player.now(current);
     };
     this.#panel.replaceChildren(
       element("p", {}, "Slide, change between X and Y as often as you like, then choose."),
@@ -94,7 +130,7 @@ export class Compare {
       element("div", { className: "row" }, ...answer, same, cancel),
       element("p", { className: "fine" }, "Without a board you hear the difference, and see how the finger lags."),
     );
-    Object.assign(this.#trial, { feel, answers: [...answer, same] });
+    return { feel, answers: [...answer, same] };
   }
 
   #soundButton() {
@@ -108,15 +144,19 @@ export class Compare {
     return button;
   }
 
+  /** @param {number} at */
   #feel(at) {
+    if (!this.#trial) return;
     const { order, texts, felt, feel, answers } = this.#trial;
-    for (const [index, button] of feel.entries()) button.setAttribute("aria-pressed", index === at);
+    for (const [index, button] of feel.entries()) button.setAttribute("aria-pressed", String(index === at));
     felt.add(at);
     if (felt.size === 2) for (const button of answers) Object.assign(button, { disabled: false, title: "" });
     this.#player.now(texts[order[at]]);
   }
 
+  /** @param {number} [at] 0 for X, 1 for Y; undefined for no difference. */
   #answer(at) {
+    if (!this.#trial) return;
     const { order, texts } = this.#trial;
     this.#trial = undefined;
     this.#hide(false);

@@ -1,27 +1,62 @@
 // Completion of scene texts from the JSON schema of scenes.
+// @ts-check
 
-/** A CodeMirror completion source for this schema. */
+/** @import { Completion, CompletionContext, CompletionResult, Text } from "../vendor/studio-vendor.js" */
+
+/**
+ * What the completion reads of a JSON schema.
+ * @typedef {object} Schema
+ * @property {string} [$ref]
+ * @property {string} [type]
+ * @property {string} [description]
+ * @property {number} [minimum]
+ * @property {number} [maximum]
+ * @property {unknown[]} [enum]
+ * @property {unknown} [const]
+ * @property {Schema} [items]
+ * @property {Schema[]} [oneOf]
+ * @property {Schema[]} [anyOf]
+ * @property {Record<string, Schema>} [properties]
+ */
+/** @typedef {Schema & { properties: Record<string, Schema> }} Table */
+/** @typedef {Schema & { words: unknown[], schemas: Schema[] }} Field A field, as all alternatives have it. */
+/** @typedef {{ doc: Text, line: number, before: string }} Place The cursor's line, and what stands in it before it. */
+
+/**
+ * A CodeMirror completion source for this schema.
+ * @param {Schema} schema
+ * @returns {(context: CompletionContext) => CompletionResult | null}
+ */
 export function completeFrom(schema) {
   return (context) => {
     const line = context.state.doc.lineAt(context.pos);
     const before = line.text.slice(0, context.pos - line.from);
     if (/^[^"]*#/.test(before)) return null;
+    const place = { doc: context.state.doc, line: line.number, before };
     const value = /([A-Za-z_]+)\s*=\s*("?)([\w-]*)$/.exec(before);
-    const word = /[\w-]*$/.exec(before)[0];
+    const word = /[\w-]*$/.exec(before)?.[0] ?? "";
     if (value)
-      return found(context.pos - value[3].length - value[2].length, values(schema, context, line, before, value[1]));
+      return found(context.pos - value[3].length - value[2].length, values(schema, place, value[1]));
     const header = /^\s*\[{1,2}(\w*)$/.exec(before);
     if (header) return found(context.pos - header[0].trimStart().length, headers(schema));
     if (!context.explicit && word === "") return null;
     const isKey = /^\s*[\w-]*$/.test(before) || /[{,]\s*[\w-]*$/.test(before);
-    return isKey ? found(context.pos - word.length, keys(schema, context, line, before)) : null;
+    return isKey ? found(context.pos - word.length, keys(schema, place)) : null;
   };
 }
 
+/**
+ * @param {number} from
+ * @param {Completion[]} options
+ */
 function found(from, options) {
-  return options.length > 0 ? { from, options, validFor: /^[\["\w-]*$/ } : null;
+  return options.length > 0 ? { from, options, validFor: /^[["\w-]*$/ } : null;
 }
 
+/**
+ * @param {Schema} schema
+ * @returns {Completion[]}
+ */
 function headers(schema) {
   const properties = propertiesOf(schema, schema, { version: "2" });
   return Object.entries(properties)
@@ -30,8 +65,13 @@ function headers(schema) {
     .map((label) => ({ label, type: "namespace" }));
 }
 
-function keys(schema, context, line, before) {
-  const { properties, present } = tableAt(schema, context, line, before);
+/**
+ * @param {Schema} schema
+ * @param {Place} place
+ * @returns {Completion[]}
+ */
+function keys(schema, place) {
+  const { properties, present } = tableAt(schema, place);
   return Object.entries(properties)
     .filter(([name]) => !(name in present))
     .map(([name, { description, minimum, maximum }]) => ({
@@ -45,8 +85,14 @@ function keys(schema, context, line, before) {
     }));
 }
 
-function values(schema, context, line, before, name) {
-  const { all } = tableAt(schema, context, line, before);
+/**
+ * @param {Schema} schema
+ * @param {Place} place
+ * @param {string} name
+ * @returns {Completion[]}
+ */
+function values(schema, place, name) {
+  const { all } = tableAt(schema, place);
   const property = all[name];
   if (!property) return [];
   const words = property.words.map((word) => ({ label: JSON.stringify(word), type: "enum" }));
@@ -58,9 +104,13 @@ function values(schema, context, line, before, name) {
     : words;
 }
 
-/** The table that the cursor is in: fields that fit to what stands in it, all its fields, and what stands in it. */
-function tableAt(schema, context, line, before) {
-  const block = blockAt(context.state.doc, line.number);
+/**
+ * The table that the cursor is in: fields that fit to what stands in it, all its fields, and what stands in it.
+ * @param {Schema} schema
+ * @param {Place} place
+ */
+function tableAt(schema, { doc, line, before }) {
+  const block = blockAt(doc, line);
   const root = propertiesOf(schema, schema, { version: "2" });
   const outer = block.header ? (root[block.header]?.schemas ?? []) : [schema];
   const inline = /(\w+)\s*=\s*\{[^}]*$/.exec(before);
@@ -69,9 +119,13 @@ function tableAt(schema, context, line, before) {
   return { properties: merged(schema, alternatives, present), all: merged(schema, alternatives, {}), present };
 }
 
-/** The lines from the header above a line to the next header. */
+/**
+ * The lines from the header above a line to the next header.
+ * @param {Text} doc
+ * @param {number} number
+ */
 function blockAt(doc, number) {
-  const isHeader = (at) => /^\s*\[{1,2}(\w+)\]/.exec(doc.line(at).text);
+  const isHeader = (/** @type {number} */ at) => /^\s*\[{1,2}(\w+)\]/.exec(doc.line(at).text);
   let first = number;
   while (first > 1 && !isHeader(first)) first -= 1;
   let last = number;
@@ -81,44 +135,72 @@ function blockAt(doc, number) {
   return { header: isHeader(first)?.[1], text: lines.join("\n") };
 }
 
-/** Fields and their values in a text, strings without quotation marks. */
+/**
+ * Fields and their values in a text, strings without quotation marks.
+ * @param {string} text
+ * @returns {Record<string, string>}
+ */
 function pairs(text) {
   const found = [...text.matchAll(/(?:^|[,\n])\s*(\w+)\s*=\s*("[^"]*"|[^,\n}]*)/g)];
   return Object.fromEntries(found.map(([, name, value]) => [name, value.replace(/^"|"$/g, "").trim()]));
 }
 
+/**
+ * @param {Schema} root
+ * @param {Schema} schema
+ * @param {Record<string, string>} present
+ */
 function propertiesOf(root, schema, present) {
   return merged(root, [schema], present);
 }
 
+/**
+ * @param {Schema} root
+ * @param {Schema} schema
+ * @returns {Schema}
+ */
 function resolve(root, schema) {
   if (!schema.$ref) return schema;
-  return schema.$ref
-    .split("/")
-    .slice(1)
-    .reduce((at, name) => at[name], root);
+  let at = /** @type {Record<string, any>} */ (root);
+  for (const name of schema.$ref.split("/").slice(1)) at = at[name];
+  return at;
 }
 
-/** All alternatives of a schema that are tables; of an array, those of its items. */
+/**
+ * All alternatives of a schema that are tables; of an array, those of its items.
+ * @param {Schema} root
+ * @param {Schema} schema
+ * @returns {Table[]}
+ */
 function tables(root, schema) {
   const at = resolve(root, schema);
   if (at.items) return tables(root, at.items);
   const choices = [...(at.oneOf ?? []), ...(at.anyOf ?? [])];
   if (choices.length > 0) return choices.flatMap((choice) => tables(root, choice));
-  return at.properties ? [at] : [];
+  return at.properties ? [/** @type {Table} */ (at)] : [];
 }
 
+/**
+ * @param {Schema} property
+ * @returns {unknown[]}
+ */
 function wordsOf(property) {
   return property.enum ?? (property.const === undefined ? [] : [property.const]);
 }
 
-/** Fields of the alternatives that do not contradict what stands there. */
+/**
+ * Fields of the alternatives that do not contradict what stands there.
+ * @param {Schema} root
+ * @param {Schema[]} schemas
+ * @param {Record<string, string>} present
+ */
 function merged(root, schemas, present) {
-  const fits = (table) =>
+  const fits = (/** @type {Table} */ table) =>
     Object.entries(present).every(([name, value]) => {
       const words = wordsOf(resolve(root, table.properties[name] ?? {})).map(String);
       return words.length === 0 || words.includes(value);
     });
+  /** @type {Record<string, Field>} */
   const fields = {};
   for (const table of schemas.flatMap((schema) => tables(root, schema)).filter(fits)) {
     for (const [name, raw] of Object.entries(table.properties)) {
@@ -131,6 +213,10 @@ function merged(root, schemas, present) {
   return fields;
 }
 
+/**
+ * @param {Schema} root
+ * @param {Field} field
+ */
 function kindOf(root, { schemas }) {
   if (schemas.some((schema) => resolve(root, schema).items)) return "array";
   return schemas.some((schema) => tables(root, schema).length > 0) ? "table" : "plain";

@@ -1,4 +1,5 @@
 // The editor of the scene's text and of the files that belong to it: colours, completion, mistakes in place, undo.
+// @ts-check
 
 import {
   EditorState,
@@ -29,6 +30,11 @@ import {
 } from "../vendor/studio-vendor.js";
 import { completeFrom } from "./completion.js";
 
+/** @import { StateCommand } from "../vendor/studio-vendor.js" */
+/** @import { Problem } from "../engine/types" */
+/** @import { Schema } from "./completion.js" */
+/** @typedef {{ name: string | undefined, isShown: boolean, mistakes: number }} FileOfScene */
+
 const colours = HighlightStyle.define([
   { tag: tags.comment, color: "var(--soft)", fontStyle: "italic" },
   { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: "var(--accent)" },
@@ -40,22 +46,39 @@ const colours = HighlightStyle.define([
 export class Editor {
   #view;
   #extensions;
-  /** The file that is shown, and the states of the others. */
+  /**
+   * The file that is shown, and the states of the others.
+   * @type {string | undefined}
+   */
   #shown;
+  /** @type {Map<string | undefined, EditorState>} */
   #hidden = new Map();
+  /** @type {Problem[]} */
   #problems = [];
-  #onChange;
-  /** What can be undone or redone in the file that is shown may have changed. */
+  /**
+   * A text has changed, by hand or not: `undefined` is the file of the scene.
+   * @type {(file: string | undefined, text: string) => void}
+   */
+  onChange = () => {};
+  /**
+   * What can be undone or redone in the file that is shown may have changed.
+   * @type {() => void}
+   */
   onHistory = () => {};
-  /** Another file is shown, or has other mistakes. */
+  /**
+   * Another file is shown, or has other mistakes.
+   * @type {(files: FileOfScene[]) => void}
+   */
   onFiles = () => {};
 
-  /** `onChange(file, text)` is called after each change, by hand or not. */
-  constructor(parent, schema, onChange) {
-    this.#onChange = onChange;
+  /**
+   * @param {HTMLElement} parent
+   * @param {Schema} schema
+   */
+  constructor(parent, schema) {
     const changed = EditorView.updateListener.of(({ docChanged, state }) => {
       if (!docChanged) return;
-      onChange(this.#shown, state.doc.toString());
+      this.onChange(this.#shown, state.doc.toString());
       this.onHistory();
     });
     const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene" });
@@ -81,6 +104,7 @@ export class Editor {
     this.#view = new EditorView({ parent, state: this.#newState("") });
   }
 
+  /** @param {string} doc */
   #newState(doc) {
     return EditorState.create({ doc, extensions: this.#extensions });
   }
@@ -88,7 +112,7 @@ export class Editor {
   /** The scene's text. */
   get text() {
     const state = this.#shown === undefined ? this.#view.state : this.#hidden.get(undefined);
-    return state.doc.toString();
+    return state?.doc.toString() ?? "";
   }
 
   /** Replaces the scene's text; undo brings the old one back. */
@@ -102,15 +126,21 @@ export class Editor {
     });
   }
 
-  /** Shows another scene, with a history of its own: undo does not lead back into the scene before. */
+  /**
+   * Shows another scene, with a history of its own: undo does not lead back into the scene before.
+   * @param {string} text
+   */
   open(text) {
     this.show();
     this.#view.setState(this.#newState(text));
-    this.#onChange(undefined, text);
+    this.onChange(undefined, text);
     this.onHistory();
   }
 
-  /** Sets the files beside the scene, given as `[name, text]`. */
+  /**
+   * Sets the files beside the scene, given as `[name, text]`.
+   * @param {[string, string][]} files
+   */
   setFiles(files) {
     const names = files.map(([name]) => name);
     if (this.#shown !== undefined && !names.includes(this.#shown)) this.show();
@@ -122,7 +152,10 @@ export class Editor {
     this.onFiles(this.files);
   }
 
-  /** The files, the scene's first: name, whether it is shown, and how many mistakes it has. */
+  /**
+   * The files, the scene's first: name, whether it is shown, and how many mistakes it has.
+   * @returns {FileOfScene[]}
+   */
   get files() {
     const names = [...this.#hidden.keys(), this.#shown].filter((name) => name !== undefined).sort();
     return [undefined, ...names].map((name) => ({
@@ -132,22 +165,30 @@ export class Editor {
     }));
   }
 
+  /** @param {string | undefined} file */
   has(file) {
     return file === this.#shown || this.#hidden.has(file);
   }
 
+  /** @param {string} [file] */
   show(file) {
-    if (file === this.#shown || !this.#hidden.has(file)) return;
+    const state = this.#hidden.get(file);
+    if (file === this.#shown || !state) return;
     this.#hidden.set(this.#shown, this.#view.state);
     this.#shown = file;
-    this.#view.setState(this.#hidden.get(file));
+    this.#view.setState(state);
     this.#hidden.delete(file);
     this.#markShown();
     this.onFiles(this.files);
     this.onHistory();
   }
 
-  /** Inserts text behind a line (0: before the first) of a file and shows it. */
+  /**
+   * Inserts text behind a line (0: before the first) of a file and shows it.
+   * @param {string | undefined} file
+   * @param {number} number
+   * @param {string} text
+   */
   insertAfterLine(file, number, text) {
     this.show(file);
     const { doc } = this.#view.state;
@@ -160,12 +201,17 @@ export class Editor {
     });
   }
 
-  /** Whether the layer table in these lines has them to itself, so that a line can be added. */
+  /**
+   * Whether the layer table in these lines has them to itself, so that a line can be added.
+   * @param {string | undefined} file
+   * @param {[number, number]} lines
+   */
   isTable(file, [first]) {
     const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
     return state !== undefined && first <= state.doc.lines && /^\s*\[\[/.test(state.doc.line(first).text);
   }
 
+  /** @param {string} text */
   append(text) {
     this.show();
     const { doc } = this.#view.state;
@@ -178,6 +224,10 @@ export class Editor {
     });
   }
 
+  /**
+   * @param {string | undefined} file
+   * @param {number} number
+   */
   goTo(file, number) {
     this.show(file);
     const line = this.#view.state.doc.line(Math.max(1, Math.min(number, this.#view.state.doc.lines)));
@@ -204,12 +254,18 @@ export class Editor {
     return this.#can(redo);
   }
 
-  /** A command of the editor tells, without a view to change, whether there is something to do. */
+  /**
+   * A command of the editor tells, without a view to change, whether there is something to do.
+   * @param {StateCommand} command
+   */
   #can(command) {
     return command({ state: this.#view.state, dispatch: () => {} });
   }
 
-  /** Marks mistakes and warnings of the engine in place, each in its file. */
+  /**
+   * Marks mistakes and warnings of the engine in place, each in its file.
+   * @param {Problem[]} problems
+   */
   mark(problems) {
     this.#problems = problems;
     this.#markShown();
@@ -218,17 +274,16 @@ export class Editor {
 
   #markShown() {
     const { doc } = this.#view.state;
-    const at = (line, column) => {
+    const at = (/** @type {number} */ line, /** @type {number | undefined} */ column) => {
       const { from, to } = doc.line(Math.max(1, Math.min(line, doc.lines)));
       return Math.min(to, from + Math.max(0, (column ?? 1) - 1));
     };
-    const diagnostics = this.#problems
-      .filter(({ file, line }) => file === this.#shown && line !== undefined)
-      .map((problem) => {
-        const from = at(problem.line, problem.column);
-        const end = problem.endLine === undefined ? doc.lineAt(from).to : at(problem.endLine, problem.endColumn);
-        return { from, to: Math.max(from, end), severity: problem.severity, message: problem.message };
-      });
+    const diagnostics = this.#problems.flatMap(({ file, line, column, endLine, endColumn, severity, message }) => {
+      if (file !== this.#shown || line === undefined) return [];
+      const from = at(line, column);
+      const end = endLine === undefined ? doc.lineAt(from).to : at(endLine, endColumn);
+      return [{ from, to: Math.max(from, end), severity, message }];
+    });
     this.#view.dispatch(
       setDiagnostics(
         this.#view.state,

@@ -1,6 +1,13 @@
 // The finger: pointer events and arrow keys to the engine, and what is drawn of it: trail and finger.
+// @ts-check
 
-import { colour } from "./dom.js";
+import { clock } from "../clock.js";
+import { colour, contextOf } from "./dom.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Frame, Reach } from "../engine/types" */
+/** @import { Area, FrictionMap } from "./map.js" */
+/** @typedef {{ xMm: number, yMm: number, friction: number, ms: number }} TrailPoint */
 
 /** How long a trail stays, s. */
 const TRAIL_S = 2.5;
@@ -12,6 +19,7 @@ const DRAG_MS = 160;
 const KEY_MM_PER_S = 80;
 /** Load of a pressure of one half, the usual pressure, is that of the finger's profile, N. */
 const LOAD_AT_FULL_PRESSURE_N = 1;
+/** @type {Record<string, [number, number]>} */
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Finger {
@@ -19,13 +27,16 @@ export class Finger {
   #engine;
   #map;
   #area = { width: 1, height: 1 };
+  /** @type {number | undefined} */
   #pointerId;
+  /** @type {Set<string>} */
   #keys = new Set();
   /** The place of the pointer, and the place where the finger is drawn, mm. */
   #target = { xMm: 60, yMm: 40 };
   #drawn = { xMm: 60, yMm: 40 };
   #isDown = false;
   #isInside = false;
+  /** @type {(TrailPoint | null)[]} */
   #trail = [];
   #lastMs = 0;
   #isShown = false;
@@ -36,7 +47,12 @@ export class Finger {
   /** A stroke begins. */
   onDown = () => {};
 
-  /** Draws on `canvas`, which lies over the map, and takes its pointer events and arrow keys. */
+  /**
+   * Draws on `canvas`, which lies over the map, and takes its pointer events and arrow keys.
+   * @param {Engine} engine
+   * @param {FrictionMap} map
+   * @param {HTMLCanvasElement} canvas
+   */
   constructor(engine, map, canvas) {
     this.#engine = engine;
     this.#map = map;
@@ -44,14 +60,16 @@ export class Finger {
     map.onLayout = (area) => this.#place(area);
     canvas.addEventListener("pointerdown", (event) => this.#down(event));
     canvas.addEventListener("pointermove", (event) => this.#move(event));
-    for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, (event) => this.#up(event));
+    canvas.addEventListener("pointerup", (event) => this.#up(event));
+    canvas.addEventListener("pointercancel", (event) => this.#up(event));
     canvas.addEventListener("pointerleave", () => (this.#isInside = false));
     canvas.addEventListener("keydown", (event) => this.#key(event, true));
     canvas.addEventListener("keyup", (event) => this.#key(event, false));
     canvas.addEventListener("blur", () => this.#releaseKeys());
-    requestAnimationFrame((ms) => this.#frame(ms));
+    clock.nextFrame((ms) => this.#frame(ms));
   }
 
+  /** @param {Area} area */
   #place({ left, top, width, height }) {
     this.#area = { width, height };
     Object.assign(this.#canvas, {
@@ -66,6 +84,10 @@ export class Finger {
     });
   }
 
+  /**
+   * @param {PointerEvent} event
+   * @param {boolean} down
+   */
   #send(event, down) {
     const box = this.#canvas.getBoundingClientRect();
     const { widthMm, heightMm } = this.#map.screen;
@@ -77,6 +99,7 @@ export class Finger {
     this.#engine.pointer({ timeMs: event.timeStamp, ...this.#target, down, loadN });
   }
 
+  /** @param {PointerEvent} event */
   #down(event) {
     if (event.button !== 0 || this.#pointerId !== undefined) return;
     this.#pointerId = event.pointerId;
@@ -88,6 +111,7 @@ export class Finger {
     this.onDown();
   }
 
+  /** @param {PointerEvent} event */
   #move(event) {
     this.#isInside = true;
     if (!this.#isDown) this.#send(event, false);
@@ -97,6 +121,7 @@ export class Finger {
     }
   }
 
+  /** @param {PointerEvent} event */
   #up(event) {
     if (event.pointerId !== this.#pointerId) return;
     this.#pointerId = undefined;
@@ -104,6 +129,10 @@ export class Finger {
     this.#send(event, false);
   }
 
+  /**
+   * @param {KeyboardEvent} event
+   * @param {boolean} isPressed
+   */
   #key(event, isPressed) {
     if (!(event.key in ARROWS)) return;
     event.preventDefault();
@@ -121,10 +150,13 @@ export class Finger {
     if (this.#pointerId !== undefined || !this.#isDown) return;
     this.#keys.clear();
     this.#isDown = false;
-    this.#engine.pointer({ timeMs: performance.now(), ...this.#target, down: false });
+    this.#engine.pointer({ timeMs: clock.nowMs(), ...this.#target, down: false });
   }
 
-  /** Moves the finger by the arrow keys that are held. */
+  /**
+   * Moves the finger by the arrow keys that are held.
+   * @param {number} ms
+   */
   #moveByKeys(ms) {
     const stepMm = (KEY_MM_PER_S * Math.min(ms - this.#lastMs, 50)) / 1000;
     for (const key of this.#keys) {
@@ -136,7 +168,11 @@ export class Finger {
     this.#engine.pointer({ timeMs: ms, ...this.#target, down: true });
   }
 
-  /** What was felt, for the trail and the drag; `reach` is least and largest friction, N. */
+  /**
+   * What was felt, for the trail and the drag; `reach` is least and largest friction, N.
+   * @param {Frame} frame
+   * @param {Reach} reach
+   */
   feel(frame, reach) {
     const span = Math.max(reach.highN - reach.lowN, 1e-9);
     for (let at = 0; at < frame.feltN.length; at += 8) {
@@ -144,14 +180,15 @@ export class Finger {
       if (!Number.isFinite(frame.xMm[at])) this.#trail.push(null);
       else {
         this.#friction = Math.max(0, Math.min(1.2, (felt - reach.lowN) / span));
-        this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: performance.now() });
+        this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: clock.nowMs() });
       }
     }
-    const oldest = performance.now() - TRAIL_S * 1000;
+    const oldest = clock.nowMs() - TRAIL_S * 1000;
     const first = this.#trail.findIndex((point) => point !== null && point.ms >= oldest);
     this.#trail = first < 0 ? [] : this.#trail.slice(first);
   }
 
+  /** @param {number} ms */
   #frame(ms) {
     if (this.#keys.size > 0) this.#moveByKeys(ms);
     const isDragging = this.drags && this.#isDown;
@@ -163,7 +200,7 @@ export class Finger {
     const isShown = this.#isInside || this.#isDown || this.#trail.length > 0 || this.#hasFocus;
     if (isShown || this.#isShown) this.#draw();
     this.#isShown = isShown;
-    requestAnimationFrame((next) => this.#frame(next));
+    clock.nextFrame((next) => this.#frame(next));
   }
 
   /** A blind comparison shows nothing of the friction. */
@@ -176,7 +213,7 @@ export class Finger {
   }
 
   #draw() {
-    const context = this.#canvas.getContext("2d");
+    const context = contextOf(this.#canvas);
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#area.width, this.#area.height);
     this.#drawTrail(context);
@@ -188,7 +225,7 @@ export class Finger {
     context.fillStyle = this.#isDown ? "#ffffff59" : "#ffffff1f";
     context.fill();
     context.lineWidth = this.#isDown && !this.#isBlind ? 2 + 5 * this.#friction : 2;
-    context.strokeStyle = this.#isDown ? colour("felt", this.#canvas.parentElement) : "#fff";
+    context.strokeStyle = this.#isDown ? colour("felt", this.#map.box) : "#fff";
     context.stroke();
     context.lineWidth = 1;
     context.strokeStyle = "#000b";
@@ -197,11 +234,14 @@ export class Finger {
     context.stroke();
   }
 
-  /** The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn. */
+  /**
+   * The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn.
+   * @param {CanvasRenderingContext2D} context
+   */
   #drawTrail(context) {
     if (this.#isBlind) return;
     const { scale } = this.#map;
-    const now = performance.now();
+    const now = clock.nowMs();
     const paths = new Map();
     for (let at = 1; at < this.#trail.length; at += 1) {
       const [from, to] = [this.#trail[at - 1], this.#trail[at]];
@@ -209,15 +249,19 @@ export class Finger {
       const age = Math.min(TRAIL_STEPS - 1, Math.floor((TRAIL_STEPS * (now - to.ms)) / (TRAIL_S * 1000)));
       const width = Math.round(5 * to.friction);
       const key = `${age} ${width}`;
-      if (!paths.has(key))
-        paths.set(key, { alpha: 0.9 * (1 - age / TRAIL_STEPS), width: 1.5 + 1.8 * width, path: new Path2D() });
-      const { path } = paths.get(key);
+      const line = paths.get(key) ?? {
+        alpha: 0.9 * (1 - age / TRAIL_STEPS),
+        width: 1.5 + 1.8 * width,
+        path: new Path2D(),
+      };
+      paths.set(key, line);
+      const { path } = line;
       path.moveTo(from.xMm * scale, from.yMm * scale);
       path.lineTo(to.xMm * scale, to.yMm * scale);
     }
-    for (const [extra, ink] of [
-      [3, "#000"],
-      [0, "#fff"],
+    for (const { extra, ink } of [
+      { extra: 3, ink: "#000" },
+      { extra: 0, ink: "#fff" },
     ]) {
       context.strokeStyle = ink;
       for (const { alpha, width, path } of paths.values()) {

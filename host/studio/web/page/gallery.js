@@ -1,9 +1,13 @@
 // The gallery: bundled scenes to start from, whole or layer by layer.
+// @ts-check
 
 import { carriedFiles, sceneNames } from "./bundled.js";
 import { imageOf } from "./colors.js";
-import { attempt, byId, element } from "./dom.js";
+import { attempt, byId, contextOf, element } from "./dom.js";
 import { mapSizePx } from "./map.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Layer } from "../engine/types" */
 
 /** Longer side of a scene's picture, pixels. */
 const LONG_SIDE_PX = 300;
@@ -12,11 +16,18 @@ export class Gallery {
   #engine;
   #dialog = byId("gallery");
   #isFilled = false;
-  /** A whole scene is chosen: `onScene(name, text)`. */
+  /**
+   * A whole scene is chosen: `onScene(name, text)`.
+   * @type {(name: string, text: string) => unknown}
+   */
   onScene = () => {};
-  /** A layer is taken over: `onLayer(text)`. */
+  /**
+   * A layer is taken over: `onLayer(text)`.
+   * @type {(text: string) => unknown}
+   */
   onLayer = () => {};
 
+  /** @param {Engine} engine */
   constructor(engine) {
     this.#engine = engine;
   }
@@ -44,11 +55,16 @@ export class Gallery {
     for (const { name, card } of cards) await this.#fill(card, name);
   }
 
+  /**
+   * @param {HTMLElement} card
+   * @param {string} name
+   */
   async #fill(card, name) {
     const files = await carriedFiles();
     const entry = `${name}.toml`;
     const text = new TextDecoder().decode(files[entry]);
     const check = await this.#engine.check(files, entry, {});
+    if (!("screen" in check)) throw new Error(check.problems.map(({ message }) => message).join("\n"));
     const size = mapSizePx(check.screen, LONG_SIDE_PX);
     const canvas = element("canvas", { width: size.widthPx, height: size.heightPx, "aria-hidden": "true" });
     const open = element("button", { className: "primary" }, `Open ${name}`);
@@ -65,9 +81,13 @@ export class Gallery {
     const words = element("p", { className: "fine" }, introduction(text));
     card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
     const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
-    canvas.getContext("2d").putImageData(imageOf(map), 0, 0);
+    contextOf(canvas).putImageData(imageOf(map), 0, 0);
   }
 
+  /**
+   * @param {string} text
+   * @param {Layer[]} layers
+   */
   #layers(text, layers) {
     return layers.map(({ name: title, from }) => {
       const take = element("button", { "aria-label": `Take over ${title}` }, "Take over");
@@ -80,7 +100,10 @@ export class Gallery {
   }
 }
 
-/** The comment at a scene's head, up to its first two sentences. */
+/**
+ * The comment at a scene's head, up to its first two sentences.
+ * @param {string} text
+ */
 function introduction(text) {
   const comment = /^(?:#.*\n)+/.exec(text)?.[0] ?? "";
   return comment
@@ -91,7 +114,11 @@ function introduction(text) {
     .join(" ");
 }
 
-/** The text of a layer in these lines, with the comments above it. */
+/**
+ * The text of a layer in these lines, with the comments above it.
+ * @param {string} text
+ * @param {[number, number]} lines
+ */
 function layerText(text, [first, last]) {
   const lines = text.split("\n");
   let start = first - 1;

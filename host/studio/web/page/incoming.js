@@ -1,42 +1,70 @@
 // Files that a person drops or opens: scenes, pictures, profiles and saved projects.
+// @ts-check
 
 import { projectOf } from "./archive.js";
-import { byId, forgetNotice, notify } from "./dom.js";
+import { byId, forgetNotice, notify, sentenceOf } from "./dom.js";
 import { isPicture } from "./project.js";
 
-/** Largest text, picture and zip, bytes. */
+/** @import { Files } from "../engine/types" */
+/** @import { NamedFile, SavedScene } from "./project.js" */
+/** @typedef {(files?: Files, entry?: string) => Promise<{ names: string[] }>} UsedFiles */
+/** @typedef {{ name: string, text: string }} OwnProfile */
+
+/**
+ * Largest text, picture and zip, bytes.
+ * @type {Record<string, number>}
+ */
 const MAX_BYTES = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: 16_000_000 };
 const JPEG = [0xff, 0xd8, 0xff];
-/** The first bytes of pictures, by the ending of their names. */
+/**
+ * The first bytes of pictures, by the ending of their names.
+ * @type {Record<string, number[]>}
+ */
 const BEGINNINGS = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
 /** The last chunk of a PNG, and in how many bytes at the end it is looked for. */
 const PNG_END = "IEND";
 const PNG_END_BYTES = 64;
 
+/**
+ * What stands in files that a person gives: texts that are not sorted yet, and the other files.
+ * @typedef {object} Found
+ * @property {[string, string][]} texts
+ * @property {NamedFile[]} files
+ * @property {SavedScene} [scene]
+ * @property {OwnProfile} [finger]
+ * @property {OwnProfile} [screen]
+ */
+
 export class Incoming {
+  /** @type {UsedFiles} */
   #usedFiles;
-  /** `{ scene: { name, text, files, profiles? }, files: [[name, content]], finger, screen }`, some missing. */
+  /**
+   * What could be taken of the files.
+   * @type {(found: Found) => unknown}
+   */
   onFiles = () => {};
 
   /**
    * `usedFiles(files, entry)` gives the names of the files that a scene uses; without arguments, those of the scene
    * that the page has.
+   * @param {UsedFiles} usedFiles
    */
   constructor(usedFiles) {
     this.#usedFiles = usedFiles;
     const input = byId("files");
     input.onchange = () => {
-      this.take([...input.files]);
+      this.take([...(input.files ?? [])]);
       input.value = "";
     };
     const drop = byId("drop");
+    const hasFiles = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes("Files");
     let depth = 0;
-    const show = (change) => {
+    const show = (/** @type {number} */ change) => {
       depth = Math.max(0, depth + change);
       drop.hidden = depth === 0;
     };
-    addEventListener("dragenter", (event) => event.dataTransfer?.types.includes("Files") && show(1));
-    addEventListener("dragleave", (event) => event.dataTransfer?.types.includes("Files") && show(-1));
+    addEventListener("dragenter", (event) => hasFiles(event) && show(1));
+    addEventListener("dragleave", (event) => hasFiles(event) && show(-1));
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => {
       event.preventDefault();
@@ -45,23 +73,28 @@ export class Incoming {
     });
   }
 
-  /** Takes what can be taken of these files, and says what cannot, and why. */
+  /**
+   * Takes what can be taken of these files, and says what cannot, and why.
+   * @param {File[]} list
+   */
   async take(list) {
+    /** @type {Found} */
     const found = { files: [], texts: [] };
+    /** @type {string[]} */
     const refused = [];
     forgetNotice();
     for (const file of list) {
       try {
         Object.assign(found, await read(file, found));
       } catch (error) {
-        refused.push(`${file.name}: ${error.message}`);
+        refused.push(`${file.name}: ${sentenceOf(error)}`);
       }
     }
     try {
       await this.#sort(found, refused);
       if (found.scene || found.finger || found.screen || found.files.length > 0) await this.onFiles(found);
     } catch (error) {
-      refused.push(error.message);
+      refused.push(sentenceOf(error));
     }
     if (refused.length > 0) notify(refused.join("\n"));
     else if (!found.scene) {
@@ -70,7 +103,11 @@ export class Incoming {
     }
   }
 
-  /** Tells the scene among the texts from the files that it uses, and from profiles to play with. */
+  /**
+   * Tells the scene among the texts from the files that it uses, and from profiles to play with.
+   * @param {Found} found
+   * @param {string[]} refused
+   */
   async #sort(found, refused) {
     const texts = Object.fromEntries(found.texts);
     // A scene of the drop, or the scene that the page has, may use the others.
@@ -91,6 +128,11 @@ export class Incoming {
   }
 }
 
+/**
+ * @param {File} file
+ * @param {Found} found
+ * @returns {Promise<Partial<Found>>}
+ */
 async function read(file, found) {
   const ending = /\.(toml|png|jpe?g|zip)$/i.exec(file.name)?.[1].toLowerCase();
   if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png, .jpg) or a saved project (.zip)");
@@ -110,6 +152,7 @@ async function read(file, found) {
   return { texts: [...found.texts, [file.name, textOf(bytes)]] };
 }
 
+/** @param {Uint8Array} bytes */
 function textOf(bytes) {
   try {
     return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
@@ -118,7 +161,10 @@ function textOf(bytes) {
   }
 }
 
-/** What a TOML text is meant as; one that nobody can tell is read as a scene, for its mistakes. */
+/**
+ * What a TOML text is meant as; one that nobody can tell is read as a scene, for its mistakes.
+ * @param {string} text
+ */
 function kindOf(text) {
   if (/^\s*(\[|version\s*=)/m.test(text)) return "scene";
   if (/^\s*friction_coefficient\s*=/m.test(text)) return "finger";

@@ -1,30 +1,52 @@
 // The layers of the scene: what is felt of each, and live switches and gains.
+// @ts-check
 
 import { attempt, byId, element, notify } from "./dom.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Layer } from "../engine/types" */
+/** @import { Editor } from "./editor.js" */
+/** @typedef {{ on: boolean, gain: number }} Live */
 
 export class Layers {
   #engine;
   #editor;
-  /** Switches and gains, by layer number, as long as the scene plays on. */
+  /**
+   * Switches and gains, by layer number, as long as the scene plays on.
+   * @type {Map<number, Live>}
+   */
   #live = new Map();
+  /** @type {Layer[]} */
   #shown = [];
   /** Whether another scene is on its way to the board, whose layers have other numbers. */
   isSceneLoading = false;
-  /** Switches or gains differ from the scene's text: `onLive(["brick off", ...])`; empty where none does. */
+  /**
+   * Switches or gains differ from the scene's text: `onLive(["brick off", ...])`; empty where none does.
+   * @type {(changes: string[]) => void}
+   */
   onLive = () => {};
 
+  /**
+   * @param {Engine} engine
+   * @param {Editor} editor
+   */
   constructor(engine, editor) {
     this.#engine = engine;
     this.#editor = editor;
   }
 
-  show(check) {
+  /** @param {Layer[]} layers */
+  show(layers) {
     const panel = byId("panel-layers");
-    const focused = panel.contains(document.activeElement) && document.activeElement.getAttribute("aria-label");
-    this.#shown = check.layers;
-    panel.replaceChildren(...check.layers.map((layer) => this.#row(layer)));
-    if (check.layers.length === 0) panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
-    if (focused) panel.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
+    const active = document.activeElement;
+    const focused = panel.contains(active) ? active?.getAttribute("aria-label") : undefined;
+    this.#shown = layers;
+    panel.replaceChildren(...layers.map((layer) => this.#row(layer)));
+    if (layers.length === 0) panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
+    if (!focused) return;
+    /** @type {HTMLElement | null} */
+    const again = panel.querySelector(`[aria-label="${CSS.escape(focused)}"]`);
+    again?.focus();
   }
 
   /** A play begins: all layers are on, with the gain of the scene. */
@@ -33,14 +55,18 @@ export class Layers {
     this.onLive([]);
   }
 
+  /** @param {Layer} layer */
   #row(layer) {
     const { name, kind, felt, file, from, controls } = layer;
     const copies = controls.length > 1 ? ` × ${controls.length}` : "";
-    const place = this.#editor.has(file) ? { type: "button", onclick: () => this.#editor.goTo(file, from[0]) } : {};
+    const shown = { className: "link", title: file ?? "" };
+    const goTo = () => this.#editor.goTo(file, from[0]);
     const title = element(
       "div",
       {},
-      element(place.type ? "button" : "b", { className: "link", ...place, title: file ?? "" }, name),
+      this.#editor.has(file)
+        ? element("button", { ...shown, type: "button", onclick: goTo }, name)
+        : element("b", shown, name),
       ` ${kind}${copies}${file ? `, ${file}` : ""}`,
     );
     const note = element("p", { className: "fine live-note", hidden: true });
@@ -49,6 +75,10 @@ export class Layers {
     return row;
   }
 
+  /**
+   * @param {Layer} layer
+   * @param {HTMLElement} note
+   */
   #controls(layer, note) {
     const { index, name: label, isLive, whyNotLive, file, from } = layer;
     if (!isLive) {
@@ -61,22 +91,23 @@ export class Layers {
     const isOn = element("input", { type: "checkbox", checked: state.on, "aria-label": `${label} on` });
     // The slider has the gains of every day, the number all that a board takes.
     const most = Math.min(layer.gainMax, Math.max(2, 2 * layer.gain));
+    /** @type {(type: string, min: number, max: number, name: string) => HTMLInputElement} */
     const input = (type, min, max, name) =>
       element("input", { type, min, max, step: "any", value: state.gain, "aria-label": name });
     const slider = input("range", Math.min(0, 2 * layer.gain), most, `gain of ${label}`);
-    slider.step = most / 40;
-    slider.value = state.gain;
+    slider.step = `${most / 40}`;
+    slider.value = `${state.gain}`;
     const number = input("number", layer.gainMin, layer.gainMax, `gain of ${label}, as a number`);
     isOn.onchange = async () => {
       const on = isOn.checked;
       if (!(await this.#change(layer, { on }, on ? "on" : "off", state))) isOn.checked = state.on;
       this.#note(layer, state, note);
     };
-    const change = (from, to) => async () => {
+    const change = (/** @type {HTMLInputElement} */ from, /** @type {HTMLInputElement} */ to) => async () => {
       const gain = Number(from.value);
       if (from.value === "" || !from.checkValidity()) return;
-      to.value = gain;
-      if (!(await this.#change(layer, { gain }, `gain ${gain}`, state))) from.value = to.value = state.gain;
+      to.value = `${gain}`;
+      if (!(await this.#change(layer, { gain }, `gain ${gain}`, state))) from.value = to.value = `${state.gain}`;
       this.#note(layer, state, note);
     };
     slider.oninput = change(slider, number);
@@ -84,13 +115,18 @@ export class Layers {
     number.onchange = () => {
       if (number.value !== "" && number.checkValidity()) return;
       notify(`A gain of ${label} is a number from ${layer.gainMin} to ${layer.gainMax}: it stays ${state.gain}.`);
-      number.value = state.gain;
+      number.value = `${state.gain}`;
     };
     const times = element("label", {}, "× ", number);
     return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), slider, times);
   }
 
-  /** Says at the layer, and to the map, what differs from the scene's text. */
+  /**
+   * Says at the layer, and to the map, what differs from the scene's text.
+   * @param {Layer} layer
+   * @param {Live} state
+   * @param {HTMLElement} note
+   */
   #note({ gain: written }, { on, gain }, note) {
     const isGain = gain !== written;
     note.hidden = on && !isGain;
@@ -109,6 +145,10 @@ export class Layers {
   /**
    * Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. If
    * one copy is refused, those before it get their old setting back.
+   * @param {Layer} layer
+   * @param {{ on: boolean } | { gain: number }} next
+   * @param {string} words
+   * @param {Live} state
    */
   async #change({ index, controls }, next, words, state) {
     const before = "on" in next ? (state.on ? "on" : "off") : `gain ${state.gain}`;

@@ -1,8 +1,14 @@
 // The friction map with ruler, scale and names; the finger has a canvas of its own above it (finger.js).
+// @ts-check
 
 import { SCALE, imageOf } from "./colors.js";
-import { colour } from "./dom.js";
-import { drawMockup } from "./mockup.js";
+import { colour, contextOf } from "./dom.js";
+import { MOCKUPS, drawMockup } from "./mockup.js";
+
+/** @import { Checked, FrictionField, Layer, MapSize, Screen } from "../engine/types" */
+/** @typedef {{ left: number, top: number, width: number, height: number }} Area Of the map in its box, CSS pixels. */
+/** @typedef {{ x: number, y: number, width: number, height: number }} Box */
+/** @typedef {{ line: string, text: string }} Ink */
 
 /** Room for the ruler and the scale around the map, CSS pixels. */
 const LEFT_PX = 40;
@@ -19,63 +25,95 @@ const THUMBNAIL_PX = 240;
 /** Fewest pixels along the shorter side of a map's picture. */
 const SHORT_SIDE_MIN_PX = 8;
 
-/** Size of the picture of a screen's friction map whose longer side has this many pixels, for `engine.map`. */
+/**
+ * Size of the picture of a screen's friction map whose longer side has this many pixels, for `engine.map`.
+ * @param {Screen} screen
+ * @param {number} longSidePx
+ * @returns {MapSize}
+ */
 export function mapSizePx({ widthMm, heightMm }, longSidePx) {
   const perMm = longSidePx / Math.max(widthMm, heightMm);
   const [widthPx, heightPx] = [widthMm, heightMm].map((mm) => Math.max(SHORT_SIDE_MIN_PX, Math.round(mm * perMm)));
   return { widthPx, heightPx };
 }
 
+/** How much of the map is seen over a mock-up. */
+const MAP_ALPHA = { map: 1, both: 0.45, mockup: 0 };
+
 export class FrictionMap {
   #canvas;
-  #box;
+  /** The element that the map is in. */
+  box;
+  /** @type {FrictionField | undefined} */
   #map;
+  /** @type {Checked | undefined} */
   #check;
+  /** @type {OffscreenCanvas | undefined} */
   #picture;
-  /** Screen in mm; CSS pixels per mm. */
+  /**
+   * Screen in mm; CSS pixels per mm.
+   * @type {Screen}
+   */
   screen = { widthMm: 120, heightMm: 80 };
   scale = 5;
-  /** CSS pixels per mm of the real size, or undefined to fit the page. */
+  /**
+   * CSS pixels per mm of the real size, or undefined to fit the page.
+   * @type {number | undefined}
+   */
   realSize;
   /** Height of the window that is kept for other parts of the page, CSS pixels. */
   reservedPx = 0;
+  /** @type {keyof typeof MAP_ALPHA} */
   look = "map";
   hasNames = true;
+  /** @type {keyof typeof MOCKUPS} */
   mockup = "player";
-  /** The map has another size: finger.js follows. */
+  /**
+   * The map has another size: finger.js follows.
+   * @type {(area: Area) => void}
+   */
   onLayout = () => {};
 
-  /** Draws on the canvas `picture` in the element `box`. */
+  /**
+   * Draws on the canvas `picture` in the element `box`.
+   * @param {HTMLElement} box
+   * @param {HTMLCanvasElement} picture
+   */
   constructor(box, picture) {
-    this.#box = box;
+    this.box = box;
     this.#canvas = picture;
-    new ResizeObserver(() => this.layout()).observe(this.#box);
+    new ResizeObserver(() => this.layout()).observe(this.box);
   }
 
+  /**
+   * @param {FrictionField} map
+   * @param {Checked} check
+   */
   show(map, check) {
     this.#map = map;
     this.#check = check;
     this.screen = check.screen;
     const picture = new OffscreenCanvas(map.widthPx, map.heightPx);
-    picture.getContext("2d").putImageData(imageOf(map), 0, 0);
+    contextOf(picture).putImageData(imageOf(map), 0, 0);
     this.#picture = picture;
     this.layout();
   }
 
   /** A small picture of the friction alone, as a PNG. */
   thumbnail() {
+    if (!this.#picture) throw new Error("there is no map yet");
     const { width, height } = this.#picture;
     const { widthPx, heightPx } = mapSizePx({ widthMm: width, heightMm: height }, THUMBNAIL_PX);
     const small = new OffscreenCanvas(widthPx, heightPx);
-    small.getContext("2d").drawImage(this.#picture, 0, 0, widthPx, heightPx);
+    contextOf(small).drawImage(this.#picture, 0, 0, widthPx, heightPx);
     return small.convertToBlob();
   }
 
   /** Fits the map into its box, or shows it in real size. */
   layout() {
     const { widthMm, heightMm } = this.screen;
-    const style = getComputedStyle(this.#box);
-    const room = this.#box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+    const style = getComputedStyle(this.box);
+    const room = this.box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
     const most = Math.max(240, Math.min(HEIGHT_PART * innerHeight, innerHeight - this.reservedPx));
     const fitted = Math.min((room - LEFT_PX - RIGHT_PX) / widthMm, most / heightMm);
     this.scale = this.realSize ?? Math.max(0.5, fitted);
@@ -98,30 +136,36 @@ export class FrictionMap {
   }
 
   draw() {
-    const context = this.#canvas.getContext("2d");
+    const context = contextOf(this.#canvas);
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#canvas.width, this.#canvas.height);
-    if (!this.#map) return;
+    const [map, check, picture] = [this.#map, this.#check, this.#picture];
+    if (!map || !check || !picture) return;
     const { widthMm, heightMm } = this.screen;
     const area = { x: LEFT_PX, y: TOP_PX, width: widthMm * this.scale, height: heightMm * this.scale };
     context.save();
     context.translate(area.x, area.y);
     // A blind comparison shows nothing of the friction.
-    const isBlind = this.#box.closest(".blind") !== null;
+    const isBlind = this.box.closest(".blind") !== null;
     if (this.look !== "map") drawMockup(context, this.mockup, area.width, area.height);
-    context.globalAlpha = { map: 1, both: 0.45, mockup: 0 }[this.look];
-    context.imageSmoothingEnabled = this.scale * devicePixelRatio * widthMm < this.#map.widthPx * 2;
+    context.globalAlpha = MAP_ALPHA[this.look];
+    context.imageSmoothingEnabled = this.scale * devicePixelRatio * widthMm < map.widthPx * 2;
     context.fillStyle = "#777";
     if (isBlind) context.fillRect(0, 0, area.width, area.height);
-    else context.drawImage(this.#picture, 0, 0, area.width, area.height);
+    else context.drawImage(picture, 0, 0, area.width, area.height);
     context.restore();
-    const ink = { line: colour("soft", this.#box), text: colour("ink", this.#box) };
+    const ink = { line: colour("soft", this.box), text: colour("ink", this.box) };
     this.#drawRuler(context, area, ink);
-    if (this.look !== "mockup") this.#drawScale(context, area, ink);
-    if (this.hasNames && this.look !== "mockup" && !isBlind) this.#drawNames(context, area);
-    if (this.#check.isDraft && !isBlind) drawDraft(context, area);
+    if (this.look !== "mockup") this.#drawScale(context, map, area, ink);
+    if (this.hasNames && this.look !== "mockup" && !isBlind) this.#drawNames(context, check, area);
+    if (check.isDraft && !isBlind) drawDraft(context, area);
   }
 
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {Box} area
+   * @param {Ink} ink
+   */
   #drawRuler(context, { x, y, width, height }, ink) {
     context.fillStyle = ink.text;
     context.strokeStyle = ink.line;
@@ -149,8 +193,13 @@ export class FrictionMap {
     context.strokeRect(x - 0.5, y - 0.5, width + 1, height + 1);
   }
 
-  #drawScale(context, { x, y, width, height }, ink) {
-    const { lowN, highN } = this.#map;
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {FrictionField} map
+   * @param {Box} area
+   * @param {Ink} ink
+   */
+  #drawScale(context, { lowN, highN }, { x, y, width, height }, ink) {
     const left = x + width + 14;
     const top = y + 18;
     const length = height - 18;
@@ -172,16 +221,22 @@ export class FrictionMap {
     }
   }
 
-  /** Each layer's name in the top left corner of its region, below the names that are there already. */
-  #drawNames(context, { x, y, width, height }) {
+  /**
+   * Each layer's name in the top left corner of its region, below the names that are there already.
+   * @param {CanvasRenderingContext2D} context
+   * @param {Checked} check
+   * @param {Box} area
+   */
+  #drawNames(context, { layers, isDraft }, { x, y, width, height }) {
     context.font = "600 14px system-ui, sans-serif";
     context.textAlign = "left";
     context.textBaseline = "middle";
     context.lineJoin = "round";
+    /** @type {{ left: number, place: number, wide: number }[]} */
     const taken = [];
     // Below the word in the corner.
-    const top = y + (this.#check.isDraft ? DRAFT_HEIGHT_PX : 0) + 14;
-    for (const { name, box } of namedBoxes(this.#check, this.screen)) {
+    const top = y + (isDraft ? DRAFT_HEIGHT_PX : 0) + 14;
+    for (const { name, box } of namedBoxes(layers, this.screen)) {
       const wide = context.measureText(name).width + 16;
       const left = Math.max(x + 8, Math.min(x + box.x * this.scale + 8, x + width - wide));
       let place = Math.max(top, y + box.y * this.scale + 14);
@@ -202,7 +257,11 @@ export class FrictionMap {
   }
 }
 
-/** Marks a map whose scene a board would refuse: stripes along the edge, and the word. */
+/**
+ * Marks a map whose scene a board would refuse: stripes along the edge, and the word.
+ * @param {CanvasRenderingContext2D} context
+ * @param {Box} area
+ */
 function drawDraft(context, { x, y, width, height }) {
   const wide = 10;
   context.save();
@@ -232,8 +291,12 @@ function drawDraft(context, { x, y, width, height }) {
   context.fillText(words, x + 14, y + DRAFT_HEIGHT_PX / 2);
 }
 
-/** Names of layers with the box of each region; a layer without a region has the whole screen. */
-function namedBoxes({ layers }, screen) {
+/**
+ * Names of layers with the box of each region; a layer without a region has the whole screen.
+ * @param {Layer[]} layers
+ * @param {Screen} screen
+ */
+function namedBoxes(layers, screen) {
   return layers.map(({ name, boxMm }) => {
     const [x, y, width, height] = boxMm ?? [0, 0, screen.widthMm, screen.heightMm];
     return { name, box: { x, y, width, height } };

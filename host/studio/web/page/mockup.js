@@ -1,25 +1,39 @@
 // Mock-ups of an interface to lie under the friction map: what a person would see while they feel it.
+// @ts-check
 
 import { element } from "./dom.js";
 
-/** A picture of one's own, once it is chosen. */
+/**
+ * A picture of one's own, once it is chosen.
+ * @type {ImageBitmap | undefined}
+ */
 let ownPicture;
 
 export const MOCKUPS = { player: "music player", keypad: "number pad", shop: "shop", own: "picture of mine…" };
 
-/** Asks for a picture; resolves to whether there is one. */
+/**
+ * Asks for a picture; resolves to whether there is one.
+ * @returns {Promise<boolean>}
+ */
 export function chooseOwnPicture() {
   return new Promise((resolve) => {
     const input = element("input", { type: "file", accept: "image/*" });
     input.oncancel = () => resolve(ownPicture !== undefined);
     input.onchange = async () => {
-      ownPicture = await createImageBitmap(input.files[0]).catch(() => undefined);
+      const file = input.files?.[0];
+      ownPicture = file && (await createImageBitmap(file).catch(() => undefined));
       resolve(ownPicture !== undefined);
     };
     input.click();
   });
 }
 
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {keyof typeof MOCKUPS} name
+ * @param {number} width
+ * @param {number} height
+ */
 export function drawMockup(context, name, width, height) {
   context.save();
   context.fillStyle = "#f7f7fa";
@@ -32,6 +46,15 @@ export function drawMockup(context, name, width, height) {
   context.restore();
 }
 
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} x
+ * @param {number} y
+ * @param {number} width
+ * @param {number} height
+ * @param {number} radius
+ * @param {string} fill
+ */
 function rounded(context, x, y, width, height, radius, fill) {
   context.beginPath();
   context.roundRect(x, y, width, height, radius);
@@ -39,14 +62,23 @@ function rounded(context, x, y, width, height, radius, fill) {
   context.fill();
 }
 
-function text(context, words, x, y, size, fill = "#20242d", align = "center") {
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {string} words
+ * @param {number} x
+ * @param {number} y
+ * @param {number} size
+ * @param {string} fill
+ */
+function text(context, words, x, y, size, fill = "#20242d") {
   context.font = `600 ${size}px system-ui, sans-serif`;
-  context.textAlign = align;
+  context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillStyle = fill;
   context.fillText(words, x, y);
 }
 
+/** @param {CanvasRenderingContext2D} context */
 function player(context) {
   rounded(context, 40, 3, 40, 21, 2, "#8fb4d9");
   text(context, "♪", 60, 14, 13, "#fff");
@@ -66,6 +98,7 @@ function player(context) {
   }
 }
 
+/** @param {CanvasRenderingContext2D} context */
 function keypad(context) {
   for (let key = 0; key < 9; key += 1) {
     const [x, y] = [24 + 26 * (key % 3), 8 + 17 * Math.floor(key / 3)];
@@ -75,6 +108,7 @@ function keypad(context) {
   text(context, "enter your number", 60, 68, 5, "#565d6b");
 }
 
+/** @param {CanvasRenderingContext2D} context */
 function shop(context) {
   for (const [index, [words, fill]] of [
     ["linen", "#d9cdb4"],
@@ -88,6 +122,7 @@ function shop(context) {
   text(context, "Add to basket", 60, 70.7, 5, "#fff");
 }
 
+/** @param {CanvasRenderingContext2D} context */
 function own(context) {
   if (!ownPicture) return;
   const scale = Math.min(120 / ownPicture.width, 80 / ownPicture.height);

@@ -1,6 +1,10 @@
 // The numbers that people want: friction in mN and in Weber steps, volts, speed.
+// @ts-check
 
 import { byId, element } from "./dom.js";
+
+/** @import { Frame } from "../engine/types" */
+/** @typedef {{ friction?: number, weber?: number, voltage?: number, speed?: number }} Shown */
 
 /** Smallest change of friction that a finger feels: a factor of 1.11 (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). */
 const WEBER_STEP = Math.log(1.11);
@@ -16,12 +20,15 @@ const STANDS_BELOW = 2;
 const SLIDE_TO_FEEL = "slide to feel";
 
 export class Numbers {
+  /** @type {Record<string, { value: HTMLElement, unit: HTMLElement }>} */
   #fields = {};
+  /** @type {Record<string, number>} */
   #means = {};
   #isSliding = false;
 
   constructor() {
-    const add = (key, title, unit, meaning, kind = "") => {
+    /** @param {[key: string, title: string, unit: string, meaning: string, kind?: string]} field */
+    const add = (...[key, title, unit, meaning, kind = ""]) => {
       const [value, unitShown] = [element("span"), element("small", {}, unit)];
       this.#fields[key] = { value, unit: unitShown };
       byId("numbers").append(
@@ -42,12 +49,18 @@ export class Numbers {
     this.#show({});
   }
 
+  /**
+   * @param {Frame} frame
+   * @param {number} naturalN
+   */
   feel({ feltN, voltageV, speedMmPerS, contact }, naturalN) {
+    /** @type {Shown} */
     const values = { voltage: this.#mean("voltage", voltageV), speed: this.#mean("speed", speedMmPerS) };
     this.#followSlide(values.speed);
     if (this.#isSliding) {
       const felt = this.#mean("felt", feltN);
-      Object.assign(values, { friction: felt * 1000, weber: Math.log(felt / naturalN) / WEBER_STEP });
+      if (felt !== undefined)
+        Object.assign(values, { friction: felt * 1000, weber: Math.log(felt / naturalN) / WEBER_STEP });
     }
     this.#show(contact ? values : { voltage: 0 });
     if (contact) return;
@@ -55,14 +68,23 @@ export class Numbers {
     this.#isSliding = false;
   }
 
-  /** A finger that has come to a standstill is felt anew at its next slide: the friction before is of another slide. */
+  /**
+   * A finger that has come to a standstill is felt anew at its next slide: the friction before is of another slide.
+   * @param {number | undefined} speedMmPerS
+   */
   #followSlide(speedMmPerS) {
+    if (speedMmPerS === undefined) return;
     if (speedMmPerS > SLIDES_ABOVE) this.#isSliding = true;
     if (!(speedMmPerS < STANDS_BELOW)) return;
     this.#isSliding = false;
     delete this.#means.felt;
   }
 
+  /**
+   * @param {string} name
+   * @param {Float32Array} values
+   * @returns {number | undefined}
+   */
   #mean(name, values) {
     for (const value of values) {
       if (!Number.isFinite(value)) continue;
@@ -72,6 +94,7 @@ export class Numbers {
     return this.#means[name];
   }
 
+  /** @param {Shown} numbers */
   #show({ friction, weber, voltage, speed }) {
     const isStill = speed !== undefined && friction === undefined;
     this.#write("friction", friction, 0, isStill);
@@ -80,13 +103,18 @@ export class Numbers {
     this.#write("speed", speed, 0);
   }
 
-  /** Writes a number, or what to do to get one. */
+  /**
+   * Writes a number, or what to do to get one.
+   * @param {string} name
+   * @param {number | undefined} number
+   * @param {number} digits
+   */
   #write(name, number, digits, isStill = false) {
     const { value, unit } = this.#fields[name];
     // Where nothing is added, noise takes what is felt below bare glass: never below zero.
-    const text = Number.isFinite(number) ? Math.max(0, number).toFixed(digits) : "–";
+    const text = number !== undefined && Number.isFinite(number) ? Math.max(0, number).toFixed(digits) : "–";
     value.textContent = isStill ? SLIDE_TO_FEEL : text;
-    value.parentElement.classList.toggle("words", isStill);
+    value.parentElement?.classList.toggle("words", isStill);
     unit.hidden = isStill;
   }
 }

@@ -1,21 +1,37 @@
 // The dialog of Open: files, and the pieces of work that the browser keeps.
+// @ts-check
 
 import { attempt, byId, element } from "./dom.js";
+
+/** @import { Work, Works } from "./works.js" */
 
 export class Open {
   #works;
   #dialog = byId("open");
+  /** @type {string[]} */
   #urls = [];
-  /** A piece of work is chosen: `onWork(id)`. */
+  /**
+   * A piece of work is chosen: `onWork(id)`.
+   * @type {(id: string) => unknown}
+   */
   onWork = () => {};
 
-  /** `choose()` lets a person choose files. */
+  /**
+   * `choose()` lets a person choose files.
+   * @param {Works} works
+   * @param {() => void} choose
+   */
   constructor(works, choose) {
     this.#works = works;
     byId("open-files").onclick = () => this.#open(choose);
-    this.#dialog.addEventListener("close", () => this.#urls.splice(0).forEach((url) => URL.revokeObjectURL(url)));
+    this.#dialog.addEventListener("close", () => this.#revoke());
   }
 
+  #revoke() {
+    for (const url of this.#urls.splice(0)) URL.revokeObjectURL(url);
+  }
+
+  /** @param {() => void} choose */
   async #open(choose) {
     const files = element("button", { className: "primary" }, "Files…");
     files.onclick = () => {
@@ -31,17 +47,19 @@ export class Open {
       list,
     );
     this.#dialog.showModal();
-    const works = await this.#works.all().catch(() => []);
+    const works = await this.#works.all().catch(() => /** @type {Work[]} */ ([]));
     const edited = works.filter(({ isEdited }) => isEdited);
     if (edited.length > 0) list.append(...edited.map((work) => this.#card(work)));
     else list.append("A scene that you change is kept here by this browser. None is kept yet.");
   }
 
+  /** @param {Work} work */
   #card({ id, name, changedMs, picture }) {
     const card = element("article", { className: "scene" });
     if (picture) {
-      this.#urls.push(URL.createObjectURL(picture));
-      card.append(element("img", { src: this.#urls.at(-1), alt: "" }));
+      const url = URL.createObjectURL(picture);
+      this.#urls.push(url);
+      card.append(element("img", { src: url, alt: "" }));
     }
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {

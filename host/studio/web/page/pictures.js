@@ -1,8 +1,17 @@
 // The pictures of the project: a list, with a layer for each at a press.
+// @ts-check
 
 import { byId, element } from "./dom.js";
 import { isPicture } from "./project.js";
 
+/** @import { Editor } from "./editor.js" */
+/** @import { Project } from "./project.js" */
+
+/**
+ * @param {Project} project
+ * @param {Editor} editor
+ * @param {(name: string) => void} onRemove
+ */
 export function showPictures(project, editor, onRemove) {
   const panel = byId("panel-pictures");
   for (const image of panel.querySelectorAll("img")) URL.revokeObjectURL(image.src);
@@ -20,6 +29,12 @@ export function showPictures(project, editor, onRemove) {
   );
 }
 
+/**
+ * @param {string} name
+ * @param {BlobPart} bytes
+ * @param {Editor} editor
+ * @param {(name: string) => void} onRemove
+ */
 function row(name, bytes, editor, onRemove) {
   const url = URL.createObjectURL(new Blob([bytes], { type: /\.png$/i.test(name) ? "image/png" : "image/jpeg" }));
   const image = element("img", { src: url, alt: "" });
@@ -38,7 +53,10 @@ function row(name, bytes, editor, onRemove) {
   );
 }
 
-/** A layer that shows a picture on the example screen; 0.4 mm of pitch fits into a board's room. */
+/**
+ * A layer that shows a picture on the example screen; 0.4 mm of pitch fits into a board's room.
+ * @param {string} name
+ */
 export function layerOf(name) {
   const title = JSON.stringify(name.replace(/\.\w+$/, ""));
   return (

@@ -1,6 +1,14 @@
 // From text to play: checks each version of the scene, draws its map and plays it, the newest one last.
+// @ts-check
 
+import { clock } from "../clock.js";
+import { sentenceOf } from "./dom.js";
 import { mapSizePx } from "./map.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Check, Checked, EngineFailure, FrictionField } from "../engine/types" */
+/** @import { Project } from "./project.js" */
+/** @typedef {"loading" | "loaded" | "mistaken" | "failed"} Status */
 
 /** A pause in typing that lets a check begin, ms. */
 const PAUSE_MS = 60;
@@ -10,35 +18,62 @@ const MAP_LONG_SIDE_PX = 960;
 export class Player {
   #engine;
   #project;
+  /** @type {number | undefined} */
   #timer;
   #isBusy = false;
+  /** @type {string | undefined} */
   #next;
   /** How many actions that bring another text are under way. */
   #expected = 0;
-  /** What came of the newest text that was checked: "loading" until then. */
+  /**
+   * What came of the newest text that was checked: "loading" until then.
+   * @type {Status}
+   */
   #outcome = "loading";
+  /** @type {Status} */
   #status = "loading";
 
-  /** The check has an answer: `onCheck(check)`. */
+  /**
+   * The check has an answer: `onCheck(check)`.
+   * @type {(check: Check) => void}
+   */
   onCheck = () => {};
-  /** The friction map of a scene that plays: `onMap(map, check)`. */
+  /**
+   * The friction map of a scene that plays: `onMap(map, check)`.
+   * @type {(map: FrictionField, check: Checked) => void}
+   */
   onMap = () => {};
-  /** The board has this text: `onPlay(text)`. */
+  /**
+   * The board has this text: `onPlay(text)`.
+   * @type {(text: string) => void}
+   */
   onPlay = () => {};
-  /** The board refused, or something failed: `onFailure(sentence)`. */
+  /**
+   * The board refused, or something failed: `onFailure(sentence)`.
+   * @type {(sentence: string) => void}
+   */
   onFailure = () => {};
   /**
    * `onStatus(status)` says where the newest text is: "loading"; "loaded", on the board; "mistaken", with mistakes;
    * "failed", refused by the board or lost on its way.
+   * @type {(status: Status) => void}
    */
   onStatus = () => {};
 
+  /**
+   * @param {Engine} engine
+   * @param {Project} project
+   */
   constructor(engine, project) {
     this.#engine = engine;
     this.#project = project;
   }
 
-  /** Runs an action that brings another text: from its begin on the status is "loading". */
+  /**
+   * Runs an action that brings another text: from its begin on the status is "loading".
+   * @template Value
+   * @param {() => Promise<Value>} action
+   */
   async expect(action) {
     this.#expected += 1;
     this.#report();
@@ -50,16 +85,22 @@ export class Player {
     }
   }
 
-  /** Plays this text once nothing has changed for a moment. */
+  /**
+   * Plays this text once nothing has changed for a moment.
+   * @param {string} text
+   */
   later(text) {
-    clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.now(text), PAUSE_MS);
+    clock.cancel(this.#timer);
+    this.#timer = clock.later(PAUSE_MS, () => this.now(text));
     this.#report();
   }
 
-  /** Plays this text; of texts that come meanwhile, the newest is played after it. */
+  /**
+   * Plays this text; of texts that come meanwhile, the newest is played after it.
+   * @param {string} text
+   */
   async now(text) {
-    clearTimeout(this.#timer);
+    clock.cancel(this.#timer);
     this.#timer = undefined;
     this.#next = text;
     this.#report();
@@ -73,7 +114,7 @@ export class Player {
         await this.#play(newest);
       } catch (error) {
         this.#settle("failed");
-        this.onFailure(error.message);
+        this.onFailure(sentenceOf(error));
       }
     }
     this.#isBusy = false;
@@ -84,6 +125,7 @@ export class Player {
     return this.#next !== undefined || this.#timer !== undefined || this.#expected > 0;
   }
 
+  /** @param {Status} outcome */
   #settle(outcome) {
     this.#outcome = outcome;
     this.#report();
@@ -96,13 +138,15 @@ export class Player {
     this.onStatus(status);
   }
 
+  /** @param {string} text */
   async #play(text) {
     const files = await this.#project.filesFor(text);
     const { entry, profiles } = this.#project;
+    /** @type {Parameters<Engine["play"]>} */
     const scene = [files, entry, { ...profiles }];
     const check = await this.#engine.check(...scene);
     this.onCheck(check);
-    if (!check.ok && !check.isDraft) this.#settle("mistaken");
+    if (!isPlayable(check)) this.#settle("mistaken");
     // A board that was disarmed for another scene gets none but that.
     else if (!this.#isOutdated && (await this.#load(scene, check))) {
       this.onPlay(text);
@@ -110,22 +154,36 @@ export class Player {
       if (this.#next !== undefined) return;
       const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
       const size = { ...sizePx, speedMmPerS: 100 };
-      const map = await this.#engine.map(...scene, size).catch(({ message }) => this.onFailure(message));
+      const map = await this.#engine.map(...scene, size).catch((error) => this.onFailure(sentenceOf(error)));
       if (map) this.onMap(map, check);
     }
   }
 
-  /** Puts the scene on the board. Resolves to false if it was broken off and a newer one comes in its place. */
+  /**
+   * Puts the scene on the board. Resolves to false if it was broken off and a newer one comes in its place.
+   * @param {Parameters<Engine["play"]>} scene
+   * @param {Checked} check
+   */
   async #load(scene, { isDraft }) {
     for (;;) {
       try {
         await this.#engine.play(...scene);
         return true;
-      } catch ({ message, canLoadAgain }) {
+      } catch (error) {
+        const { message, canLoadAgain } = /** @type {EngineFailure} */ (error);
         if (!canLoadAgain) throw new Error(isDraft ? `The board does not play this draft:\n${message}` : message);
         // A stop has disarmed the board: the scene is loaded again, and waits there for a press.
         if (this.#isOutdated) return false;
       }
     }
   }
+}
+
+/**
+ * Whether a scene plays: it has no mistake, or is a draft.
+ * @param {Check} check
+ * @returns {check is Exclude<Check, { ok: false, report?: undefined }>}
+ */
+export function isPlayable(check) {
+  return check.ok || check.isDraft === true;
 }

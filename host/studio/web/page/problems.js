@@ -1,23 +1,36 @@
 // What the check of the scene found: a list under the editor, and the report.
+// @ts-check
 
 import { byId, element } from "./dom.js";
 
+/** @import { Check, Problem } from "../engine/types" */
+/** @import { Editor } from "./editor.js" */
+/** @import { Status } from "./player.js" */
+
 /** What the last check found: how many mistakes, in words, and whether the simulator plays the scene as a draft. */
 let found = { count: "", isDraft: false };
-/** Where the newest text is, as player.js reports it. */
+/**
+ * Where the newest text is, as player.js reports it.
+ * @type {Status}
+ */
 let status = "loading";
 
+/**
+ * @param {Check} check
+ * @param {Editor} editor
+ */
 export function showCheck({ ok, isDraft, problems, report }, editor) {
   const errors = problems.filter(({ severity }) => severity === "error");
-  byId("check").dataset.bad = !ok;
+  byId("check").dataset.bad = String(!ok);
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
-  found = { count: errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`, isDraft };
+  found = { count: errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`, isDraft: isDraft === true };
   showOutcome();
   byId("problems").replaceChildren(...problems.map((problem) => item(problem, editor)));
   if (report) byId("report").textContent = feltFirst(report);
   editor.mark(problems);
 }
 
+/** @param {Status} newStatus */
 export function showStatus(newStatus) {
   status = newStatus;
   showOutcome();
@@ -37,10 +50,13 @@ export function showOutcome() {
   byId("check").textContent = words[status];
 }
 
-/** The report with what a person feels before what a board needs. */
+/**
+ * The report with what a person feels before what a board needs.
+ * @param {string} report
+ */
 function feltFirst(report) {
   const first = ["draft", "feel", "step", "out of reach"];
-  const rank = (line) => {
+  const rank = (/** @type {string} */ line) => {
     const at = first.findIndex((word) => line.trimStart().startsWith(`${word} `));
     return at < 0 ? first.length : at;
   };
@@ -50,6 +66,10 @@ function feltFirst(report) {
     .join("\n");
 }
 
+/**
+ * @param {Problem} problem
+ * @param {Editor} editor
+ */
 function item({ severity, message, file, line }, editor) {
   const shown = element("li", { className: severity });
   const place = [file, line && `line ${line}`].filter(Boolean).join(", ");

@@ -1,15 +1,43 @@
 // What a person works on: the scene's text (which the editor holds) and the files that it names.
+// @ts-check
 
 import { carriedFiles } from "./bundled.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Files, Profiles } from "../engine/types" */
+/**
+ * Text of a TOML file, bytes of a picture.
+ * @typedef {string | Uint8Array<ArrayBuffer>} Content
+ * @typedef {[name: string, content: Content]} NamedFile
+ */
+/**
+ * A scene as files and links carry it.
+ * @typedef {{ name: string, text: string, files: NamedFile[], profiles?: Profiles }} SavedScene
+ */
+/**
+ * A piece of work that the browser keeps.
+ * @typedef {{ id: string, isEdited: boolean, changedMs: number }} OpenWork
+ */
+/**
+ * A scene to open, kept by the browser or not.
+ * @typedef {SavedScene & Partial<OpenWork>} SceneToOpen
+ */
 
 export class Project {
   #engine;
   #name = "scene";
-  /** Files of one's own, as the scene writes their names: texts of TOML files, bytes of pictures. */
+  /**
+   * Files of one's own, as the scene writes their names: texts of TOML files, bytes of pictures.
+   * @type {Map<string, Content>}
+   */
   files = new Map();
-  /** Finger and screen to play with in place of the scene's own; name or TOML text. */
+  /**
+   * Finger and screen to play with in place of the scene's own; name or TOML text.
+   * @type {Profiles}
+   */
   profiles = {};
 
+  /** @param {Engine} engine */
   constructor(engine) {
     this.#engine = engine;
   }
@@ -28,46 +56,71 @@ export class Project {
     return `${this.#name}.toml`;
   }
 
-  /** Replaces all files of one's own by these, given as `[name, content]`. */
+  /**
+   * Replaces all files of one's own by these, given as `[name, content]`.
+   * @param {NamedFile[]} files
+   */
   async replaceFiles(files) {
     const carried = await carriedFiles();
     this.files.clear();
     for (const [name, content] of files) if (!isSame(content, carried[name])) this.add(name, content);
   }
 
+  /**
+   * @param {string} name
+   * @param {Content} content
+   */
   add(name, content) {
     const isText = isToml(name) && typeof content !== "string";
     this.files.set(name, isText ? new TextDecoder().decode(content) : content);
   }
 
-  /** All files that the engine may need for this text of the scene. */
+  /**
+   * All files that the engine may need for this text of the scene.
+   * @param {string} text
+   * @returns {Promise<Files>}
+   */
   async filesFor(text) {
     return { ...(await carriedFiles()), ...Object.fromEntries(this.files), [this.entry]: text };
   }
 
-  /** Files of one's own for a link, as `[name, content]`: those that this text uses. */
+  /**
+   * Files of one's own for a link, as `[name, content]`: those that this text uses.
+   * @param {string} text
+   */
   async filesForLink(text) {
     const { names, isWhole } = await this.#engine.usedFiles(await this.filesFor(text), this.entry);
     // A mistake may hide the name of a file.
     return [...this.files].filter(([name]) => !isWhole || names.includes(name));
   }
 
-  /** Files for a zip, as `[name, content]`: all of one's own, and those of the page that this text uses. */
+  /**
+   * Files for a zip, as `[name, content]`: all of one's own, and those of the page that this text uses.
+   * @param {string} text
+   */
   async filesForZip(text) {
     const { names } = await this.#engine.usedFiles(await this.filesFor(text), this.entry);
+    /** @type {NamedFile[]} */
     const carried = Object.entries(await carriedFiles()).filter(([name]) => names.includes(name));
     return [...new Map([...carried, ...this.files])].filter(([name]) => name !== this.entry);
   }
 }
 
+/** @param {string} name */
 export function isToml(name) {
   return /\.toml$/i.test(name);
 }
 
+/** @param {string} name */
 export function isPicture(name) {
   return /\.(png|jpe?g)$/i.test(name);
 }
 
+/**
+ * @param {Content} content
+ * @param {Content | undefined} other
+ */
 function isSame(content, other) {
-  return content.length === other?.length && content.every?.((byte, at) => byte === other[at]);
+  if (typeof content === "string" || typeof other !== "object") return false;
+  return content.length === other.length && content.every((byte, at) => byte === other[at]);
 }

@@ -1,6 +1,9 @@
 // Real size: a bank card held to the screen says how many pixels a millimetre has.
+// @ts-check
 
 import { byId, element, settings } from "./dom.js";
+
+/** @import { FrictionMap } from "./map.js" */
 
 /** A bank card, mm (ISO/IEC 7810 ID-1). */
 const CARD = { widthMm: 85.6, heightMm: 53.98 };
@@ -11,8 +14,10 @@ export class RealSize {
   #map;
   #button = byId("real-size");
   #dialog = byId("size");
+  /** @type {number | undefined} */
   #pixelsPerMm = Number(settings.get("pixelsPerMm")) || undefined;
 
+  /** @param {FrictionMap} map */
   constructor(map) {
     this.#map = map;
     this.#button.setAttribute("aria-pressed", "false");
@@ -22,9 +27,10 @@ export class RealSize {
     };
   }
 
+  /** @param {number | undefined} pixelsPerMm */
   #show(pixelsPerMm) {
     this.#map.realSize = pixelsPerMm;
-    this.#button.setAttribute("aria-pressed", pixelsPerMm !== undefined);
+    this.#button.setAttribute("aria-pressed", String(pixelsPerMm !== undefined));
     byId("real-size-mark").hidden = pixelsPerMm === undefined;
     this.#map.layout();
   }
@@ -55,7 +61,7 @@ export class RealSize {
     const done = element("button", { className: "primary" }, "Show in real size");
     done.onclick = () => {
       this.#pixelsPerMm = scale;
-      settings.set("pixelsPerMm", scale);
+      settings.set("pixelsPerMm", String(scale));
       this.#dialog.close();
       this.#show(scale);
     };

@@ -1,18 +1,43 @@
 // The last seconds of what was felt, for the scope and for files.
+// @ts-check
+
+/** @import { Column, Frame } from "../engine/types" */
 
 const CAPACITY = 40_000;
 /** Without a touch for this long, s, nothing is kept, so that the last strokes stay. */
 const IDLE_S = 1;
 
+/**
+ * The columns of a frame that are kept.
+ * @type {Column[]}
+ */
+const COLUMNS = ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
+
+/**
+ * Something for the time of samples and for each column of frames.
+ * @template Values
+ * @typedef {Record<"timeS" | Column, Values>} Stored
+ */
+
+/**
+ * @template Values
+ * @param {(name: "timeS" | Column) => Values} make
+ * @returns {Stored<Values>}
+ */
+function forEach(make) {
+  const entries = /** @type {const} */ (["timeS", ...COLUMNS]).map((name) => [name, make(name)]);
+  return Object.fromEntries(entries);
+}
+
 export class Samples {
-  #columns = ["timeS", "xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
-  #data = Object.fromEntries(this.#columns.map((name) => [name, new Float64Array(CAPACITY)]));
+  #data = forEach(() => new Float64Array(CAPACITY));
   #next = 0;
   count = 0;
   /** Time of the newest sample, s of board time. */
   nowS = 0;
   #touchedS = 0;
 
+  /** @param {Frame} frame */
   add(frame) {
     const { firstTick, ticksPerSample, feltN, xMm, contact } = frame;
     // In slow motion there are frames without a sample.
@@ -25,7 +50,7 @@ export class Samples {
       if (contact || Number.isFinite(xMm[at])) this.#touchedS = this.nowS;
       if (this.nowS - this.#touchedS > IDLE_S) continue;
       this.#data.timeS[this.#next] = this.nowS;
-      for (const name of this.#columns.slice(1)) this.#data[name][this.#next] = frame[name][at];
+      for (const name of COLUMNS) this.#data[name][this.#next] = frame[name][at];
       this.#next = (this.#next + 1) % CAPACITY;
       this.count = Math.min(this.count + 1, CAPACITY);
     }
@@ -38,27 +63,30 @@ export class Samples {
     this.#touchedS = 0;
   }
 
-  /** Columns of the samples since `fromS`, oldest first. */
+  /**
+   * Columns of the samples since `fromS`, oldest first.
+   * @param {number} fromS
+   * @returns {Stored<number[]>}
+   */
   since(fromS) {
-    const step = (index) => (this.#next - this.count + index + CAPACITY) % CAPACITY;
+    const step = (/** @type {number} */ index) => (this.#next - this.count + index + CAPACITY) % CAPACITY;
     let first = this.count;
     while (first > 0 && this.#data.timeS[step(first - 1)] >= fromS) first -= 1;
-    const made = {};
-    for (const name of this.#columns) {
-      made[name] = Array.from({ length: this.count - first }, (_, index) => this.#data[name][step(first + index)]);
-    }
-    return made;
+    const length = this.count - first;
+    return forEach((name) => Array.from({ length }, (_, index) => this.#data[name][step(first + index)]));
   }
 
-  /** Samples of a time as text, a row each. */
+  /**
+   * Samples of a time as text, a row each.
+   * @param {number} fromS
+   * @param {number} toS
+   */
   csv(fromS, toS) {
     const columns = this.since(fromS);
     const rows = ["time_s,x_mm,y_mm,speed_mm_per_s,reference_n,felt_n,voltage_v_rms"];
     for (let at = 0; at < columns.timeS.length && columns.timeS[at] <= toS; at += 1) {
-      const row = this.#columns.map((name) =>
-        Number.isFinite(columns[name][at]) ? Number(columns[name][at].toFixed(6)) : "",
-      );
-      rows.push(row.join(","));
+      const row = Object.values(columns).map((values) => values[at]);
+      rows.push(row.map((value) => (Number.isFinite(value) ? Number(value.toFixed(6)) : "")).join(","));
     }
     return `${rows.join("\n")}\n`;
   }

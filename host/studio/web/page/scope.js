@@ -1,7 +1,12 @@
 // The scope: reference, felt and voltage over the last seconds.
+// @ts-check
 
+import { clock } from "../clock.js";
 import { uPlot, uPlotStyle } from "../vendor/studio-vendor.js";
-import { colour, download, element } from "./dom.js";
+import { colour, contextOf, download, element } from "./dom.js";
+
+/** @import { Frame } from "../engine/types" */
+/** @import { Samples } from "./samples.js" */
 
 /** What the scope shows while it runs, s. */
 const WINDOW_S = 3;
@@ -26,6 +31,7 @@ const MEANINGS = [
 export class Scope {
   #samples;
   #box;
+  /** @type {uPlot} */
   #plot;
   /** Time of the newest sample in the chart, s of board time. */
   #shownS = -1;
@@ -34,32 +40,40 @@ export class Scope {
   isPaused = false;
   /** Whether a draft is felt: the names of saved files say so. */
   isDraft = false;
-  /** Paused by zooming or by the button. */
+  /**
+   * Paused by zooming or by the button.
+   * @type {(isPaused: boolean) => void}
+   */
   onPause = () => {};
 
-  /** Draws in the element `box`. */
+  /**
+   * Draws in the element `box`.
+   * @param {Samples} samples
+   * @param {HTMLElement} box
+   */
   constructor(samples, box) {
     this.#samples = samples;
     this.#box = box;
     box.before(element("style", {}, uPlotStyle));
-    this.#make();
+    this.#plot = this.#made();
+    this.#draw();
     new ResizeObserver(([{ contentRect }]) => {
       this.#plot.setSize({ width: Math.max(200, contentRect.width - 4), height: heightPx() });
     }).observe(this.#box);
     let drawnMs = 0;
+    /** @param {number} ms */
     const frame = (ms) => {
       if (!this.isPaused && this.#shownS !== this.#newestS && ms - drawnMs >= FRAME_MS) {
         this.#draw();
         drawnMs = ms;
       }
-      requestAnimationFrame(frame);
+      clock.nextFrame(frame);
     };
-    requestAnimationFrame(frame);
+    clock.nextFrame(frame);
   }
 
   /** Makes the chart anew, in the colours of the theme. */
-  #make() {
-    this.#plot?.destroy();
+  #made() {
     const axis = {
       stroke: colour("soft", this.#box),
       grid: { stroke: colour("line", this.#box), width: 1 },
@@ -68,7 +82,9 @@ export class Scope {
       labelFont: "13px system-ui, sans-serif",
       labelSize: 18,
     };
+    /** @type {(unit: string, count: number) => uPlot.Series["value"]} */
     const digits = (unit, count) => (_, value) => (Number.isFinite(value) ? `${value.toFixed(count)} ${unit}` : "–");
+    /** @type {uPlot.Options} */
     const options = {
       width: Math.max(200, this.#box.clientWidth - 4),
       height: heightPx(),
@@ -94,16 +110,23 @@ export class Scope {
       cursor: { drag: { x: true, y: false } },
       hooks: { setSelect: [({ select }) => select.width > 0 && this.pause(true)] },
     };
-    this.#plot = new uPlot(options, [[], [], [], []], this.#box);
-    for (const [at, row] of this.#box.querySelectorAll(".u-legend tr").entries()) row.title = MEANINGS[at] ?? "";
-    this.#draw();
+    const plot = new uPlot(options, [[], [], [], []], this.#box);
+    /** @type {NodeListOf<HTMLElement>} */
+    const rows = this.#box.querySelectorAll(".u-legend tr");
+    for (const [at, row] of rows.entries()) row.title = MEANINGS[at] ?? "";
+    return plot;
   }
 
   restyle() {
-    this.#make();
+    this.#plot.destroy();
+    this.#plot = this.#made();
+    this.#draw();
   }
 
-  /** The scope stands still while nothing touches. */
+  /**
+   * The scope stands still while nothing touches.
+   * @param {Frame} frame
+   */
   feel({ contact }) {
     const { nowS } = this.#samples;
     if (contact || nowS < this.#touchedS) this.#touchedS = nowS;
@@ -120,14 +143,16 @@ export class Scope {
     const nowS = Math.max(WINDOW_S, this.#shownS);
     const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
     // No friction is drawn while the finger is up, comes down or leaves, so that the axis serves what is felt.
-    const isTouch = (at) => Number.isFinite(xMm[at]);
-    const isDrawn = (value, at) =>
+    const isTouch = (/** @type {number} */ at) => Number.isFinite(xMm[at]);
+    const isDrawn = (/** @type {number} */ value, /** @type {number} */ at) =>
       Number.isFinite(value) && isTouch(at - 1) && isTouch(Math.min(at + 1, xMm.length - 1));
-    const finite = (values, factor) => values.map((value, at) => (isDrawn(value, at) ? value * factor : null));
+    const finite = (/** @type {number[]} */ values, /** @type {number} */ factor) =>
+      values.map((value, at) => (isDrawn(value, at) ? value * factor : null));
     this.#plot.setData([timeS, finite(referenceN, 1000), finite(feltN, 1000), voltageV], false);
     this.#plot.setScale("x", { min: nowS - WINDOW_S, max: nowS });
   }
 
+  /** @param {boolean} isPaused */
   pause(isPaused) {
     this.isPaused = isPaused;
     this.onPause(isPaused);
@@ -139,7 +164,7 @@ export class Scope {
 
   /** What the chart shows, as numbers. */
   saveCsv() {
-    const { min, max } = this.#plot.scales.x;
+    const { min = 0, max = 0 } = this.#plot.scales.x;
     download(`${this.#fileName}.csv`, this.#samples.csv(min, max), "text/csv");
   }
 
@@ -148,7 +173,7 @@ export class Scope {
     const chart = this.#plot.ctx.canvas;
     const ratio = devicePixelRatio;
     const picture = element("canvas", { width: chart.width, height: chart.height + HEAD_PX * ratio });
-    const context = picture.getContext("2d");
+    const context = contextOf(picture);
     context.fillStyle = colour("card", this.#box);
     context.fillRect(0, 0, picture.width, picture.height);
     context.drawImage(chart, 0, HEAD_PX * ratio);
@@ -156,7 +181,7 @@ export class Scope {
     context.font = "14px system-ui, sans-serif";
     context.textBaseline = "middle";
     let left = 12;
-    const write = (words, ink) => {
+    const write = (/** @type {string} */ words, /** @type {string} */ ink) => {
       context.fillStyle = colour(ink, this.#box);
       context.fillText(words, left, HEAD_PX / 2);
       left += context.measureText(words).width + 22;
@@ -166,7 +191,7 @@ export class Scope {
     write("felt, mN", "felt");
     write("voltage, V rms", "voltage");
     write("time in s", "ink");
-    picture.toBlob((blob) => download(`${this.#fileName}.png`, blob, "image/png"));
+    picture.toBlob((blob) => blob && download(`${this.#fileName}.png`, blob, "image/png"));
   }
 }
 
@@ -174,14 +199,26 @@ function heightPx() {
   return innerHeight < LOW_WINDOW_PX ? HEIGHT_PX.low : HEIGHT_PX.usual;
 }
 
-/** Friction takes the upper part of the chart: what is usual is shown, and more where there is more. */
+/**
+ * Friction takes the upper part of the chart: what is usual is shown, and more where there is more.
+ * @param {uPlot} _chart
+ * @param {number | null} low
+ * @param {number | null} high
+ * @returns {uPlot.Range.MinMax}
+ */
 function upper(_chart, low, high) {
   const least = Math.max(low ?? 230, 0.6 * (high ?? 380));
   const most = Math.max(high ?? 380, least + 20);
   return [least - 0.8 * (most - least), most + 0.05 * (most - least)];
 }
 
-/** voltage the lower. */
+/**
+ * voltage the lower.
+ * @param {uPlot} _chart
+ * @param {number | null} _low
+ * @param {number | null} high
+ * @returns {uPlot.Range.MinMax}
+ */
 function lower(_chart, _low, high) {
   return [0, 2.4 * Math.max(20, high ?? 0)];
 }

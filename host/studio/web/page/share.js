@@ -1,6 +1,9 @@
 // A scene as a link: text and small files of one's own, compressed in the fragment.
+// @ts-check
 
 import { deflateSync, inflateSync, strFromU8, strToU8 } from "../vendor/studio-vendor.js";
+
+/** @import { Content, NamedFile, SavedScene } from "./project.js" */
 
 /** Longest link that mail programs and chats take, characters. */
 const LINK_MAX = 32_000;
@@ -8,7 +11,12 @@ const LINK_MAX = 32_000;
 const CONTENT_MAX_BYTES = 4_000_000;
 const START = "#scene=";
 
-/** The link of a scene; throws a sentence where it would be too long. */
+/**
+ * The link of a scene; throws a sentence where it would be too long.
+ * @param {string} name
+ * @param {string} text
+ * @param {NamedFile[]} files
+ */
 export function linkOf(name, text, files) {
   const content = {
     name,
@@ -25,7 +33,10 @@ export function linkOf(name, text, files) {
   return link;
 }
 
-/** Says what another person needs for a link that was made in a page at this address. */
+/**
+ * Says what another person needs for a link that was made in a page at this address.
+ * @param {{ protocol: string, hostname: string }} address
+ */
 export function whoCanOpen({ protocol, hostname }) {
   const isOwn = protocol === "file:" || ["127.0.0.1", "localhost", "[::1]"].includes(hostname);
   return isOwn
@@ -34,16 +45,24 @@ export function whoCanOpen({ protocol, hostname }) {
     : "Whoever opens it needs nothing else.";
 }
 
-/** The fragment of a link in a text that somebody pastes, or undefined. */
+/**
+ * The fragment of a link in a text that somebody pastes, or undefined.
+ * @param {string} text
+ */
 export function fragmentIn(text) {
   return /^\S*(#scene=[\w-]+)\s*$/.exec(text)?.[1];
 }
 
+/** @param {string} fragment */
 export function isLink(fragment) {
   return fragment.startsWith(START);
 }
 
-/** What a link carries; throws a sentence where it is no scene. */
+/**
+ * What a link carries; throws a sentence where it is no scene.
+ * @param {string} fragment
+ * @returns {SavedScene}
+ */
 export function sceneOf(fragment) {
   const broken = "The link does not hold a scene: a part of it was lost or changed. The scene you had stays.";
   try {
@@ -51,6 +70,7 @@ export function sceneOf(fragment) {
     const packed = fromBase64(fragment.slice(START.length));
     const content = JSON.parse(strFromU8(inflateSync(packed, { out: new Uint8Array(CONTENT_MAX_BYTES) })));
     if (typeof content.text !== "string" || typeof content.name !== "string") throw new Error(broken);
+    /** @type {NamedFile[]} */
     const files = Object.entries(content.files ?? {}).map(([name, value]) => [name, fromBase64(value)]);
     return { name: content.name.slice(0, 60), text: content.text, files };
   } catch {
@@ -58,16 +78,19 @@ export function sceneOf(fragment) {
   }
 }
 
+/** @param {Content} value */
 function asBytes(value) {
   return typeof value === "string" ? strToU8(value) : value;
 }
 
+/** @param {Uint8Array} bytes */
 export function toBase64(bytes) {
   let binary = "";
   for (const byte of bytes) binary += String.fromCharCode(byte);
   return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
+/** @param {string} text */
 export function fromBase64(text) {
   return Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (character) => character.charCodeAt(0));
 }

@@ -1,7 +1,9 @@
 // Sound: the change of felt friction as audio.
+// @ts-check
 
 import { attempt, byId, element, settings } from "./dom.js";
 
+/** @type {Record<string, string>} */
 const MODES = {
   headphones: "Headphones: the friction's change as it is, 10 Hz and up",
   pitched: "Small loudspeakers: pitched up four times",
@@ -9,16 +11,22 @@ const MODES = {
 };
 
 export class Sound {
-  #context;
-  #node;
-  #gain;
-  #mode = settings.get("sound") in MODES ? settings.get("sound") : "headphones";
+  /**
+   * What plays, once it was asked for.
+   * @type {{ context: AudioContext, node: AudioWorkletNode, gain: GainNode } | undefined}
+   */
+  #built;
+  #mode = settings.get("sound") ?? "headphones";
   #volume = 0.7;
   #toggle;
-  /** Behind volume, for the tests: an AnalyserNode. */
+  /**
+   * Behind volume, for the tests: an AnalyserNode.
+   * @type {AnalyserNode | undefined}
+   */
   analyser;
 
   constructor() {
+    if (!(this.#mode in MODES)) this.#mode = "headphones";
     this.#toggle = element("button", { className: "primary", "aria-pressed": "false" }, "Sound on");
     this.#toggle.onclick = () => attempt(() => (this.isOn ? this.stop() : this.start()));
     const volume = element("input", { type: "range", min: 0, max: 1, step: 0.01, value: this.#volume, id: "volume" });
@@ -40,17 +48,17 @@ export class Sound {
   }
 
   get isOn() {
-    return this.#context?.state === "running";
+    return this.#built?.context.state === "running";
   }
 
   async start() {
-    if (!this.#context) await this.#build();
-    await this.#context.resume();
+    this.#built ??= await this.#build();
+    await this.#built.context.resume();
     this.#label();
   }
 
   async stop() {
-    await this.#context.suspend();
+    await this.#built?.context.suspend();
     this.#label();
   }
 
@@ -59,31 +67,39 @@ export class Sound {
     // From a file, a browser takes no blob URL here.
     const source = await studio.text("page/sound_processor.js");
     await context.audioWorklet.addModule(`data:text/javascript,${encodeURIComponent(source)}`);
-    this.#node = new AudioWorkletNode(context, "friction-sound", { numberOfInputs: 0, outputChannelCount: [1] });
-    this.#gain = new GainNode(context, { gain: this.#volume });
+    const node = new AudioWorkletNode(context, "friction-sound", { numberOfInputs: 0, outputChannelCount: [1] });
+    const gain = new GainNode(context, { gain: this.#volume });
     this.analyser = new AnalyserNode(context, { fftSize: 16_384, smoothingTimeConstant: 0 });
-    this.#node.connect(this.#gain).connect(this.analyser).connect(context.destination);
-    this.#context = context;
-    this.#choose(this.#mode);
+    node.connect(gain).connect(this.analyser).connect(context.destination);
+    node.port.postMessage({ mode: this.#mode });
+    return { context, node, gain };
   }
 
   #label() {
     this.#toggle.textContent = this.isOn ? "Sound off" : "Sound on";
-    this.#toggle.setAttribute("aria-pressed", this.isOn);
+    this.#toggle.setAttribute("aria-pressed", String(this.isOn));
   }
 
+  /** @param {string} mode */
   #choose(mode) {
     this.#mode = mode;
     settings.set("sound", mode);
-    this.#node?.port.postMessage({ mode });
+    this.#built?.node.port.postMessage({ mode });
   }
 
+  /** @param {number} volume */
   setVolume(volume) {
     this.#volume = volume;
-    this.#gain?.gain.setTargetAtTime(volume, this.#context.currentTime, 0.02);
+    if (!this.#built) return;
+    const { context, gain } = this.#built;
+    gain.gain.setTargetAtTime(volume, context.currentTime, 0.02);
   }
 
+  /**
+   * @param {Float32Array} samples
+   * @param {number} slowness
+   */
   feel(samples, slowness) {
-    if (this.isOn) this.#node.port.postMessage({ samples, slowness });
+    if (this.isOn) this.#built?.node.port.postMessage({ samples, slowness });
   }
 }

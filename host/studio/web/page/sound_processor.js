@@ -1,4 +1,5 @@
 // Runs in the audio thread: turns the change of felt friction, at 40 kHz, into sound.
+// @ts-check
 
 /** Samples that wait in the ring; two seconds. */
 const CAPACITY = 80_000;
@@ -26,6 +27,7 @@ class FrictionSound extends AudioWorkletProcessor {
     };
   }
 
+  /** @param {{ samples: Float32Array, slowness: number }} change */
   #take({ samples, slowness }) {
     this.#perSample = 40_000 / slowness / sampleRate;
     for (const sample of samples) {
@@ -38,6 +40,7 @@ class FrictionSound extends AudioWorkletProcessor {
     if (this.#read < 0 || ahead > 4 * delay + samples.length) this.#read = Math.max(0, this.#written - delay);
   }
 
+  /** @param {number} place */
   #at(place) {
     const whole = Math.floor(place);
     if (whole < 0 || whole + 1 >= this.#written || this.#written - whole > CAPACITY) return 0;
@@ -49,7 +52,7 @@ class FrictionSound extends AudioWorkletProcessor {
   #pitched() {
     const length = GRAIN_S * sampleRate * this.#perSample;
     this.#grain = (this.#grain + (PITCH - 1) * this.#perSample) % length;
-    const grain = (offset) => {
+    const grain = (/** @type {number} */ offset) => {
       const phase = (this.#grain + offset) % length;
       const window = 0.5 - 0.5 * Math.cos((2 * Math.PI * phase) / length);
       return window * this.#at(this.#read - length + phase);
@@ -57,6 +60,10 @@ class FrictionSound extends AudioWorkletProcessor {
     return grain(0) + grain(length / 2);
   }
 
+  /**
+   * @param {Float32Array[][]} _inputs
+   * @param {Float32Array[][]} outputs
+   */
   process(_inputs, [[output]]) {
     for (let at = 0; at < output.length; at += 1) {
       if (this.#read < 0 || this.#read + this.#perSample >= this.#written - 1) {

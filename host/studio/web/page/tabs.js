@@ -1,19 +1,25 @@
 // Tabs, with arrow keys.
+// @ts-check
 
+import { byId } from "./dom.js";
+
+/** @param {HTMLElement} list */
 export function makeTabs(list) {
-  const tabs = [...list.querySelectorAll('[role="tab"]')];
-  const choose = (chosen) => {
+  /** @type {NodeListOf<HTMLElement>} */
+  const found = list.querySelectorAll('[role="tab"]');
+  const tabs = [...found];
+  const choose = (/** @type {HTMLElement} */ chosen) => {
     for (const tab of tabs) {
       const isChosen = tab === chosen;
-      tab.setAttribute("aria-selected", isChosen);
+      tab.setAttribute("aria-selected", String(isChosen));
       tab.tabIndex = isChosen ? 0 : -1;
-      document.getElementById(tab.getAttribute("aria-controls")).hidden = !isChosen;
+      byId(tab.getAttribute("aria-controls") ?? "").hidden = !isChosen;
     }
   };
   for (const [at, tab] of tabs.entries()) {
     tab.onclick = () => choose(tab);
     tab.onkeydown = ({ key }) => {
-      const step = { ArrowLeft: -1, ArrowRight: 1 }[key];
+      const step = stepOf(key);
       if (!step) return;
       const next = tabs[(at + step + tabs.length) % tabs.length];
       choose(next);
@@ -21,4 +27,12 @@ export function makeTabs(list) {
     };
   }
   choose(tabs[0]);
+}
+
+/**
+ * How many tabs an arrow key goes on.
+ * @param {string} key
+ */
+export function stepOf(key) {
+  return { ArrowLeft: -1, ArrowRight: 1 }[key] ?? 0;
 }

@@ -1,7 +1,9 @@
 // Light or dark: as the system has it, until the button is pressed.
+// @ts-check
 
 import { byId, forgetColours, settings } from "./dom.js";
 
+/** @param {() => void} onChange */
 export function makeTheme(onChange) {
   const system = matchMedia("(prefers-color-scheme: dark)");
   const root = document.documentElement;
@@ -9,8 +11,9 @@ export function makeTheme(onChange) {
     forgetColours();
     onChange();
   };
-  if (settings.get("theme")) {
-    root.dataset.theme = settings.get("theme");
+  const kept = settings.get("theme");
+  if (kept) {
+    root.dataset.theme = kept;
     change();
   }
   system.addEventListener("change", change);

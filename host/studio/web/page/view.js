@@ -1,62 +1,78 @@
 // The tools above map and scope.
+// @ts-check
 
 import { attempt, byId, element } from "./dom.js";
 import { MOCKUPS, chooseOwnPicture } from "./mockup.js";
 
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Finger } from "./finger.js" */
+/** @import { FrictionMap } from "./map.js" */
+/** @import { Scope } from "./scope.js" */
+
+/** @param {{ map: FrictionMap, finger: Finger, scope: Scope, engine: Engine }} parts */
 export function makeView({ map, finger, scope, engine }) {
   makeLook(map);
-  byId("names").onchange = ({ target }) => {
-    map.hasNames = target.checked;
+  const [names, pressure, drag] = [byId("names"), byId("pressure"), byId("drag")];
+  names.onchange = () => {
+    map.hasNames = names.checked;
     map.draw();
   };
-  byId("pressure").onchange = ({ target }) => (finger.usesPressure = target.checked);
-  byId("drag").onchange = ({ target }) => {
-    finger.drags = target.checked;
-    byId("map").classList.toggle("no-drag", !target.checked);
+  pressure.onchange = () => (finger.usesPressure = pressure.checked);
+  drag.onchange = () => {
+    finger.drags = drag.checked;
+    byId("map").classList.toggle("no-drag", !drag.checked);
   };
-  makeMenu(document.querySelector(".menu"));
+  makeMenu(/** @type {HTMLDetailsElement} */ (byId("options")));
   makeScope(scope);
   makeReplay(engine);
 }
 
-/** A press elsewhere, or Escape, closes the menu. */
+/**
+ * A press elsewhere, or Escape, closes the menu.
+ * @param {HTMLDetailsElement} menu
+ */
 function makeMenu(menu) {
   document.addEventListener("pointerdown", ({ target }) => {
-    if (!menu.contains(target)) menu.open = false;
+    if (!(target instanceof Node && menu.contains(target))) menu.open = false;
   });
   menu.addEventListener("keydown", ({ key }) => {
     if (key === "Escape") menu.open = false;
   });
 }
 
+/** @param {FrictionMap} map */
 function makeLook(map) {
   const look = byId("look");
   const mockup = byId("mockup");
   mockup.append(...Object.entries(MOCKUPS).map(([value, words]) => element("option", { value }, words)));
   look.onchange = () => {
-    map.look = look.value;
+    map.look = /** @type {FrictionMap["look"]} */ (look.value);
     byId("mockup-label").hidden = look.value === "map";
     map.draw();
   };
   mockup.onchange = async () => {
     if (mockup.value === "own" && !(await chooseOwnPicture())) mockup.value = map.mockup;
-    map.mockup = mockup.value;
+    map.mockup = /** @type {FrictionMap["mockup"]} */ (mockup.value);
     map.draw();
   };
 }
 
+/** @param {Scope} scope */
 function makeScope(scope) {
   const pause = byId("pause");
   pause.onclick = () => scope.pause(!scope.isPaused);
   scope.onPause = (isPaused) => {
-    pause.setAttribute("aria-pressed", isPaused);
+    pause.setAttribute("aria-pressed", String(isPaused));
     pause.textContent = isPaused ? "Run" : "Pause";
   };
   byId("save-csv").onclick = () => scope.saveCsv();
   byId("save-png").onclick = () => scope.savePng();
 }
 
-/** The last stroke again, slower; in a loop until the box is cleared, the button pressed, or the map. */
+/**
+ * The last stroke again, slower; in a loop until the box is cleared, the button pressed, or the map.
+ * @param {Engine} engine
+ */
 function makeReplay(engine) {
   const button = byId("replay");
   let isRunning = false;

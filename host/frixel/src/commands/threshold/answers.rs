@@ -4,13 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use frixel::output_file::{FileWriter, Recording};
+use frixel_lab::table::{Column, Table, TableError};
 use frixel_lab::threshold::Staircase;
-use serde::Deserialize;
 
 use super::CommandError;
 
 /// The answer in a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Answer {
     /// Number of the trial, from one.
     pub(super) trial: usize,
@@ -41,14 +41,7 @@ impl Answers {
             return Ok(Self { partial, writer: Some(recording.start()?), earlier: Vec::new() });
         }
         let (writer, text) = recording.resume()?;
-        let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize().zip(2..);
-        let changed = |row, error: csv::Error| CommandError::OtherSession {
-            partial: partial.clone(),
-            row,
-            reason: error.to_string(),
-        };
-        let earlier =
-            rows.map(|(answer, row)| answer.map_err(|error| changed(row, error))).collect::<Result<_, _>>()?;
+        let earlier = read(&text).map_err(|reason| CommandError::OtherSession { partial: partial.clone(), reason })?;
         Ok(Self { partial, writer: Some(writer), earlier })
     }
 
@@ -57,9 +50,10 @@ impl Answers {
         for (Answer { trial, highest_v_rms: found, level_db, is_right }, row) in self.earlier.iter().zip(2..) {
             let expected = (staircase.progress().0, highest_v_rms, staircase.next_level_db());
             if (*trial, *found, Some(*level_db)) != expected {
-                let reason =
-                    format!("is trial {trial} at {level_db:.2} dB below {found} V rms, which this one would not ask");
-                return Err(CommandError::OtherSession { partial: self.partial.clone(), row, reason });
+                let reason = format!(
+                    "row {row} is trial {trial} at {level_db:.2} dB below {found} V rms, which this one would not ask"
+                );
+                return Err(CommandError::OtherSession { partial: self.partial.clone(), reason });
             }
             staircase.answer(*level_db, *is_right);
         }
@@ -78,4 +72,27 @@ impl Answers {
         let written = writer.write_all(line.as_bytes()).and_then(|()| writer.flush());
         Ok(written.map_err(|source| writer.error(source))?)
     }
+}
+
+/// Reads the answers of a session; the error says where it is none.
+fn read(text: &str) -> Result<Vec<Answer>, String> {
+    let found = |error: TableError| error.found();
+    let mut table = Table::new(text.as_bytes()).map_err(found)?;
+    let mut need = |name, unit| table.need(Column::new(name, unit)).map_err(found);
+    let (trial, highest) = (need("trial", "")?, need("highest_v_rms", "volts rms")?);
+    let (level, right) = (need("level_db", "decibels")?, need("is_right", "")?);
+    let mut answers = Vec::new();
+    while let Some(row) = table.next_row().map_err(found)? {
+        row.check_length().map_err(found)?;
+        let is_right = row.text(right).parse().map_err(|_| {
+            format!("row {}, column is_right: expected true or false, found {:?}", row.number(), row.quoted(right))
+        })?;
+        answers.push(Answer {
+            trial: row.real(trial).map_err(found)? as usize,
+            highest_v_rms: row.real(highest).map_err(found)?,
+            level_db: row.real(level).map_err(found)?,
+            is_right,
+        });
+    }
+    Ok(answers)
 }

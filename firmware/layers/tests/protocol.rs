@@ -1,31 +1,59 @@
-//! The table of ranges in `PROTOCOL.md` is that of the code.
+//! The tables in `PROTOCOL.md` of kinds, features and ranges are those of the code.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use crate::support;
 
-use frixel_layers::{Header, Range, range};
-use frixel_wire::hello::BoardLimits;
+use frixel_layers::{Header, Range, feature_names, kind_names, range};
+use frixel_wire::hello::{BoardLimits, feature};
 use support::header;
 
 const PROTOCOL: &str = include_str!("../../wire/PROTOCOL.md");
 const TICK_HZ: u32 = 40_000;
 const LIMITS: BoardLimits = BoardLimits { voltage_max_v_peak: 220.0, ..BoardLimits::UNSTATED };
 
-/// Rows of the table: number, least, largest, name of the field.
-fn rows() -> Vec<[&'static str; 4]> {
-    let (_, table) = PROTOCOL.split_once("### `Ranges`").unwrap();
+/// Rows of the table below a heading.
+fn table(heading: &str) -> Vec<Vec<&'static str>> {
+    let (_, table) = PROTOCOL.split_once(heading).unwrap();
     let lines =
         table.lines().skip_while(|line| !line.starts_with("|---")).skip(1).take_while(|line| line.starts_with('|'));
-    let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
-    lines
-        .map(|line| {
-            if let [number, least, largest, _, field] = cells(line)[..] {
-                [number, least, largest, field]
-            } else {
-                panic!("{line}")
-            }
-        })
-        .collect()
+    lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect()).collect()
+}
+
+/// Rows of the table of ranges: number, least, largest, name of the field.
+fn rows() -> Vec<[&'static str; 4]> {
+    let cells = |row: Vec<&'static str>| match row[..] {
+        [number, least, largest, _, field] => [number, least, largest, field],
+        _ => panic!("{row:?}"),
+    };
+    table("### `Ranges`").into_iter().map(cells).collect()
+}
+
+#[test]
+fn features_have_the_bits_that_the_table_says() {
+    let name = |bit: u32, name: &str| match bit {
+        feature::HOST_TOUCH => "`HOST_TOUCH`".to_owned(),
+        _ => format!("`{}`", name.to_uppercase().replace('-', "_")),
+    };
+    let code: Vec<(u32, String)> = feature_names().map(|(bit, named)| (bit, name(bit, named))).collect();
+    let rows = table("### `Features`").into_iter();
+    let page: Vec<(u32, String)> = rows.map(|row| (1 << row[0].parse::<u32>().unwrap(), row[1].to_owned())).collect();
+    assert_eq!(page, code);
+}
+
+/// The row of kinds, and the table of their parameters.
+#[test]
+fn kinds_have_the_numbers_that_the_tables_say() {
+    let row = table("\nA record:\n").into_iter().find(|row| row[2].starts_with("kind: ")).unwrap();
+    let listed = row[2].strip_prefix("kind: ").unwrap().split(", ");
+    let numbered = |kind: &str| {
+        let mut words = kind.split(' ');
+        (words.next().unwrap().parse().unwrap(), words.next().unwrap().to_owned())
+    };
+    let page: Vec<(u8, String)> = listed.map(numbered).collect();
+    let code: Vec<(u8, String)> = kind_names().map(|(number, name)| (number, name.to_lowercase())).collect();
+    assert_eq!(page, code);
+    let rows = table("The parameters of each kind are `f32`").into_iter().map(|row| row[0].to_owned());
+    assert_eq!(rows.collect::<Vec<_>>(), page.into_iter().map(|(_, name)| name).collect::<Vec<_>>());
 }
 
 fn limit(text: &str) -> f32 {

@@ -6,9 +6,10 @@ use crate::support;
 use std::collections::BTreeSet;
 
 use frixel_layers::{
-    Blend, Constant, Grating, HEADER_LEN, Header, Layer, POINT_LEN, Point, RECORD_LEN, Record, Region, Rings,
-    SCENE_MAX_LEN, Scene, Speed, Wave,
+    Blend, Constant, HEADER_LEN, Header, Layer, POINT_LEN, Point, RECORD_LEN, Record, Region, SCENE_MAX_LEN, Scene,
+    Speed,
 };
+use frixel_testkit::samples::{SampleRecord, sample_records};
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
 fn refused(bytes: &[u8]) -> SceneError {
@@ -142,11 +143,14 @@ fn unknown_flags_and_carriers_are_refused() {
 #[test]
 fn unknown_choices_are_refused() {
     let golden: Vec<_> = support::records().iter().map(Record::write).collect();
+    let is_grating =
+        |record: &&Record| matches!(record, Record { region: Region::Rectangle { .. }, layer: Layer::Grating(_), .. });
+    let grating = support::records().iter().find(is_grating).unwrap().write();
     for offset in 0..4 {
         let known: BTreeSet<u8> = golden.iter().map(|record| record[usize::from(offset)]).collect();
         for value in 0..=u8::MAX {
             // A record that uses everything, of a kind with a form: a grating on a rectangle.
-            let mut record = golden[1];
+            let mut record = grating;
             record[usize::from(offset)] = value;
             let unknown = match offset {
                 0 => SceneError::UnknownKind { record: 7, kind: value },
@@ -159,37 +163,24 @@ fn unknown_choices_are_refused() {
 }
 
 /// Offsets of the bytes that a record uses, from the tables in `PROTOCOL.md`.
-fn used(record: &Record) -> BTreeSet<usize> {
+fn used(sample: &SampleRecord) -> BTreeSet<usize> {
     let mut used: BTreeSet<usize> = [0, 1, 2].into_iter().chain(20..24).collect();
-    match record.region {
+    match sample.record.region {
         Region::Screen => {}
         Region::Rectangle { .. } | Region::Ellipse { .. } => used.extend(4..20),
         Region::Polygon { .. } => used.extend(4..6),
     }
-    match record.layer {
-        Layer::Constant(_) => used.extend(24..28),
-        Layer::Grating(Grating { wave: Wave::Square { .. }, .. })
-        | Layer::Rings(Rings { wave: Wave::Square { .. }, .. })
-        | Layer::Vibration(_) => {
-            used.extend([3].into_iter().chain(24..48));
-        }
-        Layer::Grating(_) | Layer::Rings(_) => used.extend([3].into_iter().chain(24..44)),
-        Layer::Bitmap(_) => used.extend([3].into_iter().chain(24..56)),
-        Layer::Noise(_) => used.extend((24..40).chain(52..56)),
-        Layer::Edge(_) => used.extend(24..56),
-        Layer::Button(_) => used.extend(24..44),
-        Layer::Speed(_) => used.extend(52..54),
-        Layer::Stream(_) => used.extend(24..32),
-    }
+    used.extend(sample.used.iter().cloned().flatten());
     used
 }
 
 #[test]
 fn bytes_that_nothing_uses_are_zero() {
-    for record in support::records() {
+    for sample in sample_records() {
+        let record = sample.record;
         for offset in 0..RECORD_LEN {
             let mut bytes = record.write();
-            if used(&record).contains(&offset) {
+            if used(sample).contains(&offset) {
                 continue;
             }
             assert_eq!(bytes[offset], 0);
@@ -207,8 +198,9 @@ fn bytes_that_nothing_uses_are_zero() {
 /// Every used byte matters: changing it changes the record or refuses it.
 #[test]
 fn bytes_that_something_uses_are_read() {
-    for record in support::records() {
-        for offset in used(&record) {
+    for sample in sample_records() {
+        let record = sample.record;
+        for offset in used(sample) {
             let mut bytes = record.write();
             bytes[offset] ^= 1;
             assert_ne!(Record::parse(&bytes, 0), Ok(record), "offset {offset} of {record:?}");

@@ -1,0 +1,198 @@
+//! Strokes as CSV text, as a person's finger or a program makes them.
+
+use frixel_hil_sim::{Point, Stroke, StrokeError, StrokeRow};
+use thiserror::Error;
+
+use crate::table::{Column, Place, Row, Table, TableError};
+
+const TIME: Column = Column::new("t_s", "seconds");
+const X: Column = Column::new("x_mm", "mm from the left edge of the screen");
+const Y: Column = Column::new("y_mm", "mm from the top edge of the screen");
+/// The normal load, which may be left out.
+const LOAD: Column = Column::new("force_n", "newtons");
+/// Columns of `felt.csv` that a stroke does not need.
+const OF_A_PLAY: [&str; 7] = ["speed_mm_s", "wanted_n", "asked_n", "felt_n", "voltage_v_rms", "dac_code", "flags"];
+/// A load above it is one in another unit.
+const LOAD_MAX_N: f64 = 50.0;
+const MM_PER_M: f64 = 1e3;
+
+/// Why a file is no stroke.
+#[derive(Debug, Error)]
+pub enum StrokeFileError {
+    /// The file is no table of the columns that are needed, or a cell is no number.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The file has no two rows.
+    #[error("the stroke has {}: give at least two, so that the finger moves in time", if *.found == 0 { "no rows" } else { "one row only" })]
+    TooFewRows {
+        /// Number of rows.
+        found: usize,
+    },
+    /// A normal load that no finger has.
+    #[error("row {row}, column force_n: {found_n} is no load of a finger: give newtons, above 0 and at most 50")]
+    NoLoad {
+        /// Number of the row.
+        row: u64,
+        /// The load that was found, N.
+        found_n: f64,
+    },
+    /// A row has a negative time.
+    #[error("row {row}, column t_s: {found_s} is below 0: give time from the start of the stroke")]
+    BeforeStart {
+        /// Number of the row.
+        row: u64,
+        /// Time of the row, s.
+        found_s: f64,
+    },
+    /// The time of a row is not later than that of the row before.
+    #[error("row {row}, column t_s: {found_s} comes after {previous_s}: give times that rise from row to row")]
+    NotRising {
+        /// Number of the row.
+        row: u64,
+        /// Time of the row, s.
+        found_s: f64,
+        /// Time of the row before, s.
+        previous_s: f64,
+    },
+    /// The finger cannot go through the places.
+    #[error(transparent)]
+    Stroke(#[from] StrokeError),
+}
+
+/// A stroke that was read from a file.
+#[derive(Clone, Debug)]
+pub struct StrokeFile {
+    /// The stroke.
+    pub stroke: Stroke,
+    /// Names of columns that say nothing about a stroke, and that no play writes either.
+    pub ignored_columns: Vec<String>,
+}
+
+impl StrokeFile {
+    /// Reads a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
+    /// known, in N and above 0. The finger is off the screen in a row whose cells `x_mm` and `y_mm` are empty, as in
+    /// `felt.csv`.
+    ///
+    /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
+    /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
+    /// be as close as the motion needs: every 10 ms or less for a hand.
+    pub fn parse(text: &str) -> Result<Self, StrokeFileError> {
+        let mut table = Table::new(text.as_bytes())?;
+        let places = [table.need(TIME)?, table.need(X)?, table.need(Y)?];
+        let load = table.find(LOAD)?;
+        let is_ignored = |name: &&String| {
+            ![TIME, X, Y, LOAD].iter().any(|column| column.name == *name) && !OF_A_PLAY.contains(&name.as_str())
+        };
+        let ignored_columns = table.names().iter().filter(is_ignored).cloned().collect();
+        let mut rows: Vec<StrokeRow> = Vec::new();
+        while let Some(row) = table.next_row()? {
+            let read = stroke_row(&row, places, load)?;
+            let (row, found_s) = (row.number(), read.t_s);
+            if found_s < 0.0 {
+                return Err(StrokeFileError::BeforeStart { row, found_s });
+            }
+            if let Some(previous_s) = rows.last().map(|row| row.t_s).filter(|previous_s| *previous_s >= found_s) {
+                return Err(StrokeFileError::NotRising { row, found_s, previous_s });
+            }
+            rows.push(read);
+        }
+        if rows.len() < 2 {
+            return Err(StrokeFileError::TooFewRows { found: rows.len() });
+        }
+        Ok(Self { stroke: Stroke::through_rows(&rows)?, ignored_columns })
+    }
+}
+
+fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<StrokeRow, StrokeFileError> {
+    row.check_length()?;
+    let t_s = row.real(t)?;
+    if (row.real_if_filled(x)?, row.real_if_filled(y)?) == (None, None) {
+        return Ok(StrokeRow { t_s, place: None, normal_load_n: None });
+    }
+    let place = Point { x_m: row.real(x)? / MM_PER_M, y_m: row.real(y)? / MM_PER_M };
+    let normal_load_n = load.map(|load| row.real(load)).transpose()?;
+    match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= LOAD_MAX_N)) {
+        Some(found_n) => Err(StrokeFileError::NoLoad { row: row.number(), found_n }),
+        None => Ok(StrokeRow { t_s, place: Some(place), normal_load_n }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::StrokeFile;
+
+    #[test]
+    fn columns_may_stand_in_any_order_among_others_with_quotes_spaces_and_windows_line_ends() {
+        let plain = StrokeFile::parse("t_s,x_mm,y_mm\n0,10,20\n1,30,40\n").unwrap();
+        let text = "\u{feff}note, y_mm ,t_s,x_mm\r\n\"a, b\",20,\"0\",10\r\n\r\n,40, 1 ,3e1";
+        let other = StrokeFile::parse(text).unwrap();
+        for t_s in [0.0, 0.3, 1.0] {
+            assert_eq!(plain.stroke.at(t_s), other.stroke.at(t_s));
+            assert!(plain.stroke.at(t_s).is_some());
+        }
+        assert_eq!((plain.ignored_columns.len(), other.ignored_columns), (0, vec!["note".to_owned()]));
+    }
+
+    #[test]
+    fn a_stroke_says_with_which_force_the_finger_presses_and_where_it_is_lifted() {
+        let text = "t_s,x_mm,y_mm,force_n\n0,,,\n1,10,30,0.5\n1.5,60,30,0.9\n2,,,\n";
+        let stroke = StrokeFile::parse(text).unwrap().stroke;
+        assert!((stroke.normal_load_n(1.25).unwrap() - 0.7).abs() < 1e-12);
+        assert!((stroke.at(1.25).unwrap().x_m - 0.035).abs() < 1e-12);
+        assert!(stroke.at(0.5).is_none() && stroke.at(1.75).is_none());
+    }
+
+    #[test]
+    fn bad_text_is_refused_by_row_and_column() {
+        for (text, message) in [
+            ("", "the header has no column t_s: name the column so, in seconds"),
+            ("t_s,x_mm,y_mm\n", "the stroke has no rows: give at least two, so that the finger moves in time"),
+            (
+                "t_s,x_mm,y_mm\n0,1,2\n",
+                "the stroke has one row only: give at least two, so that the finger moves in time",
+            ),
+            (
+                "t_s,x_mm,z_mm\n0,1,2\n",
+                "the header has no column y_mm (it has z_mm): name the column so, in mm from the top edge of the screen",
+            ),
+            (
+                "t_s,x_mm,y_mm\n0,1,2\n1,2\n",
+                "row 3: expected 3 cells as in the header, found 2: correct or delete the row",
+            ),
+            (
+                "t_s,x_mm,y_mm\n0,,2\n1,2,3\n",
+                "row 2, column x_mm: expected a number, found an empty cell: correct the cell or delete the row",
+            ),
+            (
+                "\r\n\r\nt_s,x_mm,y_mm\r\n0,1,2\r\n\r\n1,two,3\r\n",
+                "row 6, column x_mm: expected a number, found \"two\": correct the cell or delete the row",
+            ),
+            (
+                "\u{feff}t_s,x_mm,y_mm\n\n0,1,2\n\n\n1,two,3\n",
+                "row 6, column x_mm: expected a number, found \"two\": correct the cell or delete the row",
+            ),
+            (
+                "t_s,x_mm,y_mm\n0,1,2\n1,1e999,3\n",
+                "row 3, column x_mm: expected a number, found \"1e999\": correct the cell or delete the row",
+            ),
+            (
+                "t_s,x_mm,y_mm\n-0.1,1,2\n1,2,3\n",
+                "row 2, column t_s: -0.1 is below 0: give time from the start of the stroke",
+            ),
+            (
+                "t_s,x_mm,y_mm\n0,1,2\n0.2,2,3\n0.2,3,3\n",
+                "row 4, column t_s: 0.2 comes after 0.2: give times that rise from row to row",
+            ),
+            (
+                "t_s,x_mm,y_mm\n0,0,0\n1,1,1\n2,1,1e308\n2.000001,1,-1e308\n",
+                "stroke: speed between two places must be finite, found inf",
+            ),
+            (
+                "t_s,x_mm,y_mm,force_n\n0,10,30,500\n0.5,60,30,510\n",
+                "row 2, column force_n: 500 is no load of a finger: give newtons, above 0 and at most 50",
+            ),
+        ] {
+            assert_eq!(StrokeFile::parse(text).unwrap_err().to_string(), message, "{text:?}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Why a table is rejected: what was found, and what to do about it.
+
+use std::error::Error;
+use std::fmt::{self, Display, Formatter};
+use std::io;
+
+/// Why a table, or a row of it, cannot be read.
+///
+/// [`Display`] says what was found and what to do; [`Self::found`] says the former alone, for a caller that has better
+/// advice.
+#[derive(Debug)]
+pub enum TableError {
+    /// The input cannot be read.
+    Read(io::Error),
+    /// The header has other separators than commas.
+    Separator {
+        /// Name of the separator.
+        found: &'static str,
+    },
+    /// The header has no column that is needed.
+    ColumnMissing {
+        /// The column, or those of which one is needed.
+        column: String,
+        /// Its unit; empty for words and plain numbers.
+        unit: &'static str,
+        /// A column with a similar name.
+        nearest: Option<String>,
+    },
+    /// The header has a column twice.
+    ColumnTwice {
+        /// The column.
+        column: &'static str,
+    },
+    /// A row has more or fewer cells than the header.
+    Length {
+        /// Number of the row.
+        row: u64,
+        /// Number of cells of the header.
+        expected: usize,
+        /// Number of cells of the row.
+        found: usize,
+    },
+    /// A cell that has to have a number is empty.
+    CellEmpty {
+        /// Number of the row.
+        row: u64,
+        /// The column.
+        column: &'static str,
+    },
+    /// A cell is not a finite number.
+    NotANumber {
+        /// Number of the row.
+        row: u64,
+        /// The column.
+        column: &'static str,
+        /// What the cell contains.
+        found: String,
+    },
+}
+
+impl TableError {
+    /// An error of the CSV reader. Only the input itself fails: any bytes are a table.
+    pub(super) fn read(error: csv::Error) -> Self {
+        Self::Read(system_error(error))
+    }
+
+    /// What was found, and what was expected.
+    pub fn found(&self) -> String {
+        match self {
+            Self::Read(error) => format!("the table cannot be read ({error})"),
+            Self::Separator { found } => format!("{found} separate the columns of the header"),
+            Self::ColumnMissing { column, nearest, .. } => {
+                let nearest = nearest.as_ref().map(|name| format!(" (it has {name})"));
+                format!("the header has no column {column}{}", nearest.unwrap_or_default())
+            }
+            Self::ColumnTwice { column } => format!("the header has the column {column} twice"),
+            Self::Length { row, expected, found } => {
+                format!("row {row}: expected {expected} cells as in the header, found {found}")
+            }
+            Self::CellEmpty { row, column } => {
+                format!("row {row}, column {column}: expected a number, found an empty cell")
+            }
+            Self::NotANumber { row, column, found } => {
+                format!("row {row}, column {column}: expected a number, found {found:?}")
+            }
+        }
+    }
+
+    /// What to do about it.
+    fn advice(&self) -> String {
+        match self {
+            Self::Read(_) => "give a CSV file with a header row".to_owned(),
+            Self::Separator { .. } => "save the file with commas between columns, and points in numbers".to_owned(),
+            Self::ColumnMissing { unit: "", .. } => "name the column so".to_owned(),
+            Self::ColumnMissing { unit, .. } => format!("name the column so, in {unit}"),
+            Self::ColumnTwice { .. } => "leave one of them out".to_owned(),
+            Self::Length { .. } => "correct or delete the row".to_owned(),
+            Self::CellEmpty { .. } | Self::NotANumber { .. } => "correct the cell or delete the row".to_owned(),
+        }
+    }
+}
+
+/// The error of the operating system with its kind, which the conversion of the `csv` crate discards.
+pub(crate) fn system_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    }
+}
+
+impl Display for TableError {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        write!(f, "{}: {}", self.found(), self.advice())
+    }
+}
+
+impl Error for TableError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        if let Self::Read(error) = self { Some(error) } else { None }
+    }
+}

@@ -1,0 +1,72 @@
+// The page in a browser, on the machine's clock: it starts soon, plays a change soon, and simulates fast.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers, openOnlyEngine, openPage } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+
+/** For the speed: so many stretches, of which a few are so short that nothing else runs meanwhile, ms. */
+const SPEED = { stretches: 100, stretchMs: 48 };
+/** A mended scene plays on within this time, ms: once in so many mends, as the tests share their machine. */
+const MENDED_MAX_MS = 300;
+const MENDS = 5;
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+test("from a file it plays within 10 s, without an error", async () => {
+  const { page, errors, close } = await openPage();
+  await page.waitForFunction(() => document.documentElement.dataset.state === "active", null, { timeout: 10_000 });
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("in a worker it runs at least 20 times as fast as real time", async (context) => {
+  const { page, close } = await openOnlyEngine();
+  const speed = await page.evaluate(
+    async (options) => tested.speed(await sceneFiles("grating.toml"), "grating.toml", options),
+    SPEED,
+  );
+  context.diagnostic(`${speed.toFixed(0)} times real time`);
+  assert.ok(speed >= 20, `${speed} times real time`);
+  await close();
+});
+
+/** Deletes the letter before the cursor, which is the scene's mistake. Returns ms until the scene plays. */
+async function msToMend(page) {
+  await page.evaluate(() => {
+    globalThis.mended = new Promise((resolve) => {
+      const { player, editor } = studioPage;
+      const before = player.onPlay;
+      let changedMs;
+      document.addEventListener("keydown", () => (changedMs = performance.now()), { capture: true, once: true });
+      player.onPlay = (text) => {
+        before(text);
+        if (text !== editor.text) return;
+        player.onPlay = before;
+        resolve(performance.now() - changedMs);
+      };
+    });
+  });
+  await page.keyboard.press("Backspace");
+  return page.evaluate(() => mended);
+}
+
+test("a mended scene plays on soon", async (context) => {
+  const { page, errors, close } = await openStudio(undefined, { isSimulated: false });
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.evaluate(() => studioPage.editor.goTo(undefined, 4));
+  await page.keyboard.press("End");
+  await page.keyboard.press("ArrowLeft");
+  const all = [];
+  for (let mends = 0; mends < MENDS; mends += 1) {
+    await page.keyboard.type("x");
+    await page.locator("#problems li.error").waitFor();
+    all.push(await msToMend(page));
+  }
+  const least = Math.min(...all);
+  context.diagnostic(`plays on ${least.toFixed(0)} ms after the key`);
+  assert.ok(least <= MENDED_MAX_MS, `${least} ms`);
+  assert.deepEqual(errors, []);
+  await close();
+});

@@ -1,0 +1,173 @@
+// The contract of README.md as types: what the page asks of the engine, and what page and workers tell each other.
+
+/** Files by the names that scenes use: texts, or bytes. */
+export type Files = Record<string, string | Uint8Array<ArrayBuffer>>;
+/** A name or TOML text each. */
+export type Profiles = { finger?: string; screen?: string };
+/** What identifies a scene for the engine. */
+export type Scene = { files: Files; entry: string } & Profiles;
+export type MapSize = { widthPx: number; heightPx: number };
+/** A scene, and the numbers that some requests have besides. */
+export type Request = Scene & Partial<MapSize> & { speedMmPerS?: number; seed?: number; durationMs?: number };
+
+export type Problem = {
+  severity: "error" | "warning";
+  message: string;
+  file?: string;
+  line?: number;
+  column?: number;
+  endLine?: number;
+  endColumn?: number;
+  help?: string;
+};
+
+export type Layer = {
+  index: number;
+  name: string;
+  kind: string;
+  /** A sentence, or "". */
+  felt: string;
+  isLive: boolean;
+  whyNotLive: string;
+  gain: number;
+  gainMin: number;
+  gainMax: number;
+  /** Names of its copies in control lines. */
+  controls: string[];
+  file?: string;
+  /** First and last line. */
+  from: [number, number];
+  /** Left, top, width, height; null for the whole screen. */
+  boxMm: [number, number, number, number] | null;
+};
+
+export type Screen = { widthMm: number; heightMm: number };
+/** Friction at no voltage, and the least and the largest that can be reached, N. */
+export type Reach = { naturalN: number; lowN: number; highN: number };
+
+/** A scene without mistakes, or a draft. */
+export type Checked = Reach & {
+  isDraft: boolean;
+  screen: Screen;
+  report: string;
+  reachN: number;
+  layers: Layer[];
+};
+export type Mistaken = { ok: false; isDraft?: false; report?: undefined; problems: Problem[] };
+export type Check = ({ ok: boolean; problems: Problem[] } & Checked) | Mistaken;
+
+export type FrictionField = MapSize & {
+  /** Of each pixel, row after row from the top left. */
+  frictionN: Float32Array;
+  /** 1 above, -1 below, 0 within. */
+  outOfReach: Int8Array;
+  /** Reach, N. */
+  lowN: number;
+  highN: number;
+};
+
+/** The columns of a frame, which the module names (host/studio/src/felt.rs): one value for each sample. */
+export type Column = "xMm" | "yMm" | "speedMmPerS" | "referenceN" | "feltN" | "voltageV";
+export type Columns = Record<Column, Float32Array>;
+/** What a worker reports of some time of the board. */
+export type WorkerFrame = Columns & {
+  tick: number;
+  firstTick: number;
+  ticksPerSample: number;
+  contact: boolean;
+  delayMs: number;
+  slowness: number;
+  simulated: boolean;
+};
+export type Frame = WorkerFrame & { state: BoardState };
+
+export type BoardState = "disarmed" | "armed" | "active" | "faulted";
+/** What a board reports of itself. */
+export type Reported = { state: BoardState; fault?: string | null };
+export type State = {
+  link: "simulator" | "serial" | "socket" | "none";
+  state: BoardState;
+  fault?: string;
+  needsArm: boolean;
+  driving: string;
+};
+
+/** `epochMs` is the time of the event since 1970. */
+export type PointerSample = { epochMs: number; xMm: number; yMm: number; down: boolean; loadN?: number };
+
+type Nothing = Record<string, never>;
+/** What an instance of the module says to a control line: what is clamped now, or null. */
+export type Notice = { notice: string | null };
+
+/** The questions to the workers, by type: what is asked with them, and the answer. */
+export type Questions = {
+  start: { asked: { module: WebAssembly.Module; seed?: number }; answer: Nothing };
+  /** The time that a test's clock shows. */
+  time: { asked: { epochMs: number }; answer: Nothing };
+  check: { asked: { scene: Request }; answer: Check };
+  usedFiles: { asked: { scene: Request }; answer: { names: string[]; isWhole: boolean } };
+  map: { asked: { scene: Request }; answer: FrictionField };
+  seeded: { asked: { scene: Request }; answer: { hash: string } };
+  speed: { asked: { scene: Request; stretches: number; stretchMs: number }; answer: { timesRealTime: number } };
+  play: { asked: { scene: Request }; answer: unknown };
+  control: { asked: { line: string }; answer: Notice };
+  stop: { asked: object; answer: unknown };
+  resume: { asked: object; answer: unknown };
+  replay: { asked: { slowness: number }; answer: { isWhole: boolean } };
+  endReplay: { asked: object; answer: unknown };
+  connect: { asked: { port: MessagePort }; answer: unknown };
+  disconnect: { asked: object; answer: unknown };
+  arm: { asked: object; answer: unknown };
+  forget: { asked: object; answer: unknown };
+  clearFault: { asked: object; answer: unknown };
+};
+/** A question with its type. */
+export type Question = { [Type in keyof Questions]: { type: Type } & Questions[Type]["asked"] }[keyof Questions];
+
+/** What needs no answer. */
+export type Note = { type: "alive" | "gone" } | { type: "pointer"; sample: PointerSample };
+/** What the page sends to a worker; `id` is that of the answer. */
+export type ToWorker = (Question & { id: number }) | Note;
+
+export type Answer = {
+  type: "answer";
+  id: number;
+  value?: unknown;
+  error?: string;
+  problems?: Problem[];
+  canLoadAgain?: boolean;
+};
+export type Failure = { type: "failure"; error: string };
+export type FrameMessage = { type: "frame"; frame: WorkerFrame };
+/** What the workers tell unasked. */
+export type FromBoard =
+  | Failure
+  | (FrameMessage & { sound: Float32Array; soundTick: number })
+  | ({ type: "state" } & Reported);
+export type FromHost =
+  | Failure
+  | FrameMessage
+  | ({ type: "state"; needsArm: boolean; driving: string } & Reported)
+  | { type: "lost"; error: string };
+/** The worker of the compiler tells nothing but its failure. */
+export type FromChecker = Failure;
+export type FromWorker = FromBoard | FromHost;
+
+/** The actions of a worker, by the type of the message that calls for them. */
+export type Actions = {
+  [Type in keyof Questions]?: (
+    message: Questions[Type]["asked"],
+  ) => Questions[Type]["answer"] | Promise<Questions[Type]["answer"]>;
+} & { alive?: () => void; gone?: () => void; pointer?: (message: { sample: PointerSample }) => void };
+
+/** A line to a board outside of the page. */
+export type Line = {
+  /** The end for the host's worker. */
+  remote: MessagePort;
+  close: () => void;
+  /** Resolves once the line can be opened again, whichever end has closed it. */
+  closed: Promise<void>;
+};
+
+/** The error of a question that a worker refused. */
+export type EngineFailure = Error & { problems: Problem[]; canLoadAgain: boolean };

@@ -1,0 +1,85 @@
+// The bar at the top: what a person does with the whole scene, and links that bring one.
+// @ts-check
+
+import { projectOf, zipOf } from "./archive.js";
+import { attempt, byId, download, notify } from "./dom.js";
+import { Open } from "./open.js";
+import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
+
+/** @import { Editor } from "./editor.js" */
+/** @import { Gallery } from "./gallery.js" */
+/** @import { OpenScene } from "./open_scene.js" */
+/** @import { Project } from "./project.js" */
+/** @import { Works } from "./works.js" */
+
+const NEW_SCENE = `version = 2
+
+# Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
+`;
+
+/** @param {{ scene: OpenScene, gallery: Gallery, works: Works, editor: Editor, project: Project }} parts */
+export function makeBar({ scene, gallery, works, editor, project }) {
+  const dialog = new Open(works, () => byId("files").click());
+  dialog.onWork = async (id) => scene.open(await scene.work(id));
+  byId("open-gallery").onclick = () => attempt(() => gallery.open());
+  byId("new").onclick = () => attempt(() => scene.open({ name: "untitled", text: NEW_SCENE, files: [] }));
+  byId("undo").onclick = () => editor.undo();
+  byId("redo").onclick = () => editor.redo();
+  editor.onHistory = () => {
+    byId("undo").disabled = !editor.canUndo;
+    byId("redo").disabled = !editor.canRedo;
+  };
+  byId("save").onclick = () => attempt(() => save(scene, project, editor));
+  byId("share").onclick = () => attempt(() => share(project, editor));
+}
+
+/**
+ * @param {OpenScene} scene
+ * @param {Project} project
+ * @param {Editor} editor
+ */
+async function save(scene, project, editor) {
+  const files = await project.filesForZip(editor.text);
+  const zip = zipOf({ ...scene.saved, files });
+  download(`${project.name}.zip`, zip, "application/zip");
+  // Throws what a person is told where the studio would not open the zip again.
+  projectOf(zip);
+}
+
+/**
+ * @param {Project} project
+ * @param {Editor} editor
+ */
+async function share(project, editor) {
+  const link = linkOf(project.name, editor.text, await project.filesForLink(editor.text));
+  history.replaceState(null, "", new URL(link).hash);
+  const place = await navigator.clipboard.writeText(link).then(
+    () => "The link is copied.",
+    () => "The link stands in the address line: copy it from there.",
+  );
+  notify(`${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`);
+}
+
+/**
+ * Opens the scene of the address, if it has one.
+ * @param {OpenScene} scene
+ */
+export function openLink(scene) {
+  if (isLink(location.hash)) attempt(() => scene.open(sceneOf(location.hash)));
+}
+
+/**
+ * Opens links that come later: in the address, or pasted into the page.
+ * @param {OpenScene} scene
+ */
+export function followLinks(scene) {
+  addEventListener("hashchange", () => openLink(scene));
+  const paste = (/** @type {ClipboardEvent} */ event) => {
+    const fragment = fragmentIn(event.clipboardData?.getData("text/plain") ?? "");
+    if (fragment === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    attempt(() => scene.open(sceneOf(fragment)));
+  };
+  addEventListener("paste", paste, { capture: true });
+}
