@@ -9,6 +9,7 @@ use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::Payload;
 
 use super::command::frame_of;
+use super::link::KEEP_ALIVE_TIMEOUT;
 
 /// Sequence numbers of pings, one after the other. No request has them. They are so many that no two pings under way
 /// have the same.
@@ -35,11 +36,18 @@ const PERIOD_MIN: Duration = Duration::from_millis(1);
 /// one is due 0.75 s after that, and each further one after twice the time; a board that takes longer than 0.75 s for one
 /// frame counts as silent.
 ///
+/// No ping is due once the application has made no call to the link for [`KEEP_ALIVE_TIMEOUT`]: a board does not play on
+/// for a program that hangs. The next call resumes the pings.
+///
 /// A link asks [`Self::due_at`], writes [`Self::next_ping`] then, and passes everything that arrives to
-/// [`Self::hear`]. Times are on the link's clock.
+/// [`Self::hear`]. It says when it writes, and if it also pings outside of calls, when these begin and end. Times are on
+/// the link's clock.
 #[derive(Debug)]
 pub struct KeepAlive {
     period: Option<Duration>,
+    last_write: Duration,
+    /// When the application's last call returned; `None` during a call.
+    last_call: Option<Duration>,
     /// Sequence number of the next ping.
     next: u16,
     /// Sequence number of each ping without an answer, and when it was written.
@@ -53,6 +61,8 @@ impl Default for KeepAlive {
     fn default() -> Self {
         Self {
             period: None,
+            last_write: Duration::ZERO,
+            last_call: None,
             next: *PING_SEQUENCES.start(),
             unanswered: VecDeque::new(),
             round_trip: Duration::ZERO,
@@ -67,16 +77,36 @@ impl KeepAlive {
         self.period = Some(period.max(PERIOD_MIN));
     }
 
-    /// When the next ping is due, after a last write at `last_write`; `None` without a period.
-    pub fn due_at(&self, last_write: Duration) -> Option<Duration> {
+    /// Bytes other than a ping are written at the time `now`.
+    pub fn wrote(&mut self, now: Duration) {
+        self.last_write = now;
+    }
+
+    /// The application begins a call that may wait, and keeps the board alive while it does.
+    pub fn enter_call(&mut self) {
+        self.last_call = None;
+    }
+
+    /// The application's call returns at the time `now`. Before the first call of this method, it counts as being in a
+    /// call.
+    pub fn leave_call(&mut self, now: Duration) {
+        self.last_call = Some(now);
+    }
+
+    /// When the next ping is due, at the time `now`; `None` without a period, or for an application that has stopped
+    /// calling.
+    pub fn due_at(&self, now: Duration) -> Option<Duration> {
         let period = self.period?;
+        if self.last_call.is_some_and(|last_call| now.saturating_sub(last_call) >= KEEP_ALIVE_TIMEOUT) {
+            return None;
+        }
         let wait = match self.unanswered.len() {
             ..UNANSWERED_MAX => Duration::ZERO,
             UNANSWERED_MAX => LOST_AFTER.min(period.max(ROUND_TRIPS * self.round_trip)),
             more => LOST_AFTER * (1 << (more - UNANSWERED_MAX - 1).min(DOUBLINGS_MAX)),
         };
         let held_back = self.unanswered.back().map_or(Duration::ZERO, |(_, written)| *written + wait);
-        Some(held_back.max(last_write + period))
+        Some(held_back.max(self.last_write + period))
     }
 
     /// The bytes of the next ping, which the link writes at the time `now`.
@@ -84,6 +114,7 @@ impl KeepAlive {
     /// They start with a zero byte while the ping before is unanswered, whose own last byte may have been damaged: one
     /// damaged byte then costs one ping.
     pub fn next_ping(&mut self, now: Duration) -> Vec<u8> {
+        self.wrote(now);
         let mut bytes = if self.unanswered.is_empty() { Vec::new() } else { vec![0] };
         // A ping always fits into a frame.
         bytes.extend(frame_of(self.next, Command::Ping).unwrap_or_default());
@@ -217,6 +248,37 @@ mod tests {
         let mut pings = pinging();
         assert_ne!(pings.next_ping(Duration::ZERO).first(), Some(&0));
         assert_eq!(pings.next_ping(10 * MS).first(), Some(&0));
+    }
+
+    /// Pings that were answered at once, up to the time `now`.
+    fn answered(pings: &mut KeepAlive, now: Duration) {
+        pings.next_ping(now);
+        pings.unanswered.clear();
+    }
+
+    #[test]
+    fn the_pings_end_when_their_timeout_has_passed_since_the_last_call() {
+        let mut pings = pinging();
+        pings.leave_call(Duration::ZERO);
+        let last = KEEP_ALIVE_TIMEOUT.saturating_sub(10 * MS);
+        answered(&mut pings, last);
+        assert_eq!(pings.due_at(last), Some(KEEP_ALIVE_TIMEOUT));
+        for late in [KEEP_ALIVE_TIMEOUT, KEEP_ALIVE_TIMEOUT + 10 * MS, 1000 * KEEP_ALIVE_TIMEOUT] {
+            assert_eq!(pings.due_at(late), None, "{late:?} after the last call");
+        }
+    }
+
+    #[test]
+    fn a_call_that_waits_keeps_the_board_alive_and_its_end_restarts_the_timeout() {
+        let mut pings = pinging();
+        pings.leave_call(Duration::ZERO);
+        pings.enter_call();
+        let later = 1000 * KEEP_ALIVE_TIMEOUT;
+        answered(&mut pings, later);
+        assert_eq!(pings.due_at(later), Some(later + 10 * MS));
+        pings.leave_call(later);
+        assert_eq!(pings.due_at(later + 999 * MS), Some(later + 10 * MS));
+        assert_eq!(pings.due_at(later + 1000 * MS), None);
     }
 
     #[test]

@@ -61,7 +61,6 @@ pub trait ByteStream {
 pub struct PollingLink<S: ByteStream> {
     stream: S,
     written: Written,
-    last_write: Duration,
     pings: KeepAlive,
     shutdown_frames: Vec<u8>,
 }
@@ -69,14 +68,9 @@ pub struct PollingLink<S: ByteStream> {
 impl<S: ByteStream> PollingLink<S> {
     /// Creates a link over `stream`, without pings.
     pub fn new(stream: S) -> Self {
-        let last_write = stream.now();
-        Self {
-            stream,
-            written: Written::default(),
-            last_write,
-            pings: KeepAlive::default(),
-            shutdown_frames: Vec::new(),
-        }
+        let mut pings = KeepAlive::default();
+        pings.wrote(stream.now());
+        Self { stream, written: Written::default(), pings, shutdown_frames: Vec::new() }
     }
 
     /// The underlying stream.
@@ -87,18 +81,18 @@ impl<S: ByteStream> PollingLink<S> {
     fn send(&mut self, frame: &[u8]) -> Result<(), LinkClosed> {
         self.stream.write(frame)?;
         self.written.add(frame);
-        self.last_write = self.stream.now();
+        self.pings.wrote(self.stream.now());
         Ok(())
     }
 
     /// Sends a ping if one is due, and returns the time at which to send the next one.
     fn keep_board_alive(&mut self) -> Result<Option<Duration>, LinkClosed> {
         let now = self.stream.now();
-        if self.pings.due_at(self.last_write).is_some_and(|due| due <= now) {
+        if self.pings.due_at(now).is_some_and(|due| due <= now) {
             let ping = self.pings.next_ping(now);
             self.send(&ping)?;
         }
-        Ok(self.pings.due_at(self.last_write))
+        Ok(self.pings.due_at(now))
     }
 }
 

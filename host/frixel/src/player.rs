@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Counters, Device, DeviceError, StreamStatus};
+use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
 use frixel_model::LoadedContact;
@@ -11,7 +11,7 @@ use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
 use thiserror::Error;
 
-use crate::rigs::{RecordedLink, SimLink};
+use crate::rigs::{RecordedLink, SimStream};
 
 /// A player for `device` that records into `recorder` from the start of the play.
 pub fn player<L: RecordedLink>(mut device: Device<L>, recorder: Recorder) -> Player<L> {
@@ -92,7 +92,8 @@ pub(crate) fn simulate_observed(
     if let Some(contact) = own_finger {
         rig.world_mut().set_own_finger(contact);
     }
-    let mut player = player(Device::connect(SimLink::new(rig, Recorder::idle()).observed(observer))?, recorder);
+    let mut player =
+        player(Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()).observed(observer)))?, recorder);
     player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
         player.stream(feed)?;
@@ -126,7 +127,8 @@ mod tests {
         let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
         rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
-        let mut player = player(Device::connect(SimLink::new(rig, Recorder::idle())).unwrap(), recorder);
+        let mut player =
+            player(Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).unwrap(), recorder);
         player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");

@@ -6,8 +6,8 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldErro
 use frixel_layers::Scene as WireScene;
 use thiserror::Error;
 
-use crate::rigs::SimLink;
-use frixel_driver::{Device, DeviceError};
+use crate::rigs::SimStream;
+use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_felt::check::BoardCosts;
 use frixel_felt::recorder::Recorder;
 use frixel_play::load;
@@ -44,7 +44,8 @@ fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, RehearsalErro
     let mut memory = BoardMemory::new();
     let header = &program.header;
     let stroke = Stroke::sweep(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
-    let mut device = Device::connect(SimLink::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle()))?;
+    let mut device =
+        Device::connect(PollingLink::new(SimStream::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle())))?;
     let before = device.counters().wire_bytes;
     load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;
     Ok((device.counters().wire_bytes - before) as usize)

@@ -9,13 +9,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel::rigs::SimLink;
+use frixel::rigs::SimStream;
 use frixel::scene_file;
 use frixel::stream;
-use frixel_driver::{Device, StreamStatus};
+use frixel_driver::{Device, PollingLink, StreamStatus};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_layers::{Blend, Layer, Record, Region, Stream};
+use frixel_play::Recorded as _;
 use frixel_scene::{Program, compile};
 use frixel_wire::fault::Flags;
 use hound::{SampleFormat, WavSpec, WavWriter};
@@ -84,7 +85,7 @@ fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 80_000, 1).unwrap();
-    let mut device = Device::connect(SimLink::new(rig, recorder)).unwrap();
+    let mut device = Device::connect(PollingLink::new(SimStream::new(rig, recorder))).unwrap();
     frixel_play::start(&mut device, &program, &mut |_| ControlFlow::Continue(())).unwrap();
     device.wait(Duration::from_millis(100), &mut |_| {}).unwrap();
     let mut feed = stream::wav(&wav, config.board.tick_hz).unwrap();
@@ -96,7 +97,7 @@ fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
         }
     }
     let status = device.stream_status().unwrap();
-    (device.into_link().into_recorder().rows().to_vec(), status)
+    (device.link_mut().stream_mut().recorder_mut().rows().to_vec(), status)
 }
 
 /// Rows from the first tick that plays.

@@ -4,9 +4,10 @@ use std::error::Error;
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Link, StreamSettings, StreamStatus};
+use frixel_felt::recorder::PlayListener as _;
 use thiserror::Error;
 
-use crate::recorded::{PlayListener, Recorded};
+use crate::recorded::Recorded;
 
 /// Samples that are read ahead, before the board has room for them.
 const AHEAD: usize = 2048;

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, Progress};
+use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
 use frixel_scene::Program;
 use frixel_wire::fault::{Fault, Flags, State};
@@ -12,7 +13,7 @@ use thiserror::Error;
 
 use crate::feed::{Feed, FeedError};
 use crate::live_layers::{LayerChange, LiveError, LiveLayers};
-use crate::recorded::{PlayListener, Recorded};
+use crate::recorded::Recorded;
 use crate::upload;
 
 /// Longest time between two steps of a play.
@@ -199,8 +200,8 @@ impl<L: Link + Recorded> Player<L> {
     }
 
     fn tell_replaced(&mut self, program: &Program) -> Result<(), ParameterError> {
-        let hello = *self.device.hello();
-        self.recorder_mut().scene_replaced(program, &hello)
+        let limits = self.device.hello().limits;
+        self.recorder_mut().scene_replaced(program, &limits)
     }
 
     /// Switches a layer by its name or number, or sets its gain; `None` leaves as it is. Returns the change, which has a

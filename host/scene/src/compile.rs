@@ -56,9 +56,11 @@ const VOLTAGE_MIN_V_RMS: f32 = 1.0;
 ///
 /// All mistakes for which a board with these limits refuses the scene, those of [`Scene::mistakes`] among them.
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
-    let mut log = Log::resuming(&scene.source, &scene.mistakes);
-    let program = assemble(scene, limits, tick_hz, &mut log);
-    log.finish(program)
+    let mut log = Log::resuming(&scene.source, &scene.mistakes).of_refusals();
+    match assemble(scene, limits, tick_hz, &mut log) {
+        Some(program) if log.mistakes() == 0 => Ok(Program { diagnostics: log.into_diagnostics(), ..program }),
+        _ => log.finish(None),
+    }
 }
 
 /// Compiles a scene for a preview, or for a simulator, whether a board plays it or not. What a board refuses is in
@@ -88,9 +90,9 @@ pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Prog
 /// # }
 /// ```
 pub fn compile_draft(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
-    let mut log = Log::resuming(&scene.source, &scene.mistakes);
+    let mut log = Log::resuming(&scene.source, &scene.mistakes).of_refusals();
     match assemble(scene, limits, tick_hz, &mut log) {
-        Some(program) if scene.mistakes.is_empty() => Ok(Program { refusals: log.into_mistakes(), ..program }),
+        Some(program) if scene.mistakes.is_empty() => Ok(Program { diagnostics: log.into_diagnostics(), ..program }),
         _ => log.finish(None),
     }
 }
@@ -98,15 +100,14 @@ pub fn compile_draft(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Resul
 /// Makes a program of all that is valid, and logs all mistakes. `None` if there is no contact model of finger and
 /// coating.
 fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) -> Option<Program> {
-    let mut notes = Vec::new();
     // What follows from another mistake is not reported.
     let mut unreported = log.scratch();
     let mistakes = log.mistakes();
-    let half_period_ticks = half_period_ticks(scene, tick_hz, log, &mut notes);
+    let half_period_ticks = half_period_ticks(scene, tick_hz, log);
     let half_period_s = f64::from(half_period_ticks) / f64::from(tick_hz);
     let is_carrier_valid = log.mistakes() == mistakes;
     let carrier = carrier(scene.carrier.waveform, half_period_ticks, tick_hz, limits);
-    let mut voltage = Voltage::of(scene, limits, &carrier, log, &mut notes);
+    let mut voltage = Voltage::of(scene, limits, &carrier, log);
     let mistakes = log.mistakes();
     voltage.limit_current(scene, limits, &carrier, if is_carrier_valid { &mut *log } else { &mut unreported });
     let effective_gap_um = effective_gap_um(scene, log);
@@ -118,19 +119,24 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         log.add(scene.profiles.place, mistake);
     }
     if springs.deviation > 0.0 {
-        notes.push(format!(
+        let note = format!(
             "finger: played as springs of {:.4e} Pa/m, which differ from the soft finger by at most {:.1} % of the reach",
             springs.stiffness_pa_per_m,
             100.0 * springs.deviation
-        ));
+        );
+        log.note(scene.profiles.place, note);
     }
     let mut header = header(scene, &voltage, &springs, effective_gap_um, half_period_s);
     let reach = reach(scene, &mut header, if are_springs_valid { &mut *log } else { &mut unreported })?;
     // With other mistakes of drive, finger or coating, nobody knows what can be reached.
     let is_reach_known = log.mistakes() == mistakes;
     let (finger, note) = PlayedFinger::of(&scene.profiles);
-    notes.extend(note);
-    notes.extend(scene.design.and_then(|design| design.note_on(scene.screen())));
+    if let Some(note) = note {
+        log.note(scene.profiles.place, note);
+    }
+    if let Some((place, note)) = scene.design.and_then(|design| design.note_on(scene.screen())) {
+        log.note(place, note);
+    }
     let layers_max = RECORDS_MAX.min(usize::from(limits.records_max));
     if let Some(layer) = scene.layers.get(layers_max) {
         let has_copies = scene.layers.iter().any(|layer| layer.is_copy);
@@ -141,36 +147,33 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let mut lowering = Lowering::new(scene, &header, &reach, tick_hz, pool, log);
     // Lower every layer, so that the mistakes of all are reported.
     let (layers, records) = records(scene.layers.iter().take(layers_max), &mut lowering);
-    let lowered = lowering.finish();
-    notes.extend(lowered.notes);
-    notes.extend(absent_layers(scene, &layers));
+    let (points, bitmaps) = lowering.finish();
+    note_absent_layers(scene, &layers, log);
     let titles = layers.iter().map(|layer| layer.title.clone()).collect();
     let mut program = Program {
         header,
         records,
-        points: lowered.points,
-        bitmaps: lowered.bitmaps,
+        points,
+        bitmaps,
         titles,
         layers: LayerMap::default(),
         reach,
         half_period_ticks,
         finger,
         saturates: scene.drive.saturate,
-        refusals: Vec::new(),
-        warnings: Vec::new(),
-        notes,
-        optimisations: lowered.optimisations,
+        diagnostics: Vec::new(),
     };
     if is_reach_known {
         let raise = |friction_n| voltage.raised_for(scene, &program.header, friction_n);
-        let notes = excess::check(scene, &layers, &raise, &program, log);
-        program.notes.extend(notes);
+        excess::check(scene, &layers, &raise, &program, log);
     }
-    program.warnings = warning::of(scene, &program);
-    program.warnings.extend(lowered.warnings);
-    program.warnings.extend(warning::of_layers(&scene.layers));
-    let live: Vec<bool> = layers.iter().map(|layer| layer.live).collect();
-    optimise(&mut program, &live);
+    for warning in warning::of(scene, &program) {
+        log.warn(scene.profiles.place, warning);
+    }
+    for (layer, warning) in warning::of_layers(&scene.layers) {
+        log.warn_about(layer, warning);
+    }
+    optimise(&mut program, &layers, log);
     let Program { header, records, points, .. } = &mut program;
     if header.layers_fixed {
         header.electric_friction_max_n = electric_friction_max_n(header, records, points);
@@ -199,11 +202,14 @@ fn records<'s>(layers: impl Iterator<Item = &'s Layer>, lowering: &mut Lowering)
     layers.filter_map(record).unzip()
 }
 
-/// A note that names the layers of the scene that are not played, if there are any.
-fn absent_layers(scene: &Scene, played: &[&Layer]) -> Option<String> {
+/// Notes the layers of the scene that are not played, if there are any, at the first of them.
+fn note_absent_layers(scene: &Scene, played: &[&Layer], log: &mut Log) {
     let is_absent = |layer: &&Layer| !played.iter().any(|other| std::ptr::eq(*other, *layer));
-    let absent: Vec<&str> = scene.layers.iter().filter(is_absent).map(|layer| layer.title.as_str()).collect();
-    (!absent.is_empty()).then(|| format!("absent from this draft: {}", absent.join(", ")))
+    let absent: Vec<&Layer> = scene.layers.iter().filter(is_absent).collect();
+    if let [first, ..] = absent[..] {
+        let titles: Vec<&str> = absent.iter().map(|layer| layer.title.as_str()).collect();
+        log.note(first.places.table(), format!("absent from this draft: {}", titles.join(", ")));
+    }
 }
 
 /// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have
@@ -215,23 +221,26 @@ fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
 }
 
 /// Ticks in half a carrier period, those of the fastest carrier if the scene's is too fast.
-fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log, notes: &mut Vec<String>) -> u32 {
+fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log) -> u32 {
+    let place = scene.carrier.places.field("frequency_hz");
     let found = scene.carrier.frequency_hz;
     let ticks = f64::from(tick_hz) / (2.0 * found);
     if ticks < HALF_PERIOD_MIN_TICKS {
         let max = f64::from(tick_hz) / (2.0 * HALF_PERIOD_MIN_TICKS);
-        log.add(scene.carrier.places.field("frequency_hz"), FitMistake::CarrierTooFast { found, tick_hz, max });
+        log.add(place, FitMistake::CarrierTooFast { found, tick_hz, max });
         return HALF_PERIOD_MIN_TICKS as u32;
     }
     let whole = ticks.round();
     let rounded_hz = f64::from(tick_hz) / (2.0 * whole);
     if (rounded_hz - found).abs() > 1e-6 * found {
-        notes.push(format!("carrier: {found} Hz rounded to {rounded_hz:.3} Hz, {whole} ticks for each half period"));
+        let note = format!("carrier: {found} Hz rounded to {rounded_hz:.3} Hz, {whole} ticks for each half period");
+        log.note(place, note);
     }
     if found < LEAKAGE_HZ {
-        notes.push(format!(
+        let note = format!(
             "carrier: {found} Hz is below {LEAKAGE_HZ} Hz, where charge leaks through skin and less friction is felt"
-        ));
+        );
+        log.note(place, note);
     }
     whole as u32
 }

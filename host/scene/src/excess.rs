@@ -21,16 +21,16 @@ const UNIT_MISTAKE_FACTOR: f64 = 20.0;
 /// is not possible.
 pub(super) type Raise<'r> = &'r dyn Fn(f64) -> Vec<(&'static str, f64)>;
 
-/// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, returns a note
+/// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, notes it
 /// instead.
 ///
 /// `played` are the layers of the program's records.
-pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Program, log: &mut Log) -> Vec<String> {
+pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Program, log: &mut Log) {
     let within = program.within_reach();
     let reference = Reference::new(program);
     let width_m = f64::from(program.header.screen_width_m);
     let height_m = f64::from(program.header.screen_height_m);
-    let (mut notes, mut reported) = (Vec::new(), Vec::new());
+    let mut reported = Vec::new();
     for excess in excesses(reference.pieces(), width_m, height_m, within, PLACES_MAX) {
         let layers: Vec<Played> = excess
             .layers
@@ -39,12 +39,20 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
             .map(|(layer, record)| Played { layer, record })
             .collect();
         let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise };
+        log.set_layer(match &demand.layers[..] {
+            [one] => Some(one.layer.number.table),
+            _ => None,
+        });
         let found = demand.sides(excess.found, log);
         if found.is_empty() {
             let possible = demand.sides(excess.bound, log);
-            notes.extend(possible.iter().map(|side| note(side, "; no place was found where they do")));
+            for side in possible {
+                log.note(side.offset, note(&side, "; no place was found where they do"));
+            }
         } else if scene.drive.saturate {
-            notes.extend(found.iter().map(|side| note(side, "; it is clamped there")));
+            for side in found {
+                log.note(side.offset, note(&side, "; it is clamped there"));
+            }
         } else {
             // Copies of a layer exceed the reach in the same way.
             let has_copy = demand.layers.iter().any(|played| played.layer.is_copy);
@@ -56,7 +64,7 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
             }
         }
     }
-    notes
+    log.set_layer(None);
 }
 
 impl Program {

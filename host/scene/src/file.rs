@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use frixel_layers::{Leader, Waveform};
 use toml::de::DeTable;
 
-use super::compile_error::{CompileError, Located};
+use super::compile_error::CompileError;
+use super::diagnostic::Diagnostic;
 use super::fields::{Fields, PixelSize, parsed};
 use super::files::Files;
 use super::finger::FingerProfile;
@@ -39,7 +40,7 @@ pub(super) enum Version {
 pub struct Scene {
     pub(super) source: Source,
     /// The mistakes of the layers that are absent.
-    pub(super) mistakes: Vec<Located>,
+    pub(super) mistakes: Vec<Diagnostic>,
     /// The pictures that layers name. Those of layers with mistakes are included, since a layer may be valid on another
     /// screen.
     pub(super) pictures: PictureBytes,
@@ -89,6 +90,8 @@ const STRETCH_MAX: f64 = 1.01;
 pub(super) struct Design {
     pub(super) width_px: f64,
     pub(super) height_px: f64,
+    /// Offset of the table.
+    place: usize,
 }
 
 impl Design {
@@ -97,17 +100,18 @@ impl Design {
         PixelSize { width_mm: screen.width_mm / self.width_px, height_mm: screen.height_mm / self.height_px }
     }
 
-    /// What to say of a design that has other proportions than the screen.
-    pub(super) fn note_on(self, screen: &Screen) -> Option<String> {
-        let Self { width_px, height_px } = self;
+    /// What to say of a design that has other proportions than the screen, and where.
+    pub(super) fn note_on(self, screen: &Screen) -> Option<(usize, String)> {
+        let Self { width_px, height_px, place } = self;
         let PixelSize { width_mm, height_mm } = self.pixel_on(screen);
         let is_stretched = width_mm.max(height_mm) > STRETCH_MAX * width_mm.min(height_mm);
         is_stretched.then(|| {
-            format!(
+            let note = format!(
                 "design: {width_px} x {height_px} px are stretched to the screen's {} mm x {} mm: a pixel is \
                  {width_mm:.4} mm wide and {height_mm:.4} mm high",
                 screen.width_mm, screen.height_mm
-            )
+            );
+            (place, note)
         })
     }
 }
@@ -192,7 +196,7 @@ impl Scene {
     }
 
     /// The mistakes of the layers that were not read, in the order of the file.
-    pub fn mistakes(&self) -> &[Located] {
+    pub fn mistakes(&self) -> &[Diagnostic] {
         &self.mistakes
     }
 
@@ -308,8 +312,8 @@ fn join<'i>(scene: &mut Fields<'i>, file: &mut Fields<'i>, number: usize, log: &
 fn design(mut fields: Fields, log: &mut Log) -> Option<Design> {
     let width_px = fields.number(log, &tables::design::WIDTH_PX);
     let height_px = fields.number(log, &tables::design::HEIGHT_PX);
-    fields.close(log);
-    Some(Design { width_px: width_px?, height_px: height_px? })
+    let place = fields.close(log).table();
+    Some(Design { width_px: width_px?, height_px: height_px?, place })
 }
 
 /// The version of the file. If it is absent or unknown, the version that the file's tables are of, so that the other

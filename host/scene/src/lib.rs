@@ -33,6 +33,7 @@ mod compile;
 mod compile_error;
 mod cover;
 mod defaults;
+mod diagnostic;
 mod digits;
 mod excess;
 mod fields;
@@ -79,7 +80,8 @@ mod voltage;
 mod warning;
 
 pub use compile::{compile, compile_draft};
-pub use compile_error::{CompileError, Located};
+pub use compile_error::CompileError;
+pub use diagnostic::{Diagnostic, DiagnosticKind, Message};
 pub use file::Scene;
 pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};

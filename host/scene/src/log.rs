@@ -1,15 +1,25 @@
-//! Collects mistakes while a scene is read and compiled.
+//! Collects what a compile says while a scene is read and compiled.
 
-use super::compile_error::{CompileError, Located, MISTAKES_MAX};
+use super::compile_error::{CompileError, MISTAKES_MAX};
+use super::diagnostic::{Diagnostic, DiagnosticKind, Message};
 use super::grammar::KnownTable;
+use super::layer::Layer;
 use super::mistake::Mistake;
+use super::optimisation::Optimisation;
 use super::source::Source;
+use super::warning::Warning;
 
-/// Collects mistakes, so that a person sees all of them at once.
+/// Collects diagnostics, so that a person sees all mistakes at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
-    /// The mistakes, each one once. One more than are reported stands for all others.
-    mistakes: Vec<Located>,
+    /// `Mistake` while a scene is read, `Refusal` while it is compiled.
+    kind: DiagnosticKind,
+    /// The layer that is read or compiled.
+    layer: Option<usize>,
+    /// Mistakes and refusals, each one once. One more than are reported stands for all others.
+    mistakes: Vec<Diagnostic>,
+    /// Warnings and notes, in the order in which they were added.
+    remarks: Vec<Diagnostic>,
     /// How many mistakes were added, those that were there already included.
     added: usize,
     /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
@@ -18,17 +28,23 @@ pub(super) struct Log<'s> {
 
 impl<'s> Log<'s> {
     pub(super) fn new(source: &'s Source) -> Self {
-        Self { source, mistakes: Vec::new(), added: 0, described: None }
+        let (layer, mistakes, remarks, added, described) = Default::default();
+        Self { source, kind: DiagnosticKind::Mistake, layer, mistakes, remarks, added, described }
     }
 
-    /// A log that starts with the mistakes that were found before.
-    pub(super) fn resuming(source: &'s Source, mistakes: &[Located]) -> Self {
+    /// A log that starts with the mistakes that were found while the scene was read.
+    pub(super) fn resuming(source: &'s Source, mistakes: &[Diagnostic]) -> Self {
         Self { mistakes: mistakes.to_vec(), added: mistakes.len(), ..Self::new(source) }
+    }
+
+    /// The same log while the scene is compiled: what is added is a refusal.
+    pub(super) fn of_refusals(self) -> Self {
+        Self { kind: DiagnosticKind::Refusal, ..self }
     }
 
     /// A log of the same file whose mistakes do not count.
     pub(super) fn scratch(&self) -> Self {
-        Self::new(self.source)
+        Self { kind: self.kind, layer: self.layer, ..Self::new(self.source) }
     }
 
     /// A log that keeps the known fields of each table.
@@ -58,6 +74,11 @@ impl<'s> Log<'s> {
         self.source
     }
 
+    /// Sets the layer that is read or compiled, by the number of its table: what is added is about it.
+    pub(super) fn set_layer(&mut self, layer: Option<usize>) {
+        self.layer = layer;
+    }
+
     /// Adds a mistake at a byte offset of the files. A mistake that is there already is reported once, but counted
     /// again: layers that share a field share its mistakes.
     pub(super) fn add(&mut self, offset: usize, mistake: impl Into<Mistake>) {
@@ -65,22 +86,52 @@ impl<'s> Log<'s> {
             self.added += 1;
             return;
         }
+        let diagnostic = self.diagnostic(self.kind, offset, self.layer, Message::Mistake(mistake.into()));
+        self.add_mistake(diagnostic);
+    }
+
+    /// Adds a warning about a byte offset of the files.
+    pub(super) fn warn(&mut self, offset: usize, warning: Warning) {
+        self.remark(DiagnosticKind::Warning, offset, self.layer, warning);
+    }
+
+    /// Adds a warning about a layer.
+    pub(super) fn warn_about(&mut self, layer: &Layer, warning: Warning) {
+        self.remark(DiagnosticKind::Warning, layer.places.table(), Some(layer.number.table), warning);
+    }
+
+    /// Adds a note about a byte offset of the files.
+    pub(super) fn note(&mut self, offset: usize, sentence: String) {
+        self.remark(DiagnosticKind::Note, offset, self.layer, Message::Note(sentence));
+    }
+
+    /// Notes that part of a layer, or all of it, is not needed.
+    pub(super) fn note_optimisation(&mut self, layer: &Layer, optimisation: Optimisation) {
+        self.remark(DiagnosticKind::Note, layer.places.table(), Some(layer.number.table), optimisation);
+    }
+
+    fn remark(&mut self, kind: DiagnosticKind, offset: usize, layer: Option<usize>, message: impl Into<Message>) {
+        let diagnostic = self.diagnostic(kind, offset, layer, message.into());
+        self.remarks.push(diagnostic);
+    }
+
+    fn diagnostic(&self, kind: DiagnosticKind, offset: usize, layer: Option<usize>, message: Message) -> Diagnostic {
         let (line, column) = self.source.line_and_column(offset);
         let (file, text) = (self.source.name_at(offset).to_owned(), self.source.word_at(offset).to_owned());
-        self.add_located(Located { file, line, column, text, mistake: mistake.into() });
+        Diagnostic { kind, file, line, column, text, layer, message }
     }
 
     /// Adds the mistakes of another log of the same files.
     pub(super) fn extend(&mut self, other: Self) {
-        for located in other.mistakes {
-            self.add_located(located);
+        for mistake in other.mistakes {
+            self.add_mistake(mistake);
         }
     }
 
-    fn add_located(&mut self, located: Located) {
+    fn add_mistake(&mut self, mistake: Diagnostic) {
         self.added += 1;
-        if self.mistakes.len() <= MISTAKES_MAX && !self.mistakes.contains(&located) {
-            self.mistakes.push(located);
+        if self.mistakes.len() <= MISTAKES_MAX && !self.mistakes.iter().any(|other| other.repeats(&mistake)) {
+            self.mistakes.push(mistake);
         }
     }
 
@@ -95,13 +146,22 @@ impl<'s> Log<'s> {
         }
     }
 
-    /// The mistakes, in the order of the scene file, then of those that it includes. There may be one more than are
-    /// reported.
-    pub(super) fn into_mistakes(mut self) -> Vec<Located> {
+    /// Mistakes and refusals, in the order of the scene file, then of those that it includes. There may be one more
+    /// than are reported.
+    pub(super) fn into_mistakes(self) -> Vec<Diagnostic> {
         let files = self.source.files();
-        let number = |mistake: &Located| files.iter().position(|file| file.name == mistake.file);
-        self.mistakes.sort_by_key(|mistake| (number(mistake), mistake.line, mistake.column));
-        self.mistakes
+        let number = |mistake: &Diagnostic| files.iter().position(|file| file.name == mistake.file);
+        let mut mistakes = self.mistakes;
+        mistakes.sort_by_key(|mistake| (number(mistake), mistake.line, mistake.column));
+        mistakes
+    }
+
+    /// All that was said: first mistakes and refusals, in the order of the files, then warnings and notes.
+    pub(super) fn into_diagnostics(mut self) -> Vec<Diagnostic> {
+        let remarks = std::mem::take(&mut self.remarks);
+        let mut diagnostics = self.into_mistakes();
+        diagnostics.extend(remarks);
+        diagnostics
     }
 
     /// Number of mistakes so far. A mistake that several layers share counts for each of them.

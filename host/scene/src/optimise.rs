@@ -5,37 +5,38 @@ use std::collections::BTreeSet;
 
 use frixel_layers::{Blend, Constant, Header, Interval, Layer, Point, Record, Region, Speed};
 
+use super::layer::Layer as SceneLayer;
+use super::log::Log;
 use super::optimisation::Optimisation;
 use super::program::Program;
 
-/// A record with its title in messages.
-struct TitledRecord {
-    title: String,
+/// A record with the layer that it was made from.
+struct Played<'l> {
+    layer: &'l SceneLayer,
     record: Record,
-    /// Whether the host may change the layer while it plays.
-    live: bool,
 }
 
-/// Makes a program smaller. `live` marks the layers that the host may change while they play.
-pub(super) fn optimise(program: &mut Program, live: &[bool]) {
-    let titles = std::mem::take(&mut program.titles);
+/// Makes a program smaller. `layers` are those of its records; what the host may change while they play stays.
+pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut Log) {
     let records = std::mem::take(&mut program.records);
-    let together = titles.into_iter().zip(records).zip(live);
-    let mut items: Vec<TitledRecord> =
-        together.map(|((title, record), live)| TitledRecord { title, record, live: *live }).collect();
-    let optimisations = &mut program.optimisations;
-    flatten(&mut items, &program.points, optimisations);
-    drop_covered(&mut items, &program.header, optimisations);
-    drop_idle(&mut items, optimisations);
-    fold(&mut items, optimisations);
-    (program.titles, program.records) = items.into_iter().map(|item| (item.title, item.record)).unzip();
+    let bitmaps: Vec<(u32, &SceneLayer)> = layers
+        .iter()
+        .zip(&records)
+        .filter_map(|(layer, record)| Some((record.layer.bitmap_crc32()?, *layer)))
+        .collect();
+    let mut items: Vec<Played> = layers.iter().zip(records).map(|(layer, record)| Played { layer, record }).collect();
+    flatten(&mut items, &program.points, log);
+    drop_covered(&mut items, &program.header, log);
+    drop_idle(&mut items, log);
+    fold(&mut items, log);
+    (program.titles, program.records) = items.into_iter().map(|item| (item.layer.title.clone(), item.record)).unzip();
     compact_points(program);
-    drop_bitmaps(program);
+    drop_bitmaps(program, &bitmaps, log);
 }
 
 /// Replaces layers whose target friction is the same everywhere and always by constants.
-fn flatten(items: &mut [TitledRecord], points: &[Point], optimisations: &mut Vec<Optimisation>) {
-    for item in items.iter_mut().filter(|item| !item.live) {
+fn flatten(items: &mut [Played], points: &[Point], log: &mut Log) {
+    for item in items.iter_mut().filter(|item| !item.layer.live) {
         let layer = &item.record.layer;
         if layer.is_streamed() || matches!(layer, Layer::Constant(_)) {
             continue;
@@ -43,22 +44,23 @@ fn flatten(items: &mut [TitledRecord], points: &[Point], optimisations: &mut Vec
         let Interval { low, high } = layer.bounds(points);
         if low.to_bits() == high.to_bits() {
             item.record.layer = Layer::Constant(Constant { electric_friction_n: low });
-            optimisations.push(Optimisation::Flat { layer: item.title.clone() });
+            log.note_optimisation(item.layer, Optimisation::Flat { layer: item.layer.title.clone() });
         }
     }
 }
 
 /// Drops layers that a layer above replaces wherever they apply.
-fn drop_covered(items: &mut Vec<TitledRecord>, header: &Header, optimisations: &mut Vec<Optimisation>) {
+fn drop_covered(items: &mut Vec<Played>, header: &Header, log: &mut Log) {
     let mut number = 0;
     while let Some(item) = items.get(number) {
-        let hides = |above: &&TitledRecord| {
-            let always = !above.live && !above.record.layer.is_streamed();
+        let hides = |above: &&Played| {
+            let always = !above.layer.live && !above.record.layer.is_streamed();
             always && above.record.blend == Blend::Replace && covers(above.record.region, item.record.region, header)
         };
         match items.iter().skip(number + 1).find(hides) {
-            Some(by) if !item.live => {
-                optimisations.push(Optimisation::Covered { layer: item.title.clone(), by: by.title.clone() });
+            Some(by) if !item.layer.live => {
+                let (layer, by) = (item.layer.title.clone(), by.layer.title.clone());
+                log.note_optimisation(item.layer, Optimisation::Covered { layer, by });
                 items.remove(number);
             }
             _ => number += 1,
@@ -89,7 +91,7 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
 }
 
 /// Drops constants without effect: adding zero, a factor of one, and zero on a bare screen.
-fn drop_idle(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation>) {
+fn drop_idle(items: &mut Vec<Played>, log: &mut Log) {
     let mut bare = true;
     items.retain(|item| {
         let own = match item.record.layer {
@@ -102,9 +104,9 @@ fn drop_idle(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation
             Blend::Multiply => is(1.0) || bare,
             Blend::Replace | Blend::Max => bare && is(0.0),
         };
-        let goes = idle && !item.live;
+        let goes = idle && !item.layer.live;
         if goes {
-            optimisations.push(Optimisation::Idle { layer: item.title.clone() });
+            log.note_optimisation(item.layer, Optimisation::Idle { layer: item.layer.title.clone() });
         } else {
             bare = false;
         }
@@ -114,11 +116,11 @@ fn drop_idle(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation
 
 /// Merges a constant into the constant directly below it, if both have the same region. The result is bit-identical to
 /// the board's.
-fn fold(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation>) {
+fn fold(items: &mut Vec<Played>, log: &mut Log) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
-        let constant = |item: &TitledRecord| match item.record.layer {
-            Layer::Constant(Constant { electric_friction_n }) if !item.live => {
+        let constant = |item: &Played| match item.record.layer {
+            Layer::Constant(Constant { electric_friction_n }) if !item.layer.live => {
                 Some(item.record.gain * electric_friction_n)
             }
             _ => None,
@@ -134,7 +136,8 @@ fn fold(items: &mut Vec<TitledRecord>, optimisations: &mut Vec<Optimisation>) {
             number += 1;
             continue;
         };
-        optimisations.push(Optimisation::Folded { layer: above.title.clone(), into: below.title.clone() });
+        let (layer, into) = (above.layer.title.clone(), below.layer.title.clone());
+        log.note_optimisation(above.layer, Optimisation::Folded { layer, into });
         items.remove(number + 1);
         if let Some(below) = items.get_mut(number) {
             below.record.gain = 1.0;
@@ -167,13 +170,13 @@ fn compact_points(program: &mut Program) {
     program.points = kept;
 }
 
-fn drop_bitmaps(program: &mut Program) {
+/// Drops bitmaps that no record names. `bitmaps` has those of all layers.
+fn drop_bitmaps(program: &mut Program, bitmaps: &[(u32, &SceneLayer)], log: &mut Log) {
     let named: BTreeSet<u32> = program.records.iter().filter_map(|record| record.layer.bitmap_crc32()).collect();
-    let optimisations = &mut program.optimisations;
     program.bitmaps.retain(|bitmap| {
         let keeps = named.contains(&bitmap.crc32);
-        if !keeps {
-            optimisations.push(Optimisation::Bitmap { bytes: bitmap.samples.len() });
+        if let Some((_, layer)) = bitmaps.iter().find(|(crc32, _)| !keeps && *crc32 == bitmap.crc32) {
+            log.note_optimisation(layer, Optimisation::Bitmap { bytes: bitmap.samples.len() });
         }
         keeps
     });

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use super::file::Scene;
 use super::files::{FileUnavailable, file_name};
 use super::kinds::{Bitmap as BitmapLayer, Kind, Levels, PITCH_MM};
-use super::layer::{Rectangle, Region};
+use super::layer::{Layer, Rectangle, Region};
+use super::log::Log;
 use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::optimisation::Optimisation;
@@ -25,7 +26,6 @@ pub(super) struct Pool {
     /// The pitch of pictures with `pitch_mm = "auto"` that have finer pixels.
     shared_pitch_mm: f64,
     bitmaps: Vec<Bitmap>,
-    optimisations: Vec<Optimisation>,
 }
 
 /// The pictures of a scene, each decoded once, or the reason why one cannot be used.
@@ -259,21 +259,22 @@ impl Pool {
     pub(super) fn new(scene: &Scene, size_bytes: u32) -> Self {
         let pictures = decoded(scene);
         let shared_pitch_mm = shared_pitch_mm(scene, &pictures, size_bytes);
-        Self { pictures, size_bytes, shared_pitch_mm, bitmaps: Vec::new(), optimisations: Vec::new() }
+        Self { pictures, size_bytes, shared_pitch_mm, bitmaps: Vec::new() }
     }
 
-    /// The bitmaps, and the optimisations that were made.
-    pub(super) fn finish(self) -> (Vec<Bitmap>, Vec<Optimisation>) {
-        (self.bitmaps, self.optimisations)
+    /// The bitmaps.
+    pub(super) fn finish(self) -> Vec<Bitmap> {
+        self.bitmaps
     }
 
     /// Resamples the picture of a layer. `region` bounds the layer's region, if it has one.
     pub(super) fn place(
         &mut self,
+        layer: &Layer,
         bitmap: &BitmapLayer,
         region: Option<Rectangle>,
         screen_mm: (f64, f64),
-        notes: &mut Vec<String>,
+        log: &mut Log,
     ) -> Result<Placed, Unplaced> {
         let picture = self.pictures.get(&bitmap.picture).ok_or(Unplaced::Reported)?;
         let picture = picture.as_ref().map_err(|mistake| Unplaced::Unusable(mistake.clone()))?;
@@ -293,16 +294,18 @@ impl Pool {
         let (picture_name, kept) = (printable(file_name(&bitmap.picture)).into_owned(), across.samples * down.samples);
         if kept < across.whole * down.whole {
             let whole = across.whole * down.whole;
-            self.optimisations.push(Optimisation::Cropped { picture: picture_name.clone(), whole, kept });
+            log.note_optimisation(layer, Optimisation::Cropped { picture: picture_name.clone(), whole, kept });
         }
         if self.bitmaps.contains(&compiled) {
-            self.optimisations.push(Optimisation::Shared { picture: picture_name, bytes: kept });
+            log.note_optimisation(layer, Optimisation::Shared { picture: picture_name, bytes: kept });
         } else {
             let held: u64 = self.bitmaps.iter().map(|bitmap| bitmap.samples.len() as u64).sum();
             self.check_room(pitch_mm, held + bytes)?;
             self.bitmaps.push(compiled);
         }
-        notes.extend(self.note(bitmap, &picture, pitch_mm, across, down));
+        if let Some(note) = self.note(bitmap, &picture, pitch_mm, across, down) {
+            log.note(layer.places.field("picture"), note);
+        }
         Ok(Placed::new(bitmap, &picture, whole, pitch_mm, (across, down), crc32))
     }
 

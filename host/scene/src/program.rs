@@ -5,7 +5,7 @@ use frixel_model::{LoadedContact, ParameterError};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
-use super::compile_error::Located;
+use super::diagnostic::{Diagnostic, DiagnosticKind, Message};
 use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
 use super::played_finger::PlayedFinger;
@@ -40,22 +40,45 @@ pub struct Program {
     pub finger: PlayedFinger,
     /// Whether friction out of reach is clamped because the scene says so: `saturate = true`.
     pub saturates: bool,
-    /// The mistakes for which a board refuses the scene. Empty unless the program is a draft, see
-    /// [`compile_draft`](super::compile_draft).
-    pub refusals: Vec<Located>,
-    /// Reasons to doubt the program's newtons.
-    pub warnings: Vec<Warning>,
-    /// Conversions, roundings and clamps, a sentence each.
-    pub notes: Vec<String>,
-    /// Parts of the file that the program does not need.
-    pub optimisations: Vec<Optimisation>,
+    /// What the compiler says about the scene: refusals in the order of the file, then warnings and notes.
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 impl Program {
     /// Whether the program is a draft: only previews and the simulator in this process play it, and every output says
     /// so.
     pub fn is_draft(&self) -> bool {
-        !self.refusals.is_empty()
+        self.refusals().next().is_some()
+    }
+
+    /// The reasons for which a board refuses the scene. There are none unless the program is a draft, see
+    /// [`compile_draft`](super::compile_draft).
+    pub fn refusals(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|diagnostic| diagnostic.kind == DiagnosticKind::Refusal)
+    }
+
+    /// Reasons to doubt the program's newtons.
+    pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
+        self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
+            Message::Warning(warning) => Some(warning),
+            _ => None,
+        })
+    }
+
+    /// Conversions, roundings and clamps, a sentence each.
+    pub fn notes(&self) -> impl Iterator<Item = &str> {
+        self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
+            Message::Note(sentence) => Some(sentence.as_str()),
+            _ => None,
+        })
+    }
+
+    /// Parts of the file that the program does not need.
+    pub fn optimisations(&self) -> impl Iterator<Item = &Optimisation> {
+        self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
+            Message::Optimisation(optimisation) => Some(optimisation),
+            _ => None,
+        })
     }
 
     /// The same scene without layers and pictures. A board plays it in between when it has no room for the pictures of

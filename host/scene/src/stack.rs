@@ -63,9 +63,11 @@ impl<'i> LayerTables<'i> {
         let mut layers = Vec::new();
         for (number, table) in (1..).zip(self.layers) {
             let mistakes = log.mistakes();
+            log.set_layer(Some(number));
             let copies = Layer::read(table.with_pixels(pixel_mm), number, log);
             layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
         }
+        log.set_layer(None);
         for layer in &mut layers {
             settle(layer, version, log);
         }

@@ -29,13 +29,7 @@ pub(super) struct Voltage {
 }
 
 impl Voltage {
-    pub(super) fn of(
-        scene: &Scene,
-        limits: &BoardLimits,
-        carrier: &Carrier,
-        log: &mut Log,
-        notes: &mut Vec<String>,
-    ) -> Self {
+    pub(super) fn of(scene: &Scene, limits: &BoardLimits, carrier: &Carrier, log: &mut Log) -> Self {
         let (drive, screen) = (&scene.drive, scene.screen());
         let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
         if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
@@ -47,21 +41,23 @@ impl Voltage {
         let peak_per_rms = f64::from(carrier.peak_per_rms());
         let scene_max_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
         if scene_max_v_rms < drive.voltage_max_v_rms {
-            notes.push(format!(
+            let note = format!(
                 "drive: the screen bears {scene_max_v_rms} V rms, less than the {} V rms of the scene",
                 drive.voltage_max_v_rms
-            ));
+            );
+            log.note(drive.places.field("voltage_max_v_rms"), note);
         }
         let needed_v_peak = PEAK_MARGIN * peak_per_rms * scene_max_v_rms;
         let screen_v_peak = screen.voltage_max_v_peak.unwrap_or(f64::INFINITY);
         let max_v_peak = drive.voltage_max_v_peak.unwrap_or(needed_v_peak).min(screen_v_peak).min(board_v_peak);
         let max_v_rms = scene_max_v_rms.min(max_v_peak / peak_per_rms);
         if max_v_rms < scene_max_v_rms {
-            notes.push(format!(
+            let note = format!(
                 "drive: {scene_max_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
                  {max_v_rms:.1} V rms",
                 peak_per_rms * scene_max_v_rms
-            ));
+            );
+            log.note(drive.places.field("voltage_max_v_peak"), note);
         }
         let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);
         let hard_max_v_peak = screen_v_peak.min(board_v_peak);

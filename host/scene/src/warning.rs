@@ -180,18 +180,18 @@ impl Warning {
 }
 
 /// The warnings of layers that their author probably means otherwise.
-pub(super) fn of_layers(layers: &[Layer]) -> Vec<Warning> {
+pub(super) fn of_layers(layers: &[Layer]) -> Vec<(&Layer, Warning)> {
     let edges = layers.iter().enumerate().filter_map(|(number, layer)| {
         let has_no_end = matches!(layer.kind, Kind::Edge(_)) && layer.region.is_none() && !layer.is_copy;
         let has_regions_below = layers.iter().take(number).any(|below| below.region.is_some());
-        (has_no_end && has_regions_below).then(|| Warning::EdgeAcrossScreen { layer: layer.title.clone() })
+        (has_no_end && has_regions_below).then(|| (layer, Warning::EdgeAcrossScreen { layer: layer.title.clone() }))
     });
     edges.chain(hiding(layers)).chain(same_names(layers)).collect()
 }
 
 /// The warnings of the topmost layer that hides all layers below it for good, and of the topmost one above it that
 /// hides them while it is on. Whole screens that the host switches are meant to hide one another.
-fn hiding(layers: &[Layer]) -> impl Iterator<Item = Warning> {
+fn hiding(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     let hides = |layer: &Layer| {
         let is_everywhere = layer.region.is_none() && layer.kind.fills_screen();
         layer.blend == Blend::Replace && is_everywhere && !matches!(layer.kind, Kind::Stream(_))
@@ -205,12 +205,12 @@ fn hiding(layers: &[Layer]) -> impl Iterator<Item = Warning> {
         let layer = layers.get(number)?;
         let hidden: Vec<&str> = layers.iter().take(number).map(|below| below.title.as_str()).collect();
         let (is_live, hidden) = (layer.live, listed(&hidden));
-        Some(Warning::HidesAllBelow { layer: layer.title.clone(), is_live, hidden })
+        Some((layer, Warning::HidesAllBelow { layer: layer.title.clone(), is_live, hidden }))
     })
 }
 
 /// The warnings of layers that have the name of a lower one. Of the copies of a layer, the first one is warned of.
-fn same_names(layers: &[Layer]) -> impl Iterator<Item = Warning> {
+fn same_names(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     let twin = |number: usize, layer: &Layer| {
         let below = layers.iter().take(number).filter(|other| other.name.is_some() && other.name == layer.name);
         below.map(|other| other.number).next()
@@ -220,11 +220,8 @@ fn same_names(layers: &[Layer]) -> impl Iterator<Item = Warning> {
     twins.filter_map(move |(layer, lower)| {
         let is_first = !warned.contains(&layer.number.table);
         warned.push(layer.number.table);
-        is_first.then(|| Warning::NameTwice {
-            layer: layer.title.clone(),
-            number: layer.number.to_string(),
-            lower: lower.to_string(),
-        })
+        let (number, lower) = (layer.number.to_string(), lower.to_string());
+        is_first.then(|| (layer, Warning::NameTwice { layer: layer.title.clone(), number, lower }))
     })
 }
 

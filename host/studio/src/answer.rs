@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use frixel_scene::{Located, Program};
+use frixel_scene::{Diagnostic, DiagnosticKind, Program};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -37,21 +37,22 @@ struct Place {
 }
 
 impl Problem {
-    pub(crate) fn warning(message: String) -> Self {
-        Self { severity: "warning", message, file: None, place: None, help: None }
-    }
-
     fn error(message: impl Display) -> Self {
-        Self { severity: "error", ..Self::warning(message.to_string()) }
+        Self { severity: "error", message: message.to_string(), file: None, place: None, help: None }
     }
 
-    fn located(located: &Located, entry: &str) -> Self {
-        let Located { file, line, column, text, mistake } = located;
+    /// A diagnostic of a scene called `entry`.
+    fn of(diagnostic: &Diagnostic, entry: &str) -> Self {
+        let Diagnostic { kind, file, line, column, text, .. } = diagnostic;
+        let severity = match kind {
+            DiagnosticKind::Mistake | DiagnosticKind::Refusal => "error",
+            DiagnosticKind::Warning | DiagnosticKind::Note => "warning",
+        };
         let file = (file != entry).then(|| file.clone());
         let marked = text.lines().next().unwrap_or_default().chars().count().max(1);
         let place = Place { line: *line, column: *column, end_line: *line, end_column: column + marked };
-        let help = mistake.nearest().map(str::to_owned);
-        Self { file, place: Some(place), help, ..Self::error(mistake) }
+        let help = diagnostic.nearest().map(str::to_owned);
+        Self { severity, message: diagnostic.sentence(), file, place: Some(place), help }
     }
 }
 
@@ -59,13 +60,16 @@ impl Problem {
 pub(crate) fn problems(error: &ProgramError, entry: &str) -> Vec<Problem> {
     match error {
         ProgramError::Request(error) => vec![Problem::error(error)],
-        ProgramError::Compile(error) => error.mistakes.iter().map(|located| Problem::located(located, entry)).collect(),
+        ProgramError::Compile(error) => {
+            error.diagnostics.iter().map(|diagnostic| Problem::of(diagnostic, entry)).collect()
+        }
     }
 }
 
-/// The reasons why a board refuses a draft called `entry`; none of another program.
-pub(crate) fn refusals(program: &Program, entry: &str) -> Vec<Problem> {
-    program.refusals.iter().map(|located| Problem::located(located, entry)).collect()
+/// The problems of a program called `entry`: why a board refuses it, if it is a draft, and warnings.
+pub(crate) fn problems_of(program: &Program, entry: &str) -> Vec<Problem> {
+    let is_problem = |diagnostic: &&Diagnostic| diagnostic.kind != DiagnosticKind::Note;
+    program.diagnostics.iter().filter(is_problem).map(|diagnostic| Problem::of(diagnostic, entry)).collect()
 }
 
 /// An error as the page gets it: `error`, a sentence, `problems`, as [`crate::check`] returns them, and `isLinkLost`.

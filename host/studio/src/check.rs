@@ -10,7 +10,7 @@ use frixel_play::load;
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
-use crate::answer::{Problem, problems, refusals};
+use crate::answer::{problems, problems_of};
 use crate::host::HostError;
 use crate::layers::layers;
 use crate::program::{drafted, for_drafts};
@@ -32,14 +32,13 @@ fn checked(request: &Request) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
     let (scene, program) = drafted(request)?;
-    let mut problems = refusals(&program, &request.entry);
+    let problems = problems_of(&program, &request.entry);
     let costs = match board_costs(&program, &RigConfig { board: for_drafts(config.board), ..config }) {
         // Not even the simulator plays it.
         Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
         costs => costs?,
     };
     let check = SceneCheck::of(&program, &config.board.limits, &costs);
-    problems.extend(check.warnings.iter().cloned().map(Problem::warning));
     let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
         "ok": !program.is_draft(),

@@ -1,11 +1,11 @@
 //! What the simulated finger felt, as the page draws and plays it.
 
+use frixel_felt::recorder::PlayListener;
 use frixel_hil_sim::{Felt, ReferenceFriction, TickRecord};
 use frixel_model::ParameterError;
-use frixel_play::PlayListener;
 use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_scene::{LayerSetting, Program};
-use frixel_wire::hello::Hello;
+use frixel_wire::hello::BoardLimits;
 
 /// Ticks of one sample for the page: a period of the usual carrier of 1 kHz, so that its ripple averages out.
 pub(crate) const TICKS_PER_SAMPLE: u32 = 40;
@@ -116,7 +116,7 @@ impl FeltRecorder {
 }
 
 impl PlayListener for FeltRecorder {
-    fn scene_replaced(&mut self, program: &Program, _: &Hello) -> Result<(), ParameterError> {
+    fn scene_replaced(&mut self, program: &Program, _: &BoardLimits) -> Result<(), ParameterError> {
         self.reference = Some(Reference::new(program).along_stroke());
         Ok(())
     }

@@ -96,7 +96,7 @@ pub(crate) fn load<S: ByteStream + Recorded>(host: &mut Host<S>, request: &Reque
     if program.header.autonomous && !board.is_simulated() {
         return Err(HostError::Autonomous);
     }
-    if let Some(warning) = program.warnings.iter().find(|warning| warning.is_refused_by_boards())
+    if let Some(warning) = program.warnings().find(|warning| warning.is_refused_by_boards())
         && !board.is_simulated()
     {
         return Err(HostError::Unmeasured { warning: warning.to_string() });

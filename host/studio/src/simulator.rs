@@ -202,7 +202,7 @@ mod tests {
         let files = [("a.toml".to_owned(), text.into_bytes())].into();
         let request = Request { files, ..request() };
         let (_, program) = drafted(&request).unwrap();
-        let reasons: Vec<String> = program.refusals.iter().map(ToString::to_string).collect();
+        let reasons: Vec<String> = program.refusals().map(ToString::to_string).collect();
         assert!(reasons.iter().any(|reason| reason.contains("cycles")), "{reasons:#?}");
         assert!(reasons.iter().any(|reason| !reason.contains("cycles")), "{reasons:#?}");
         simulator.play(&request).unwrap();

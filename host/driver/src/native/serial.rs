@@ -110,14 +110,14 @@ impl Link for SerialLink {
         let mut state = self.shared.lock();
         self.check_open(&state)?;
         state.queue(frame);
-        state.leave_call(Instant::now());
+        state.pings.leave_call(self.now());
         self.shared.queued.notify_one();
         Ok(state.written.bytes)
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let mut state = self.shared.lock();
-        state.enter_call();
+        state.pings.enter_call();
         // Wake the writing thread, which may have stopped to ping.
         self.shared.queued.notify_one();
         let (mut state, _) = self
@@ -125,7 +125,7 @@ impl Link for SerialLink {
             .arrived
             .wait_timeout_while(state, wait, |state| state.receive_buffer.is_empty() && state.closed.is_none())
             .unwrap_or_else(PoisonError::into_inner);
-        state.leave_call(Instant::now());
+        state.pings.leave_call(self.now());
         // Bytes that arrived before the link closed are still delivered.
         if state.receive_buffer.is_empty() {
             self.check_open(&state)?;

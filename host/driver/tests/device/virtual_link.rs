@@ -48,7 +48,6 @@ pub(crate) struct VirtualLink {
     to_host: Line,
     written: Written,
     frames_to_host: u64,
-    last_write: Duration,
     pings: KeepAlive,
 }
 
@@ -95,7 +94,6 @@ impl VirtualLink {
             to_host: Line::default(),
             written: Written::default(),
             frames_to_host: 0,
-            last_write: Duration::ZERO,
             pings: KeepAlive::default(),
         }
     }
@@ -125,7 +123,7 @@ impl VirtualLink {
     }
 
     fn ping_due_at(&self) -> Option<Duration> {
-        self.pings.due_at(self.last_write)
+        self.pings.due_at(self.now)
     }
 
     fn next_event_at(&self) -> Option<Duration> {
@@ -151,7 +149,7 @@ impl Link for VirtualLink {
         self.board_free_at = self.board_free_at.max(seen) + self.board_time_per_frame;
         self.to_board.under_way.push_back((self.board_free_at, bytes));
         self.written.add(frame);
-        self.last_write = self.now;
+        self.pings.wrote(self.now);
         let under_way: usize = self.to_board.under_way.iter().map(|(_, bytes)| bytes.len()).sum();
         self.most_under_way = self.most_under_way.max(under_way);
         assert!(under_way <= usize::from(WINDOW), "the host sent {under_way} bytes beyond what the board acknowledged");

@@ -174,10 +174,10 @@ impl SceneCheck {
                 voltage_max_v_rms: reach.voltage_max_v_rms,
             },
             asked: TargetRange::of(program),
-            warnings: program.warnings.iter().map(ToString::to_string).collect(),
+            warnings: program.warnings().map(ToString::to_string).collect(),
             perception: Perception::of(program),
-            notes: program.notes.clone(),
-            left_out: program.optimisations.iter().map(ToString::to_string).collect(),
+            notes: program.notes().map(str::to_owned).collect(),
+            left_out: program.optimisations().map(ToString::to_string).collect(),
             board: None,
         }
     }

@@ -6,6 +6,7 @@
 //! absent cell or number in the output.
 
 mod inversion;
+mod listener;
 mod observation;
 mod rows;
 mod stream;
@@ -19,6 +20,7 @@ use crate::metrics::{Metrics, MetricsSummary, Sample};
 use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_scene::{LayerSetting, Program};
 use inversion::Inversion;
+pub use listener::PlayListener;
 pub use observation::{FeltFriction, FingerState, Observation};
 pub use rows::FeltRow;
 use rows::{Frictions, RowMaker};
@@ -95,46 +97,6 @@ impl Recorder {
     pub fn start(&mut self, tick: u32) {
         self.start_tick = Some(u64::from(tick));
         self.last_tick = u64::from(tick);
-    }
-
-    /// The board plays another program from now on. A recorder without a reference stays without one.
-    ///
-    /// Returns an error if the contact model refuses the program's finger. This does not happen for a compiled program.
-    pub fn scene_replaced(&mut self, program: &Program, limits: &BoardLimits) -> Result<(), ParameterError> {
-        if let Some(comparison) = &mut self.comparison {
-            comparison.reference = Reference::new(program).along_stroke();
-            comparison.inversion = Inversion::new(program, limits, self.tick_hz)?;
-            comparison.metrics.set_half_period(program.half_period_ticks);
-        }
-        Ok(())
-    }
-
-    /// The layer with this record number, from zero, has this setting from now on.
-    pub fn layer_changed(&mut self, record: u8, setting: LayerSetting) {
-        if let Some(comparison) = &mut self.comparison {
-            comparison.reference.set_layer(record.into(), setting.on, setting.gain.into());
-        }
-    }
-
-    /// The host asks the board to play a stream of so many samples a second. The reference has it once the board reports
-    /// that it plays.
-    pub fn stream_started(&mut self, sample_hz: u32) {
-        self.with_stream(|stream| stream.start(sample_hz));
-    }
-
-    /// The host sends samples of the stream, which follow the earlier ones.
-    pub fn samples_sent(&mut self, samples: &[u16]) {
-        self.with_stream(|stream| stream.append(samples));
-    }
-
-    /// The stream ends after the samples sent so far.
-    pub fn stream_ended(&mut self) {
-        self.with_stream(Stream::end);
-    }
-
-    /// The host switches the output off.
-    pub fn stopped(&mut self) {
-        self.with_stream(Stream::stop);
     }
 
     fn with_stream(&mut self, change: impl FnOnce(&mut Stream)) {
@@ -221,6 +183,45 @@ impl Recorder {
         }
         self.last_tick += u64::from(passed);
         Some(passed)
+    }
+}
+
+impl PlayListener for Recorder {
+    /// A recorder without a reference stays without one.
+    fn scene_replaced(&mut self, program: &Program, limits: &BoardLimits) -> Result<(), ParameterError> {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.reference = Reference::new(program).along_stroke();
+            comparison.inversion = Inversion::new(program, limits, self.tick_hz)?;
+            comparison.metrics.set_half_period(program.half_period_ticks);
+        }
+        Ok(())
+    }
+
+    fn layer_changed(&mut self, record: u8, setting: LayerSetting) {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.reference.set_layer(record.into(), setting.on, setting.gain.into());
+        }
+    }
+
+    /// The reference has the stream once the board reports that it plays.
+    fn stream_started(&mut self, sample_hz: u32) {
+        self.with_stream(|stream| stream.start(sample_hz));
+    }
+
+    fn samples_sent(&mut self, samples: &[u16]) {
+        self.with_stream(|stream| stream.append(samples));
+    }
+
+    fn stream_ended(&mut self) {
+        self.with_stream(Stream::end);
+    }
+
+    fn stopped(&mut self) {
+        self.with_stream(Stream::stop);
+    }
+
+    fn ticks_left(&self) -> u64 {
+        Self::ticks_left(self)
     }
 }
 

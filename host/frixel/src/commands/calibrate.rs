@@ -10,8 +10,8 @@ use std::time::Duration;
 use clap::Args;
 use frixel::output_file::{FileWriter, Inputs, Recording};
 use frixel::player::player;
-use frixel::rigs::{RecordedLink, SimLink};
-use frixel_driver::Device;
+use frixel::rigs::{RecordedLink, SimStream};
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, FingertipConfig, Person, Rig, RigConfig};
 use frixel_lab::calibration::{
@@ -138,8 +138,8 @@ fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interru
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     rig.world_mut().set_own_finger(contact);
     let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
-    let link = SimLink::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
-    let mut player = plan.start(Device::connect(link)?, 0)?;
+    let line = SimStream::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
+    let mut player = plan.start(Device::connect(PollingLink::new(line))?, 0)?;
     // What is simulated needs no file until it is whole.
     let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
     drop(player);

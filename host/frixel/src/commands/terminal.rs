@@ -41,7 +41,7 @@ pub(super) fn note_refusals(scene: &Path, program: &Program) {
     if program.is_draft() {
         note(format_args!("draft: a board refuses {}:", scene.display()));
     }
-    for refusal in &program.refusals {
+    for refusal in program.refusals() {
         note(refusal);
     }
 }

@@ -13,8 +13,8 @@ use clap::Args;
 use frixel::input;
 use frixel::output_file::{Inputs, OutputFile, Recording};
 use frixel::player::player;
-use frixel::rigs::{RecordedLink, SimLink};
-use frixel_driver::Device;
+use frixel::rigs::{RecordedLink, SimStream};
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::Protocol;
@@ -133,7 +133,13 @@ fn measure(
         let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
-        session(args, interrupt, Device::connect(SimLink::new(rig, Recorder::idle()))?, protocol, answers)
+        session(
+            args,
+            interrupt,
+            Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle())))?,
+            protocol,
+            answers,
+        )
     } else {
         let device = experiment::connect(port, args.arm)?;
         let protocol = protocol(args, &device.hello().limits)?;

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use frixel_driver::{DEFAULT_BAUD, KeepAlive, Link, LinkClosed, PortError, SerialLink, Written};
+use frixel_driver::{ByteStream, DEFAULT_BAUD, Link as _, LinkClosed, PortError, SerialLink};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
 use frixel_play::Recorded;
@@ -32,7 +32,7 @@ const HELD_TICKS: usize = 8_000;
 ///
 /// The record has every tick of the world. The emulated serial port is too slow for telemetry in every row: values that
 /// only the board knows are in those rows for which a telemetry message arrived.
-pub struct EmulatedLink<'b> {
+pub struct EmulatedStream<'b> {
     serial: SerialLink,
     board: &'b LinkBoard,
     /// Bytes that the board had received before the link was opened.
@@ -41,9 +41,6 @@ pub struct EmulatedLink<'b> {
     seen_ticks: Cell<u32>,
     /// Ticks that have passed on the link's clock.
     clock_ticks: Cell<u64>,
-    pings: KeepAlive,
-    /// Time of the last write, on the link's clock.
-    written_at: Duration,
     records: Receiver<LinkRecord>,
     /// Ticks without their telemetry yet, and telemetry without its tick yet.
     held: VecDeque<LinkRecord>,
@@ -52,7 +49,7 @@ pub struct EmulatedLink<'b> {
     reference_finger: ReferenceFinger,
 }
 
-impl<'b> EmulatedLink<'b> {
+impl<'b> EmulatedStream<'b> {
     /// Opens the board's serial port. `records` receives the ticks that [`LinkBoard::start`] reports.
     pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, PortError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
@@ -68,8 +65,6 @@ impl<'b> EmulatedLink<'b> {
             received_before,
             seen_ticks: Cell::new(ticks),
             clock_ticks: Cell::new(0),
-            pings: KeepAlive::default(),
-            written_at: Duration::ZERO,
             records,
             held: VecDeque::new(),
             telemetry: VecDeque::new(),
@@ -101,19 +96,10 @@ impl<'b> EmulatedLink<'b> {
         Ok(has_arrived)
     }
 
-    /// Advances the clock, pings the board if a ping is due, and answers for the next slice of its time once all that
-    /// was sent has arrived.
-    fn serve(&mut self) -> Result<(), LinkClosed> {
-        let failed = |error: EmulatorError| closed(self.board, &error);
-        let has_arrived = self.follow().map_err(failed)?;
-        let now = self.now();
-        if self.pings.due_at(self.written_at).is_some_and(|due| due <= now) {
-            let ping = self.pings.next_ping(now);
-            self.serial.write(&ping)?;
-            self.written_at = now;
-        } else if has_arrived {
-            let answered_to = self.seen_ticks.get().wrapping_add(SLICE_TICKS);
-            self.board.host_answers_to(answered_to).map_err(failed)?;
+    /// Answers for the next slice of the board's time once all that was sent has arrived.
+    fn answer(&self) -> Result<(), EmulatorError> {
+        if self.follow()? {
+            self.board.host_answers_to(self.seen_ticks.get().wrapping_add(SLICE_TICKS))?;
         }
         Ok(())
     }
@@ -141,7 +127,7 @@ fn telemetry_of(tick: u32, telemetry: &mut VecDeque<Telemetry>) -> Option<Teleme
     last.filter(|last| last.tick == tick)
 }
 
-impl Recorded for EmulatedLink<'_> {
+impl Recorded for EmulatedStream<'_> {
     type Recorder = Recorder;
 
     fn recorder_mut(&mut self) -> &mut Recorder {
@@ -164,22 +150,19 @@ impl Recorded for EmulatedLink<'_> {
     }
 }
 
-impl Link for EmulatedLink<'_> {
-    fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
-        self.written_at = self.now();
-        self.serial.write(frame)
+impl ByteStream for EmulatedStream<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        self.serial.write(bytes).map(|_| ())
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let end = self.now() + wait;
         let before = buffer.len();
         let (mut moved_at, mut seen) = (Instant::now(), self.now());
-        self.serve()?;
+        // At its end the caller may have a ping to send, and the board waits for it.
         while buffer.len() == before && self.now() < end {
+            self.answer().map_err(|error| closed(self.board, &error))?;
             self.serial.read(buffer, POLL_PERIOD)?;
-            let now = self.now();
-            self.pings.hear(buffer.get(before..).unwrap_or_default(), now);
-            self.serve()?;
             if self.now() != seen {
                 (moved_at, seen) = (Instant::now(), self.now());
             } else if moved_at.elapsed() > PATIENCE {
@@ -196,24 +179,12 @@ impl Link for EmulatedLink<'_> {
         Duration::from_secs(self.clock_ticks.get()) / BOARD.tick_hz
     }
 
-    fn keep_alive(&mut self, period: Duration) {
-        self.pings.set_period(period);
-    }
-
-    fn set_shutdown_frames(&mut self, frames: Vec<u8>) {
-        self.serial.set_shutdown_frames(frames);
-    }
-
-    fn written(&self) -> Written {
-        self.serial.written()
-    }
-
     fn name(&self) -> &str {
         self.serial.name()
     }
 }
 
-impl Drop for EmulatedLink<'_> {
+impl Drop for EmulatedStream<'_> {
     fn drop(&mut self) {
         // If the emulator has exited, there is no clock to start.
         let _ = self.board.set_host_open(false);

@@ -1,7 +1,8 @@
-//! The boards that a scene can play on, each behind a [`Link`](frixel_driver::Link) that records the play.
+//! The boards that a scene can play on, each behind a [`ByteStream`](frixel_driver::ByteStream) or a
+//! [`Link`](frixel_driver::Link) that records the play.
 //!
-//! - [`SimLink`]: a simulated board in this process, in virtual time.
-//! - [`EmulatedLink`]: the firmware in an emulator, on the emulator's clock.
+//! - [`SimStream`]: a simulated board in this process, in virtual time.
+//! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.
 //! - [`PortLink`]: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
@@ -18,10 +19,10 @@ mod recorded;
 mod server;
 #[cfg(unix)]
 mod server_log;
-mod sim_link;
+mod sim_stream;
 
 #[cfg(unix)]
-pub use emulated::EmulatedLink;
+pub use emulated::EmulatedStream;
 pub use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub use pace::Dropped;
@@ -29,4 +30,4 @@ pub use port::PortLink;
 pub use recorded::RecordedLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
-pub use sim_link::SimLink;
+pub use sim_stream::SimStream;

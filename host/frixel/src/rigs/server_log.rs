@@ -7,7 +7,7 @@ use frixel_hil_sim::{Rig, TickRecord};
 use frixel_lab::calibration::ForceSensor;
 use frixel_wire::fault::State;
 
-use super::sim_link::observation;
+use super::sim_stream::observation;
 use super::{BoardEvent, EventKind, EventLog};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
 use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, is_play_of_person};

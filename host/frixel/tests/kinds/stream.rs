@@ -4,10 +4,11 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel::rigs::SimLink;
-use frixel_driver::{Device, StreamSettings};
+use frixel::rigs::SimStream;
+use frixel_driver::{Device, PollingLink, StreamSettings};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_play::Recorded as _;
 use frixel_scene::Program;
 
 use super::cases::Path;
@@ -31,7 +32,7 @@ fn play(program: &Program) -> Vec<FeltRow> {
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).unwrap();
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, 1).unwrap();
-    let mut device = Device::connect(SimLink::new(rig, recorder)).unwrap();
+    let mut device = Device::connect(PollingLink::new(SimStream::new(rig, recorder))).unwrap();
     frixel_play::start(&mut device, program, &mut |_| ControlFlow::Continue(())).unwrap();
     device.start_stream(StreamSettings::new(SAMPLE_HZ)).unwrap();
     let sample = |number: u32| {
@@ -47,7 +48,7 @@ fn play(program: &Program) -> Vec<FeltRow> {
     }
     assert_eq!(device.stream_status().unwrap().underruns, 0);
     assert!(!left.is_empty(), "there were samples to the end");
-    device.into_link().into_recorder().rows().to_vec()
+    device.link_mut().stream_mut().recorder_mut().rows().to_vec()
 }
 
 /// Electric friction so many ticks after the wave began, mN.

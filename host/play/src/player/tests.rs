@@ -1,9 +1,12 @@
+mod keep_alive;
+
 use std::collections::BTreeMap;
 
 use frixel_driver::{ByteStream, LinkClosed, PollingLink};
+use frixel_felt::recorder::PlayListener;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::{LayerSetting, Scene, compile};
-use frixel_wire::hello::Hello;
+use frixel_wire::hello::BoardLimits;
 
 use super::*;
 
@@ -18,7 +21,7 @@ struct Line<'a> {
 struct Told(Vec<String>);
 
 impl PlayListener for Told {
-    fn scene_replaced(&mut self, program: &Program, _: &Hello) -> Result<(), ParameterError> {
+    fn scene_replaced(&mut self, program: &Program, _: &BoardLimits) -> Result<(), ParameterError> {
         self.0.push(format!("scene of {}", program.records.len()));
         Ok(())
     }
@@ -90,8 +93,16 @@ fn ping(live: bool) -> Program {
 
 /// A board that plays a program.
 fn playing(memory: &mut BoardMemory, program: Program) -> Playing<'_> {
-    let rig = Rig::new(memory, &RigConfig::default(), Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
-    let mut player = Player::new(Device::connect(PollingLink::new(Line { rig, told: Told::default() })).unwrap());
+    start(PollingLink::new(line(memory)), program)
+}
+
+fn line(memory: &mut BoardMemory) -> Line<'_> {
+    let stroke = Stroke::sweep(0.12, 0.08, 1.0).unwrap();
+    Line { rig: Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap(), told: Told::default() }
+}
+
+fn start<L: Link + Recorded>(link: L, program: Program) -> Player<L> {
+    let mut player = Player::new(Device::connect(link).unwrap());
     player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
     player
 }

@@ -10,7 +10,6 @@ use super::kinds::{Bitmap as BitmapWords, Lowered};
 use super::layer::{Above, Amount, Layer, Rectangle, Region};
 use super::log::Log;
 use super::mistake::FitMistake;
-use super::optimisation::Optimisation;
 use super::pool::{Placed, Pool, Unplaced};
 use super::program::Bitmap;
 use super::reach::Reach;
@@ -34,17 +33,6 @@ pub(crate) struct Lowering<'a, 's> {
     pub(crate) noises: usize,
     pub(crate) clicks: usize,
     log: &'a mut Log<'s>,
-    notes: Vec<String>,
-    warnings: Vec<Warning>,
-}
-
-/// The points and bitmaps that records name, with notes on their conversion.
-pub(super) struct Gathered {
-    pub(super) points: Vec<Point>,
-    pub(super) bitmaps: Vec<Bitmap>,
-    pub(super) notes: Vec<String>,
-    pub(super) warnings: Vec<Warning>,
-    pub(super) optimisations: Vec<Optimisation>,
 }
 
 impl<'a, 's> Lowering<'a, 's> {
@@ -56,13 +44,12 @@ impl<'a, 's> Lowering<'a, 's> {
         pool: Pool,
         log: &'a mut Log<'s>,
     ) -> Self {
-        let (points, notes, warnings) = Default::default();
-        Self { scene, header, reach, tick_hz, pool, points, noises: 0, clicks: 0, log, notes, warnings }
+        Self { scene, header, reach, tick_hz, pool, points: Vec::new(), noises: 0, clicks: 0, log }
     }
 
-    pub(super) fn finish(self) -> Gathered {
-        let (bitmaps, optimisations) = self.pool.finish();
-        Gathered { points: self.points, bitmaps, notes: self.notes, warnings: self.warnings, optimisations }
+    /// The points and bitmaps that records name.
+    pub(super) fn finish(self) -> (Vec<Point>, Vec<Bitmap>) {
+        (self.points, self.pool.finish())
     }
 
     /// Number of mistakes so far.
@@ -72,6 +59,13 @@ impl<'a, 's> Lowering<'a, 's> {
 
     /// The record of a layer; `None` if it has a mistake.
     pub(super) fn record(&mut self, layer: &Layer) -> Option<Record> {
+        self.log.set_layer(Some(layer.number.table));
+        let record = self.lower(layer);
+        self.log.set_layer(None);
+        record
+    }
+
+    fn lower(&mut self, layer: &Layer) -> Option<Record> {
         let Lowered { layer: record_layer, outline } = layer.kind.lower(layer, self)?;
         let region = match layer.region.clone().or(outline) {
             Some(region) => {
@@ -85,7 +79,9 @@ impl<'a, 's> Lowering<'a, 's> {
 
     /// Adds a warning, unless the layer is a copy of one that has it already.
     pub(crate) fn warn(&mut self, layer: &Layer, warning: Option<Warning>) {
-        self.warnings.extend(warning.filter(|_| !layer.is_copy));
+        if let Some(warning) = warning.filter(|_| !layer.is_copy) {
+            self.log.warn_about(layer, warning);
+        }
     }
 
     /// Adds the picture of a layer to the pool. `visible` is the rectangle in which the picture shows.
@@ -97,7 +93,7 @@ impl<'a, 's> Lowering<'a, 's> {
     ) -> Option<Placed> {
         let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
         let picture = layer.places.field("picture");
-        match self.pool.place(bitmap, visible, screen, &mut self.notes) {
+        match self.pool.place(layer, bitmap, visible, screen, self.log) {
             Ok(placed) => Some(placed),
             Err(Unplaced::Reported) => None,
             Err(Unplaced::Unusable(mistake)) => {
@@ -112,7 +108,7 @@ impl<'a, 's> Lowering<'a, 's> {
                 (0..COARSER_MAX).find_map(|_| {
                     coarser.pitch_mm = Some(pitch_mm);
                     pitch_mm *= 2.0;
-                    self.pool.place(&coarser, visible, screen, &mut self.notes).ok()
+                    self.pool.place(layer, &coarser, visible, screen, self.log).ok()
                 })
             }
         }

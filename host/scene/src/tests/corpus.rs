@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use frixel_testkit::corpus::{self, Case};
 
 use super::*;
-use crate::{FieldMistake, FileMistake, FingerProfile, FitMistake, Mistake, Screen, Warning, migrate};
+use crate::{
+    FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Screen, Warning, migrate,
+};
 
 /// The files of a case, those that every case finds, and the scene among them.
 struct Inputs {
@@ -80,14 +82,22 @@ variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach Below
     PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger Model);
 variants!(warning_name, WARNINGS, Warning: ElectricAboveNatural BeyondMeasuredVoltage BeyondMeasuredLoad
     RimWiderThanButton PictureStretched EdgeAcrossScreen EdgeOutsideRegion HidesAllBelow NameTwice);
+variants!(optimisation_name, OPTIMISATIONS, Optimisation: Covered Idle Flat Folded Cropped Shared Bitmap);
 
 impl Met {
-    fn meet(&mut self, mistakes: &[Located]) {
-        self.0.extend(mistakes.iter().map(|located| match &located.mistake {
-            Mistake::Field(mistake) => field_name(mistake),
-            Mistake::File(mistake) => file_name(mistake),
-            Mistake::Fit(mistake) => fit_name(mistake),
+    /// Takes what is said, and makes a line of each diagnostic.
+    fn lines(&mut self, diagnostics: &[Diagnostic]) -> String {
+        self.0.extend(diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
+            Message::Mistake(Mistake::Field(mistake)) => Some(field_name(mistake)),
+            Message::Mistake(Mistake::File(mistake)) => Some(file_name(mistake)),
+            Message::Mistake(Mistake::Fit(mistake)) => Some(fit_name(mistake)),
+            Message::Warning(warning) => Some(warning_name(warning)),
+            Message::Optimisation(optimisation) => Some(optimisation_name(optimisation)),
+            Message::Note(_) => None,
         }));
+        let lines: Vec<String> =
+            diagnostics.iter().map(|diagnostic| format!("{} {diagnostic}\n", diagnostic.kind)).collect();
+        lines.concat()
     }
 }
 
@@ -97,38 +107,19 @@ fn every_scene_is_answered_as_its_page_says() {
     hold("check", |case| {
         let inputs = Inputs::of(case);
         let scene = inputs.scene();
-        let mistakes = mistakes(&scene).to_vec();
         let compiled = scene.and_then(|scene| {
             let compiled = compile(&scene, &LIMITS, TICK_HZ);
             check_draft(&compiled, compile_draft(&scene, &LIMITS, TICK_HZ));
             compiled
         });
-        match compiled {
-            Err(error) => {
-                met.meet(&error.mistakes);
-                let kind = |located| if mistakes.contains(located) { "mistake" } else { "refusal" };
-                let lines: Vec<_> =
-                    error.mistakes.iter().map(|located| format!("{} {located}\n", kind(located))).collect();
-                lines.concat()
-            }
-            Ok(program) => {
-                met.0.extend(program.warnings.iter().map(warning_name));
-                let warnings = program.warnings.iter().map(|warning| format!("warning {warning}\n"));
-                let notes = program.notes.iter().map(|note| format!("note {note}\n"));
-                let optimised = program.optimisations.iter().map(|note| format!("note {note}\n"));
-                warnings.chain(notes).chain(optimised).collect()
-            }
-        }
+        met.lines(&compiled.map_or_else(|error| error.diagnostics, |program| program.diagnostics))
     });
     hold("migrate", |case| {
         let inputs = Inputs::of(case);
         let text = str::from_utf8(&inputs.text).expect("a text");
-        migrate(text, &inputs.name, &inputs.files).unwrap_or_else(|error| {
-            met.meet(&error.mistakes);
-            format!("mistake {error}\n")
-        })
+        migrate(text, &inputs.name, &inputs.files).unwrap_or_else(|error| met.lines(&error.diagnostics))
     });
-    let all = [FIELD_MISTAKES, FILE_MISTAKES, FIT_MISTAKES, WARNINGS].concat();
+    let all = [FIELD_MISTAKES, FILE_MISTAKES, FIT_MISTAKES, WARNINGS, OPTIMISATIONS].concat();
     let missing: Vec<&str> = all.into_iter().filter(|name| !met.0.contains(name)).collect();
     assert!(missing.is_empty(), "no page of tests/corpus has a case for {missing:?}");
 }

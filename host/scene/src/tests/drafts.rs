@@ -2,6 +2,10 @@
 
 use super::*;
 
+fn refusal(draft: &Program) -> String {
+    draft.refusals().next().expect("a refusal").to_string()
+}
+
 /// Scenes that a board refuses play as drafts, clamped to what can be reached, with the board's sentences.
 #[test]
 fn drafts() {
@@ -12,7 +16,6 @@ fn drafts() {
         assert!(program.is_draft());
         program
     };
-    let refusal = |program: &Program| program.refusals[0].to_string();
     let reach = draft("[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n");
     assert!(
         refusal(&reach).starts_with("test.toml:21:14: layer 1 (constant) asks for up to 0.9 N"),
@@ -33,12 +36,12 @@ fn drafts() {
                  high_n = 0.001\n";
     let time = draft(&noise.repeat(5));
     assert!(refusal(&time).contains("and the board has time for 2550"), "{}", refusal(&time));
-    assert_eq!((time.records.len(), time.notes.len()), (5, 0));
+    assert_eq!((time.records.len(), time.notes().count()), (5, 0));
 
     let absent = draft(
         "[[layer]]\nname = \"wood\"\nkind = \"bitmap\"\npicture = \"wood.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\n",
     );
-    assert_eq!(absent.notes, ["absent from this draft: layer 1 \"wood\""]);
+    assert_eq!(absent.notes().collect::<Vec<_>>(), ["absent from this draft: layer 1 \"wood\""]);
 
     let off = draft(
         "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
@@ -61,15 +64,15 @@ fn drafts_keep_to_the_limits_of_the_drive() {
     };
     let current =
         draft(&HEAD.replace("# layers follow", "[drive]\nvoltage_max_v_rms = 180\n[carrier]\nfrequency_hz = 5000"));
-    assert_eq!(current.refusals.len(), 1);
+    assert_eq!(current.refusals().count(), 1);
     assert!((135.0..145.0).contains(&current.reach.voltage_max_v_rms), "{:?}", current.reach);
     let fast = draft(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 6000"));
-    assert_eq!((fast.refusals.len(), fast.half_period_ticks), (1, 4));
+    assert_eq!((fast.refusals().count(), fast.half_period_ticks), (1, 4));
     let wide = draft(
         "version = 2\n[screen]\nwidth_mm = 100\nheight_mm = 80\n[finger]\nfriction_coefficient = 0.5\n\
                       normal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 0\n",
     );
-    assert!(wide.refusals[0].to_string().contains("a skin gap is missing"), "{:?}", wide.refusals);
+    assert!(refusal(&wide).contains("a skin gap is missing"), "{}", refusal(&wide));
     assert!(wide.reach.voltage_max_v_rms < 100.0, "{:?}", wide.reach);
 }
 

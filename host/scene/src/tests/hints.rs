@@ -1,7 +1,7 @@
 //! Names and numbers of layers, mistakes that layers share, and what drafts and gains keep to.
 
 use super::*;
-use crate::Warning;
+use crate::{DiagnosticKind, Warning};
 
 const TRACK: &str = "[[layer]]\nname = \"track\"\nkind = \"constant\"\nfriction_fraction = 0.2\n\
     region = { x_mm = 10, y_mm = 10, width_mm = 100, height_mm = 10 }\n";
@@ -22,8 +22,9 @@ fn two_layers_of_one_name_are_pointed_out_with_the_one_that_counts() {
     let keys = |y_mm: u32| {
         at(0, "key").replace("y_mm = 0", &format!("y_mm = {y_mm}")) + "repeat = { columns = 3, dx_mm = 10 }\n"
     };
-    let copies = compile_text(&format!("version = 2\n{}{}", keys(0), keys(20))).expect("it compiles").warnings;
-    let [Warning::NameTwice { number, lower, .. }] = &copies[..] else { panic!("{copies:?}") };
+    let copies = compile_text(&format!("version = 2\n{}{}", keys(0), keys(20))).expect("it compiles");
+    let copies: Vec<&Warning> = copies.warnings().collect();
+    let [Warning::NameTwice { number, lower, .. }] = copies[..] else { panic!("{copies:?}") };
     assert_eq!((number.as_str(), lower.as_str()), ("2.1", "1.1"));
 }
 
@@ -106,4 +107,22 @@ fn gains_that_lead_out_of_reach_are_known_with_their_range() {
     assert!(clamped.starts_with("layer 1 \"track\" would ask for down to -0.02"), "{clamped}");
     let clamped = program.clamped_with(&settings(4.0, true)).expect("it is clamped").to_string();
     assert!(clamped.starts_with("layer 1 \"track\" and layer 2 \"detent\" would ask for up to 0.14"), "{clamped}");
+}
+
+/// Of what is said about several layers, none has the number.
+#[test]
+fn a_diagnostic_has_the_number_of_its_layer() {
+    let layers_of = |text: &str| {
+        let scene = Scene::parse(&format!("version = 2\n{text}"), "test.toml", &*PICTURES).expect("it reads");
+        let said =
+            compile(&scene, &LIMITS, TICK_HZ).map_or_else(|error| error.diagnostics, |program| program.diagnostics);
+        said.iter().map(|diagnostic| (diagnostic.kind, diagnostic.layer)).collect::<Vec<_>>()
+    };
+    let high = TRACK.replace("friction_fraction = 0.2", "friction_n = 0.9");
+    let wrong = TRACK.replace("0.2", "\"a\"");
+    let added = TRACK.replace("0.2", "0.9\nblend = \"add\"");
+    assert_eq!(layers_of(&format!("{TRACK}{high}")), [(DiagnosticKind::Refusal, Some(2))]);
+    assert_eq!(layers_of(&format!("{TRACK}{wrong}")), [(DiagnosticKind::Mistake, Some(2))]);
+    assert_eq!(layers_of(&format!("{TRACK}{added}")), [(DiagnosticKind::Refusal, None)]);
+    assert_eq!(layers_of(&format!("{TRACK}{EDGE}")), [(DiagnosticKind::Warning, Some(2))]);
 }

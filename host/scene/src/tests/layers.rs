@@ -67,7 +67,11 @@ fn scene_bytes_are_the_wires() {
 fn the_largest_voltage_keeps_every_limit() {
     let reached = |drive: &str| {
         let program = compile_text(&HEAD.replace("# layers follow", drive)).expect("it compiles");
-        (f64::from(program.header.voltage_max_v_rms), f64::from(program.header.voltage_max_v_peak), program.notes)
+        (
+            f64::from(program.header.voltage_max_v_rms),
+            f64::from(program.header.voltage_max_v_peak),
+            program.notes().map(str::to_owned).collect::<Vec<_>>(),
+        )
     };
     // Half a period is 25 time constants long, so 1 - (2/25) tanh(12.5) of the mean square remains.
     let edges = (1.0_f64 - 0.08).sqrt();
@@ -91,10 +95,13 @@ fn carriers_are_whole_ticks() {
     let program =
         compile_text(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 1300")).expect("it compiles");
     assert_eq!(program.half_period_ticks, 15);
-    assert_eq!(program.notes, ["carrier: 1300 Hz rounded to 1333.333 Hz, 15 ticks for each half period"]);
+    assert_eq!(
+        program.notes().collect::<Vec<_>>(),
+        ["carrier: 1300 Hz rounded to 1333.333 Hz, 15 ticks for each half period"]
+    );
     let program = compile_text(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 200")).expect("it compiles");
     assert_eq!(
-        program.notes,
+        program.notes().collect::<Vec<_>>(),
         ["carrier: 200 Hz is below 250 Hz, where charge leaks through skin and less friction is felt"]
     );
 }
@@ -221,7 +228,7 @@ fn a_picture_is_placed_and_held_at_its_border() {
                  black_n = 0.001\nwhite_n = 0.026";
     let scene = Scene::parse(&format!("{HEAD}{layer}"), "test.toml", &pictures).expect("it reads");
     let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
-    assert!(program.notes.is_empty(), "{:?}", program.notes);
+    assert!(program.notes().next().is_none(), "{:?}", program.diagnostics);
     assert_eq!((program.bitmaps[0].width, program.bitmaps[0].height), (3, 2));
     assert_eq!(program.bitmaps[0].samples, [0, 51, 102, 255, 204, 153]);
     assert_eq!(program.bitmaps[0].crc32, frixel_wire::scene::bitmap_crc32(3, 2, &program.bitmaps[0].samples));
@@ -249,7 +256,7 @@ fn one_picture_twice_is_sent_once() {
     };
     let program = compile_layers(&format!("{}{}", layer(0), layer(60)));
     assert_eq!(program.bitmaps.len(), 1);
-    assert_eq!(program.notes, ["brick.png: 512 x 512 resampled to 200 x 200 at 0.25 mm"; 2]);
+    assert_eq!(program.notes().collect::<Vec<_>>(), ["brick.png: 512 x 512 resampled to 200 x 200 at 0.25 mm"; 2]);
 }
 
 fn read_png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Picture {

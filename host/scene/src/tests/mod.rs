@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use frixel_control::Board;
 use frixel_wire::hello::BoardLimits;
 
-use super::{CompileError, Located, Program, Scene, compile, compile_draft};
+use super::{CompileError, Diagnostic, Program, Scene, compile, compile_draft};
 
 mod corpus;
 mod cures;
@@ -79,16 +79,16 @@ fn check_draft(compiled: &Result<Program, CompileError>, draft: Result<Program, 
     match (compiled, draft) {
         (Ok(program), draft) => assert_eq!(draft.as_ref(), Ok(program)),
         // As texts, because a number that was found may be not-a-number.
-        (Err(CompileError { mistakes, .. }), Ok(draft)) => {
-            assert_eq!(format!("{:?}", draft.refusals), format!("{mistakes:?}"));
+        (Err(CompileError { diagnostics, .. }), Ok(draft)) => {
+            assert_eq!(format!("{:?}", draft.refusals().collect::<Vec<_>>()), format!("{diagnostics:?}"));
         }
         (Err(refused), Err(error)) => assert_eq!(error.to_string(), refused.to_string()),
     }
 }
 
 /// The mistakes that were found while a scene was read.
-fn mistakes(scene: &Result<Scene, CompileError>) -> &[Located] {
-    scene.as_ref().map_or_else(|error| error.mistakes.as_slice(), Scene::mistakes)
+fn mistakes(scene: &Result<Scene, CompileError>) -> &[Diagnostic] {
+    scene.as_ref().map_or_else(|error| error.diagnostics.as_slice(), Scene::mistakes)
 }
 
 /// A scene of the repository.

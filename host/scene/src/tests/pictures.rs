@@ -22,7 +22,7 @@ fn sizes(program: &Program) -> Vec<(u16, u16)> {
 
 #[track_caller]
 fn check_note(program: &Program, part: &str) {
-    assert!(program.notes.iter().any(|note| note.contains(part)), "{part}: {:?}", program.notes);
+    assert!(program.notes().any(|note| note.contains(part)), "{part}: {:?}", program.diagnostics);
 }
 
 #[test]

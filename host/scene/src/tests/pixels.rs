@@ -49,7 +49,7 @@ fn on_another_screen_pixels_move_and_millimetres_stay() {
         region = { x_mm = 12, y_mm = 12, width_mm = 60, height_mm = 36 }\n";
     assert_eq!(program.records[0].region, program_of(written).records[0].region);
     assert_eq!(
-        program.notes.iter().filter(|note| note.starts_with("design")).collect::<Vec<_>>(),
+        program.notes().filter(|note| note.starts_with("design")).collect::<Vec<_>>(),
         [
             "design: 600 x 1200 px are stretched to the screen's 120 mm x 180 mm: a pixel is 0.2000 mm wide and 0.1500 mm high"
         ]

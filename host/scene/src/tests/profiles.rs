@@ -80,7 +80,7 @@ fn of_the_limits_of_the_drive_the_least_counts() {
 }
 
 fn warnings(text: &str) -> Vec<Warning> {
-    program(&parse(text).expect("it reads")).expect("it compiles").warnings
+    program(&parse(text).expect("it reads")).expect("it compiles").warnings().cloned().collect()
 }
 
 /// A measured finger, whose largest voltage and range of loads are given.
@@ -111,17 +111,18 @@ fn beyond_what_a_finger_was_measured_at_is_warned_of_and_refused_by_boards() {
 fn a_profile_of_another_screen_counts_as_assumed() {
     let program = |text: &str| program(&parse(text).expect("it reads")).expect("it compiles");
     let own = program(&measured("150", "[0.4, 0.6]", "example"));
-    assert_eq!((own.finger.origin, own.finger.newtons_suffix(), own.notes.len()), (Origin::Measured, "", 0));
+    assert_eq!((own.finger.origin, own.finger.newtons_suffix(), own.notes().count()), (Origin::Measured, "", 0));
     let other = program(&measured("150", "[0.4, 0.6]", "lab/tablet 3"));
     assert_eq!((other.finger.origin, other.finger.newtons_suffix()), (Origin::Assumed, ", assumed"));
     assert_eq!(
-        other.notes,
+        other.notes().collect::<Vec<_>>(),
         [
             "the scene's finger was measured on screen \"lab/tablet 3\" and is played on \"example\": it counts as assumed"
         ]
     );
     let unnamed = measured("150", "[0.4, 0.6]", "lab/tablet 3") + "\nscreen = { width_mm = 120, height_mm = 80 }";
-    let [note] = &program(&unnamed).notes[..] else { panic!("one note") };
+    let unnamed = program(&unnamed);
+    let [note] = unnamed.notes().collect::<Vec<_>>()[..] else { panic!("one note") };
     assert!(note.ends_with("is played on a screen without a `name`: it counts as assumed"), "{note}");
 }
 
@@ -137,7 +138,7 @@ fn a_soft_finger_plays_on_springs_that_have_its_friction_at_the_largest_voltage(
     let program_of =
         |stress_exponent| program(&same.clone().with_finger(soft(stress_exponent), "soft").expect("it is taken"));
     let exact = program_of(0.5).expect("it compiles");
-    let [note] = &exact.notes[..] else { panic!("{:?}", exact.notes) };
+    let [note] = exact.notes().collect::<Vec<_>>()[..] else { panic!("{:?}", exact.diagnostics) };
     assert!(note.ends_with("differ from the soft finger by at most 0.0 % of the reach"), "{note}");
     let near = program_of(0.4).expect("it compiles");
     let finger = frixel_model::SoftFinger {

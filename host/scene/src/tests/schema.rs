@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::json_schema::is_valid;
 use super::*;
-use crate::{FieldMistake, FileMistake, Mistake, json_schema};
+use crate::{FieldMistake, FileMistake, Message, Mistake, json_schema};
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| serde_json::from_str(&json_schema()).expect("it is JSON"));
 
@@ -29,7 +29,8 @@ fn json(text: &str) -> Option<Value> {
 }
 
 /// Whether a mistake is one of grammar, which a schema can detect.
-fn is_grammar(mistake: &Mistake) -> bool {
+fn is_grammar(diagnostic: &Diagnostic) -> bool {
+    let Message::Mistake(mistake) = &diagnostic.message else { return false };
     matches!(
         mistake,
         Mistake::Field(
@@ -48,14 +49,14 @@ fn is_grammar(mistake: &Mistake) -> bool {
 
 /// Panics if the schema accepts a text that the parser refuses for its grammar, or refuses one that the parser accepts.
 #[track_caller]
-pub(super) fn check_agrees(text: &str, mistakes: &[Located]) {
+pub(super) fn check_agrees(text: &str, mistakes: &[Diagnostic]) {
     let Some(scene) = json(text) else { return };
     // What `[defaults]` and other files give to a layer only the parser knows.
     let is_completed = ["defaults", "include"].iter().any(|table| scene.get(table).is_some());
     if mistakes.is_empty() {
         assert!(schema_takes(&scene), "the parser takes it, the schema does not:\n{text}");
     }
-    let grammar = mistakes.iter().find(|located| is_grammar(&located.mistake));
+    let grammar = mistakes.iter().find(|mistake| is_grammar(mistake));
     if let Some(mistake) = grammar.filter(|_| !is_completed) {
         assert!(!schema_takes(&scene), "the schema does not see that {mistake}\n{text}");
     }

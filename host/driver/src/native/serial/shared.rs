@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serialport::SerialPort;
 
 use crate::keep_alive::KeepAlive;
-use crate::link::{KEEP_ALIVE_TIMEOUT, Written};
+use crate::link::Written;
 
 /// Most received bytes that are stored for a caller that does not read: 20 s of telemetry at 1 kHz. Further bytes are
 /// dropped.
@@ -29,10 +29,7 @@ pub(super) struct State {
     transmit_queue: Vec<u8>,
     pub(super) written: Written,
     opened: Instant,
-    last_write: Instant,
     pub(super) pings: KeepAlive,
-    /// When the application's last call returned; `None` during a call that waits.
-    last_call: Option<Instant>,
     /// Why the link has closed.
     pub(super) closed: Option<String>,
     /// The link is being dropped.
@@ -42,15 +39,16 @@ pub(super) struct State {
 
 impl Shared {
     pub(super) fn new(opened: Instant) -> Self {
+        let mut pings = KeepAlive::default();
+        // The writing thread pings outside of calls.
+        pings.leave_call(Duration::ZERO);
         Self {
             state: Mutex::new(State {
                 receive_buffer: Vec::new(),
                 transmit_queue: Vec::new(),
                 written: Written::default(),
                 opened,
-                last_write: opened,
-                pings: KeepAlive::default(),
-                last_call: Some(opened),
+                pings,
                 closed: None,
                 closing: false,
                 threads: 0,
@@ -76,7 +74,7 @@ impl Shared {
             match outcome {
                 Ok(0) => return self.close(state, "the other end hung up".into()),
                 Ok(len) => {
-                    let now = state.since_opened(Instant::now());
+                    let now = state.opened.elapsed();
                     if state.pings.hear(bytes.get(..len).unwrap_or_default(), now) {
                         // The next ping may be due earlier.
                         self.queued.notify_one();
@@ -113,9 +111,9 @@ impl Shared {
             if state.closing {
                 return None;
             }
-            state = match state.ping_due_in(Instant::now()) {
+            state = match state.ping_due_in() {
                 Some(Duration::ZERO) => {
-                    state.queue_ping(Instant::now());
+                    state.queue_ping();
                     state
                 }
                 Some(wait) => {
@@ -143,79 +141,22 @@ impl State {
     pub(super) fn queue(&mut self, frame: &[u8]) {
         self.transmit_queue.extend_from_slice(frame);
         self.written.add(frame);
-        self.last_write = Instant::now();
+        self.pings.wrote(self.opened.elapsed());
     }
 
-    /// Records that the application is in a call that waits.
-    pub(super) fn enter_call(&mut self) {
-        self.last_call = None;
-    }
-
-    /// Records that the application's call returns now.
-    pub(super) fn leave_call(&mut self, now: Instant) {
-        self.last_call = Some(now);
-    }
-
-    fn queue_ping(&mut self, now: Instant) {
-        let ping = self.pings.next_ping(self.since_opened(now));
+    fn queue_ping(&mut self) {
+        let ping = self.pings.next_ping(self.opened.elapsed());
         self.queue(&ping);
     }
 
-    /// Time until the next ping; `None` if there are none, or the application has not called within
-    /// [`KEEP_ALIVE_TIMEOUT`].
-    fn ping_due_in(&self, now: Instant) -> Option<Duration> {
-        let due_at = self.pings.due_at(self.since_opened(self.last_write))?;
-        let is_application_active =
-            self.last_call.is_none_or(|last_call| now.saturating_duration_since(last_call) < KEEP_ALIVE_TIMEOUT);
-        is_application_active.then(|| due_at.saturating_sub(self.since_opened(now)))
-    }
-
-    fn since_opened(&self, now: Instant) -> Duration {
-        now.saturating_duration_since(self.opened)
+    /// Time until the next ping; `None` if there is none.
+    fn ping_due_in(&self) -> Option<Duration> {
+        let now = self.opened.elapsed();
+        self.pings.due_at(now).map(|due_at| due_at.saturating_sub(now))
     }
 }
 
 fn is_temporary(error: &io::Error) -> bool {
     use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const PERIOD: Duration = Duration::from_millis(5);
-
-    /// A link with pings. Its last write and last call were at the returned time.
-    fn pinging() -> (Shared, Instant) {
-        let opened = Instant::now();
-        let shared = Shared::new(opened);
-        shared.lock().pings.set_period(PERIOD);
-        (shared, opened)
-    }
-
-    #[test]
-    fn the_keep_alive_ends_when_its_timeout_has_passed_since_the_last_call() {
-        let (shared, opened) = pinging();
-        let state = shared.lock();
-        assert_eq!(state.ping_due_in(opened), Some(PERIOD));
-        assert_eq!(state.ping_due_in(opened + KEEP_ALIVE_TIMEOUT.saturating_sub(PERIOD)), Some(Duration::ZERO));
-        for late in [KEEP_ALIVE_TIMEOUT, KEEP_ALIVE_TIMEOUT + PERIOD, 1000 * KEEP_ALIVE_TIMEOUT] {
-            assert_eq!(state.ping_due_in(opened + late), None, "{late:?} after the last call");
-        }
-    }
-
-    #[test]
-    fn a_call_that_waits_keeps_the_board_alive_and_its_end_restarts_the_timeout() {
-        let (shared, opened) = pinging();
-        let mut state = shared.lock();
-        state.enter_call();
-        assert_eq!(state.ping_due_in(opened + 1000 * KEEP_ALIVE_TIMEOUT), Some(Duration::ZERO));
-        state.leave_call(opened + 1000 * KEEP_ALIVE_TIMEOUT);
-        assert_eq!(
-            state.ping_due_in(opened + (1001 * KEEP_ALIVE_TIMEOUT).saturating_sub(PERIOD)),
-            Some(Duration::ZERO)
-        );
-        assert_eq!(state.ping_due_in(opened + 1001 * KEEP_ALIVE_TIMEOUT), None);
-    }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::mpsc;
 
-use frixel::rigs::EmulatedLink;
-use frixel_driver::Device;
+use frixel::rigs::EmulatedStream;
+use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
 use frixel_scene::{Program, Scene};
@@ -35,11 +35,11 @@ pub(super) fn play_on_emulator(
         // The receiver is gone once the play has ended.
         let _ = sender.send(*record);
     })?;
-    let mut link = EmulatedLink::open(&board, records)?;
+    let mut stream = EmulatedStream::open(&board, records)?;
     if has_own_reference {
-        link = link.referring_to_simulated_finger();
+        stream = stream.referring_to_simulated_finger();
     }
-    let device = Device::connect(link)?;
+    let device = Device::connect(PollingLink::new(stream))?;
     let mut played = follow(args, plan, device, outputs, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(CommandError::from));

@@ -42,7 +42,7 @@ pub(super) fn follow<L: RecordedLink>(
 
 /// Why a board refuses a program, a sentence each.
 fn sentences(program: &Program) -> Vec<String> {
-    program.refusals.iter().map(ToString::to_string).collect()
+    program.refusals().map(ToString::to_string).collect()
 }
 
 /// Ends triggers, and says what the board refuses of it.

@@ -176,8 +176,8 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use frixel::player::player;
-    use frixel::rigs::SimLink;
-    use frixel_driver::Device;
+    use frixel::rigs::SimStream;
+    use frixel_driver::{Device, PollingLink};
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
     use frixel_scene::{TargetRange, compile};
@@ -195,7 +195,7 @@ mod tests {
     /// A simulated board that plays `scene.toml`, watched as at a port: the play does not wait for the compiler.
     struct Watched<'a> {
         folder: TempDir,
-        player: Player<SimLink<'a>>,
+        player: Player<PollingLink<SimStream<'a>>>,
         live: LiveScene,
     }
 
@@ -212,7 +212,7 @@ mod tests {
             let program = compile(&scene.unwrap(), &limits, tick_hz).unwrap();
             let rig = Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
             let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
-            let device = Device::connect(SimLink::new(rig, Recorder::idle())).unwrap();
+            let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).unwrap();
             let mut player = player(device, recorder);
             player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
             let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
@@ -249,7 +249,8 @@ mod tests {
         /// Refreshes until a scene with this friction plays.
         fn until_plays(&mut self, friction_n: f64) {
             let begin = Instant::now();
-            let plays = |player: &Player<SimLink>| TargetRange::of(player.playing().unwrap().program()).most_n;
+            let plays =
+                |player: &Player<PollingLink<SimStream>>| TargetRange::of(player.playing().unwrap().program()).most_n;
             while (plays(&self.player) - friction_n).abs() > 1e-6 {
                 assert!(begin.elapsed() < Duration::from_secs(20), "{friction_n} N never plays");
                 self.refresh();

@@ -144,10 +144,10 @@ impl Plan {
 
 /// Prints the warnings of the compiler, and the values that it converted, rounded or clamped.
 pub(super) fn print_notes(program: &Program) {
-    for warning in &program.warnings {
+    for warning in program.warnings() {
         note(format_args!("warning: {warning}"));
     }
-    for sentence in &program.notes {
+    for sentence in program.notes() {
         note(sentence);
     }
 }
@@ -164,7 +164,7 @@ fn note_streams(program: &Program, has_feed: bool) {
 
 /// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
 pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
-    match program.warnings.iter().find(|warning| warning.is_refused_by_boards()) {
+    match program.warnings().find(|warning| warning.is_refused_by_boards()) {
         Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: warning.clone() }),
         _ => Ok(()),
     }
@@ -230,7 +230,7 @@ mod tests {
         let board = RigConfig::default().board;
         let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).unwrap();
         let program = Target::Port.compile(&scene, &board.limits, board.tick_hz).unwrap();
-        assert_eq!(program.warnings.len(), 1);
+        assert_eq!(program.warnings().count(), 1);
         check_measured(&program, BoardKind::Simulator).unwrap();
         let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();
         assert!(

@@ -1,7 +1,7 @@
 //! The boards that `--port` can name, and how to open them.
 
-use frixel::rigs::SimLink;
-use frixel_driver::Device;
+use frixel::rigs::SimStream;
+use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
@@ -87,12 +87,12 @@ pub(super) fn play_on_simulator(
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
-    let mut link = SimLink::new(rig, Recorder::idle());
+    let mut line = SimStream::new(rig, Recorder::idle());
     if has_own_reference {
-        link = link.referring_to_simulated_finger();
+        line = line.referring_to_simulated_finger();
     }
     plan.world = Some(world.report());
-    let device = Device::connect(link)?;
+    let device = Device::connect(PollingLink::new(line))?;
     follow(args, plan, device, outputs, interrupt)
 }
 

@@ -47,7 +47,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     let preview = Preview { speed_m_per_s: 1e-3 * args.speed_mm_per_s, map_max };
     output.write(&draw_preview_png(&title, &program, &preview)?)?;
     if program.is_draft() {
-        print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals.len())))?;
+        print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals().count())))?;
     }
     for (name, text) in feel::lines(&Perception::of(&program)) {
         print_line(format_args!("  {name:<16} {text}"))?;

@@ -280,8 +280,8 @@ mod tests {
     use frixel_hil_sim::{BoardMemory, Point, Rig, Stroke};
 
     use super::*;
-    use crate::rigs::SimLink;
-    use frixel_driver::{Bitmap, Device, Upload};
+    use crate::rigs::SimStream;
+    use frixel_driver::{Bitmap, Device, PollingLink, Upload};
     use frixel_felt::recorder::Recorder;
 
     /// Frames and bytes that the driver sends to a simulated board.
@@ -291,7 +291,7 @@ mod tests {
         let point = Point { x_m: 0.01, y_m: 0.01 };
         let stroke = Stroke::constant_speed(point, Point { x_m: 0.1, ..point }, 0.1).expect("a stroke");
         let rig = Rig::new(&mut memory, &config, stroke, 1).expect("a rig");
-        let mut device = Device::connect(SimLink::new(rig, Recorder::idle())).expect("a board");
+        let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).expect("a board");
         let before = device.counters();
         let scene = program.scene_bytes();
         let bitmaps = program.bitmaps.iter().map(|bitmap| Bitmap {

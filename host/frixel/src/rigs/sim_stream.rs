@@ -1,8 +1,8 @@
-//! A link to the in-process rig, with the rig's clock: waiting for a second of virtual time takes no wall time.
+//! The line to the in-process rig, on the rig's clock: waiting for a second of virtual time takes no wall time.
 
 use std::time::Duration;
 
-use frixel_driver::{KeepAlive, Link, LinkClosed, Written};
+use frixel_driver::{ByteStream, LinkClosed};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_play::Recorded;
@@ -16,33 +16,18 @@ type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
 /// The host's end of the serial line to a simulated board.
 ///
 /// The stroke of the finger and the record start when the scene first plays.
-pub struct SimLink<'a> {
+pub struct SimStream<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
     reference_finger: ReferenceFinger,
     recording: bool,
-    written: Written,
-    written_at: Duration,
-    pings: KeepAlive,
-    /// Tick at which the next ping is due.
-    ping_tick: Option<u64>,
     observer: Option<Observer<'a>>,
 }
 
-impl<'a> SimLink<'a> {
-    /// Creates a link to `rig` that records its ticks into `recorder`.
+impl<'a> SimStream<'a> {
+    /// Creates a line to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self {
-            rig,
-            recorder,
-            reference_finger: ReferenceFinger::Scene,
-            recording: false,
-            written: Written::default(),
-            written_at: Duration::ZERO,
-            pings: KeepAlive::default(),
-            ping_tick: None,
-            observer: None,
-        }
+        Self { rig, recorder, reference_finger: ReferenceFinger::Scene, recording: false, observer: None }
     }
 
     /// Calls `observer` with every tick that is recorded.
@@ -58,20 +43,11 @@ impl<'a> SimLink<'a> {
         Self { reference_finger: ReferenceFinger::simulated(), ..self }
     }
 
-    /// The recorder with all ticks.
-    pub fn into_recorder(self) -> Recorder {
-        self.recorder
-    }
-
     fn ticks(&self, time: Duration) -> u64 {
         (time.as_secs_f64() * f64::from(self.rig.tick_hz())).ceil() as u64
     }
 
     fn step(&mut self) {
-        if self.ping_tick.is_some_and(|tick| tick <= self.rig.tick()) {
-            let ping = self.pings.next_ping(self.now());
-            self.send(&ping);
-        }
         let record = self.rig.step();
         if self.recording {
             self.reference_finger.record(&mut self.recorder, &observation(&record), &record.felt);
@@ -83,17 +59,6 @@ impl<'a> SimLink<'a> {
             self.recorder.start(record.tick as u32);
             self.recording = true;
         }
-    }
-
-    fn send(&mut self, frame: &[u8]) {
-        self.rig.send(frame);
-        self.written.add(frame);
-        self.written_at = self.now();
-        self.plan_ping();
-    }
-
-    fn plan_ping(&mut self) {
-        self.ping_tick = self.pings.due_at(self.written_at).map(|due| self.ticks(due));
     }
 }
 
@@ -110,7 +75,7 @@ pub(super) fn observation(record: &TickRecord) -> Observation {
     }
 }
 
-impl Recorded for SimLink<'_> {
+impl Recorded for SimStream<'_> {
     type Recorder = Recorder;
 
     fn recorder_mut(&mut self) -> &mut Recorder {
@@ -118,10 +83,10 @@ impl Recorded for SimLink<'_> {
     }
 }
 
-impl Link for SimLink<'_> {
-    fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
-        self.send(frame);
-        Ok(self.written.bytes)
+impl ByteStream for SimStream<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        self.rig.send(bytes);
+        Ok(())
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
@@ -129,26 +94,12 @@ impl Link for SimLink<'_> {
         while !self.rig.has_received() && self.rig.tick() < end {
             self.step();
         }
-        let len_before = buffer.len();
         self.rig.receive(buffer);
-        let now = self.now();
-        if self.pings.hear(buffer.get(len_before..).unwrap_or_default(), now) {
-            self.plan_ping();
-        }
         Ok(())
     }
 
     fn now(&self) -> Duration {
         Duration::from_secs_f64(self.rig.tick() as f64 / f64::from(self.rig.tick_hz()))
-    }
-
-    fn keep_alive(&mut self, period: Duration) {
-        self.pings.set_period(period);
-        self.plan_ping();
-    }
-
-    fn written(&self) -> Written {
-        self.written
     }
 
     fn name(&self) -> &'static str {
