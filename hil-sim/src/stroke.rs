@@ -22,7 +22,7 @@ pub struct Point {
 }
 
 /// Place and sliding speed of a finger on the screen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FingerState {
     /// From the left edge of the screen, m.
     pub x_m: f64,

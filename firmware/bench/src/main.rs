@@ -7,6 +7,7 @@
 #![no_std]
 #![no_main]
 
+mod angle;
 mod count;
 mod host;
 mod inverse;
@@ -37,6 +38,7 @@ fn main() -> ! {
         }
         inverse::run(&mut counter);
         if cfg!(target_abi = "eabihf") {
+            angle::run(&mut counter);
             tick::run(&mut counter);
         }
         debug::exit(debug::EXIT_SUCCESS);

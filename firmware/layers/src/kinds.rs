@@ -15,6 +15,8 @@ pub(crate) mod noise;
 pub(crate) mod rings;
 #[cfg(feature = "speed")]
 pub(crate) mod speed;
+#[cfg(feature = "spokes")]
+pub(crate) mod spokes;
 #[cfg(feature = "stream")]
 pub(crate) mod stream;
 #[cfg(feature = "vibration")]
@@ -167,6 +169,8 @@ kinds! {
     9 => Stream in stream, feature "stream" bit 9;
     /// Rings around a middle.
     10 => Rings in rings, feature "rings" bit 11;
+    /// Spokes around a middle.
+    11 => Spokes in spokes, feature "spokes" bit 12;
 }
 
 // The session answers for streams, too.

@@ -33,7 +33,7 @@
 //!
 //! A module uses those of the lines above its own, and of its own line only those to its left:
 //!
-//! 1. numbers: `interval`, `cosine`, `square_root`, `measured` (what evaluations cost);
+//! 1. numbers: `interval`, `cosine`, `angle`, `square_root`, `measured` (what evaluations cost);
 //! 2. bytes: `layout` (what all records have in common), `parameters`, `point`, `header`;
 //! 3. what an evaluation reads and changes: `bitmap_pool`, `clicks`, `noise_waves`, `tables`, `context`, `prepare`;
 //! 4. the parts of a layer: `blend`, `region`, `click`, `kind`, `wave`, `kinds`, `record`;
@@ -54,6 +54,7 @@
 #![forbid(unsafe_code)]
 
 mod active;
+mod angle;
 mod bitmap_pool;
 mod blend;
 mod bounds;
@@ -84,6 +85,7 @@ mod tests;
 mod wave;
 
 pub use active::{ActiveLayers, active_bytes};
+pub use angle::angle_turns;
 pub use bitmap_pool::{BITMAP_POOL_LEN, BitmapPool, StoredBitmap};
 pub use blend::Blend;
 pub use bounds::electric_friction_max_n;

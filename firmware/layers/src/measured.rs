@@ -26,7 +26,7 @@ pub(crate) const POLYGON_EDGE_LEVEL: u32 = 26;
 /// Layers, in a rectangle; `kind::core_cycles` finds one by its name.
 pub(crate) const LAYERS: &[(&str, u32)] = &[
     ("bitmap", 223),
-    ("bitmap_tiled", 274),
+    ("bitmap_tiled", 292),
     ("button", 281),
     ("constant", 72),
     ("edge", 253),
@@ -34,9 +34,10 @@ pub(crate) const LAYERS: &[(&str, u32)] = &[
     ("rings", 58),
     ("saw", 118),
     ("sine", 139),
+    ("spokes", 91),
     ("square", 145),
     ("stream", 97),
     ("triangle", 123),
-    ("vibration_sine", 178),
+    ("vibration_sine", 180),
     ("vibration_square", 147),
 ];

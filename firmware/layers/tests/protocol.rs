@@ -113,7 +113,7 @@ fn numbers_of_records_and_points() {
         ("bitmap: corner", range::BITMAP_PLACE_M),
         ("bitmap: distance of samples and rows", range::PITCH_M),
         ("noise: wavelength", range::WAVELENGTH_M),
-        ("edge: place on the line; rings: middle", range::SHAPE_PLACE_M),
+        ("edge: place on the line; rings, spokes: middle", range::SHAPE_PLACE_M),
         ("edge: width; button: width of the rim", range::SHAPE_WIDTH_M),
         ("click: time", range::CLICK_S),
         ("burst: period", range::BURST_S),

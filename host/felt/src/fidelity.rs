@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::percentile::percentiles;
 use crate::perception::{WEBER_FRACTION, weber_steps};
-use crate::recorder::FingerState;
+use crate::recorder::FeltRow;
 use crate::spectrum::Spectrum;
 
 /// Samples a second.
@@ -35,15 +35,27 @@ const RATE_SAMPLES: usize = 10;
 /// One sample of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FidelitySample {
-    /// The finger, while it is on the screen and the board has had a report of it. Friction before the first report
-    /// cannot be right and is not scored.
-    pub finger: Option<FingerState>,
+    /// Sliding speed in m/s, while the finger is on the screen and the board has had a report of it. Friction before the
+    /// first report cannot be right and is not scored.
+    pub speed_m_per_s: Option<f64>,
     /// Total friction of the reference, N.
     pub reference_n: f64,
     /// Total friction that the finger felt, N.
     pub felt_n: f64,
     /// Natural friction, which both have, N.
     pub natural_n: f64,
+}
+
+impl From<&FeltRow> for FidelitySample {
+    /// A row of a record with [`SAMPLE_HZ`] rows a second, whose reference goes through the simulated finger.
+    fn from(row: &FeltRow) -> Self {
+        Self {
+            speed_m_per_s: row.speed_mm_s.filter(|_| row.is_tracked).map(|speed_mm_s| 1e-3 * speed_mm_s),
+            reference_n: row.wanted_n.unwrap_or(0.0),
+            felt_n: row.felt_n.unwrap_or(0.0),
+            natural_n: row.natural_n.unwrap_or(0.0),
+        }
+    }
 }
 
 impl FidelitySample {
@@ -89,7 +101,7 @@ pub struct Fidelity {
 impl Fidelity {
     /// Scores a record of [`SAMPLE_HZ`] samples a second; `None` without a touch of a quarter of a second.
     pub fn of(samples: &[FidelitySample]) -> Option<Self> {
-        let touches = samples.split(|sample| sample.finger.is_none());
+        let touches = samples.split(|sample| sample.speed_m_per_s.is_none());
         let touches: Vec<&[FidelitySample]> = touches.filter(|touch| touch.len() >= STRETCH_MIN).collect();
         let mut powers = Powers::default();
         for touch in &touches {
@@ -98,7 +110,7 @@ impl Fidelity {
         let scored = touches.concat();
         let mean = |value: fn(&FidelitySample) -> f64| scored.iter().map(value).sum::<f64>() / scored.len() as f64;
         let mean_n = mean(|sample| sample.reference_n);
-        let speed_m_per_s = mean(|sample| sample.finger.map_or(0.0, |finger| finger.speed_m_per_s));
+        let speed_m_per_s = mean(|sample| sample.speed_m_per_s.unwrap_or(0.0));
         let natural_n = mean(|sample| sample.natural_n);
         let contrast = |electric_n: fn(&FidelitySample) -> f64| {
             let [low_n, high_n] = percentiles(scored.iter().map(electric_n).collect(), [5, 95])?;
@@ -214,8 +226,12 @@ mod tests {
     fn scored(felt_n: impl Fn(f64) -> f64) -> Fidelity {
         let sample = |number: u32| {
             let t_s = f64::from(number) / SAMPLE_HZ;
-            let finger = FingerState { speed_m_per_s: SPEED_M_PER_S, ..FingerState::default() };
-            FidelitySample { finger: Some(finger), reference_n: grating_n(t_s), felt_n: felt_n(t_s), natural_n: 0.3 }
+            FidelitySample {
+                speed_m_per_s: Some(SPEED_M_PER_S),
+                reference_n: grating_n(t_s),
+                felt_n: felt_n(t_s),
+                natural_n: 0.3,
+            }
         };
         Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap()
     }
@@ -267,7 +283,7 @@ mod tests {
     fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
         let texture = |number: u32, late: f64| 0.004 * libm::sin(TAU * (150.0 * f64::from(number) / SAMPLE_HZ - late));
         let sample = |number: u32| FidelitySample {
-            finger: Some(FingerState { speed_m_per_s: SPEED_M_PER_S, ..FingerState::default() }),
+            speed_m_per_s: Some(SPEED_M_PER_S),
             reference_n: 0.3 + texture(number, 0.0),
             felt_n: 0.3 + texture(number, 0.25),
             natural_n: 0.3,
@@ -283,9 +299,8 @@ mod tests {
         let sample = |number: u32| {
             let t_s = f64::from(number) / SAMPLE_HZ;
             let natural_n = 0.3 + 0.1 * libm::sin(TAU * 3.0 * t_s);
-            let finger = FingerState { speed_m_per_s: SPEED_M_PER_S, ..FingerState::default() };
             let reference_n = natural_n + grating_n(t_s) - 0.3;
-            FidelitySample { finger: Some(finger), reference_n, felt_n: natural_n, natural_n }
+            FidelitySample { speed_m_per_s: Some(SPEED_M_PER_S), reference_n, felt_n: natural_n, natural_n }
         };
         let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
         assert!((fidelity.error_below_40_hz - 1.0).abs() < 1e-9, "{fidelity:?}");

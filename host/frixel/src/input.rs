@@ -10,17 +10,17 @@ use std::path::Path;
 use thiserror::Error;
 
 /// Largest scene, finger or screen, and included file: some 20,000 layers, of which a board takes 255 at most.
-pub const TOML_MAX_BYTES: u64 = 4 << 20;
+pub(crate) const TOML_MAX_BYTES: u64 = 4 << 20;
 /// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
-pub const PICTURE_MAX_BYTES: u64 = 64 << 20;
+pub(crate) const PICTURE_MAX_BYTES: u64 = 64 << 20;
 /// Largest table: an hour of felt.csv, 3.6 million rows, is 250 MB.
-pub const CSV_MAX_BYTES: u64 = 512 << 20;
+pub(crate) const CSV_MAX_BYTES: u64 = 512 << 20;
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
-pub const WAV_MAX_BYTES: u64 = 128 << 20;
+pub(crate) const WAV_MAX_BYTES: u64 = 128 << 20;
 /// Largest page of the studio.
-pub const PAGE_MAX_BYTES: u64 = 64 << 20;
+pub(crate) const PAGE_MAX_BYTES: u64 = 64 << 20;
 /// Longest line of a person on standard input, in bytes; what is beyond it is dropped.
-pub const LINE_MAX_BYTES: usize = 4096;
+pub(crate) const LINE_MAX_BYTES: usize = 4096;
 
 /// Why something is not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -57,7 +57,7 @@ impl From<InputError> for io::Error {
 }
 
 /// Opens a regular file of at most `max_bytes` bytes. Reading beyond them is an error.
-pub fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
+pub(crate) fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
     let mut options = OpenOptions::new();
     options.read(true);
     #[cfg(unix)]
@@ -79,14 +79,14 @@ pub fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
 }
 
 /// Reads a regular file of at most `max_bytes` bytes.
-pub fn read(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
+pub(crate) fn read(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path, max_bytes)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
 /// Reads a regular file of at most `max_bytes` bytes of UTF-8 text.
-pub fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
+pub(crate) fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
     let mut text = String::new();
     open(path, max_bytes)?.read_to_string(&mut text)?;
     Ok(text)
@@ -112,7 +112,7 @@ fn irregular(kind: FileType) -> Option<&'static str> {
 
 /// A reader that fails after a number of bytes.
 #[derive(Debug)]
-pub struct Bounded<R> {
+pub(crate) struct Bounded<R> {
     input: R,
     left: u64,
     max: u64,
@@ -120,7 +120,7 @@ pub struct Bounded<R> {
 
 impl<R: Read> Bounded<R> {
     /// Creates a reader of at most `max_bytes` bytes.
-    pub fn new(input: R, max_bytes: u64) -> Self {
+    pub(crate) fn new(input: R, max_bytes: u64) -> Self {
         Self { input, left: max_bytes, max: max_bytes }
     }
 }
@@ -152,7 +152,7 @@ impl<R: Read> Read for Bounded<R> {
 
 /// The next line, without its end; `None` at the end of the input or when it breaks. Bytes beyond [`LINE_MAX_BYTES`]
 /// are dropped, and bytes that are not UTF-8 replaced.
-pub fn next_line(input: &mut impl BufRead) -> Option<String> {
+pub(crate) fn next_line(input: &mut impl BufRead) -> Option<String> {
     let mut line = Vec::new();
     let mut is_any = false;
     loop {

@@ -1,10 +1,11 @@
-//! The library behind the `frixel` command: playing scenes, recording them, drawing charts and writing reports.
+//! The `frixel` command: plays friction textures on a board or on the simulator, records them, draws charts and writes
+//! reports.
 #![forbid(unsafe_code)]
 
 pub mod chart;
+mod commands;
 mod default_stroke;
-mod finger_reference;
-pub mod input;
+mod input;
 pub mod output;
 pub mod output_file;
 pub mod player;
@@ -16,4 +17,23 @@ pub mod score;
 pub mod stream;
 pub mod studio;
 
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use commands::Cli;
 pub use default_stroke::default_stroke;
+
+/// Runs the `frixel` command with the arguments of this process.
+///
+/// Exits with 2 when the command line is invalid; returns 1 when the command fails.
+pub fn main() -> ExitCode {
+    let cli = Cli::try_parse().unwrap_or_else(|error| commands::with_nested_tip(error).exit());
+    match cli.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            commands::report_error(&error);
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord, WorldError};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
 use frixel_model::LoadedContact;
 use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
@@ -14,13 +14,13 @@ use thiserror::Error;
 use crate::rigs::{RecordedLink, SimStream};
 
 /// A player for `device` that records into `recorder` from the start of the play.
-pub fn player<L: RecordedLink>(mut device: Device<L>, recorder: Recorder) -> Player<L> {
+pub(crate) fn player<L: RecordedLink>(mut device: Device<L>, recorder: Recorder) -> Player<L> {
     *device.link_mut().recorder_mut() = recorder;
     Player::new(device)
 }
 
 /// Ends the record with the data received so far, and returns the recorder. Stops the board first if it plays.
-pub fn into_recorder<L: RecordedLink>(mut player: Player<L>) -> Recorder {
+pub(crate) fn into_recorder<L: RecordedLink>(mut player: Player<L>) -> Recorder {
     player.record_rest();
     std::mem::replace(player.recorder_mut(), Recorder::idle())
 }
@@ -71,29 +71,39 @@ pub struct Simulated {
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, SimulationError> {
-    simulate_observed(program, simulation, None, feed, |_| {})
+    run(program, simulation, recorder(program, simulation)?, None, feed)
 }
 
-/// As [`simulate`], under a finger that is not the program's if there is one, and calls `observer` with every tick of
-/// the play.
-pub(crate) fn simulate_observed(
+/// As [`simulate`], under a finger that is not the program's if there is one, and with a reference that goes through the
+/// simulated finger.
+pub(crate) fn simulate_through_finger(
     program: &Program,
     simulation: &Simulation,
     own_finger: Option<LoadedContact<f64>>,
-    feed: Option<Feed>,
-    observer: impl FnMut(&TickRecord),
 ) -> Result<Simulated, SimulationError> {
+    run(program, simulation, recorder(program, simulation)?.through_finger(), own_finger, None)
+}
+
+fn recorder(program: &Program, simulation: &Simulation) -> Result<Recorder, PlayError> {
     let board = &simulation.rig.board;
     let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
-    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row)
-        .map_err(PlayError::Finger)?;
+    Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row).map_err(PlayError::Finger)
+}
+
+fn run(
+    program: &Program,
+    simulation: &Simulation,
+    recorder: Recorder,
+    own_finger: Option<LoadedContact<f64>>,
+    feed: Option<Feed>,
+) -> Result<Simulated, SimulationError> {
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
     if let Some(contact) = own_finger {
         rig.world_mut().set_own_finger(contact);
     }
-    let mut player =
-        player(Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()).observed(observer)))?, recorder);
+    let stream = SimStream::new(rig, Recorder::idle());
+    let mut player = player(Device::connect(PollingLink::new(stream))?, recorder);
     player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
         player.stream(feed)?;

@@ -13,14 +13,16 @@
 //! `wasm32-unknown-unknown`.
 #![forbid(unsafe_code)]
 
+mod error;
 mod feed;
 mod live_layers;
 mod player;
 mod recorded;
 mod upload;
 
+pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
-pub use player::{PlayError, Player, Replaced, StopReason};
+pub use player::{Player, Replaced};
 pub use recorded::Recorded;
 pub use upload::{load, start};

@@ -7,12 +7,12 @@ use frixel_driver::{Device, DeviceError, Event, Link, Progress};
 use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
 use frixel_scene::Program;
-use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::{Refusal, Telemetry};
-use thiserror::Error;
 
+use crate::error::{PlayError, StopReason, is_refusal};
 use crate::feed::{Feed, FeedError};
-use crate::live_layers::{LayerChange, LiveError, LiveLayers};
+use crate::live_layers::{LayerChange, LiveLayers};
 use crate::recorded::Recorded;
 use crate::upload;
 
@@ -24,70 +24,6 @@ const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
 const MARGIN: Duration = Duration::from_millis(5);
 /// Longer than any host is connected: pings with this period are never sent.
 const NEVER: Duration = Duration::from_hours(1);
-
-/// Why a play ended early, or a change of it was not made.
-#[derive(Debug, Error)]
-pub enum PlayError {
-    /// The contact model rejects the finger of the program.
-    #[error("the contact model rejects the scene's finger: {0}")]
-    Finger(#[from] ParameterError),
-    /// The board rejected a request, or stopped answering.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
-    /// The samples to stream could not be read or sent to their end.
-    #[error(transparent)]
-    Feed(#[from] FeedError),
-    /// The layer cannot be changed.
-    #[error(transparent)]
-    Live(#[from] LiveError),
-    /// No scene plays whose layers could be changed.
-    #[error("no scene plays: play one, then change its layers")]
-    NothingPlays,
-    /// The board does not switch off the layer of a trigger that has ended.
-    #[error("the end of the trigger of {layer}: {refused}")]
-    TriggerEnd {
-        /// Title of the layer.
-        layer: String,
-        /// The board's reason.
-        refused: DeviceError,
-    },
-    /// The board stopped without a stop command.
-    #[error("the board {0}")]
-    Stopped(StopReason),
-}
-
-impl PlayError {
-    /// Whether what was asked for is refused, by the board or before, and the play goes on as it was.
-    pub fn is_refusal(&self) -> bool {
-        match self {
-            Self::Device(error) => is_refusal(error),
-            Self::Live(_) | Self::NothingPlays => true,
-            _ => false,
-        }
-    }
-}
-
-fn is_refusal(error: &DeviceError) -> bool {
-    matches!(error, DeviceError::Refused { .. })
-}
-
-/// Why a board stopped without a stop command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum StopReason {
-    /// A fault is latched.
-    #[error("stopped with its output at zero: {0}")]
-    Fault(Fault),
-    /// The board stopped because of the host timeout.
-    #[error("stopped with its output at zero: it had not heard from this host for the scene's host timeout")]
-    HostSilent,
-}
-
-impl StopReason {
-    fn of(fault: Option<Fault>, flags: Flags) -> Option<Self> {
-        let silent = flags.contains(Flags::HOST_SILENT).then_some(Self::HostSilent);
-        fault.map(Self::Fault).or(silent)
-    }
-}
 
 /// How one program has replaced another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,40 +1,22 @@
 //! What the simulated finger felt, as the page draws and plays it.
 
-use frixel_felt::recorder::PlayListener;
-use frixel_hil_sim::{Felt, ReferenceFriction, TickRecord};
-use frixel_model::ParameterError;
-use frixel_scene::reference::{Context, Reference, StrokeReference};
-use frixel_scene::{LayerSetting, Program};
-use frixel_wire::hello::BoardLimits;
+use frixel_felt::recorder::{FeltRow, Observation, Recorder};
+use frixel_hil_sim::{Felt, TickRecord};
 
 /// Ticks of one sample for the page: a period of the usual carrier of 1 kHz, so that its ripple averages out.
 pub(crate) const TICKS_PER_SAMPLE: u32 = 40;
 /// Corner of the high-pass between felt friction and sound, Hz: below what loudspeakers and ears follow.
 const SOUND_MIN_HZ: f64 = 10.0;
 
-/// Collects what happens tick by tick, and gives it out in samples.
-pub(crate) struct FeltRecorder {
-    reference: Option<StrokeReference>,
-    through_finger: ReferenceFriction,
+/// Records what happens tick by tick, for the page.
+pub(crate) struct FeltSampler {
+    recorder: Recorder,
     tick_hz: f64,
-    sum: Sums,
-    first_tick: u64,
-    /// Samples since the last [`Self::take`], in the order of the columns.
-    columns: [Vec<f32>; COLUMNS.len()],
     sound: Sound,
 }
 
 /// The names of the columns, with their units: the page has no other list of them. The voltage is the rms.
 pub(crate) const COLUMNS: [&str; 6] = ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    first_tick: u64,
-    ticks: u32,
-    reference_n: f64,
-    felt_n: f64,
-    square_v2: f64,
-}
 
 /// Samples for the page.
 pub(crate) struct FeltSamples {
@@ -46,84 +28,41 @@ pub(crate) struct FeltSamples {
     pub(crate) sound_n: Vec<f32>,
 }
 
-impl FeltRecorder {
+impl FeltSampler {
     pub(crate) fn new(tick_hz: u32) -> Self {
-        Self {
-            reference: None,
-            through_finger: ReferenceFriction::default(),
-            tick_hz: f64::from(tick_hz),
-            sum: Sums::default(),
-            first_tick: 0,
-            columns: Default::default(),
-            sound: Sound::new(f64::from(tick_hz)),
-        }
+        let mut recorder = Recorder::without_reference(tick_hz, TICKS_PER_SAMPLE).through_finger();
+        recorder.start(0);
+        Self { recorder, tick_hz: f64::from(tick_hz), sound: Sound::new(f64::from(tick_hz)) }
+    }
+
+    /// What is told which scene plays.
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
     }
 
     /// Adds a tick.
-    pub(crate) fn add(&mut self, TickRecord { tick, felt, .. }: &TickRecord) {
-        let reference_n = self.reference_n(*tick, felt);
-        self.sound.add(felt);
-        let sum = &mut self.sum;
-        if sum.ticks == 0 {
-            sum.first_tick = *tick;
-        }
-        sum.ticks += 1;
-        sum.reference_n += reference_n;
-        sum.felt_n += felt.friction_n;
-        sum.square_v2 += felt.mean_square_v2;
-        if sum.ticks == TICKS_PER_SAMPLE {
-            if self.columns.iter().all(Vec::is_empty) {
-                self.first_tick = sum.first_tick;
-            }
-            let per_tick = 1.0 / f64::from(TICKS_PER_SAMPLE);
-            let (x_mm, y_mm, speed_mm_per_s) = felt.finger.map_or((f64::NAN, f64::NAN, f64::NAN), |finger| {
-                (1e3 * finger.x_m, 1e3 * finger.y_m, 1e3 * finger.speed_m_per_s)
-            });
-            let voltage_v_rms = (sum.square_v2 * per_tick).sqrt();
-            let sample = [x_mm, y_mm, speed_mm_per_s, sum.reference_n * per_tick, sum.felt_n * per_tick, voltage_v_rms];
-            for (column, value) in self.columns.iter_mut().zip(sample) {
-                column.push(value as f32);
-            }
-            self.sum = Sums::default();
-        }
-    }
-
-    /// The friction that the finger would feel of a display without fault, N.
-    fn reference_n(&mut self, tick: u64, felt: &Felt) -> f64 {
-        let Some(reference) = &mut self.reference else { return felt.natural_friction_n };
-        let Some(finger) = felt.finger else {
-            reference.lift();
-            return self.through_finger.follow(felt, 0.0);
-        };
-        let context = Context {
-            t_s: tick as f64 / self.tick_hz,
-            x_m: finger.x_m,
-            y_m: finger.y_m,
-            speed_m_per_s: finger.speed_m_per_s,
-            ..Context::default()
-        };
-        self.through_finger.follow(felt, reference.electric_friction_n(&context))
+    pub(crate) fn add(&mut self, record: &TickRecord) {
+        self.recorder.record(&Observation::of_tick(record));
+        self.sound.add(&record.felt);
     }
 
     /// Takes the samples since the last call.
     pub(crate) fn take(&mut self) -> FeltSamples {
+        let rows = self.recorder.take_rows();
+        let end_tick = |row: &FeltRow| (row.t_s * self.tick_hz).round() as u64;
+        let column = |value: fn(&FeltRow) -> f64| rows.iter().map(|row| value(row) as f32).collect();
         FeltSamples {
-            first_tick: self.first_tick,
-            columns: std::mem::take(&mut self.columns),
+            first_tick: rows.first().map_or(0, |row| end_tick(row) + 1 - u64::from(TICKS_PER_SAMPLE)),
+            columns: [
+                column(|row| row.x_mm.unwrap_or(f64::NAN)),
+                column(|row| row.y_mm.unwrap_or(f64::NAN)),
+                column(|row| row.speed_mm_s.unwrap_or(f64::NAN)),
+                // On a bare screen, friction is natural.
+                column(|row| row.wanted_n.or(row.natural_n).unwrap_or(0.0)),
+                column(|row| row.felt_n.unwrap_or(0.0)),
+                column(|row| row.electrode_v_rms.unwrap_or(0.0)),
+            ],
             sound_n: std::mem::take(&mut self.sound.samples_n),
-        }
-    }
-}
-
-impl PlayListener for FeltRecorder {
-    fn scene_replaced(&mut self, program: &Program, _: &BoardLimits) -> Result<(), ParameterError> {
-        self.reference = Some(Reference::new(program).along_stroke());
-        Ok(())
-    }
-
-    fn layer_changed(&mut self, record: u8, LayerSetting { on, gain }: LayerSetting) {
-        if let Some(reference) = &mut self.reference {
-            reference.set_layer(record.into(), on, gain.into());
         }
     }
 }
@@ -185,7 +124,7 @@ mod tests {
 
     #[test]
     fn samples_follow_each_other_however_they_are_taken() {
-        let mut recorder = FeltRecorder::new(40_000);
+        let mut recorder = FeltSampler::new(40_000);
         let (mut next_tick, mut sound) = (1, 0);
         for (count, record) in (1..).zip(&records()) {
             recorder.add(record);
@@ -203,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_touch_makes_no_sound_by_itself() {
-        let mut recorder = FeltRecorder::new(40_000);
+        let mut recorder = FeltSampler::new(40_000);
         for record in &records() {
             recorder.add(record);
         }

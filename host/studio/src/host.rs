@@ -130,11 +130,11 @@ mod tests {
     use std::time::Duration;
 
     use frixel_driver::LinkClosed;
+    use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, RigConfig};
     use frixel_wire::fault::State;
 
     use super::*;
-    use crate::felt::FeltRecorder;
     use crate::rig_stream::RigStream;
 
     const BRICK: &[u8] = include_bytes!("../../../scenes/brick.toml");
@@ -180,9 +180,9 @@ mod tests {
     }
 
     impl Recorded for Line<'_> {
-        type Recorder = FeltRecorder;
+        type Recorder = Recorder;
 
-        fn recorder_mut(&mut self) -> &mut FeltRecorder {
+        fn recorder_mut(&mut self) -> &mut Recorder {
             self.rig.recorder_mut()
         }
     }

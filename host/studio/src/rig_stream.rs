@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
 use frixel_play::Recorded;
 use frixel_wire::fault::{Fault, State};
 
-use crate::felt::FeltRecorder;
+use crate::felt::FeltSampler;
 use crate::host::HostError;
 use crate::pointer::{Finger, Pointer};
 
@@ -17,7 +18,7 @@ pub(crate) struct RigStream<'a> {
     /// The finger on the screen.
     pub(crate) pointer: Pointer,
     /// What it felt.
-    pub(crate) felt: FeltRecorder,
+    pub(crate) felt: FeltSampler,
     /// The record of the last tick.
     last: Option<TickRecord>,
 }
@@ -27,7 +28,7 @@ impl<'a> RigStream<'a> {
         // The pointer moves the finger; the world's own stroke never starts.
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
         let rig = Rig::new(memory, config, stroke, seed).map_err(HostError::World)?;
-        let felt = FeltRecorder::new(rig.tick_hz());
+        let felt = FeltSampler::new(rig.tick_hz());
         Ok(Self { rig, pointer: Pointer::default(), felt, last: None })
     }
 
@@ -93,10 +94,10 @@ impl RigStream<'_> {
 }
 
 impl Recorded for RigStream<'_> {
-    type Recorder = FeltRecorder;
+    type Recorder = Recorder;
 
-    fn recorder_mut(&mut self) -> &mut FeltRecorder {
-        &mut self.felt
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        self.felt.recorder_mut()
     }
 }
 

@@ -1,12 +1,15 @@
 //! Kinds whose friction depends on the place alone.
 
-use frixel_layers::{Bitmap, Blend, Constant, Grating, Layer, Noise, Region, Rings, Wave};
+#[cfg(feature = "std")]
+use core::f64::consts::TAU;
+
+use frixel_layers::{Bitmap, Blend, Constant, Grating, Layer, Noise, Region, Rings, Spokes, Wave};
 
 #[cfg(feature = "std")]
 use super::formula::{ACROSS, Formula, along_deg, noise, sine, turn};
 use super::{ELLIPSE, PICTURE, POLYGON, RECTANGLE, Sample, cost, sample};
 
-pub(super) const SAMPLES: &[Sample] = &[CONSTANT, GRATING, BITMAP, NOISE, RINGS];
+pub(super) const SAMPLES: &[Sample] = &[CONSTANT, GRATING, BITMAP, NOISE, RINGS, SPOKES];
 
 const CONSTANT: Sample = Sample {
     records: &[sample(
@@ -258,6 +261,67 @@ const RINGS: Sample = Sample {
             friction_mn: |x, y| if turn((x - 50.0).hypot(y - 20.0) / 10.0) < 0.3 { 22.0 } else { 2.0 },
             jumps: true,
             bound: 0.0903,
+        },
+    ],
+};
+
+const fn spokes(wave: Wave) -> Layer {
+    Layer::Spokes(Spokes { wave, x_m: 0.05, y_m: 0.03, phase_turns: 0.25, trough_n: 0.002, crest_n: 0.02, number: 24 })
+}
+
+const SPOKES: Sample = Sample {
+    records: &[
+        sample(ELLIPSE, Blend::Add, 1.0, spokes(Wave::Sine), &[3..4, 24..44, 52..53]),
+        sample(Region::Screen, Blend::Max, 0.5, spokes(Wave::Square { duty: 0.25 }), &[3..4, 24..48, 52..53]),
+    ],
+    costs: &[cost(
+        "tick_spokes_over_sine_alone",
+        Layer::Spokes(Spokes {
+            wave: Wave::Sine,
+            x_m: 0.06,
+            y_m: 0.05,
+            phase_turns: 0.2,
+            trough_n: 0.0,
+            crest_n: 0.026,
+            number: 24,
+        }),
+    )],
+    random: |draw| {
+        let wave = draw.wave();
+        let [x_m, y_m] = draw.place_m(0.2);
+        Layer::Spokes(Spokes {
+            wave,
+            x_m,
+            y_m,
+            phase_turns: draw.random.between(-3.0, 3.0),
+            trough_n: draw.amounts[0],
+            crest_n: draw.amounts[1],
+            number: draw.random.byte(),
+        })
+    },
+    #[cfg(feature = "std")]
+    formulas: &[
+        Formula {
+            name: "spokes",
+            words: "[[layer]]\nkind = \"spokes\"\nx_mm = 50\ny_mm = 20\nnumber = 24\nangle_deg = 10\nlow_n = 0.002\n\
+                    high_n = 0.022",
+            stroke_mm: ACROSS,
+            friction_mn: |x, y| 2.0 + 20.0 * sine(24.0 * ((y - 20.0).atan2(x - 50.0) / TAU - 10.0 / 360.0)),
+            jumps: false,
+            bound: 0.0279,
+        },
+        Formula {
+            name: "saw spokes across their middle",
+            words: "[[layer]]\nkind = \"spokes\"\nwave = \"saw\"\nx_mm = 60\ny_mm = 37.5\nnumber = 40\n\
+                    low_n = 0.002\nhigh_n = 0.022",
+            stroke_mm: ACROSS,
+            friction_mn: |x, y| {
+                let (x, y) = (x - 60.0, y - 37.5);
+                let width = TAU * x.hypot(y) / 40.0;
+                12.0 + width.powi(2).min(1.0) * (20.0 * turn(40.0 * y.atan2(x) / TAU) - 10.0)
+            },
+            jumps: true,
+            bound: 0.0156,
         },
     ],
 };

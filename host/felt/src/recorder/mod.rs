@@ -12,6 +12,7 @@ mod rows;
 mod stream;
 mod turning;
 
+use frixel_hil_sim::{FingerState, ReferenceFriction};
 use frixel_model::ParameterError;
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
@@ -21,7 +22,7 @@ use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_scene::{LayerSetting, Program};
 use inversion::Inversion;
 pub use listener::PlayListener;
-pub use observation::{FeltFriction, FingerState, Observation};
+pub use observation::Observation;
 pub use rows::FeltRow;
 use rows::{Frictions, RowMaker};
 use stream::Stream;
@@ -33,6 +34,8 @@ use turning::Turning;
 #[derive(Debug)]
 pub struct Recorder {
     comparison: Option<Comparison>,
+    /// The simulated finger that the reference goes through, see [`Self::through_finger`].
+    finger: Option<ReferenceFriction>,
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
     tick_hz: u32,
@@ -64,20 +67,17 @@ impl Recorder {
         ticks_max: u64,
         ticks_per_row: u32,
     ) -> Result<Self, ParameterError> {
-        let comparison = Comparison {
-            reference: Reference::new(program).along_stroke(),
-            inversion: Inversion::new(program, limits, tick_hz)?,
-            stream: Stream::new(tick_hz),
-            turning: Turning::default(),
-            metrics: Metrics::new(program.half_period_ticks),
-        };
-        Ok(Self { comparison: Some(comparison), ticks_max, ..Self::without_reference(tick_hz, ticks_per_row) })
+        let mut recorder = Self { ticks_max, ..Self::without_reference(tick_hz, ticks_per_row) };
+        recorder.scene_replaced(program, limits)?;
+        Ok(recorder)
     }
 
-    /// Creates a recorder for a board whose program is unknown: no row has `wanted_n`, and the summary has no errors.
+    /// Creates a recorder for a board whose program is unknown: until [`Self::scene_replaced`], no row has `wanted_n`,
+    /// and the summary has no errors.
     pub fn without_reference(tick_hz: u32, ticks_per_row: u32) -> Self {
         Self {
             comparison: None,
+            finger: None,
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
             tick_hz,
@@ -86,6 +86,13 @@ impl Recorder {
             start_tick: None,
             last_tick: 0,
         }
+    }
+
+    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
+    /// skin; without this, with the friction of the scene's finger in steady sliding.
+    #[must_use]
+    pub fn through_finger(self) -> Self {
+        Self { finger: Some(ReferenceFriction::default()), ..self }
     }
 
     /// Creates a placeholder that records nothing, for use until a play has its recorder.
@@ -107,24 +114,10 @@ impl Recorder {
 
     /// Adds an observation. Ignores one that is not later than the one before, or that is beyond the end of the record.
     pub fn record(&mut self, observation: &Observation) {
-        self.add(observation, None);
-    }
-
-    /// Adds an observation of a simulated finger that is not only the scene's contact model, so that the reference goes
-    /// through the same finger.
-    ///
-    /// `total_friction_n` converts the electric friction of the scene at the finger's true place, in N, to the total
-    /// friction that this finger would have felt from it in this tick, in N. It is called once for each recorded tick
-    /// with a finger.
-    pub fn record_through(&mut self, observation: &Observation, total_friction_n: &mut dyn FnMut(f64) -> f64) {
-        self.add(observation, Some(total_friction_n));
-    }
-
-    fn add(&mut self, observation: &Observation, total_friction_n: Option<&mut dyn FnMut(f64) -> f64>) {
         let Some(ticks_passed) = self.advance_to(observation.tick) else { return };
         let t_s = self.last_tick as f64 * self.tick_period_s;
         let frictions = match &mut self.comparison {
-            Some(comparison) => comparison.add(observation, t_s, ticks_passed, total_friction_n),
+            Some(comparison) => comparison.add(observation, t_s, ticks_passed, self.finger.as_mut()),
             None => Frictions::without_reference(observation),
         };
         self.rows.extend(self.row_maker.add(observation, self.ticks(), &frictions));
@@ -187,12 +180,19 @@ impl Recorder {
 }
 
 impl PlayListener for Recorder {
-    /// A recorder without a reference stays without one.
     fn scene_replaced(&mut self, program: &Program, limits: &BoardLimits) -> Result<(), ParameterError> {
+        if self.ticks_max == 0 {
+            return Ok(());
+        }
+        let reference = Reference::new(program).along_stroke();
+        let inversion = Inversion::new(program, limits, self.tick_hz)?;
         if let Some(comparison) = &mut self.comparison {
-            comparison.reference = Reference::new(program).along_stroke();
-            comparison.inversion = Inversion::new(program, limits, self.tick_hz)?;
+            (comparison.reference, comparison.inversion) = (reference, inversion);
             comparison.metrics.set_half_period(program.half_period_ticks);
+        } else {
+            let (stream, turning) = (Stream::new(self.tick_hz), Turning::default());
+            let metrics = Metrics::new(program.half_period_ticks);
+            self.comparison = Some(Comparison { reference, inversion, stream, turning, metrics });
         }
         Ok(())
     }
@@ -232,17 +232,18 @@ impl Comparison {
         observation: &Observation,
         t_s: f64,
         ticks_passed: u32,
-        total_friction_n: Option<&mut dyn FnMut(f64) -> f64>,
+        finger: Option<&mut ReferenceFriction>,
     ) -> Frictions {
         let scenes_natural_n = self.reference.natural_friction_n();
         let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
         let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);
         let in_reach = in_scene_n.is_some_and(|in_scene_n| self.inversion.reaches(in_scene_n - scenes_natural_n));
         // Only a simulated finger with a skin of its own turns.
-        let turning = self.turning.follow(observation.finger) && total_friction_n.is_some();
-        let (natural_n, wanted_n) = match (total_friction_n, &observation.felt) {
-            (Some(total_friction_n), Some(felt)) => {
-                (felt.friction_n - felt.electric_friction_n, electric_n.map(total_friction_n))
+        let turning = self.turning.follow(observation.finger) && finger.is_some();
+        let (natural_n, wanted_n) = match (finger, &observation.felt) {
+            (Some(finger), Some(felt)) => {
+                let through_finger_n = finger.follow(felt, electric_n.unwrap_or(0.0));
+                (felt.friction_n - felt.electric_friction_n, electric_n.map(|_| through_finger_n))
             }
             _ => (scenes_natural_n, in_scene_n),
         };
@@ -251,7 +252,7 @@ impl Comparison {
         let felt_n = observation.felt.map(|felt| felt.friction_n);
         self.metrics.add(&Sample {
             finger_down: observation.finger.is_some(),
-            board_has_finger: telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER)),
+            board_has_finger: observation.board_has_finger(),
             wanted_n,
             turning,
             asked_n,

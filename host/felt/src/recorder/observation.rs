@@ -1,5 +1,6 @@
 //! The input of a recorder.
 
+use frixel_hil_sim::{Felt, FingerState, TickRecord};
 use frixel_wire::fault::Flags;
 use frixel_wire::message::Telemetry;
 
@@ -11,38 +12,27 @@ pub struct Observation {
     /// The finger, while it is on the screen: its true place if the finger is simulated, otherwise the place that the
     /// board reports.
     pub finger: Option<FingerState>,
-    /// The friction that the finger felt; known only for a simulated finger.
-    pub felt: Option<FeltFriction>,
+    /// What a simulated finger felt.
+    pub felt: Option<Felt>,
     /// The code that went to the DAC.
     pub dac_code: Option<i16>,
     /// The board's telemetry of this tick.
     pub telemetry: Option<Telemetry>,
 }
 
-/// A finger on the screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FingerState {
-    /// Place from the left edge of the screen, m.
-    pub x_m: f64,
-    /// Place from the top edge of the screen, m.
-    pub y_m: f64,
-    /// Sliding speed, m/s.
-    pub speed_m_per_s: f64,
-}
-
-/// Friction that a simulated finger felt, N.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FeltFriction {
-    /// Total friction.
-    pub friction_n: f64,
-    /// The part of the friction that the drive added.
-    pub electric_friction_n: f64,
-    /// The part of the friction that is there because the finger presses with another load than the one that the scene
-    /// is meant for.
-    pub load_mismatch_n: f64,
-}
-
 impl Observation {
+    /// An observation of a simulated board and its world, of which everything is known.
+    pub fn of_tick(record: &TickRecord) -> Self {
+        let telemetry = record.status.telemetry;
+        let tick = record.tick as u32;
+        Self { telemetry: Some(telemetry), ..Self::of_world(tick, &record.felt, telemetry.dac_code) }
+    }
+
+    /// An observation of a simulated finger under a board that does not report its state in this tick.
+    pub fn of_world(tick: u32, felt: &Felt, dac_code: i16) -> Self {
+        Self { tick, finger: felt.finger, felt: Some(*felt), dac_code: Some(dac_code), telemetry: None }
+    }
+
     /// An observation of a real board, from its telemetry alone.
     pub fn from_telemetry(telemetry: &Telemetry) -> Self {
         let finger = FingerState {
@@ -57,5 +47,10 @@ impl Observation {
             dac_code: Some(telemetry.dac_code),
             telemetry: Some(*telemetry),
         }
+    }
+
+    /// Whether the board knows of a finger; `None` if it did not report.
+    pub(super) fn board_has_finger(&self) -> Option<bool> {
+        self.telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER))
     }
 }

@@ -22,12 +22,18 @@ pub struct FeltRow {
     pub asked_n: Option<f64>,
     /// Friction that the finger felt, N.
     pub felt_n: Option<f64>,
+    /// The part of the felt friction that a simulated finger has without the drive, N.
+    pub natural_n: Option<f64>,
+    /// Rms voltage on the electrode over the row, V; known only in a simulated world.
+    pub electrode_v_rms: Option<f64>,
     /// Rms voltage of the envelope, V: the last that the board reported in the row.
     pub voltage_v_rms: Option<f64>,
     /// The last code in the row that went to the DAC.
     pub dac_code: Option<i16>,
     /// Every flag that the board reported in the row.
     pub flags: Option<Flags>,
+    /// Whether the board has had a report of the touch, at the end of the row.
+    pub is_tracked: bool,
 }
 
 /// Total frictions at one tick, N.
@@ -65,6 +71,10 @@ pub(super) struct RowMaker {
     wanted: Mean,
     asked: Mean,
     felt: Mean,
+    natural: Mean,
+    electrode_v2: Mean,
+    /// The board has had a report of this touch.
+    is_tracked: bool,
 }
 
 impl RowMaker {
@@ -77,6 +87,9 @@ impl RowMaker {
             wanted: Mean::default(),
             asked: Mean::default(),
             felt: Mean::default(),
+            natural: Mean::default(),
+            electrode_v2: Mean::default(),
+            is_tracked: false,
         }
     }
 
@@ -87,6 +100,9 @@ impl RowMaker {
         if ticks > self.row_end {
             self.begin(ticks.div_ceil(self.ticks_per_row) * self.ticks_per_row);
         }
+        self.is_tracked =
+            observation.finger.is_some() && (self.is_tracked || observation.board_has_finger() == Some(true));
+        self.electrode_v2.add(observation.felt.map(|felt| felt.mean_square_v2));
         self.row.dac_code = observation.dac_code.or(self.row.dac_code);
         if let Some(telemetry) = &observation.telemetry {
             self.row.voltage_v_rms = Some(f64::from(telemetry.voltage_v_rms));
@@ -96,6 +112,7 @@ impl RowMaker {
             self.wanted.add(frictions.wanted_n);
             self.asked.add(frictions.asked_n);
             self.felt.add(frictions.felt_n);
+            self.natural.add(observation.felt.map(|felt| felt.natural_friction_n));
         }
         (ticks == self.row_end).then(|| self.finish(observation, ticks))
     }
@@ -103,7 +120,9 @@ impl RowMaker {
     fn begin(&mut self, row_end: u64) {
         self.row_end = row_end;
         self.row = FeltRow::default();
-        (self.wanted, self.asked, self.felt) = (Mean::default(), Mean::default(), Mean::default());
+        for mean in [&mut self.wanted, &mut self.asked, &mut self.felt, &mut self.natural, &mut self.electrode_v2] {
+            *mean = Mean::default();
+        }
     }
 
     fn finish(&self, observation: &Observation, ticks: u64) -> FeltRow {
@@ -115,6 +134,9 @@ impl RowMaker {
             wanted_n: self.wanted.value(),
             asked_n: self.asked.value(),
             felt_n: self.felt.value(),
+            natural_n: self.natural.value(),
+            electrode_v_rms: self.electrode_v2.value().map(f64::sqrt),
+            is_tracked: self.is_tracked,
             ..self.row
         }
     }

@@ -1,3 +1,4 @@
+use frixel_hil_sim::{Felt, SlipStep};
 use frixel_wire::fault::State;
 use frixel_wire::message::Telemetry;
 
@@ -27,12 +28,27 @@ fn telemetry(tick: u32) -> Telemetry {
     }
 }
 
+/// What a simulated finger felt whose natural friction is 0.31 N, and that feels 0.9 of the scene's electric friction.
+fn felt(friction_n: f64, electric_friction_n: f64) -> Felt {
+    Felt {
+        finger: Some(FingerState { x_m: 0.05, y_m: 0.05, speed_m_per_s: 0.1 }),
+        friction_n,
+        natural_friction_n: 0.31,
+        electric_friction_n,
+        normal_load_n: 0.62,
+        load_mismatch_n: -0.02,
+        slip: SlipStep { share: 1.0, direction: [1.0, 0.0], electric_gain: 0.9 },
+        electrode_v: 0.0,
+        mean_square_v2: 400.0,
+    }
+}
+
 /// An observation of a simulated tick without a board's report.
 fn simulated(tick: u32, friction_n: f64) -> Observation {
     Observation {
         tick,
         finger: Some(FingerState { x_m: 0.05, y_m: 0.05, speed_m_per_s: 0.1 }),
-        felt: Some(FeltFriction { friction_n, electric_friction_n: friction_n - 0.25, load_mismatch_n: 0.0 }),
+        felt: Some(felt(friction_n, friction_n - 0.25)),
         dac_code: Some(tick as i16),
         telemetry: None,
     }
@@ -197,25 +213,33 @@ fn another_program_is_compared_with_from_then_on() {
     assert_eq!(wanted, [Some(260_000), Some(270_000)]);
 }
 
-/// A finger with 0.31 N of natural friction, that feels 0.9 of the scene's electric friction.
 #[test]
 fn the_reference_goes_through_the_finger_that_felt() {
-    let mut recorder = recorder(&program(CONSTANT), 1);
-    let felt = Some(FeltFriction { friction_n: 0.32, electric_friction_n: 0.01, load_mismatch_n: -0.02 });
+    let mut recorder = recorder(&program(CONSTANT), 1).through_finger();
     for tick in 1..=3 {
-        let observation = Observation { felt, telemetry: Some(telemetry(tick)), ..simulated(tick, 0.32) };
-        recorder.record_through(&observation, &mut |electric_n| 0.31 + 0.9 * electric_n);
+        let felt = Some(felt(0.32, 0.01));
+        recorder.record(&Observation { felt, telemetry: Some(telemetry(tick)), ..simulated(tick, 0.32) });
     }
-    let mut calls = 0;
-    let lifted = Observation { finger: None, ..simulated(4, 0.0) };
-    recorder.record_through(&lifted, &mut |_| f64::from(std::mem::replace(&mut calls, 1)));
-    assert_eq!(calls, 0, "a lifted finger feels nothing");
     for row in &recorder.rows()[..3] {
         assert_eq!([in_mn(row.wanted_n), in_mn(row.asked_n), in_mn(row.felt_n)], [319_000, 320_000, 320_000].map(Some));
+        assert_eq!((in_mn(row.natural_n), row.electrode_v_rms, row.is_tracked), (Some(310_000), Some(20.0), true));
     }
+    let lifted = Felt { finger: None, ..felt(0.0, 0.0) };
+    recorder.record(&Observation::of_world(4, &lifted, 0));
+    let row = recorder.rows().last().unwrap();
+    assert_eq!((row.wanted_n, row.is_tracked), (None, false), "a lifted finger feels nothing");
     let error = recorder.summary().friction_error.unwrap();
     assert!((error.rms_n - 1e-3).abs() < 1e-9, "{} N", error.rms_n);
     assert_eq!(recorder.summary().load_mismatch.map(|mismatch| in_mn(Some(mismatch.max_n))), Some(Some(20_000)));
+}
+
+#[test]
+fn a_recorder_that_is_told_of_a_program_later_compares_from_then_on() {
+    let mut recorder = Recorder::without_reference(TICK_HZ, 1);
+    recorder.record(&simulated(1, 0.25));
+    recorder.scene_replaced(&program(CONSTANT), &LIMITS).unwrap();
+    recorder.record(&simulated(2, 0.25));
+    assert_eq!(recorder.rows().iter().map(|row| in_mn(row.wanted_n)).collect::<Vec<_>>(), [None, Some(260_000)]);
 }
 
 #[test]

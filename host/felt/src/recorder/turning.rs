@@ -1,6 +1,7 @@
 //! Where a finger lands or turns.
 
-use super::FingerState;
+use frixel_hil_sim::FingerState;
+
 use crate::perception::RELAXATION_LENGTH_MM;
 
 /// The part of its full pull against the motion from which the skin counts as turned.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use frixel::output_file::{Inputs, OutputFile};
+use crate::output_file::{Inputs, OutputFile};
 
 use super::error::CommandError;
 use super::terminal::print_line;

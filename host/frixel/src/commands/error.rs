@@ -3,15 +3,15 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel::output::{DrawingError, FeltLogError};
-use frixel::output_file::OutputFileError;
-use frixel::rehearsal::RehearsalError;
-use frixel::report::ReportError;
+use crate::output::{DrawingError, FeltLogError};
+use crate::output_file::OutputFileError;
+use crate::rehearsal::RehearsalError;
+use crate::report::ReportError;
 #[cfg(unix)]
-use frixel::rigs::ServerError;
-use frixel::scene_file::{SceneFileError, check_path};
-use frixel::stream::StreamError;
-use frixel::studio::StudioError;
+use crate::rigs::ServerError;
+use crate::scene_file::{SceneFileError, check_path};
+use crate::stream::StreamError;
+use crate::studio::StudioError;
 use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;

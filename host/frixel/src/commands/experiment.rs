@@ -1,8 +1,8 @@
 //! What plays and experiments on a board have in common. Experiments take minutes of a person's time, so whatever can
 //! be wrong is found before they begin.
 
-use frixel::output_file::Recording;
-use frixel::rigs::PortLink;
+use crate::output_file::Recording;
+use crate::rigs::PortLink;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_wire::hello::BoardLimits;
 

@@ -3,10 +3,10 @@
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
+use crate::input::{self, Bounded};
+use crate::output::draw_fit_svg;
+use crate::output_file::{Inputs, OutputFile, commit_all};
 use clap::Args;
-use frixel::input::{self, Bounded};
-use frixel::output::draw_fit_svg;
-use frixel::output_file::{Inputs, OutputFile, commit_all};
 use frixel_lab::fit::{self, Fit, Settings, Summary};
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;

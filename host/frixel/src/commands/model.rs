@@ -3,9 +3,9 @@
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
+use crate::input::{self, Bounded};
+use crate::output_file::{Inputs, OutputFile};
 use clap::{Args, Subcommand, ValueEnum};
-use frixel::input::{self, Bounded};
-use frixel::output_file::{Inputs, OutputFile};
 use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
 
 use super::error::CommandError;

@@ -5,9 +5,9 @@ use std::fs;
 use std::io;
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 
+use crate::input;
+use crate::output_file::{Inputs, OutputFile};
 use clap::Args;
-use frixel::input;
-use frixel::output_file::{Inputs, OutputFile};
 use frixel_scene::{Screen, check_picture, layer_kinds};
 
 use super::error::CommandError;

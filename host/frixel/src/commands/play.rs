@@ -1,7 +1,7 @@
 //! `frixel play`: a scene on a board, real or not.
 //!
-//! [`Plan`] is the checked input of a play, [`rigs`] opens the board that `--port` names, [`follow`] plays and records,
-//! and [`Outputs`] writes the files. This module prints the results.
+//! `Plan` is the checked input of a play, `rigs` opens the board that `--port` names, `follow` plays and records,
+//! and `Outputs` writes the files. This module prints the results.
 
 mod control;
 #[cfg(unix)]
@@ -18,7 +18,7 @@ mod with_log;
 
 use std::path::PathBuf;
 
-use frixel::output::Report;
+use crate::output::Report;
 
 use super::PlayArgs;
 use super::error::CommandError;

@@ -1,7 +1,7 @@
 //! The options `--finger` and `--screen`.
 
+use crate::scene_file::ProfileNames;
 use clap::Args;
-use frixel::scene_file::ProfileNames;
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct ProfileArgs {

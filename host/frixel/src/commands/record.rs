@@ -5,8 +5,8 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::output_file::{FileWriter, Inputs, Recording};
 use clap::Args;
-use frixel::output_file::{FileWriter, Inputs, Recording};
 use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
 use frixel_felt::recorder::Observation;
 use frixel_lab::table::{Column, Table, TableError};

@@ -18,7 +18,7 @@ pub(super) struct ReportArgs {
 }
 
 pub(super) fn run(args: &ReportArgs) -> Result<(), CommandError> {
-    for file in frixel::report::write(&args.out, args.bench.as_deref())? {
+    for file in crate::report::write(&args.out, args.bench.as_deref())? {
         print_line(format_args!("  {:<16} {}", "wrote", file.display()))?;
     }
     Ok(())

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output::draw_score_svg;
+use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
+use crate::player::SimulationError;
+use crate::score::samples;
 use clap::{Args, ValueEnum};
-use frixel::output::draw_score_svg;
-use frixel::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
-use frixel::player::SimulationError;
-use frixel::score::samples;
 use frixel_hil_sim::{Person, RigConfig, Stroke};
 use frixel_lab::score::{Score, Trial, TrialFinger};
 use frixel_scene::{Program, Scene, compile};

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use frixel::output_file::Inputs;
-use frixel::rigs::{Dropped, Server};
-use frixel::scene_file::ProfileNames;
+use crate::output_file::Inputs;
+use crate::rigs::{Dropped, Server};
+use crate::scene_file::ProfileNames;
 use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke, contact_of};
 use frixel_model::LoadedContact;
 use frixel_scene::{Scene, compile};

@@ -3,8 +3,8 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use crate::input;
 use clap::Args;
-use frixel::input;
 use frixel_hil_sim::{Point, Stroke, StrokeError};
 use frixel_lab::stroke_file::StrokeFile;
 

@@ -6,8 +6,8 @@ use std::io;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+use crate::studio::{Studio, page};
 use clap::Args;
-use frixel::studio::{Studio, page};
 
 use super::error::CommandError;
 use super::interrupt::Interrupt;

@@ -6,7 +6,7 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
-use frixel::output_file::OutputFile;
+use crate::output_file::OutputFile;
 use frixel_scene::{Program, printable_lines};
 
 use super::error::CommandError;

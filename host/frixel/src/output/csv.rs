@@ -13,7 +13,7 @@ use crate::rigs::BoardEvent;
 use frixel_lab::calibration::ForceRow;
 
 /// A row of a CSV file. `docs/outputs.md` describes the columns.
-pub trait CsvRow {
+pub(crate) trait CsvRow {
     /// The column names, separated by commas.
     const HEADER: &'static str;
 
@@ -23,7 +23,7 @@ pub trait CsvRow {
 
 /// A CSV file that is written row by row. Lines end in a line feed.
 #[derive(Debug)]
-pub struct CsvFile<R> {
+pub(crate) struct CsvFile<R> {
     writer: FileWriter,
     rows: PhantomData<R>,
 }
@@ -32,17 +32,17 @@ pub struct CsvFile<R> {
 ///
 /// Numbers have a fixed number of decimals; their resolutions are a microsecond, a tenth of a micrometre, a micrometre
 /// per second, a nanonewton and a tenth of a millivolt. Flags are names joined by `+`, or `none`.
-pub type FeltCsv = CsvFile<FeltRow>;
+pub(crate) type FeltCsv = CsvFile<FeltRow>;
 
 /// `events.csv`.
-pub type EventCsv = CsvFile<EventRow>;
+pub(crate) type EventCsv = CsvFile<EventRow>;
 
 /// `forces.csv`, which `frixel calibrate` reads.
-pub type ForcesCsv = CsvFile<ForceRow>;
+pub(crate) type ForcesCsv = CsvFile<ForceRow>;
 
 /// A row of `events.csv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EventRow {
+pub(crate) struct EventRow {
     /// The event and its time.
     pub event: BoardEvent,
     /// Time at which the board had received the last complete frame from a host, s.
@@ -53,7 +53,7 @@ pub struct EventRow {
 
 impl<R: CsvRow> CsvFile<R> {
     /// Writes the header row into a file.
-    pub fn new(writer: FileWriter) -> Result<Self, OutputFileError> {
+    pub(crate) fn new(writer: FileWriter) -> Result<Self, OutputFileError> {
         let mut csv = Self { writer, rows: PhantomData };
         csv.write_line(R::HEADER)?;
         csv.flush()?;
@@ -61,23 +61,23 @@ impl<R: CsvRow> CsvFile<R> {
     }
 
     /// Writes one row.
-    pub fn write(&mut self, row: &R) -> Result<(), OutputFileError> {
+    pub(crate) fn write(&mut self, row: &R) -> Result<(), OutputFileError> {
         self.write_line(Cells(row))
     }
 
     /// Writes the buffered rows to the file.
-    pub fn flush(&mut self) -> Result<(), OutputFileError> {
+    pub(crate) fn flush(&mut self) -> Result<(), OutputFileError> {
         self.writer.flush().map_err(|source| self.writer.error(source))
     }
 
     /// Writes the header row again in place of everything.
-    pub fn restart(&mut self) -> Result<(), OutputFileError> {
+    pub(crate) fn restart(&mut self) -> Result<(), OutputFileError> {
         self.writer.clear()?;
         self.write_line(R::HEADER)
     }
 
     /// The file, which the caller commits.
-    pub fn into_writer(self) -> FileWriter {
+    pub(crate) fn into_writer(self) -> FileWriter {
         self.writer
     }
 

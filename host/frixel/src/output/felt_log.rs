@@ -11,14 +11,14 @@ use crate::input;
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
 #[error("{}: {reason}: give the felt.csv that `frixel sim` writes", path.display())]
-pub struct FeltLogError {
+pub(crate) struct FeltLogError {
     path: PathBuf,
     reason: String,
 }
 
 /// The rows of a `felt.csv`, in order of time.
 #[derive(Clone, Debug)]
-pub struct FeltLog(Vec<LogRow>);
+pub(crate) struct FeltLog(Vec<LogRow>);
 
 /// The columns that are joined.
 #[derive(Clone, Copy, Debug)]
@@ -32,20 +32,20 @@ struct LogRow {
 
 impl FeltLog {
     /// Reads the file that `frixel sim` writes. A last row that is not complete is left out.
-    pub fn read(path: &Path) -> Result<Self, FeltLogError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, FeltLogError> {
         let error = |reason: String| FeltLogError { path: path.to_owned(), reason };
         let text = input::read_text(path, input::CSV_MAX_BYTES).map_err(|source| error(source.to_string()))?;
         Ok(Self(rows(whole_rows(&text)).map_err(|source| error(source.found()))?))
     }
 
     /// Time of the last row since the power-on of the board, s.
-    pub fn end_s(&self) -> f64 {
+    pub(crate) fn end_s(&self) -> f64 {
         self.0.last().map_or(0.0, |row| row.t_s)
     }
 
     /// Adds to a row of a client what the log has at the same time: the felt friction, and the true place and speed of
     /// the finger. `start_s` is the time between the power-on of the board and the client's time zero.
-    pub fn join(&self, row: &FeltRow, start_s: f64) -> FeltRow {
+    pub(crate) fn join(&self, row: &FeltRow, start_s: f64) -> FeltRow {
         let t_s = start_s + row.t_s;
         let after = self.0.partition_point(|logged| logged.t_s < t_s);
         let nearest = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|index| self.0.get(index));

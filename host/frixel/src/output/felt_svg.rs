@@ -35,7 +35,7 @@ type Part = fn(&Span) -> Option<Extremes>;
 /// felt friction is unknown, as on a real board, the commanded friction is drawn instead. Signals that change too fast
 /// for a line are drawn as their envelope. The way of the finger, the layer under it, and the reasons for which the
 /// output is off stand below the time.
-pub fn draw_felt_svg(subject: &Subject, trace: &Trace, reach: &Reach) -> Result<String, DrawingError> {
+pub(crate) fn draw_felt_svg(subject: &Subject, trace: &Trace, reach: &Reach) -> Result<String, DrawingError> {
     chart(subject, trace, reach).svg().map_err(DrawingError::new)
 }
 

@@ -9,7 +9,7 @@ const CURVE_POINTS: u32 = 100;
 
 /// Draws what was measured beside the fit: electric friction over voltage with the fitted law and a square law, what is
 /// left over per stroke, and the friction coefficient per stroke.
-pub fn draw_fit_svg(title: &str, fit: &Fit) -> Result<String, DrawingError> {
+pub(crate) fn draw_fit_svg(title: &str, fit: &Fit) -> Result<String, DrawingError> {
     chart(title, fit).svg().map_err(DrawingError::new)
 }
 

@@ -1,15 +1,15 @@
 //! What the output files of a play have in them.
 //!
-//! - [`FeltCsv`], [`ForcesCsv`] and [`EventCsv`]: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene
+//! - `FeltCsv`, `ForcesCsv` and `EventCsv`: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene
 //!   plays.
-//! - [`Trace`]: the same rows, downsampled for pictures, in bounded memory.
-//! - [`draw_felt_svg`]: friction and voltage over time.
-//! - [`draw_fit_svg`]: the residual plots of a fit.
-//! - [`draw_score_svg`]: the numbers of a score that a person notices.
-//! - [`draw_scene_png`]: the friction map of a program with the stroke over it.
+//! - `Trace`: the same rows, downsampled for pictures, in bounded memory.
+//! - `draw_felt_svg`: friction and voltage over time.
+//! - `draw_fit_svg`: the residual plots of a fit.
+//! - `draw_score_svg`: the numbers of a score that a person notices.
+//! - `draw_scene_png`: the friction map of a program with the stroke over it.
 //! - [`draw_preview_png`]: the friction map of a program before it is played.
-//! - [`FeltLog`]: the log of a virtual board, which joins what its finger felt to the rows of a client.
-//! - [`Report`]: the results of a run, as JSON and as a short text.
+//! - `FeltLog`: the log of a virtual board, which joins what its finger felt to the rows of a client.
+//! - `Report`: the results of a run, as JSON and as a short text.
 //!
 //! Equal inputs give byte-identical files.
 
@@ -29,19 +29,19 @@ mod trace;
 
 use thiserror::Error;
 
-pub use csv::{CsvFile, CsvRow, EventCsv, EventRow, FeltCsv, ForcesCsv};
-pub use felt_log::{FeltLog, FeltLogError};
-pub use felt_svg::draw_felt_svg;
-pub use fit_svg::draw_fit_svg;
+pub(crate) use csv::{EventCsv, EventRow, FeltCsv, ForcesCsv};
+pub(crate) use felt_log::{FeltLog, FeltLogError};
+pub(crate) use felt_svg::draw_felt_svg;
+pub(crate) use fit_svg::draw_fit_svg;
 pub use preview_png::draw_preview_png;
-pub use report::{Report, WorldReport, draft_line};
-pub use scene_png::draw_scene_png;
-pub use score_svg::draw_score_svg;
-pub use trace::{Trace, TracedLayer};
+pub(crate) use report::{Report, WorldReport, draft_line};
+pub(crate) use scene_png::draw_scene_png;
+pub(crate) use score_svg::draw_score_svg;
+pub(crate) use trace::{Trace, TracedLayer};
 
 /// The subject of a picture, from which its title is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Subject {
+pub(crate) struct Subject {
     /// Name of the scene.
     pub name: String,
     /// Whether the finger, and possibly the board as well, is simulated.

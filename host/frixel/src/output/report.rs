@@ -10,7 +10,7 @@ use frixel_scene::{Origin, Reach, fold_copies};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub(crate) struct Report {
     /// The rig that played the scene: `sim`, `qemu` or `board`.
     pub rig: String,
     /// Whether the scene is a draft, which a board refuses.
@@ -80,7 +80,7 @@ pub struct Report {
 
 /// The world that was simulated beside a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WorldReport {
+pub(crate) struct WorldReport {
     /// Whether every effect beside the contact model was switched off.
     pub is_ideal: bool,
     /// Seed of the random person; `None` if the finger was the scene's.
@@ -102,7 +102,7 @@ const REALISTIC_WORLD: &str =
 
 impl Report {
     /// Computes the report from the results of a play.
-    pub fn new(
+    pub(crate) fn new(
         rig: &str,
         metrics: &MetricsSummary,
         reach: &Reach,
@@ -147,20 +147,20 @@ impl Report {
 
     /// Says what the newtons rest on; without this, they are assumed.
     #[must_use]
-    pub fn with_origin(self, origin: Origin) -> Self {
+    pub(crate) fn with_origin(self, origin: Origin) -> Self {
         Self { finger_origin: origin.word(), ..self }
     }
 
     /// Says whether finger or board is simulated; without this, they are.
     #[must_use]
-    pub fn with_simulated(self, simulated: bool) -> Self {
+    pub(crate) fn with_simulated(self, simulated: bool) -> Self {
         Self { simulated, ..self }
     }
 
     /// Says which world was simulated, if one was. The newtons of a random person are assumed, whatever those of the
     /// scene's finger rest on.
     #[must_use]
-    pub fn with_world(self, world: Option<WorldReport>) -> Self {
+    pub(crate) fn with_world(self, world: Option<WorldReport>) -> Self {
         let finger_seed = world.and_then(|world| world.finger_seed);
         let finger_origin = if finger_seed.is_some() { Origin::Assumed.word() } else { self.finger_origin };
         Self { world: world.map(|world| world.name()), finger_seed, finger_origin, ..self }
@@ -168,13 +168,13 @@ impl Report {
 
     /// Says why a board refuses the scene. If there is a reason, it is a draft.
     #[must_use]
-    pub fn with_refusals(self, board_refuses: Vec<String>) -> Self {
+    pub(crate) fn with_refusals(self, board_refuses: Vec<String>) -> Self {
         Self { draft: !board_refuses.is_empty(), board_refuses, ..self }
     }
 
     /// Adds the status of the stream, if there was one.
     #[must_use]
-    pub fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
+    pub(crate) fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
         self.stream_samples = stream.map(|stream| stream.sent);
         self.stream_underruns = stream.map(|stream| stream.underruns);
         self.stream_gaps = stream.map(|stream| stream.gaps);
@@ -184,19 +184,19 @@ impl Report {
     /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
     /// another one, if it did.
     #[must_use]
-    pub fn with_untouched(self, untouched_layers: Vec<String>, replaced_at_s: Option<f64>) -> Self {
+    pub(crate) fn with_untouched(self, untouched_layers: Vec<String>, replaced_at_s: Option<f64>) -> Self {
         Self { untouched_layers, replaced_at_s, ..self }
     }
 
     /// The report as one JSON object on one line.
-    pub fn to_json(&self) -> String {
+    pub(crate) fn to_json(&self) -> String {
         // Numbers and strings always serialise; a number that is not finite becomes `null`.
         serde_json::to_string(self).unwrap_or_default()
     }
 
     /// The report as a few lines of text, each ending in a line feed. Errors are also given relative to the reachable
     /// electric range.
-    pub fn summary(&self) -> String {
+    pub(crate) fn summary(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
             // Writing to a string cannot fail.
@@ -279,7 +279,7 @@ impl Report {
 }
 
 /// The line of a summary that marks a draft.
-pub fn draft_line(refusals: usize) -> String {
+pub(crate) fn draft_line(refusals: usize) -> String {
     let reasons = if refusals == 1 { "1 reason".to_owned() } else { format!("{refusals} reasons") };
     format!("a board refuses this scene, for {reasons}; what is out of reach is clamped here")
 }

@@ -16,7 +16,7 @@ const CASING: RGBColor = RGBColor(255, 255, 255);
 ///
 /// Friction that depends on the finger's speed is drawn at the stroke's median speed, and vibrations and streams at
 /// their largest; the caption says so.
-pub fn draw_scene_png(subject: &Subject, program: &Program, trace: &Trace) -> Result<Vec<u8>, DrawingError> {
+pub(crate) fn draw_scene_png(subject: &Subject, program: &Program, trace: &Trace) -> Result<Vec<u8>, DrawingError> {
     let default = Preview::default();
     let median_m_per_s = trace.median_speed_mm_s().map(|speed_mm_s| 1e-3 * speed_mm_s);
     let preview = Preview { speed_m_per_s: median_m_per_s.unwrap_or(default.speed_m_per_s), ..default };

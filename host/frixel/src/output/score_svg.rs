@@ -6,7 +6,7 @@ use super::DrawingError;
 use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 
 /// Draws a picture of the numbers that a person notices, each over the value from which it is noticed.
-pub fn draw_score_svg(title: &str, score: &Score) -> Result<String, DrawingError> {
+pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, DrawingError> {
     let noticed: Vec<(&MetricScore, Human)> =
         score.metrics.iter().filter_map(|metric| metric.human.map(|human| (metric, human))).collect();
     let rows = noticed.len() as f64;

@@ -51,6 +51,7 @@ fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
             voltage_v_rms: Some(150.0 * ((felt_n - 0.25) / 0.0278).max(0.0).sqrt()),
             dac_code: Some(1000),
             flags: Some(Flags::default()),
+            ..FeltRow::default()
         }
     };
     (0..=rows).map(row).collect()
@@ -86,6 +87,7 @@ fn csv_bytes() {
             voltage_v_rms: Some(99.999_96),
             dac_code: Some(-12_345),
             flags: Some(Flags::default()),
+            ..FeltRow::default()
         },
         FeltRow { t_s: 1.5, flags: Some(Flags::STILL.with(Flags::SATURATED)), ..FeltRow::default() },
         FeltRow { t_s: 2.0, felt_n: Some(f64::NAN), flags: Some(Flags(0x8008)), ..FeltRow::default() },

@@ -21,7 +21,7 @@ const OFF_PART_MIN: f64 = 0.1;
 
 /// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
 #[derive(Clone, Debug)]
-pub struct Trace {
+pub(crate) struct Trace {
     spans: Vec<Span>,
     rows_per_span: usize,
     rows_in_last: usize,
@@ -36,7 +36,7 @@ pub struct Trace {
 
 /// A layer that [`Trace::layer`] knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TracedLayer {
+pub(crate) struct TracedLayer {
     /// Index of its title.
     pub(super) index: usize,
     pub(super) is_off: bool,
@@ -165,7 +165,7 @@ impl Default for Trace {
 
 impl Trace {
     /// Creates an empty trace.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             spans: Vec::new(),
             rows_per_span: 1,
@@ -180,7 +180,7 @@ impl Trace {
     }
 
     /// A layer for [`Self::push`], by its title in messages. Layers with the same title are one.
-    pub fn layer(&mut self, title: &str, is_off: bool) -> TracedLayer {
+    pub(crate) fn layer(&mut self, title: &str, is_off: bool) -> TracedLayer {
         let known = self.titles.iter().position(|known| known == title);
         let index = known.unwrap_or_else(|| {
             self.titles.push(title.to_owned());
@@ -190,7 +190,7 @@ impl Trace {
     }
 
     /// Adds the next row, with the topmost layer under the finger.
-    pub fn push(&mut self, row: &FeltRow, layer: Option<TracedLayer>) {
+    pub(crate) fn push(&mut self, row: &FeltRow, layer: Option<TracedLayer>) {
         let place_mm = row.x_mm.zip(row.y_mm);
         if let (Some(from), Some(to)) = (self.last_place_mm, place_mm) {
             let step_mm = (to.0 - from.0).hypot(to.1 - from.1);

@@ -2,14 +2,14 @@
 //!
 //! | what is written | type | where, until it is whole |
 //! |---|---|---|
-//! | a result, which can be computed again | [`OutputFile`] | a hidden file beside it, which is removed on failure |
-//! | a recording of a person | [`Recording`] | `FILE.partial`, in whole rows, which stays on failure |
-//! | a log that others read while it grows | [`OutputFile::create_live`] | under its own name, in whole rows |
+//! | a result, which can be computed again | `OutputFile` | a hidden file beside it, which is removed on failure |
+//! | a recording of a person | `Recording` | `FILE.partial`, in whole rows, which stays on failure |
+//! | a log that others read while it grows | `OutputFile::create_live` | under its own name, in whole rows |
 //!
 //! - No output replaces an input of the same command ([`Inputs`]), by whatever links it is named.
 //! - No output replaces a recording of a person, unless the user says so.
 //! - A file has its name only when it is whole: it is renamed when everything is on the disk.
-//! - Files that belong together are renamed together ([`commit_all`]), so that none of an earlier run stands beside one
+//! - Files that belong together are renamed together (`commit_all`), so that none of an earlier run stands beside one
 //!   of a later run.
 //! - A folder has one writer at a time ([`OutputFolder`]).
 //!
@@ -27,8 +27,8 @@ use std::path::{Path, PathBuf};
 
 pub use error::OutputFileError;
 pub use folder::OutputFolder;
-pub use recording::{Recording, is_play_of_person, is_recording};
-pub use writer::{FileWriter, commit_all};
+pub(crate) use recording::{Recording, is_play_of_person, is_recording};
+pub(crate) use writer::{FileWriter, commit_all};
 
 use identity::{is_same_file, is_standard_input, is_standard_output};
 
@@ -48,7 +48,7 @@ impl Inputs {
     }
 
     /// Rejects an output that would overwrite one of the files.
-    pub fn check(&self, output: &OutputFile) -> Result<(), OutputFileError> {
+    pub(crate) fn check(&self, output: &OutputFile) -> Result<(), OutputFileError> {
         match output.written_paths().iter().find(|path| self.has(path)) {
             Some(path) => Err(OutputFileError::Input { path: path.clone(), option: output.option }),
             None => Ok(()),
@@ -106,7 +106,7 @@ fn without_links(path: &Path) -> PathBuf {
 
 /// A result that is about to be written, where it overwrites no input and no recording of a person.
 #[derive(Clone, Debug)]
-pub struct OutputFile {
+pub(crate) struct OutputFile {
     path: PathBuf,
     option: &'static str,
     place: Place,
@@ -114,7 +114,7 @@ pub struct OutputFile {
 
 impl OutputFile {
     /// A file by the name that the user gave to `option`; `-` is standard output.
-    pub fn new(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self, OutputFileError> {
+    pub(crate) fn new(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self, OutputFileError> {
         let output = Self::of_person(path, option, inputs)?;
         match &output.place {
             Place::File(file) if is_recording(file) => {
@@ -138,27 +138,27 @@ impl OutputFile {
     }
 
     /// The path, as the user gave it.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Whether the output goes to standard output, where no messages for people belong then.
-    pub fn is_standard_output(&self) -> bool {
+    pub(crate) fn is_standard_output(&self) -> bool {
         matches!(self.place, Place::StandardOutput)
     }
 
     /// Whether the output has a name that other files can stand beside.
-    pub fn is_file(&self) -> bool {
+    pub(crate) fn is_file(&self) -> bool {
         self.file().is_some()
     }
 
     /// Whether there is a file already.
-    pub fn exists(&self) -> bool {
+    pub(crate) fn exists(&self) -> bool {
         self.file().is_some_and(Path::exists)
     }
 
     /// Rejects an output that would overwrite another one of the same command.
-    pub fn check_apart_from(&self, other: &Self) -> Result<(), OutputFileError> {
+    pub(crate) fn check_apart_from(&self, other: &Self) -> Result<(), OutputFileError> {
         let is_same = match (&self.place, &other.place) {
             (Place::File(file), Place::File(other)) => file == other || is_same_file(file, other),
             _ => false,
@@ -187,7 +187,7 @@ impl OutputFile {
     }
 
     /// Starts to write the file. It is whole, or as it was before, until [`FileWriter::commit`].
-    pub fn create(&self) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn create(&self) -> Result<FileWriter, OutputFileError> {
         match &self.place {
             Place::StandardOutput => Ok(FileWriter::standard_output()),
             Place::Stream => FileWriter::stream(&self.path),
@@ -197,7 +197,7 @@ impl OutputFile {
 
     /// Starts to write a log that others read while it grows. It replaces an earlier file at once, and always has whole
     /// rows.
-    pub fn create_live(&self) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn create_live(&self) -> Result<FileWriter, OutputFileError> {
         match &self.place {
             Place::File(file) => FileWriter::live(&self.path, file),
             _ => self.create(),
@@ -205,12 +205,12 @@ impl OutputFile {
     }
 
     /// Writes the whole file.
-    pub fn write(&self, bytes: &[u8]) -> Result<(), OutputFileError> {
+    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), OutputFileError> {
         self.filled(bytes)?.commit()
     }
 
     /// As [`Self::write`], before the commit.
-    pub fn filled(&self, bytes: &[u8]) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn filled(&self, bytes: &[u8]) -> Result<FileWriter, OutputFileError> {
         let mut writer = self.create()?;
         match writer.write_all(bytes) {
             // Ignore a closed standard output.
@@ -221,7 +221,7 @@ impl OutputFile {
     }
 
     /// Writes the whole file unless there is one already, and returns whether it did.
-    pub fn write_new(&self, bytes: &[u8]) -> Result<bool, OutputFileError> {
+    pub(crate) fn write_new(&self, bytes: &[u8]) -> Result<bool, OutputFileError> {
         if self.exists() {
             return Ok(false);
         }

@@ -17,7 +17,7 @@ const PERCEPTUAL: &str = "origin = \"perceptual\"";
 
 /// A recording that is about to be made. Its rows go to `FILE.partial`, which becomes `FILE` at the end.
 #[derive(Clone, Debug)]
-pub struct Recording {
+pub(crate) struct Recording {
     output: OutputFile,
     overwrites: bool,
     advice: &'static str,
@@ -26,7 +26,7 @@ pub struct Recording {
 impl Recording {
     /// A recording by the name that the user gave to `option`. It replaces an earlier one only if `overwrites`. `advice`
     /// says how to keep the rows of a recording that was cut off.
-    pub fn new(
+    pub(crate) fn new(
         path: &Path,
         option: &'static str,
         inputs: &Inputs,
@@ -41,28 +41,28 @@ impl Recording {
     }
 
     /// A recording whose file may be replaced. It replaces the rows of one that was cut off only if `overwrites`.
-    pub fn of(output: OutputFile, overwrites: bool, advice: &'static str) -> Self {
+    pub(crate) fn of(output: OutputFile, overwrites: bool, advice: &'static str) -> Self {
         Self { output, overwrites, advice }
     }
 
     /// The file that the recording becomes.
-    pub fn output(&self) -> &OutputFile {
+    pub(crate) fn output(&self) -> &OutputFile {
         &self.output
     }
 
     /// Where the rows are until the recording is whole, as the user would name it.
-    pub fn partial(&self) -> PathBuf {
+    pub(crate) fn partial(&self) -> PathBuf {
         partial_beside(self.output.path())
     }
 
     /// Whether a recording that was cut off has left rows.
-    pub fn is_cut_off(&self) -> bool {
+    pub(crate) fn is_cut_off(&self) -> bool {
         let Some(file) = self.output.file() else { return false };
         std::fs::read(partial_beside(file)).is_ok_and(|bytes| has_rows(&String::from_utf8_lossy(&bytes)))
     }
 
     /// Removes the rows of a recording that is whole.
-    pub fn discard_partial(&self) {
+    pub(crate) fn discard_partial(&self) {
         if let Some(file) = self.output.file() {
             // A file that cannot be removed is named by the next recording.
             let _ = std::fs::remove_file(partial_beside(file));
@@ -70,13 +70,13 @@ impl Recording {
     }
 
     /// How to keep the rows of a recording that was cut off.
-    pub fn advice(&self) -> &'static str {
+    pub(crate) fn advice(&self) -> &'static str {
         self.advice
     }
 
     /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten: its rows then stay until
     /// the first ones of this recording.
-    pub fn start(&self) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn start(&self) -> Result<FileWriter, OutputFileError> {
         let Some(file) = self.output.file() else { return self.output.create() };
         let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
         if has_rows(&earlier) && !self.overwrites {
@@ -87,7 +87,7 @@ impl Recording {
     }
 
     /// Goes on with a recording that was cut off, and returns its whole rows, header included.
-    pub fn resume(&self) -> Result<(FileWriter, String), OutputFileError> {
+    pub(crate) fn resume(&self) -> Result<(FileWriter, String), OutputFileError> {
         let nothing = || OutputFileError::NothingCutOff { partial: self.partial() };
         let Some(file) = self.output.file() else { return Err(nothing()) };
         let partial = partial_beside(file);
@@ -101,7 +101,7 @@ impl Recording {
 }
 
 /// Whether the play in a folder is of a person's finger on a board that is not a simulator, by its `summary.json`.
-pub fn is_play_of_person(folder: &Path) -> bool {
+pub(crate) fn is_play_of_person(folder: &Path) -> bool {
     let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
     summary.get("simulated") == Some(&serde_json::Value::Bool(false))
@@ -114,7 +114,7 @@ fn has_rows(text: &str) -> bool {
 
 /// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit` reads
 /// it, or a profile of `frixel threshold`.
-pub fn is_recording(path: &Path) -> bool {
+pub(crate) fn is_recording(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
     if read.is_err() {

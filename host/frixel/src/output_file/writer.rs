@@ -13,7 +13,7 @@ const CHUNK: usize = 64 * 1024;
 /// A file that is being written. It has its name after [`Self::commit`]; dropped before, a result is as it was, and a
 /// recording is left as `FILE.partial` if it has a row.
 #[derive(Debug)]
-pub struct FileWriter {
+pub(crate) struct FileWriter {
     path: PathBuf,
     sink: Sink,
     /// Bytes that are not written yet.
@@ -102,7 +102,7 @@ impl FileWriter {
     }
 
     /// Removes everything that was written, by this process or by one before.
-    pub fn clear(&mut self) -> Result<(), OutputFileError> {
+    pub(crate) fn clear(&mut self) -> Result<(), OutputFileError> {
         self.pending.clear();
         if let Sink::File(new) = &mut self.sink {
             (new.len, new.lines) = (0, 0);
@@ -132,13 +132,13 @@ impl FileWriter {
     }
 
     /// Writes what is pending, and gives the file its name.
-    pub fn commit(mut self) -> Result<(), OutputFileError> {
+    pub(crate) fn commit(mut self) -> Result<(), OutputFileError> {
         self.complete()?;
         self.rename()
     }
 
     /// The error of this file for one of the operating system.
-    pub fn error(&self, source: io::Error) -> OutputFileError {
+    pub(crate) fn error(&self, source: io::Error) -> OutputFileError {
         match &self.sink {
             Sink::File(new) if new.is_kept() => OutputFileError::Rows { path: new.written.clone(), source },
             Sink::File(_) => OutputFileError::Cut { path: self.path.clone(), source },
@@ -261,7 +261,7 @@ impl Drop for NewFile {
 
 /// Gives several files that belong together their names. The earlier ones, and `stale` ones that are not written this
 /// time, are removed before: whatever ends the process, no file of an earlier run stands beside one of this run.
-pub fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Result<(), OutputFileError> {
+pub(crate) fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Result<(), OutputFileError> {
     for file in &mut files {
         file.complete()?;
     }

@@ -11,8 +11,6 @@ use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
 use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
 
-use super::recorded::{ReferenceFinger, finger_and_felt};
-
 /// Wall time between two readings of the board's clock.
 const POLL_PERIOD: Duration = Duration::from_millis(1);
 /// Ticks that the board may run ahead of this host: 5 ms, so that a ping is in time for every host timeout.
@@ -46,7 +44,6 @@ pub struct EmulatedStream<'b> {
     held: VecDeque<LinkRecord>,
     telemetry: VecDeque<Telemetry>,
     recorder: Recorder,
-    reference_finger: ReferenceFinger,
 }
 
 impl<'b> EmulatedStream<'b> {
@@ -69,18 +66,9 @@ impl<'b> EmulatedStream<'b> {
             held: VecDeque::new(),
             telemetry: VecDeque::new(),
             recorder: Recorder::idle(),
-            reference_finger: ReferenceFinger::Scene,
         };
         let opened = board.host_answers_to(ticks.wrapping_add(SLICE_TICKS)).and_then(|()| board.set_host_open(true));
         opened.map(|()| link).map_err(not_opened)
-    }
-
-    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
-    /// skin; without this, with the friction of the scene's finger in steady sliding.
-    #[must_use]
-    pub fn referring_to_simulated_finger(mut self) -> Self {
-        self.reference_finger = ReferenceFinger::simulated();
-        self
     }
 
     /// Advances the clock with the board's. Returns whether all that was sent has arrived.
@@ -110,10 +98,8 @@ impl<'b> EmulatedStream<'b> {
         let count = self.held.len().saturating_sub(held);
         for record in self.held.drain(..count) {
             let telemetry = telemetry_of(record.tick, &mut self.telemetry);
-            let (finger, felt) = finger_and_felt(&record.felt);
-            let dac_code = Some(record.drive.dac_code.bits());
-            let observation = Observation { tick: record.tick, finger, felt, dac_code, telemetry };
-            self.reference_finger.record(&mut self.recorder, &observation, &record.felt);
+            let observation = Observation::of_world(record.tick, &record.felt, record.drive.dac_code.bits());
+            self.recorder.record(&Observation { telemetry, ..observation });
         }
     }
 }

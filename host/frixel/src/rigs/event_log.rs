@@ -4,7 +4,7 @@ use frixel_wire::fault::{Flags, State};
 
 /// Tracks the state of a board and keeps its changes in order of time.
 #[derive(Clone, Debug)]
-pub struct EventLog {
+pub(crate) struct EventLog {
     state: State,
     host_silent: bool,
     events: Vec<BoardEvent>,
@@ -12,7 +12,7 @@ pub struct EventLog {
 
 /// A change of the board's state, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoardEvent {
+pub(crate) struct BoardEvent {
     /// Time at which the change was observed, s.
     pub t_s: f64,
     /// Kind of the change.
@@ -21,7 +21,7 @@ pub struct BoardEvent {
 
 /// Kind of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EventKind {
+pub(crate) enum EventKind {
     /// The board entered this state.
     State(State),
     /// The board has not received a frame from its host for the scene's host timeout.
@@ -32,7 +32,7 @@ pub enum EventKind {
 
 impl EventKind {
     /// The name of the kind, for a column of a CSV file.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::State(State::Disarmed) => "disarmed",
             Self::State(State::Armed) => "armed",
@@ -46,12 +46,12 @@ impl EventKind {
 
 impl EventLog {
     /// Starts tracking a board that is in this state.
-    pub fn new(state: State) -> Self {
+    pub(crate) fn new(state: State) -> Self {
         Self { state, host_silent: false, events: Vec::new() }
     }
 
     /// Compares a report of the board with the one before, and logs the changes.
-    pub fn observe(&mut self, t_s: f64, state: State, flags: Flags) {
+    pub(crate) fn observe(&mut self, t_s: f64, state: State, flags: Flags) {
         let host_silent = flags.contains(Flags::HOST_SILENT);
         let begins_silent = host_silent && !self.host_silent;
         if state != self.state {
@@ -64,7 +64,7 @@ impl EventLog {
     }
 
     /// Removes the logged events and returns them.
-    pub fn take_events(&mut self) -> Vec<BoardEvent> {
+    pub(crate) fn take_events(&mut self) -> Vec<BoardEvent> {
         std::mem::take(&mut self.events)
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! - [`SimStream`]: a simulated board in this process, in virtual time.
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.
-//! - [`PortLink`]: a board on a serial port.
+//! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
 //! The emulated and the virtual board need pseudo-terminals, which Unix systems provide.
@@ -14,7 +14,6 @@ mod event_log;
 #[cfg(unix)]
 mod pace;
 mod port;
-mod recorded;
 #[cfg(unix)]
 mod server;
 #[cfg(unix)]
@@ -23,11 +22,19 @@ mod sim_stream;
 
 #[cfg(unix)]
 pub use emulated::EmulatedStream;
-pub use event_log::{BoardEvent, EventKind, EventLog};
+pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
-pub use pace::Dropped;
-pub use port::PortLink;
-pub use recorded::RecordedLink;
+pub(crate) use pace::Dropped;
+pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
 pub use sim_stream::SimStream;
+
+use frixel_driver::Link;
+use frixel_felt::recorder::Recorder;
+use frixel_play::Recorded;
+
+/// A link to a board that plays a scene, with the [`Recorder`] of that play. It is idle until a play has its own.
+pub trait RecordedLink: Link + Recorded<Recorder = Recorder> {}
+
+impl<L: Link + Recorded<Recorder = Recorder>> RecordedLink for L {}

@@ -8,14 +8,14 @@ use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
 
 /// A serial port, with the record of the telemetry received from it.
-pub struct PortLink {
+pub(crate) struct PortLink {
     serial: SerialLink,
     recorder: Recorder,
 }
 
 impl PortLink {
     /// Creates a link that records the telemetry of the board on `serial`.
-    pub fn new(serial: SerialLink) -> Self {
+    pub(crate) fn new(serial: SerialLink) -> Self {
         Self { serial, recorder: Recorder::idle() }
     }
 }

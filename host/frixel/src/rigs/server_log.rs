@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use frixel_felt::recorder::Recorder;
+use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_lab::calibration::ForceSensor;
 use frixel_wire::fault::State;
 
-use super::sim_stream::observation;
 use super::{BoardEvent, EventKind, EventLog};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
 use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, is_play_of_person};
@@ -73,7 +72,7 @@ impl ServerLog {
             self.frames = frames;
             self.last_frame_at_tick = record.tick;
         }
-        self.recorder.record(&observation(record));
+        self.recorder.record(&Observation::of_tick(record));
         for row in self.recorder.take_rows() {
             self.felt_csv.write(&row)?;
         }

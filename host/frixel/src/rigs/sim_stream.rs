@@ -8,8 +8,6 @@ use frixel_hil_sim::{Rig, TickRecord};
 use frixel_play::Recorded;
 use frixel_wire::fault::State;
 
-use super::recorded::{ReferenceFinger, finger_and_felt};
-
 /// Is called with every tick that is recorded.
 type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
 
@@ -19,7 +17,6 @@ type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;
 pub struct SimStream<'a> {
     rig: Rig<'a>,
     recorder: Recorder,
-    reference_finger: ReferenceFinger,
     recording: bool,
     observer: Option<Observer<'a>>,
 }
@@ -27,20 +24,13 @@ pub struct SimStream<'a> {
 impl<'a> SimStream<'a> {
     /// Creates a line to `rig` that records its ticks into `recorder`.
     pub fn new(rig: Rig<'a>, recorder: Recorder) -> Self {
-        Self { rig, recorder, reference_finger: ReferenceFinger::Scene, recording: false, observer: None }
+        Self { rig, recorder, recording: false, observer: None }
     }
 
     /// Calls `observer` with every tick that is recorded.
     #[must_use]
     pub fn observed(self, observer: impl FnMut(&TickRecord) + 'a) -> Self {
         Self { observer: Some(Box::new(observer)), ..self }
-    }
-
-    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
-    /// skin; without this, with the friction of the scene's finger in steady sliding.
-    #[must_use]
-    pub fn referring_to_simulated_finger(self) -> Self {
-        Self { reference_finger: ReferenceFinger::simulated(), ..self }
     }
 
     fn ticks(&self, time: Duration) -> u64 {
@@ -50,7 +40,7 @@ impl<'a> SimStream<'a> {
     fn step(&mut self) {
         let record = self.rig.step();
         if self.recording {
-            self.reference_finger.record(&mut self.recorder, &observation(&record), &record.felt);
+            self.recorder.record(&Observation::of_tick(&record));
             if let Some(observer) = &mut self.observer {
                 observer(&record);
             }
@@ -59,19 +49,6 @@ impl<'a> SimStream<'a> {
             self.recorder.start(record.tick as u32);
             self.recording = true;
         }
-    }
-}
-
-/// Everything about a tick: on the simulator, both board and finger are observable.
-pub(super) fn observation(record: &TickRecord) -> Observation {
-    let telemetry = record.status.telemetry;
-    let (finger, felt) = finger_and_felt(&record.felt);
-    Observation {
-        tick: record.tick as u32,
-        finger,
-        felt,
-        dac_code: Some(telemetry.dac_code),
-        telemetry: Some(telemetry),
     }
 }
 

@@ -7,7 +7,7 @@ use super::saved_file::SavedFile;
 
 /// The files that a scene was read from, each as it was just before it was read: the scene's own file, and those that
 /// it names, whether they could be read or not.
-pub struct SceneFiles {
+pub(crate) struct SceneFiles {
     scene: SavedFile,
     named: Vec<SavedFile>,
 }
@@ -24,23 +24,23 @@ impl SceneFiles {
     }
 
     /// The path of the scene's own file.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.scene.path()
     }
 
     /// Whether any of the files was saved after it was read. Returns false between two checks, a tenth of a second
     /// apart, and while a file is being written.
-    pub fn is_saved(&mut self) -> bool {
+    pub(crate) fn is_saved(&mut self) -> bool {
         once(&mut self.scene).chain(&mut self.named).any(SavedFile::is_saved)
     }
 
     /// Whether the scene's own file is gone, once after it was there. Only [`Self::is_saved`] checks for it.
-    pub fn has_vanished(&mut self) -> bool {
+    pub(crate) fn has_vanished(&mut self) -> bool {
         self.scene.has_vanished()
     }
 
     /// The files that the scene names outside of its own folder, also by links, as it names them from there.
-    pub fn outside(&self) -> impl Iterator<Item = &Path> {
+    pub(crate) fn outside(&self) -> impl Iterator<Item = &Path> {
         let folder = match self.path().parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
@@ -53,7 +53,7 @@ impl SceneFiles {
     }
 
     /// The paths of the files.
-    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
         once(&self.scene).chain(&self.named).map(SavedFile::path)
     }
 }

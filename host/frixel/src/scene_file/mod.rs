@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use crate::input;
 
-pub use files::SceneFiles;
+pub(crate) use files::SceneFiles;
 
 /// Why a scene file could not be loaded.
 #[derive(Debug, Error)]
@@ -67,7 +67,7 @@ fn profile_advice(nearest: &Nearest, file: &str) -> String {
 }
 
 /// What to do about a path that cannot be used: `advice`, unless the path starts with a tilde.
-pub fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
+pub(crate) fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
     if path.starts_with("~") { TILDE_ADVICE } else { advice }
 }
 
@@ -77,7 +77,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 }
 
 /// Reads a scene file, and returns the files that it was read from as well.
-pub fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
+pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
     let files = SceneFiles::new(path);
     match input::read(path, input::TOML_MAX_BYTES) {
@@ -109,7 +109,7 @@ fn folder_of(scene: &Path) -> SceneFolder {
 }
 
 /// Reads a scene file of version 1, and returns it as version 2.
-pub fn migrate(path: &Path) -> Result<String, SceneFileError> {
+pub(crate) fn migrate(path: &Path) -> Result<String, SceneFileError> {
     let file = path.display().to_string();
     let folder = folder_of(path);
     match input::read(path, input::TOML_MAX_BYTES) {
@@ -124,7 +124,7 @@ pub fn migrate(path: &Path) -> Result<String, SceneFileError> {
 
 /// A finger and a screen to be used in place of a scene's own, each by the name of a file or of a bundled profile.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ProfileNames {
+pub(crate) struct ProfileNames {
     /// The finger.
     pub finger: Option<String>,
     /// The screen.
@@ -132,14 +132,9 @@ pub struct ProfileNames {
 }
 
 impl ProfileNames {
-    /// Reads a scene file, as [`load`] does, with this finger and screen.
-    pub fn load(&self, path: &Path) -> Result<Scene, SceneFileError> {
-        self.load_with_files(path).0
-    }
-
     /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those
     /// returned.
-    pub fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
+    pub(crate) fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
         let (scene, mut files) = load_with_files(path);
         let finger = self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none());
         let screen = self.screen.as_deref().filter(|name| Screen::bundled(name).is_none());
@@ -150,7 +145,7 @@ impl ProfileNames {
     }
 
     /// A scene with this finger and screen.
-    pub fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
+    pub(crate) fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
             let screen = profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)?;
             scene = scene.with_screen(screen, name)?;

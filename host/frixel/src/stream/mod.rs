@@ -70,7 +70,12 @@ pub fn wav(path: &Path, tick_hz: u32) -> Result<Feed, StreamError> {
 ///
 /// If `waits` is true, an empty pipe blocks the play, which suits a board in virtual time. Otherwise the board runs
 /// out of samples.
-pub fn raw(input: impl Read + Send + 'static, sample_hz: u32, tick_hz: u32, waits: bool) -> Result<Feed, StreamError> {
+pub(crate) fn raw(
+    input: impl Read + Send + 'static,
+    sample_hz: u32,
+    tick_hz: u32,
+    waits: bool,
+) -> Result<Feed, StreamError> {
     if sample_hz == 0 || sample_hz > tick_hz {
         return Err(StreamError::Rate { sample_hz, tick_hz });
     }

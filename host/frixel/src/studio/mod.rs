@@ -18,7 +18,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use http::{Answer, Head};
-pub use page::page;
+pub(crate) use page::page;
 
 /// Time between two looks for a connection, or for the end.
 const LOOK_PERIOD: Duration = Duration::from_millis(20);

@@ -16,7 +16,7 @@ const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
 
 /// Reads the page from a file. Without one, reads that of the checkout around the current folder, which builds it first
 /// if it has none.
-pub fn page(file: Option<&Path>) -> Result<Vec<u8>, StudioError> {
+pub(crate) fn page(file: Option<&Path>) -> Result<Vec<u8>, StudioError> {
     if let Some(file) = file {
         return read(file);
     }

@@ -7,6 +7,7 @@
 mod align;
 mod force_sensor;
 mod protocol;
+mod simulated_finger;
 
 use std::fmt::Write as _;
 use std::io::{Read, Write};
@@ -17,6 +18,7 @@ use thiserror::Error;
 pub use align::{BoardRow, align};
 pub use force_sensor::ForceSensor;
 pub use protocol::Protocol;
+pub use simulated_finger::simulated_finger;
 
 use crate::fit::Row;
 use crate::table::{Column, Table, TableError, whole_rows};

@@ -179,11 +179,3 @@ fn a_board_that_has_left_the_play_by_itself_is_stopped_without_an_error() {
     player.stop().unwrap();
     assert_eq!(player.state().0, State::Disarmed);
 }
-
-#[test]
-fn a_board_that_stopped_by_itself_says_why() {
-    assert_eq!(StopReason::of(None, Flags::default()), None);
-    assert_eq!(StopReason::of(None, Flags::HOST_SILENT), Some(StopReason::HostSilent));
-    let fault = Some(Fault::Deadline);
-    assert_eq!(StopReason::of(fault, Flags::HOST_SILENT), Some(StopReason::Fault(Fault::Deadline)));
-}

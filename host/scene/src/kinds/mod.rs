@@ -12,6 +12,7 @@ mod noise;
 mod rings;
 mod samples;
 mod speed;
+mod spokes;
 mod stream;
 mod vibration;
 mod wave;
@@ -276,4 +277,5 @@ kinds! {
     Speed in speed,
     Stream in stream,
     Rings in rings,
+    Spokes in spokes,
 }

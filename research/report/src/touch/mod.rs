@@ -6,7 +6,6 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use frixel_felt::fidelity::{self, Fidelity, FidelitySample};
-use frixel_felt::recorder::FingerState;
 use frixel_hil_sim::{Stroke, TouchConfig, TouchReport, World, WorldConfig};
 
 pub(super) use filters::{Filter, Path, best_of_grid, methods};
@@ -72,7 +71,7 @@ impl Recording {
             |[x_m, _]: &[f64; 2]| 0.5 * SWING_N * (core::f64::consts::TAU * x_m / self.class.wavelength_m).sin();
         let skipped = self.places_m.len().saturating_sub(SAMPLES);
         let compared = self.places_m.iter().zip(places_m).skip(skipped).map(|(true_m, place_m)| FidelitySample {
-            finger: Some(FingerState::default()),
+            speed_m_per_s: Some(0.0),
             reference_n: texture(true_m),
             felt_n: texture(place_m),
             natural_n: 0.0,

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use frixel::input::{self, Bounded};
-use frixel::output_file::{FileWriter, Inputs, OutputFileError, Recording};
+use crate::input::{self, Bounded};
+use crate::output_file::{FileWriter, Inputs, OutputFileError, Recording};
 use frixel_lab::calibration::{ForceRow, read_forces};
 
 use super::{CUT_OFF, CalibrateArgs, CommandError};

@@ -6,8 +6,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use frixel::input;
-use frixel::rigs::RecordedLink;
+use crate::input;
+use crate::rigs::RecordedLink;
 use frixel_driver::ControlLine;
 use frixel_play::{PlayError, Player};
 

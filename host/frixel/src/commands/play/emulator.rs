@@ -2,7 +2,7 @@
 
 use std::sync::mpsc;
 
-use frixel::rigs::EmulatedStream;
+use crate::rigs::EmulatedStream;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
@@ -27,7 +27,7 @@ pub(super) fn play_on_emulator(
     let stroke = plan.choose_stroke(args)?;
     let simulated = SimulatedWorld::new(args, scene)?;
     plan.world = Some(simulated.report());
-    let has_own_reference = simulated.has_own_reference(&stroke);
+    plan.has_own_reference = simulated.has_own_reference(&stroke);
     let world = world(&plan.program, &simulated, stroke, args.seed)?;
     let image = Image::build()?;
     let (sender, records) = mpsc::channel();
@@ -35,11 +35,7 @@ pub(super) fn play_on_emulator(
         // The receiver is gone once the play has ended.
         let _ = sender.send(*record);
     })?;
-    let mut stream = EmulatedStream::open(&board, records)?;
-    if has_own_reference {
-        stream = stream.referring_to_simulated_finger();
-    }
-    let device = Device::connect(PollingLink::new(stream))?;
+    let device = Device::connect(PollingLink::new(EmulatedStream::open(&board, records)?))?;
     let mut played = follow(args, plan, device, outputs, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(CommandError::from));

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use frixel::output::Report;
-use frixel::player::{into_recorder, player};
-use frixel::rigs::RecordedLink;
+use crate::output::Report;
+use crate::player::{into_recorder, player};
+use crate::rigs::RecordedLink;
 use frixel_driver::Device;
 use frixel_play::{LiveLayers, PlayError, Player};
 use frixel_scene::Program;

@@ -4,8 +4,8 @@ use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
 
-use frixel::rigs::RecordedLink;
-use frixel::scene_file::{ProfileNames, SceneFiles};
+use crate::rigs::RecordedLink;
+use crate::scene_file::{ProfileNames, SceneFiles};
 use frixel_play::{PlayError, Player, Replaced};
 use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
@@ -175,8 +175,8 @@ mod tests {
     use std::thread::sleep;
     use std::time::{Duration, Instant};
 
-    use frixel::player::player;
-    use frixel::rigs::SimStream;
+    use crate::player::player;
+    use crate::rigs::SimStream;
     use frixel_driver::{Device, PollingLink};
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use frixel::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
-use frixel::output_file::{
+use crate::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
+use crate::output_file::{
     FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
 };
-use frixel::scene_file::SceneFiles;
+use crate::scene_file::SceneFiles;
 use frixel_felt::recorder::FeltRow;
 use frixel_scene::{Program, TouchedLayers};
 
@@ -274,7 +274,7 @@ mod tests {
     }
 
     fn files(args: &PlayArgs) -> PlayFiles {
-        let (_, scene) = frixel::scene_file::load_with_files("a.toml".as_ref());
+        let (_, scene) = crate::scene_file::load_with_files("a.toml".as_ref());
         PlayFiles::new(args, Target::Port, &scene).unwrap()
     }
 

@@ -4,9 +4,9 @@ use std::io::stdin;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel::default_stroke;
-use frixel::output::WorldReport;
-use frixel::stream;
+use crate::default_stroke;
+use crate::output::WorldReport;
+use crate::stream;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
 use frixel_play::Feed;
@@ -31,6 +31,8 @@ pub(super) struct Plan {
     pub(super) feed: Option<Feed>,
     /// The world that is simulated beside the board; `None` for a board at a port.
     pub(super) world: Option<WorldReport>,
+    /// Whether the reference goes through the simulated finger.
+    pub(super) has_own_reference: bool,
     ticks_per_row: u32,
     /// Ticks between two telemetry messages; 0 for rigs whose ticks are observed directly.
     pub(super) telemetry_period_ticks: u32,
@@ -89,7 +91,18 @@ impl Plan {
         }
         note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
-        Ok(Self { target, program, feed, world: None, ticks_per_row, telemetry_period_ticks, limits, tick_hz, seconds })
+        Ok(Self {
+            target,
+            program,
+            feed,
+            world: None,
+            has_own_reference: false,
+            ticks_per_row,
+            telemetry_period_ticks,
+            limits,
+            tick_hz,
+            seconds,
+        })
     }
 
     /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
@@ -138,7 +151,8 @@ impl Plan {
         let ticks = (self.seconds() * f64::from(self.tick_hz)).round() as u64;
         let ticks_max = if self.target.is_virtual_time() { ticks } else { u64::MAX };
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks_max, self.ticks_per_row);
-        recorder.map_err(CommandError::Finger)
+        let recorder = recorder.map_err(CommandError::Finger)?;
+        Ok(if self.has_own_reference { recorder.through_finger() } else { recorder })
     }
 }
 

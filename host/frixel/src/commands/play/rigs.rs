@@ -1,6 +1,6 @@
 //! The boards that `--port` can name, and how to open them.
 
-use frixel::rigs::SimStream;
+use crate::rigs::SimStream;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
@@ -83,16 +83,12 @@ pub(super) fn play_on_simulator(
     let stroke = plan.choose_stroke(args)?;
     // A draft may take longer than a board has time for.
     config.board.limits.tick_cycles_max = u32::MAX;
-    let has_own_reference = world.has_own_reference(&stroke);
+    plan.has_own_reference = world.has_own_reference(&stroke);
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
-    let mut line = SimStream::new(rig, Recorder::idle());
-    if has_own_reference {
-        line = line.referring_to_simulated_finger();
-    }
     plan.world = Some(world.report());
-    let device = Device::connect(PollingLink::new(line))?;
+    let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle())))?;
     follow(args, plan, device, outputs, interrupt)
 }
 

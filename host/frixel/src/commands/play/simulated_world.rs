@@ -1,6 +1,6 @@
 //! The world around a simulated or emulated board: which effects it has, and whose finger is in it.
 
-use frixel::output::WorldReport;
+use crate::output::WorldReport;
 use frixel_hil_sim::{Person, Stroke, World, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::Scene;

@@ -3,7 +3,7 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use frixel::scene_file::SceneFiles;
+use crate::scene_file::SceneFiles;
 
 use super::outputs::PlayFiles;
 use super::rigs::{self, Target};

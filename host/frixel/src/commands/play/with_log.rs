@@ -4,7 +4,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use frixel::output::FeltLog;
+use crate::output::FeltLog;
 use frixel_felt::recorder::FeltRow;
 
 use super::CommandError;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::rehearsal::board_costs;
 use clap::Args;
-use frixel::rehearsal::board_costs;
 use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::{compile, printable};

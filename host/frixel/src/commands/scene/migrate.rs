@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output_file::{Inputs, OutputFile};
+use crate::scene_file;
 use clap::Args;
-use frixel::output_file::{Inputs, OutputFile};
-use frixel::scene_file;
 
 use super::super::error::CommandError;
 

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::output::{draft_line, draw_preview_png};
+use crate::output_file::{Inputs, OutputFile};
 use clap::Args;
-use frixel::output::{draft_line, draw_preview_png};
-use frixel::output_file::{Inputs, OutputFile};
 use frixel_felt::Preview;
 use frixel_felt::check::feel;
 use frixel_felt::perception::Perception;

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use frixel::output_file::{FileWriter, Recording};
+use crate::output_file::{FileWriter, Recording};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_lab::threshold::Staircase;
 

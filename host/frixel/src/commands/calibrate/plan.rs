@@ -1,0 +1,116 @@
+//! A calibration as a board plays it.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_driver::Device;
+use frixel_felt::recorder::{FeltRow, Recorder};
+use frixel_lab::calibration::{BoardRow, Protocol, write_board};
+use frixel_play::{Feed, Player};
+use frixel_scene::{Program, Scene, compile};
+use frixel_wire::hello::BoardLimits;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{CalibrateArgs, CommandError, experiment};
+use crate::commands::interrupt::Interrupt;
+use crate::commands::terminal::{note, say};
+use crate::output_file::Recording;
+use crate::player::player;
+use crate::rigs::RecordedLink;
+
+/// Rows a second of the recording.
+pub(super) const ROW_HZ: u32 = 1_000;
+
+/// A protocol that is ready to play on a board.
+pub(super) struct Plan {
+    pub(super) protocol: Protocol,
+    program: Program,
+    limits: BoardLimits,
+    tick_hz: u32,
+}
+
+impl Plan {
+    pub(super) fn new(
+        args: &CalibrateArgs,
+        recording: &Recording,
+        limits: &BoardLimits,
+        tick_hz: u32,
+    ) -> Result<Self, CommandError> {
+        let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits)?;
+        let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
+        for line in protocol.words().lines() {
+            say(recording.output(), format_args!("  {:<16} {line}", "plan"))?;
+        }
+        let scene = protocol.scene().map_err(CommandError::Finger)?;
+        let scene = Scene::parse(&scene, "calibration", &std::collections::BTreeMap::new())?;
+        Ok(Self { program: compile(&scene, limits, tick_hz)?, protocol, limits: *limits, tick_hz })
+    }
+
+    /// Starts to play the protocol.
+    pub(super) fn start<L: RecordedLink>(
+        &self,
+        device: Device<L>,
+        telemetry_ticks: u32,
+    ) -> Result<Player<L>, CommandError> {
+        let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
+        let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
+        let mut player = player(device, recorder.map_err(CommandError::Finger)?);
+        player
+            .start(self.program.clone(), telemetry_ticks, &mut |_| ControlFlow::Continue(()))
+            .map_err(CommandError::Play)?;
+        let samples = self.protocol.samples().map_err(CommandError::Finger)?;
+        player.stream(Feed::of(samples, self.protocol.sample_hz())).map_err(CommandError::Play)?;
+        Ok(player)
+    }
+
+    /// Plays to the end, and returns what the board reported, which is written to `partial` in the meantime.
+    pub(super) fn play<L: RecordedLink>(
+        &self,
+        player: &mut Player<L>,
+        interrupt: &Interrupt,
+        time_max: Duration,
+        partial: &mut dyn Write,
+    ) -> Result<Vec<BoardRow>, CommandError> {
+        let mut rows = Vec::new();
+        write_board(&mut *partial, None)?;
+        let bar = ProgressBar::new(self.protocol.strokes as u64);
+        let style = ProgressStyle::with_template("  stroke {pos} of {len}: {msg}  {bar:30}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let mut left = time_max;
+        while !left.is_zero() && player.recorder_mut().ticks_left() > 0 {
+            if interrupt.is_requested() {
+                player.stop()?;
+                return Err(CommandError::ExperimentInterrupted);
+            }
+            let stepped = player.step(left);
+            let seen = rows.len();
+            rows.extend(board_rows(player));
+            write_board(&mut *partial, rows.get(seen..))?;
+            left = left.saturating_sub(stepped.map_err(CommandError::Play)?);
+            let stroke = (player.recorder_mut().t_s() / (self.protocol.stroke_s + self.protocol.pause_s)) as u64;
+            bar.set_position((stroke + 1).min(self.protocol.strokes as u64));
+            bar.set_message(if stroke.is_multiple_of(2) { "to the right" } else { "to the left" });
+        }
+        player.stop()?;
+        bar.finish_and_clear();
+        let stream = player.device().stream_status();
+        if let Some(status) = stream.filter(|status| status.underruns > 0) {
+            note(format_args!(
+                "the board ran out of samples {} times; its output was zero meanwhile",
+                status.underruns
+            ));
+        }
+        rows.extend(board_rows(player));
+        Ok(rows)
+    }
+}
+
+/// What the board has reported since the last call.
+fn board_rows<L: RecordedLink>(player: &mut Player<L>) -> impl Iterator<Item = BoardRow> {
+    let row = |row: FeltRow| {
+        let (time_s, speed_mm_s) = (row.t_s, row.speed_mm_s.unwrap_or(0.0));
+        Some(BoardRow { time_s, voltage_v_rms: row.voltage_v_rms?, speed_mm_s })
+    };
+    player.recorder_mut().take_rows().into_iter().filter_map(row)
+}

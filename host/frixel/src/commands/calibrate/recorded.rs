@@ -1,0 +1,85 @@
+//! What board and sensor see of a calibration: on the simulator, or on a board at a port.
+
+use std::path::Path;
+use std::time::Duration;
+
+use frixel_driver::{Device, PollingLink};
+use frixel_felt::recorder::Recorder;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger};
+
+use super::plan::{Plan, ROW_HZ};
+use super::{CalibrateArgs, CommandError, experiment, forces};
+use crate::commands::fit::screen;
+use crate::commands::interrupt::Interrupt;
+use crate::commands::waiting;
+use crate::output_file::{FileWriter, Recording};
+use crate::rigs::SimStream;
+
+/// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
+const FORCES_LATE: Duration = Duration::from_millis(500);
+
+pub(super) type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
+
+pub(super) fn on_simulator(
+    args: &CalibrateArgs,
+    recording: &Recording,
+    interrupt: &Interrupt,
+) -> Result<Recorded, CommandError> {
+    let coating_gap_m = 1e-6 * screen(None)?.1.coating_gap_um();
+    let finger = simulated_finger(args.finger_seed, coating_gap_m);
+    let (contact, fingertip) = finger.map_err(CommandError::Finger)?;
+    let rig = RigConfig::default();
+    let mut config = RigConfig { world: rig.world.realistic(), ..rig };
+    config.world.fingertip = fingertip;
+    let plan = Plan::new(args, recording, &config.board.limits, config.board.tick_hz)?;
+    let stroke = plan.protocol.stroke().map_err(CommandError::GeneratedStroke)?;
+    let mut memory = BoardMemory::new();
+    let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
+    rig.world_mut().set_own_finger(contact);
+    let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
+    let line = SimStream::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
+    let mut player = plan.start(Device::connect(PollingLink::new(line))?, 0)?;
+    // What is simulated needs no file until it is whole.
+    let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
+    drop(player);
+    let forces = match &args.forces {
+        Some(path) => forces::read(path)?,
+        None => sensor.rows().to_vec(),
+    };
+    Ok((board, forces))
+}
+
+pub(super) fn on_port(
+    args: &CalibrateArgs,
+    recording: &Recording,
+    interrupt: &Interrupt,
+    mut partial: Option<FileWriter>,
+) -> Result<Recorded, CommandError> {
+    let Some(forces) = &args.forces else { return Err(CommandError::NoForces { port: args.port.clone() }) };
+    if args.finger_seed.is_some() {
+        return Err(CommandError::FingerOnBoard { port: args.port.clone() });
+    }
+    let device = experiment::connect(&args.port, args.arm)?;
+    let hello = *device.hello();
+    let plan = Plan::new(args, recording, &hello.limits, hello.tick_hz)?;
+    let from_stdin = if forces == Path::new("-") {
+        // What goes to a stream has no copies.
+        let copy = partial.is_some().then(|| forces::copy(args)?.start()).transpose()?;
+        Some(forces::StandardInput::read(copy))
+    } else {
+        None
+    };
+    let mut player = plan.start(waiting::watch(device, interrupt), hello.tick_hz / ROW_HZ)?;
+    let duration = Duration::from_secs_f64(plan.protocol.duration_s());
+    let board = match &mut partial {
+        Some(partial) => plan.play(&mut player, interrupt, duration, partial)?,
+        None => plan.play(&mut player, interrupt, duration, &mut std::io::sink())?,
+    };
+    drop(partial);
+    let forces = match from_stdin {
+        Some(input) => read_forces(input.after(FORCES_LATE).as_slice())?,
+        None => forces::read(forces)?,
+    };
+    Ok((board, forces))
+}

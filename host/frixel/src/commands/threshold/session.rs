@@ -1,0 +1,165 @@
+//! The trials: what is played to a person, asked, and answered.
+
+use std::io::stdin;
+use std::ops::ControlFlow;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread;
+use std::time::Duration;
+
+use frixel_driver::{Device, PollingLink};
+use frixel_felt::recorder::Recorder;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_lab::calibration::Protocol;
+use frixel_lab::threshold::{FADE_S, STROKE_S, Staircase, Threshold, samples};
+use frixel_play::{Feed, Player};
+use frixel_scene::{Scene, compile};
+use frixel_wire::hello::BoardLimits;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+use super::answers::{Answer, Answers};
+use super::{CommandError, ThresholdArgs, experiment};
+use crate::commands::interrupt::Interrupt;
+use crate::commands::terminal::{print, print_line};
+use crate::commands::waiting;
+use crate::input;
+use crate::player::player;
+use crate::rigs::{RecordedLink, SimStream};
+
+/// Arrows that show the pace of a stroke.
+const ARROWS: u32 = 8;
+/// Longest time without a word to the board while an answer is awaited.
+const ANSWER_POLL: Duration = Duration::from_millis(50);
+/// Lines that are read ahead of the trials that they answer.
+const LINES_AHEAD: usize = 64;
+/// Answers in a row that are neither 1 nor 2, after which the trials end.
+const WRONG_ANSWERS_MAX: u32 = 10;
+
+/// Plays the trials on the board of the options.
+pub(super) fn measure(
+    args: &ThresholdArgs,
+    interrupt: &Interrupt,
+    answers: Answers,
+) -> Result<(Threshold, Protocol), CommandError> {
+    // Without a port, there is a file of noise, which ends the command before.
+    let port = args.port.as_deref().unwrap_or("sim");
+    if port == "sim" {
+        let config = RigConfig::default();
+        let protocol = protocol(args, &config.board.limits)?;
+        let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
+        let mut memory = BoardMemory::new();
+        let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
+        let line = SimStream::new(rig, Recorder::idle());
+        session(args, interrupt, Device::connect(PollingLink::new(line))?, protocol, answers)
+    } else {
+        let device = experiment::connect(port, args.arm)?;
+        let protocol = protocol(args, &device.hello().limits)?;
+        session(args, interrupt, device, protocol, answers)
+    }
+}
+
+fn protocol(args: &ThresholdArgs, limits: &BoardLimits) -> Result<Protocol, CommandError> {
+    Ok(Protocol::new(experiment::highest_voltage(args.voltage, limits)?, args.seed))
+}
+
+/// Plays all trials, and returns the threshold.
+fn session<L: RecordedLink>(
+    args: &ThresholdArgs,
+    interrupt: &Interrupt,
+    device: Device<L>,
+    protocol: Protocol,
+    mut recorded: Answers,
+) -> Result<(Threshold, Protocol), CommandError> {
+    let Some(mut staircase) = Staircase::new(usize::from(args.trials)) else {
+        return Err(CommandError::NoAnswer { trial: 0 });
+    };
+    let mut random = Pcg64::seed_from_u64(args.seed);
+    let highest_v_rms = protocol.voltage_max_v_rms();
+    for _ in 0..recorded.repeat(highest_v_rms, &mut staircase)? {
+        // As in the session that was cut off.
+        let _ = random.next_u64();
+    }
+    let hello = *device.hello();
+    let scene = protocol.scene().map_err(CommandError::Finger)?;
+    let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
+    let program = compile(&scene, &hello.limits, hello.tick_hz)?;
+    let mut player = player(waiting::watch(device, interrupt), Recorder::idle());
+    player.start(program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
+    print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
+    print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
+    let answers = answers();
+    while let Some(level_db) = staircase.next_level_db() {
+        let (trial, trials) = staircase.progress();
+        let is_second = random.next_u64() >> 63 == 1;
+        let feed = Feed::of(samples(&protocol, level_db, is_second), protocol.sample_hz());
+        player.stream(feed).map_err(CommandError::Play)?;
+        print(format_args!("  trial {trial} of {trials}: "))?;
+        guide(&mut player, interrupt)?;
+        let mut wrong = 0;
+        let said_second = loop {
+            match answers.recv_timeout(ANSWER_POLL) {
+                Ok(line) if line.trim() == "1" => break false,
+                Ok(line) if line.trim() == "2" => break true,
+                Ok(_) if wrong + 1 == WRONG_ANSWERS_MAX => {
+                    player.stop()?;
+                    return Err(CommandError::WrongAnswers { trial, count: WRONG_ANSWERS_MAX });
+                }
+                Ok(_) => {
+                    wrong += 1;
+                    print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?;
+                    wait(&mut player, interrupt, 0.0)?;
+                }
+                // A board whose host is silent disarms itself: serve it while the person thinks.
+                Err(RecvTimeoutError::Timeout) => wait(&mut player, interrupt, 0.0)?,
+                Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
+            }
+        };
+        let is_right = said_second == is_second;
+        staircase.answer(level_db, is_right);
+        recorded.add(Answer { trial, highest_v_rms, level_db, is_right })?;
+    }
+    player.stop()?;
+    Ok((staircase.threshold(), protocol))
+}
+
+/// Plays the two strokes of a trial, and shows their pace: an arrow for each part of the way.
+fn guide<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt) -> Result<(), CommandError> {
+    for (stroke, arrow) in [("1 ", ">"), (" 2 ", "<")] {
+        print(stroke)?;
+        for _ in 0..ARROWS {
+            print(arrow)?;
+            wait(player, interrupt, STROKE_S / f64::from(ARROWS))?;
+        }
+    }
+    wait(player, interrupt, FADE_S)?;
+    print("  1 or 2? ")
+}
+
+/// The lines of standard input, read by a thread of their own.
+fn answers() -> Receiver<String> {
+    let (sender, receiver) = sync_channel(LINES_AHEAD);
+    thread::spawn(move || {
+        let mut input = stdin().lock();
+        while let Some(line) = input::next_line(&mut input) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    receiver
+}
+
+/// Lets time pass on the board. Stops it if the person wants to end.
+fn wait<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt, seconds: f64) -> Result<(), CommandError> {
+    let mut left = Duration::from_secs_f64(seconds);
+    loop {
+        if interrupt.is_requested() {
+            player.stop()?;
+            return Err(CommandError::ExperimentInterrupted);
+        }
+        left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);
+        if left.is_zero() {
+            return Ok(());
+        }
+    }
+}

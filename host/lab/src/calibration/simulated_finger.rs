@@ -1,0 +1,33 @@
+//! The finger of a calibration on the simulator.
+
+use frixel_hil_sim::{FingertipConfig, Person};
+use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
+use frixel_scene::{Elasticity, FingerProfile};
+
+use crate::fit::CONVENTIONAL_STIFFNESS_PA_PER_M;
+
+/// The finger under a simulated board, on a coating with this effective gap: its contact, and what it does beside the
+/// model. It is that of the person of a seed, or the example finger.
+pub fn simulated_finger(
+    seed: Option<u64>,
+    coating_gap_m: f64,
+) -> Result<(LoadedContact<f64>, FingertipConfig), ParameterError> {
+    if let Some(seed) = seed {
+        let person = Person::drawn(seed);
+        let contact = person.contact(coating_gap_m)?;
+        return Ok((contact, person.fingertip));
+    }
+    let example = FingerProfile::example();
+    let stiffness_pa_per_m = match example.elasticity {
+        Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
+        Elasticity::Soft { .. } => CONVENTIONAL_STIFFNESS_PA_PER_M,
+    };
+    let finger = Finger {
+        radius_m: 1e-3 * example.radius_mm,
+        stiffness_pa_per_m,
+        friction_coefficient: example.friction_coefficient,
+    };
+    let contact = Contact::new(&finger, coating_gap_m + 1e-6 * example.skin_gap_um);
+    let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
+    Ok((contact?, FingertipConfig::REALISTIC))
+}
