@@ -218,6 +218,23 @@ fn a_silent_host_disarms_after_its_timeout() {
     }
 }
 
+/// The age of the last sign of life is an unsigned difference: one of more than 2^31 ticks is old, not in the future.
+#[test]
+fn a_host_that_was_heard_half_a_day_ago_is_silent_once_a_scene_needs_it() {
+    for age_ticks in [801, 1 << 31, (1 << 31) + 1, u32::MAX] {
+        for state in [State::Armed, State::Active] {
+            let mut supervisor = in_state(state);
+            supervisor.set_host_timeout(None);
+            supervisor.apply(&Order::HostHeard, 7);
+            supervisor.expire(7_u32.wrapping_add(age_ticks));
+            assert_eq!(supervisor.state(), state, "{age_ticks}: this scene plays without a host");
+            supervisor.set_host_timeout(Some(800));
+            supervisor.expire(7_u32.wrapping_add(age_ticks));
+            assert_eq!((supervisor.state(), supervisor.host_silent()), (State::Disarmed, true), "{age_ticks}");
+        }
+    }
+}
+
 #[test]
 fn the_host_timeout_applies_only_when_armed_or_active() {
     let mut supervisor = in_state(State::Faulted);
