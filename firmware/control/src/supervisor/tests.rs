@@ -245,6 +245,33 @@ fn the_host_timeout_applies_only_when_armed_or_active() {
     assert!(!supervisor.host_silent());
 }
 
+/// Ticks of play for which the switch may stay closed: ten minutes, also where the tick counter wraps.
+#[test]
+fn only_play_uses_up_the_time_for_which_the_switch_may_stay_closed() {
+    let board = Board { hold_to_run: true, ..BOARD };
+    let max_ticks = board.ticks(600.0);
+    let is_welded = |supervisor: &mut Supervisor, now_tick| {
+        supervisor.expire(now_tick);
+        supervisor.fault().is_some_and(|(fault, _)| fault == Fault::ContactWelded)
+    };
+    for first_tick in [0, u32::MAX - 50] {
+        let tick = |ticks: u32| first_tick.wrapping_add(ticks);
+        let mut supervisor = Supervisor::new(&board);
+        supervisor.set_host_timeout(None);
+        press_switch(&mut supervisor);
+        supervisor.apply(&Order::Arm, tick(0));
+        supervisor.apply(&Order::Play, tick(0));
+        assert!(!is_welded(&mut supervisor, tick(100)));
+        supervisor.apply(&Order::Stop, tick(100));
+        let armed_until = 3 * max_ticks;
+        assert!(!is_welded(&mut supervisor, tick(armed_until)), "armed, it does not drive");
+        supervisor.apply(&Order::Play, tick(armed_until));
+        assert!(!is_welded(&mut supervisor, tick(armed_until + max_ticks - 100)));
+        assert!(is_welded(&mut supervisor, tick(armed_until + max_ticks - 99)));
+        assert_eq!(supervisor.state(), State::Faulted);
+    }
+}
+
 #[test]
 fn a_host_that_arms_again_is_not_silent_any_more() {
     let mut supervisor = in_state(State::Armed);
