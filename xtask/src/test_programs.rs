@@ -30,7 +30,7 @@ const MORE_INPUTS: [(&str, &[&str]); 6] = [
     ("frixel-studio", &["scenes"]),
     ("frixel-hil-sim", &["firmware"]),
     // They read the manifests, lock files and sources of every package, and the licences in the page.
-    ("xtask", &["LICENSE-APACHE", "LICENSE-MIT", "firmware", "fuzz", "hil-sim", "host", "model"]),
+    ("xtask", &["LICENSE-APACHE", "LICENSE-MIT", "firmware", "fuzz", "hil-sim", "host", "model", "research"]),
 ];
 
 /// Inputs of the tests of every package.

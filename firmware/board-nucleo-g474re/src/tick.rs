@@ -128,11 +128,13 @@ impl Tick {
         let drive = self.ticker.tick(&sense);
         let cycles = period::cycles();
         let output_is_zero = !drive.amplifier_enable && !self.queues.has_order();
+        let mut is_late = false;
         if !DAC_BUS.tick_sends(output_is_zero) {
             self.amplifier.set_enabled(false);
         } else if self.dac.send(drive.dac_code) {
             self.amplifier.set_enabled(drive.amplifier_enable);
         } else {
+            is_late = true;
             self.late(period::cycles());
         }
         self.queues.offer_status(&self.ticker);
@@ -140,7 +142,8 @@ impl Tick {
         let cycles = if has_ended_in_time { cycles } else { period::PERIOD_CYCLES + period::cycles() };
         #[cfg(feature = "telemetry")]
         METER.record(cycles);
-        if !has_ended_in_time {
+        // A tick that was too late for the DAC and has not ended in time either is one missed deadline.
+        if !has_ended_in_time && !is_late {
             self.late(cycles);
         }
     }

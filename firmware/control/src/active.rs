@@ -61,7 +61,6 @@ impl Active {
     }
 
     /// Whether a layer plays the host's stream.
-    #[cfg(feature = "stream")]
     #[inline]
     pub(crate) fn has_stream(&self) -> bool {
         self.layers.has_stream()

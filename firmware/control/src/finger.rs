@@ -27,11 +27,6 @@ impl Finger {
         }
     }
 
-    /// When the track ends, if there is one.
-    pub(crate) fn until_tick(&self) -> Option<u32> {
-        self.track().map(|track| track.until_tick)
-    }
-
     /// Replaces the track, and limits it to `ticks_max` ticks from now. Returns whether the finger was lifted in
     /// between.
     pub(crate) fn follow(&mut self, track: &Track, now_tick: u32, ticks_max: u32) -> bool {
@@ -46,9 +41,10 @@ impl Finger {
     }
 
     /// Replaces a track that has ended by [`Self::Stale`]. If it were kept, it would become valid again once the tick
-    /// counter has wrapped.
+    /// counter has wrapped. Called at every tick.
+    #[inline]
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        if self.until_tick().is_some_and(|tick| is_past(tick, now_tick)) {
+        if self.track().is_some_and(|track| is_past(track.until_tick, now_tick)) {
             *self = Self::Stale;
         }
     }

@@ -31,7 +31,7 @@ mod finger;
 mod io;
 mod monitor;
 mod order;
-#[cfg(feature = "stream")]
+#[cfg_attr(not(feature = "stream"), path = "no_stream.rs")]
 mod stream;
 mod supervisor;
 mod tick_count;

@@ -96,11 +96,11 @@ impl MonitorCheck {
         check
     }
 
-    /// Follows the amplifier's enable of this tick. `dac_code` is the code of the last tick.
+    /// Follows the amplifier's enable of this tick. `driven_code` is the code of the last tick.
     #[inline]
-    pub(crate) fn set_enabled(&mut self, is_enabled: bool, dac_code: i16) {
+    pub(crate) fn set_enabled(&mut self, is_enabled: bool, driven_code: i16) {
         if self.is_enabled != is_enabled {
-            if is_enabled { self.turn_on() } else { self.turn_off(dac_code) }
+            if is_enabled { self.turn_on() } else { self.turn_off(driven_code) }
         }
     }
 
@@ -117,9 +117,9 @@ impl MonitorCheck {
     /// Compares a reading with the expected voltage, and advances that by the code of the last tick. Returns whether
     /// [`Self::count`] has to look at the comparison.
     #[inline]
-    pub(crate) fn advance(&mut self, dac_code: i16, monitor_v: f32) -> (Comparison, bool) {
+    pub(crate) fn advance(&mut self, driven_code: i16, monitor_v: f32) -> (Comparison, bool) {
         let expected_v = self.expected_v;
-        let driven_v = f32::from(dac_code) * self.volts_per_code;
+        let driven_v = f32::from(driven_code) * self.volts_per_code;
         self.expected_v = expected_v + self.step * (driven_v - expected_v);
         self.monitor_v = monitor_v;
         let comparison = Comparison {
@@ -193,12 +193,12 @@ impl MonitorCheck {
     /// The enable falls at this tick.
     #[cold]
     #[inline(never)]
-    fn turn_off(&mut self, dac_code: i16) {
+    fn turn_off(&mut self, driven_code: i16) {
         self.is_enabled = false;
         self.switching_ticks = self.turn_off_ticks;
         self.uncounted_below_v = f32::NEG_INFINITY;
         self.expected_v = 0.0;
-        for last_v in [self.monitor_v, f32::from(dac_code) * self.volts_per_code] {
+        for last_v in [self.monitor_v, f32::from(driven_code) * self.volts_per_code] {
             let ceiling_v = self.with_tolerance_v(last_v);
             if ceiling_v > self.ceiling_v {
                 self.ceiling_v = ceiling_v;

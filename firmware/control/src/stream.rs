@@ -162,7 +162,8 @@ enum Phase {
 
 /// Plays a stream, one tick at a time.
 pub(crate) struct Player<'a> {
-    buffer: &'a StreamBuffer,
+    /// `None` on a board without a stream buffer: nothing plays then.
+    buffer: Option<&'a StreamBuffer>,
     phase: Phase,
     start: StreamStart,
     /// Position after the last sample, once the host has ended the stream.
@@ -184,9 +185,9 @@ pub(crate) struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    pub(crate) fn new(buffer: &'a StreamBuffer, tick_period_s: f32) -> Self {
+    pub(crate) fn new(tick_period_s: f32) -> Self {
         Self {
-            buffer,
+            buffer: None,
             phase: Phase::Over,
             start: StreamStart { first: 0, step: 0, start_level: 0 },
             last: None,
@@ -203,8 +204,16 @@ impl<'a> Player<'a> {
         }
     }
 
+    /// Plays streams from `buffer` from now on.
+    pub(crate) fn attach(&mut self, buffer: &'a StreamBuffer) {
+        self.buffer = Some(buffer);
+    }
+
     /// Begins another stream. The current value fades out while samples arrive.
     pub(crate) fn start(&mut self, start: StreamStart) {
+        if self.buffer.is_none() {
+            return;
+        }
         let held = self.now().value;
         (self.from, self.to, self.fraction) = (held, held, 0);
         self.start = start;
@@ -220,10 +229,11 @@ impl<'a> Player<'a> {
         self.last = Some(last);
     }
 
-    /// Stops the stream at once, without a fade.
-    pub(crate) fn stop(&mut self) {
+    /// Stops the stream at once, without a fade: `now` is no sample.
+    pub(crate) fn stop(&mut self, now: &mut StreamSample) {
         self.phase = Phase::Over;
         self.weight = 0.0;
+        *now = StreamSample::default();
     }
 
     /// Whether the stream waits for samples, or the next one is missing.
@@ -236,7 +246,7 @@ impl<'a> Player<'a> {
     }
 
     /// Whether the stream has ended and has faded out.
-    pub(crate) fn is_over(&self) -> bool {
+    fn is_over(&self) -> bool {
         self.phase == Phase::Over && self.weight <= 0.0
     }
 
@@ -247,16 +257,17 @@ impl<'a> Player<'a> {
 
     /// The stream's current value and weight.
     #[inline]
-    pub(crate) fn now(&self) -> StreamSample {
+    fn now(&self) -> StreamSample {
         let part = self.fraction as f32 * (1.0 / ONE as f32);
         StreamSample { value: self.from + part * (self.to - self.from), weight: self.weight }
     }
 
-    /// Advances by a tick.
+    /// Advances by a tick, and sets `now` to the stream's sample, unless the stream is over.
     #[inline]
-    pub(crate) fn advance(&mut self) {
+    pub(crate) fn advance(&mut self, now: &mut StreamSample) {
         if !self.is_over() {
             self.step();
+            *now = self.now();
         }
     }
 
@@ -282,9 +293,10 @@ impl<'a> Player<'a> {
     }
 
     fn begin_when_filled(&mut self) {
-        let end = self.buffer.end.load(Ordering::Acquire);
+        let Some(buffer) = self.buffer else { return };
+        let end = buffer.end.load(Ordering::Acquire);
         let span = count(self.next, end);
-        let holes = count(self.skipped, self.buffer.holes.load(Ordering::Relaxed));
+        let holes = count(self.skipped, buffer.holes.load(Ordering::Relaxed));
         let there = span.saturating_sub(holes);
         // Without room for another frame, no further sample comes.
         let is_full = span + SAMPLES_MAX as u32 > LEN;
@@ -302,7 +314,8 @@ impl<'a> Player<'a> {
 
     /// Takes the next sample into `to`.
     fn take_next(&mut self) {
-        if let Some(sample) = self.buffer.get(self.next).filter(|_| self.last != Some(self.next)) {
+        let Some(buffer) = self.buffer else { return };
+        if let Some(sample) = buffer.get(self.next).filter(|_| self.last != Some(self.next)) {
             self.to = f32::from(sample) * VALUE_PER_SAMPLE;
             self.missing = false;
             if self.weight <= 0.0 {
@@ -311,7 +324,7 @@ impl<'a> Player<'a> {
             }
         } else if self.last == Some(self.next) {
             return self.end_here(Phase::Over);
-        } else if count(self.next, self.buffer.end.load(Ordering::Acquire)) == 0 {
+        } else if count(self.next, buffer.end.load(Ordering::Acquire)) == 0 {
             self.underruns = self.underruns.wrapping_add(1);
             return self.end_here(Phase::Filling);
         } else {
@@ -333,7 +346,9 @@ impl<'a> Player<'a> {
 
     fn go_to(&mut self, next: u32) {
         self.next = next;
-        self.buffer.next.store(next, Ordering::Relaxed);
+        if let Some(buffer) = self.buffer {
+            buffer.next.store(next, Ordering::Relaxed);
+        }
     }
 }
 

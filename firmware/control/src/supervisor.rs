@@ -5,7 +5,6 @@ use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 
 use crate::monitor::{Comparison, MonitorCheck};
-use crate::tick_count::{earlier, is_past};
 use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
@@ -13,6 +12,8 @@ const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
 /// Longest time of play without the arm switch open. A contact that is welded never opens, and a person who holds the
 /// switch is asked to let go from time to time. Ten minutes are longer than any stroke or trial (assumed).
 const SWITCH_HELD_MAX_S: f32 = 600.0;
+/// A number of ticks that never passes: longer than two tick counts can be apart.
+const NEVER: u32 = u32::MAX;
 
 /// State of the supervisor.
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +21,8 @@ pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
     host_heard_at_tick: u32,
-    /// `None` for a scene that continues without a host.
-    host_timeout_ticks: Option<u32>,
+    /// [`NEVER`] for a scene that continues without a host.
+    host_timeout_ticks: u32,
     host_silent: bool,
     /// The arm switch was open at some tick since the reset or the last disarming: if it is held now, it was pressed
     /// since.
@@ -32,9 +33,8 @@ pub(crate) struct Supervisor {
     /// way out of Active leads through Disarmed, from where only an open switch leads back.
     held_ticks: u32,
     active_since_tick: u32,
-    /// The next tick at which [`Self::expire`] has something to do; `None` if there is none. Stored, because it is read
-    /// whenever the finger has a new track.
-    expiry_tick: Option<u32>,
+    /// Ticks from then on for which the switch may stay closed; [`NEVER`] on a board whose switch need not be held.
+    held_ticks_left: u32,
     monitor: MonitorCheck,
 }
 
@@ -44,13 +44,13 @@ impl Supervisor {
             state: State::Disarmed,
             fault: board.reset_fault,
             host_heard_at_tick: 0,
-            host_timeout_ticks: Some(host_timeout_default_ticks(board)),
+            host_timeout_ticks: host_timeout_default_ticks(board),
             host_silent: false,
             switch_was_released: false,
             held_ticks_max: board.hold_to_run.then(|| board.ticks(SWITCH_HELD_MAX_S)),
             held_ticks: 0,
             active_since_tick: 0,
-            expiry_tick: None,
+            held_ticks_left: NEVER,
             monitor: MonitorCheck::new(board),
         }
     }
@@ -82,6 +82,7 @@ impl Supervisor {
             (Order::Play, State::Armed) => {
                 self.state = State::Active;
                 self.active_since_tick = now_tick;
+                self.held_ticks_left = self.held_ticks_max.map_or(NEVER, |max| max.saturating_sub(self.held_ticks));
             }
             (Order::Stop, State::Active) => {
                 self.state = State::Armed;
@@ -116,15 +117,14 @@ impl Supervisor {
     /// Sets the host timeout; `None` for a scene that plays without a host. Called after every order that is not about
     /// the finger.
     pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
-        self.host_timeout_ticks = ticks;
-        self.find_expiry();
+        self.host_timeout_ticks = ticks.unwrap_or(NEVER);
     }
 
-    /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `dac_code` is the output of the
+    /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `driven_code` is the code of the
     /// previous tick.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, dac_code: DacCode) {
-        let (comparison, must_count) = self.monitor.advance(dac_code.bits(), sense.monitor_v);
+    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode) {
+        let (comparison, must_count) = self.monitor.advance(driven_code.bits(), sense.monitor_v);
         if must_count || sense.amplifier_fault || !sense.arm_switch {
             self.latch_first_fault(sense, comparison);
         }
@@ -152,48 +152,34 @@ impl Supervisor {
         }
     }
 
-    /// Follows the amplifier's enable of this tick. `dac_code` is the code of the previous tick.
+    /// Follows the amplifier's enable of this tick. `driven_code` is the code of the previous tick.
     #[inline]
-    pub(crate) fn set_amplifier_enabled(&mut self, is_enabled: bool, dac_code: DacCode) {
-        self.monitor.set_enabled(is_enabled, dac_code.bits());
+    pub(crate) fn set_amplifier_enabled(&mut self, is_enabled: bool, driven_code: DacCode) {
+        self.monitor.set_enabled(is_enabled, driven_code.bits());
     }
 
-    /// The tick at which the host timeout or the longest time of play without an open switch passes; `None` if neither
-    /// applies. A fault may leave it early.
-    pub(crate) fn expiry_tick(&self) -> Option<u32> {
-        self.expiry_tick
-    }
-
-    fn find_expiry(&mut self) {
-        self.expiry_tick = match (self.host_expiry_tick(), self.switch_expiry_tick()) {
-            (Some(host_tick), Some(switch_tick)) => Some(earlier(host_tick, switch_tick)),
-            (host_tick, switch_tick) => host_tick.or(switch_tick),
-        };
-    }
-
-    /// The tick at which the switch has been held for too long; `None` outside of Active.
-    fn switch_expiry_tick(&self) -> Option<u32> {
-        let held_ticks_max = self.held_ticks_max.filter(|_| self.state == State::Active)?;
-        Some(self.active_since_tick.wrapping_add(held_ticks_max.saturating_sub(self.held_ticks)).wrapping_add(1))
-    }
-
-    /// The tick at which the host timeout passes; `None` if no host is required.
-    fn host_expiry_tick(&self) -> Option<u32> {
-        let needed = matches!(self.state, State::Armed | State::Active);
-        let timeout_ticks = self.host_timeout_ticks.filter(|_| needed)?;
-        Some(self.host_heard_at_tick.wrapping_add(timeout_ticks).wrapping_add(1))
-    }
-
-    /// Disarms if the host timeout has passed, and latches a fault if the switch has been held for too long.
+    /// Latches a fault if the switch has been held for too long, and disarms if the host timeout has passed. Called at
+    /// every tick.
+    #[inline]
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        if self.switch_expiry_tick().is_some_and(|tick| is_past(tick, now_tick)) {
-            self.raise(Fault::ContactWelded, 0);
+        let is_held_too_long = now_tick.wrapping_sub(self.active_since_tick) > self.held_ticks_left;
+        let is_host_silent = now_tick.wrapping_sub(self.host_heard_at_tick) > self.host_timeout_ticks;
+        if is_held_too_long || is_host_silent {
+            self.leave_expired(is_held_too_long, is_host_silent);
         }
-        if self.host_expiry_tick().is_some_and(|tick| is_past(tick, now_tick)) {
+    }
+
+    /// Leaves the state if what has passed applies to it: only play is limited by the switch, and only an armed or
+    /// active board needs a host.
+    #[cold]
+    #[inline(never)]
+    fn leave_expired(&mut self, is_held_too_long: bool, is_host_silent: bool) {
+        if is_held_too_long && self.state == State::Active {
+            self.raise(Fault::ContactWelded, 0);
+        } else if is_host_silent && matches!(self.state, State::Armed | State::Active) {
             self.disarm();
             self.host_silent = true;
         }
-        self.find_expiry();
     }
 }
 

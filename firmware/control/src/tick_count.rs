@@ -5,9 +5,3 @@
 pub fn is_past(tick: u32, now_tick: u32) -> bool {
     tick.wrapping_sub(now_tick) as i32 <= 0
 }
-
-/// The earlier of two ticks.
-#[inline]
-pub(crate) fn earlier(one_tick: u32, other_tick: u32) -> u32 {
-    if (one_tick.wrapping_sub(other_tick) as i32) < 0 { one_tick } else { other_tick }
-}

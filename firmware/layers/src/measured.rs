@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: u32 = 832;
+pub(crate) const EMPTY: u32 = 827;
 
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: u32 = 37;
@@ -13,7 +13,7 @@ pub(crate) const SPEED: u32 = 147;
 pub(crate) const SPEED_POINT: u32 = 11;
 
 // The stream's own work, wherever the finger is.
-pub(crate) const STREAM_ELSEWHERE: u32 = 143;
+pub(crate) const STREAM_ELSEWHERE: u32 = 158;
 
 // What other regions add to a rectangle.
 pub(crate) const ELLIPSE: u32 = 8;

@@ -1,237 +1,177 @@
-//! The command handler: dispatches the frames of the host, and answers them.
+//! The command handler: dispatches the frames of the host to the four parts of the session, and answers them.
+//!
+//! The parts do not know one another. The command handler asks one for a value and passes it to the next; orders of
+//! [`Scenes`] go through the [`Orders`](crate::states::Orders) of [`States`].
 
-use frixel_wire::fault::State;
-use frixel_wire::message::{
-    Accepted, Answer, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal, Request,
-    TELEMETRY_PERIOD_MIN_TICKS, TickTimes,
-};
-use frixel_wire::payload::{ParseError, Payload};
-use heapless::{Deque, Vec};
-
-use crate::link::credit::Credit;
-use crate::link::transmit_queue::TransmitQueue;
-use crate::motion::fingers::{Fingers, ONLY_FINGER};
-use crate::motion::tracker::Tracker;
-use crate::scene::bitmap_directory::Directory;
-use crate::scene::commit::{BitmapNames, Commit};
-use crate::scene::live::Playing;
-#[cfg(feature = "stream")]
-use crate::scene::live::Stream;
-use crate::scene::upload::{Staging, Upload};
-use crate::states::ORDERS_MAX;
-use frixel_control::Status;
-use frixel_control::{Active, Board, Order, TickMeter};
+use frixel_control::{Active, Board, Order, Status, TickMeter};
 use frixel_layers::BitmapPool;
+use frixel_wire::fault::{Flags, State};
+use frixel_wire::message::{Accepted, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, Refusal, Request, TickTimes};
+use frixel_wire::payload::{ParseError, Payload};
 
-/// Requests that may wait for a commit to end; further ones are refused as busy. A host that waits for its answers has
-/// one at most.
-const WAITING_MAX: usize = 8;
+use crate::hello::hello;
+use crate::link::Link;
+use crate::motion::{Motion, ONLY_FINGER};
+use crate::scene::{PROGRESS_PERIOD_S, Removal, Scenes};
+use crate::states::{States, may_play_alone};
 
-/// The command handler: holds the state of the session, and of the scene and finger that it has passed to the ticker.
+/// The command handler.
 pub(crate) struct Commands<'a> {
     pub(crate) board: Board,
-    pub(crate) pool: &'a BitmapPool,
-    pub(crate) directory: Directory,
-    pub(crate) upload: Option<Upload>,
-    pub(crate) staging: Staging,
+    pub(crate) link: Link,
+    pub(crate) scenes: Scenes<'a>,
+    pub(crate) motion: Motion,
+    pub(crate) states: States<'a>,
     /// How long the ticks have taken; `None` on a board that does not measure it.
     pub(crate) tick_meter: Option<&'a TickMeter>,
-    /// The stored scene was not loaded at this start ([`Commands::skip_stored_scene`]).
-    pub(crate) stored_scene_skipped: bool,
-    /// CRC-32 of the ticker's scene; zero without a scene.
-    pub(crate) committed_crc32: u32,
-    /// Bitmaps of the ticker's scene.
-    pub(crate) committed_bitmaps: BitmapNames,
-    /// Bitmaps announced since the last commit: those of the next scene.
-    pub(crate) announced_bitmaps: BitmapNames,
-    /// Buffer for the coefficients of the next scene; `None` until the ticker has returned that of the previous scene.
-    pub(crate) spare: Option<&'a mut Active>,
-    pub(crate) orders: Deque<Order<'a>, ORDERS_MAX>,
-    pub(crate) orders_sent: u32,
-    pub(crate) host_heard: bool,
-    /// An [`Order::HostHeard`] has already waited for one order of the finger.
-    pub(crate) sign_of_life_waited: bool,
-    /// State once the ticker has applied every order.
-    pub(crate) state: State,
-    /// The commit under way.
-    pub(crate) commit: Option<Commit>,
-    /// Requests that arrived during the commit and must be carried out after it, in the order of arrival.
-    pub(crate) waiting: Deque<Request, WAITING_MAX>,
-    pub(crate) credit: Credit,
-    pub(crate) telemetry_period_ticks: u32,
-    /// Facts about the committed scene that are still needed after the next upload has overwritten its bytes.
-    pub(crate) playing: Playing,
-    /// The host's stream; `None` on a board without a stream buffer.
-    #[cfg(feature = "stream")]
-    pub(crate) stream: Option<Stream<'a>>,
-    /// Fingers that the host reported.
-    pub(crate) fingers: Fingers,
-    pub(crate) tracker: Tracker,
-    /// The tick from which on the last report of the board's own touch source is too old to let an autonomous scene
-    /// play; `None` without one.
-    pub(crate) own_touch_until_tick: Option<u32>,
 }
 
 impl<'a> Commands<'a> {
     pub(crate) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
         Self {
             board,
-            pool,
-            directory: Directory::default(),
-            upload: None,
-            staging: Staging::new(),
+            link: Link::new(board.limits.receive_window_bytes),
+            scenes: Scenes::new(pool, spare),
+            motion: Motion::new(&board),
+            states: States::new(),
             tick_meter: None,
-            stored_scene_skipped: false,
-            committed_crc32: 0,
-            committed_bitmaps: Vec::new(),
-            announced_bitmaps: Vec::new(),
-            spare: Some(spare),
-            orders: Deque::new(),
-            orders_sent: 0,
-            host_heard: false,
-            sign_of_life_waited: false,
-            state: State::Disarmed,
-            commit: None,
-            waiting: Deque::new(),
-            credit: Credit::new(board.limits.receive_window_bytes),
-            telemetry_period_ticks: 0,
-            playing: Playing::default(),
-            #[cfg(feature = "stream")]
-            stream: None,
-            fingers: Fingers::new(),
-            tracker: Tracker::new(&board),
-            own_touch_until_tick: None,
         }
     }
 
-    pub(crate) fn telemetry_period_ticks(&self) -> Option<u32> {
-        (self.telemetry_period_ticks > 0).then_some(self.telemetry_period_ticks)
-    }
-
-    pub(crate) fn take_back(&mut self, spare: &'a mut Active) {
-        self.spare = Some(spare);
-    }
-
-    pub(crate) fn scene(&self) -> Option<&[u8]> {
-        let (bytes, crc32) = self.staging.scene()?;
-        (crc32 == self.committed_crc32).then_some(bytes)
-    }
-
     /// Takes one frame's payload.
-    pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status, queue: &mut TransmitQueue) {
-        self.report_state(status, queue);
+    pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status) {
+        self.report_state(status);
         match payload {
-            Ok(Payload::HelloRequest { .. }) => self.handle_hello(status, queue),
+            Ok(Payload::HelloRequest { .. }) => self.handle_hello(status),
             Ok(Payload::Request(request)) => {
-                self.host_heard = true;
-                self.take_request(request, status, queue);
+                self.states.host_heard();
+                self.take_request(request, status);
             }
             Ok(Payload::Chunk { number, bytes }) => {
-                self.host_heard = true;
-                self.take_chunk(number, bytes, queue);
-            }
-            #[cfg(feature = "stream")]
-            Ok(Payload::Samples { first_index, samples }) => {
-                self.host_heard = true;
-                // Samples behind a `StartStream` that waits for a commit belong to a stream that has not begun.
-                let starts = |waiting: &Request| matches!(waiting.command, Command::StartStream { .. });
-                if !self.waiting.iter().any(starts) {
-                    self.take_samples(first_index, samples);
+                self.states.host_heard();
+                if let Some(next_chunk) = self.scenes.take_chunk(number, bytes) {
+                    self.link.report_progress(next_chunk);
                 }
-                self.report_stream(status, queue);
             }
-            // Without the feature, samples are ignored, but they restart the host timeout.
-            #[cfg(not(feature = "stream"))]
-            Ok(Payload::Samples { .. }) => self.host_heard = true,
+            Ok(Payload::Samples { first_index, samples }) => {
+                self.states.host_heard();
+                // Samples behind a `StartStream` that waits for a commit belong to a stream that has not begun.
+                if cfg!(feature = "stream") && !self.link.has_waiting_stream() {
+                    self.scenes.stream.take(first_index, samples);
+                }
+                self.report_stream(status);
+            }
             // A request with an unknown command is still answered under its sequence number.
             Err(ParseError::UnknownCommand { sequence }) => {
-                self.host_heard = true;
-                self.answer(sequence, Err(Refusal::UnknownCommand), queue);
+                self.states.host_heard();
+                self.link.answer(sequence, Err(Refusal::UnknownCommand), self.states.state());
             }
             // Ignore frames that only a board sends, and frames that cannot be parsed.
             Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
         }
     }
 
-    /// Carries a request out, or keeps it until the commit under way has ended. A Stop or a Disarm never waits, and
-    /// refuses the requests that do: an Arm or a Play that was sent before it must not take effect after it.
-    fn take_request(&mut self, request: Request, status: &Status, queue: &mut TransmitQueue) {
-        if matches!(request.command, Command::Stop | Command::Disarm) {
-            self.refuse_waiting(queue);
+    /// Begins a session with a new client: resets the credit, drops an unfinished upload or commit, and disarms the
+    /// board, because the previous client is gone. A scene that continues without a host keeps playing.
+    fn handle_hello(&mut self, status: &Status) {
+        if !(self.states.state() == State::Active && self.scenes.is_autonomous()) {
+            self.states.disarm_for_new_client();
+            self.end_stream_unless_active();
         }
-        let must_keep_order = self.commit.is_some() || !self.waiting.is_empty();
-        if !must_keep_order || may_overtake_a_commit(request.command) {
-            self.carry_out(request, status, queue);
-        } else if self.waiting.push_back(request).is_err() {
-            self.answer(request.sequence, Err(Refusal::Busy), queue);
-        }
+        self.link.restart();
+        self.scenes.drop_unfinished();
+        self.motion.forget_fingers(status);
+        // Ignore a full order queue: the stream then runs dry instead.
+        let _ = self.scenes.end_stream(&mut self.states.orders);
+        self.link.send_hello(&hello(&self.board, status, self.states.state(), &self.scenes));
     }
 
-    /// Refuses the requests that wait for a commit.
-    pub(crate) fn refuse_waiting(&mut self, queue: &mut TransmitQueue) {
-        while let Some(waiting) = self.waiting.pop_front() {
-            self.answer(waiting.sequence, Err(Refusal::Busy), queue);
+    /// Carries a request out, or keeps it until the commit under way has ended. A Stop or a Disarm never waits, and
+    /// refuses the requests that do: an Arm or a Play that was sent before it must not take effect after it.
+    fn take_request(&mut self, request: Request, status: &Status) {
+        if matches!(request.command, Command::Stop | Command::Disarm) {
+            self.link.refuse_waiting(self.states.state());
+        }
+        let must_keep_order = self.scenes.is_committing() || self.link.has_waiting();
+        if !must_keep_order || may_overtake_a_commit(request.command) {
+            self.carry_out(request, status);
+        } else {
+            self.link.wait(request, self.states.state());
         }
     }
 
     /// Carries a request out, and answers it. A commit is only begun.
-    pub(crate) fn carry_out(
-        &mut self,
-        Request { sequence, command }: Request,
-        status: &Status,
-        queue: &mut TransmitQueue,
-    ) {
+    fn carry_out(&mut self, Request { sequence, command }: Request, status: &Status) {
         if let Command::Commit { crc32 } = command {
-            self.commit = Some(Commit::new(sequence, crc32));
+            self.link.commit_begins(sequence);
+            self.scenes.begin_commit(crc32);
         } else {
             let outcome = self.dispatch(command, status);
-            self.answer(sequence, outcome, queue);
-        }
-    }
-
-    pub(crate) fn answer(&mut self, sequence: u16, outcome: Result<Accepted, Refusal>, queue: &mut TransmitQueue) {
-        let answer = Answer { sequence, received_bytes: self.credit.received(), state: self.state, outcome };
-        self.report(&FromBoard::Answer(answer), queue);
-    }
-
-    /// Sends a message that contains the count of received bytes.
-    pub(crate) fn report(&mut self, message: &FromBoard, queue: &mut TransmitQueue) {
-        if queue.send(message) {
-            self.credit.reported();
+            self.end_stream_unless_active();
+            self.link.answer(sequence, outcome, self.states.state());
         }
     }
 
     fn dispatch(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+        let Self { board, link, scenes, motion, states, .. } = self;
         match command {
             Command::Ping => Ok(Accepted::Done),
-            Command::UploadScene { len, crc32 } => self.begin_scene(len, crc32),
+            Command::UploadScene { len, crc32 } => scenes.begin_scene(len, crc32, board),
             Command::UploadBitmap { width, height, crc32 } if cfg!(feature = "bitmap") => {
-                self.begin_bitmap(width, height, crc32, self.is_settled(status))
+                let removal = match states.state() {
+                    State::Active => Removal::Plays,
+                    _ if states.is_settled(status) => Removal::Allowed,
+                    _ => Removal::Unsettled,
+                };
+                scenes.begin_bitmap(width, height, crc32, board, removal, &mut states.orders)
             }
             Command::UploadBitmap { width, height, .. } => {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
-            Command::UploadEnd => self.end_upload(),
+            Command::UploadEnd => scenes.end_upload(),
             // `carry_out` handles a commit; it does not get here.
             Command::Commit { .. } => Err(Refusal::Busy),
-            Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => self.subscribe(period_ticks),
-            Command::Subscribe { .. } => Err(Refusal::UnknownCommand),
-            Command::Touch { x_m, y_m, age_ticks } => self.touch(ONLY_FINGER, (x_m, y_m), age_ticks, status),
-            Command::Lift => self.lift(ONLY_FINGER, status),
-            Command::FaultText { offset } => Ok(fault_text(self.board.reset_text, offset)),
-            Command::SetLayer { .. } => self.change_playing(command, status),
-            #[cfg(feature = "stream")]
-            Command::StartStream { .. } => self.change_playing(command, status),
-            #[cfg(feature = "stream")]
-            Command::EndStream => self.end_stream(),
-            #[cfg(not(feature = "stream"))]
-            Command::StartStream { .. } | Command::EndStream => Err(Refusal::UnknownCommand),
-            Command::TouchFinger { finger, x_m, y_m, age_ticks } => self.touch(finger, (x_m, y_m), age_ticks, status),
-            Command::LiftFinger { finger } => self.lift(finger, status),
+            Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => link.subscribe(period_ticks),
+            Command::Touch { .. } | Command::Lift | Command::TouchFinger { .. } | Command::LiftFinger { .. }
+                if !board.touch_from_host =>
+            {
+                Err(Refusal::TouchSource)
+            }
+            Command::Touch { x_m, y_m, age_ticks } => {
+                motion.touch(ONLY_FINGER, (x_m, y_m), age_ticks, scenes.leader(), status)
+            }
+            Command::Lift => Ok(motion.lift(ONLY_FINGER, scenes.leader(), status)),
+            Command::FaultText { offset } => Ok(fault_text(board.reset_text, offset)),
+            Command::SetLayer { layer, on, gain } => {
+                states.check_active(status)?;
+                scenes.set_layer(layer, on, gain, &mut states.orders)
+            }
+            Command::StartStream { sample_hz, start_level } if cfg!(feature = "stream") => {
+                states.check_active(status)?;
+                scenes.start_stream(sample_hz, start_level, board, &mut states.orders)
+            }
+            Command::EndStream => scenes.end_stream(&mut states.orders),
+            Command::TouchFinger { finger, x_m, y_m, age_ticks } => {
+                motion.touch(finger, (x_m, y_m), age_ticks, scenes.leader(), status)
+            }
+            Command::LiftFinger { finger } => Ok(motion.lift(finger, scenes.leader(), status)),
             Command::TickTimes if cfg!(feature = "telemetry") => Ok(Accepted::TickTimes(self.tick_times(status))),
-            Command::TickTimes => Err(Refusal::UnknownCommand),
-            Command::ClearFault => self.change_state(Order::ClearFault, &[State::Faulted], State::Disarmed),
-            Command::Arm | Command::Disarm | Command::Play | Command::Stop => self.drive(command, status),
+            // Their features are disabled.
+            Command::Subscribe { .. } | Command::StartStream { .. } | Command::TickTimes => {
+                Err(Refusal::UnknownCommand)
+            }
+            Command::ClearFault => states.clear_fault(),
+            Command::Arm | Command::Disarm | Command::Play | Command::Stop => {
+                let may_play = || {
+                    if scenes.crc32() == 0 {
+                        return Err(Refusal::NoScene);
+                    }
+                    let needs_host = !scenes.is_autonomous();
+                    let may_play = needs_host || may_play_alone(board, motion.own_touch_works());
+                    if may_play { Ok(()) } else { Err(Refusal::Autonomous) }
+                };
+                states.drive(command, status, may_play)
+            }
         }
     }
 
@@ -243,12 +183,88 @@ impl<'a> Commands<'a> {
         }
     }
 
-    fn subscribe(&mut self, period_ticks: u32) -> Result<Accepted, Refusal> {
-        if period_ticks != 0 && period_ticks < TELEMETRY_PERIOD_MIN_TICKS {
-            return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
+    /// Does what is due at a tick: forgets what is too old, reports a change of state that the host did not request,
+    /// does the next step of a commit or carries out the first of the requests that waited for it, and reports.
+    pub(crate) fn poll(&mut self, status: &Status) {
+        self.motion.expire(status.telemetry.tick);
+        // First, so that a request that waited for the commit meets the state that the board is in.
+        self.report_state(status);
+        self.step_commit(status);
+        self.report_stream(status);
+        if cfg!(feature = "telemetry") {
+            self.link.send_telemetry(&status.telemetry);
         }
-        self.telemetry_period_ticks = period_ticks;
-        Ok(Accepted::Done)
+    }
+
+    fn step_commit(&mut self, status: &Status) {
+        if self.scenes.is_committing() {
+            let may_play_alone = self.may_commit_alone();
+            let outcome = self.scenes.step_commit(&self.board, may_play_alone, &mut self.states.orders);
+            if let Some(outcome) = outcome {
+                self.link.answer_commit(outcome, self.states.state());
+            }
+        } else if let Some(request) = self.link.next_waiting() {
+            self.carry_out(request, status);
+        }
+    }
+
+    /// Whether a scene that continues without a host may be committed. It plays at once if the board is Active.
+    fn may_commit_alone(&self) -> bool {
+        let plays_at_once = self.states.state() == State::Active;
+        may_play_alone(&self.board, self.motion.own_touch_works() || !plays_at_once)
+    }
+
+    /// Reports a change of state that the host did not request.
+    fn report_state(&mut self, status: &Status) {
+        if !self.states.follow(status) {
+            return;
+        }
+        self.end_stream_unless_active();
+        let state = self.states.state();
+        let fault = status.fault.filter(|_| state == State::Faulted).map(|(fault, _)| fault);
+        self.link.report_state(state, fault, Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0));
+        // An Arm or a Play that was sent before the board disarmed itself must not take effect after it.
+        if matches!(state, State::Disarmed | State::Faulted) {
+            self.link.refuse_waiting(state);
+        }
+    }
+
+    /// Takes no more samples of a stream unless the scene plays. No order: the ticker does the same on its own.
+    fn end_stream_unless_active(&mut self) {
+        if self.states.state() != State::Active {
+            let _ = self.scenes.stream.end();
+        }
+    }
+
+    /// Reports the progress of the stream if that is due and the transmit queue is not too full; otherwise, the next
+    /// call tries again.
+    fn report_stream(&mut self, status: &Status) {
+        let now_tick = status.telemetry.tick;
+        let period_ticks = self.board.ticks(PROGRESS_PERIOD_S);
+        if let Some(progress) = self.scenes.stream.progress_due(now_tick, period_ticks)
+            && self.link.report_stream(progress, status)
+        {
+            self.scenes.stream.reported(now_tick);
+        }
+    }
+
+    /// The next order for the ticker.
+    pub(crate) fn next_order(&mut self) -> Option<Order<'a>> {
+        let predicts = self.scenes.predicts();
+        self.states.next_order(|| self.motion.next_order(predicts))
+    }
+
+    /// CRC-32 of the scene to store: the committed one, if the board is disarmed.
+    #[cfg(feature = "store")]
+    pub(crate) fn crc32_to_store(&self) -> Option<u32> {
+        (self.states.state() == State::Disarmed && self.scenes.bytes().is_some()).then_some(self.scenes.crc32())
+    }
+
+    /// Commits a stored scene. Returns whether it is one.
+    #[cfg(feature = "store")]
+    pub(crate) fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
+        let may_play_alone = self.may_commit_alone();
+        self.scenes.restore(read, &self.board, may_play_alone, &mut self.states.orders).is_some()
     }
 }
 

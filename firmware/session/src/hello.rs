@@ -1,12 +1,10 @@
-//! Handles the hello, which begins a new session.
+//! The hello: what the board says of itself.
 
+use frixel_control::{Board, Status};
 use frixel_wire::fault::State;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature, notice};
 
-use crate::commands::Commands;
-use crate::link::transmit_queue::TransmitQueue;
-use frixel_control::Status;
-use frixel_control::{Board, Order};
+use crate::scene::Scenes;
 
 /// Version of this firmware: major, minor, patch.
 const FIRMWARE: (u8, u8, u8) = (
@@ -35,55 +33,23 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
         | bit(board.touch_from_host, feature::HOST_TOUCH)
 }
 
-impl Commands<'_> {
-    /// Begins a session with a new client: resets the credit, drops an unfinished upload or commit, and disarms the
-    /// board, because the previous client is gone. A scene that continues without a host keeps playing.
-    pub(crate) fn handle_hello(&mut self, status: &Status, queue: &mut TransmitQueue) {
-        if !(self.state == State::Active && self.playing.is_autonomous()) {
-            // Ignore a refusal: there was nothing to disarm. There is always room for this order.
-            let _ = self.change_state(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
-        }
-        self.credit.restart();
-        self.telemetry_period_ticks = 0;
-        self.drop_upload();
-        self.drop_commit();
-        self.announced_bitmaps.clear();
-        self.forget_fingers(status);
-        // Ignore a full order queue: the stream then runs dry instead.
-        #[cfg(feature = "stream")]
-        let _ = self.end_stream();
-        queue.send_hello(&Hello {
-            protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
-            firmware: FIRMWARE,
-            board: self.board.kind,
-            id: self.board.id,
-            tick_hz: self.board.tick_hz,
-            frame_max_len: frixel_wire::frame::FRAME_MAX_LEN as u16,
-            features: features(&self.board, self.has_stream()),
-            scene_crc32: self.committed_crc32,
-            reset_cause: self.board.reset_cause,
-            last_fault: status.fault.map(|(fault, _)| fault),
-            fault_detail: status.fault.map_or(0, |(_, detail)| detail),
-            state: self.state,
-            limits: self.board.limits,
-            notices: self.notices(),
-        });
-    }
-
-    /// What a person should know before playing.
-    fn notices(&self) -> u8 {
-        let is_skipped = self.stored_scene_skipped && self.committed_crc32 == 0;
-        self.board.notices | if is_skipped { notice::STORED_SCENE_SKIPPED } else { 0 }
-    }
-
-    #[cfg(feature = "stream")]
-    fn has_stream(&self) -> bool {
-        self.stream.is_some()
-    }
-
-    #[cfg(not(feature = "stream"))]
-    #[allow(clippy::unused_self, reason = "used when the feature is enabled")]
-    fn has_stream(&self) -> bool {
-        false
+/// The hello of a board in this state, with these scenes.
+pub(crate) fn hello(board: &Board, status: &Status, state: State, scenes: &Scenes) -> Hello {
+    let skipped = if scenes.is_stored_scene_skipped() { notice::STORED_SCENE_SKIPPED } else { 0 };
+    Hello {
+        protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
+        firmware: FIRMWARE,
+        board: board.kind,
+        id: board.id,
+        tick_hz: board.tick_hz,
+        frame_max_len: frixel_wire::frame::FRAME_MAX_LEN as u16,
+        features: features(board, scenes.stream.is_attached()),
+        scene_crc32: scenes.crc32(),
+        reset_cause: board.reset_cause,
+        last_fault: status.fault.map(|(fault, _)| fault),
+        fault_detail: status.fault.map_or(0, |(_, detail)| detail),
+        state,
+        limits: board.limits,
+        notices: board.notices | skipped,
     }
 }

@@ -32,11 +32,18 @@
 //!
 //! # Modules
 //!
-//! `session` turns bytes into frames and back. `commands` dispatches the frames to the other modules: `hello`
-//! handles the hello, `states` arming and playing, `storing` uploads (`upload` collects their bytes), `commit` the
-//! change of scene (`loading` computes its coefficients step by step), `live` changes while a scene plays, and
-//! `fingers` touches reported by the host. `tracker` turns touch reports into tracks, with `estimator` and
-//! `standstill`. `queues` connects a session in a main loop with a ticker in an interrupt.
+//! `session` turns bytes into frames and back. `commands` dispatches the frames to four parts, which do not know one
+//! another, and passes values between them:
+//!
+//! | part | takes | gives |
+//! |---|---|---|
+//! | `link` | received bytes to count, requests that wait, answers and reports | credit, the next waiting request, bytes to send |
+//! | `scene` | bytes of scenes, bitmaps and streams, commits, changes of layers | coefficients and changes, as orders |
+//! | `motion` | touch reports of the board and of the host | tracks and lifts, as orders |
+//! | `states` | orders, commands that arm and play, the ticker's status | refusals, changes of state, the next order |
+//!
+//! `scene` puts its orders into the queue of `states`. `hello` describes the board. `queues` connects a session in a
+//! main loop with a ticker in an interrupt. `store` keeps the scene over power-off.
 //!
 //! # Cargo features
 //!
@@ -59,9 +66,9 @@ mod states;
 #[cfg(feature = "store")]
 pub mod store;
 
-pub use motion::tracker::Touch;
+pub use motion::Touch;
 pub use queues::{Queues, SessionEnds, TickEnds};
-pub use scene::loading::{TableRows, active_bytes_filled, table_rows};
 #[cfg(feature = "store")]
-pub use scene::stored::StoredScene;
+pub use scene::StoredScene;
+pub use scene::{TableRows, active_bytes_filled, table_rows};
 pub use session::Session;

@@ -1,53 +1,36 @@
 //! The board's end of the serial line: turns bytes into frames and back.
 
-use frixel_layers::Header;
+#[cfg(feature = "stream")]
+use frixel_control::StreamBuffer;
+use frixel_control::{Active, Board, Order, Status, TickMeter, Ticker};
+use frixel_layers::{BitmapPool, Header};
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
 #[cfg(feature = "store")]
 use frixel_wire::hello::ResetCause;
-use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
 
 use crate::Touch;
 use crate::commands::Commands;
-use crate::link::transmit_queue::TransmitQueue;
 #[cfg(feature = "store")]
-use crate::scene::stored::StoredScene;
-use frixel_control::Status;
-#[cfg(feature = "stream")]
-use frixel_control::StreamBuffer;
-use frixel_control::{Active, Board, Order, TickMeter, Ticker};
-use frixel_layers::BitmapPool;
+use crate::scene::StoredScene;
 
 /// The board's end of the serial line.
 pub struct Session<'a> {
     decoder: Decoder,
     commands: Commands<'a>,
-    queue: TransmitQueue,
-    telemetry_sent_at_tick: u32,
-    /// A byte of the frame that is being received was beyond the host's credit.
-    beyond_credit: bool,
-    /// Frames that were discarded because they were beyond the host's credit, modulo 2^32.
-    frames_discarded: u32,
 }
 
 impl<'a> Session<'a> {
     /// A session that stores bitmaps in `pool` and builds the next scene in `spare`.
     pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
-        Self {
-            decoder: Decoder::new(),
-            commands: Commands::new(board, pool, spare),
-            queue: TransmitQueue::new(),
-            telemetry_sent_at_tick: 0,
-            beyond_credit: false,
-            frames_discarded: 0,
-        }
+        Self { decoder: Decoder::new(), commands: Commands::new(board, pool, spare) }
     }
 
     /// Stores the samples of streams in `buffer` from now on. The ticker plays them from there.
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
-        self.commands.attach_stream(buffer);
+        self.commands.scenes.stream.attach(buffer);
     }
 
     /// Reports the tick times in `meter` from now on. The board's tick records them there.
@@ -67,17 +50,13 @@ impl<'a> Session<'a> {
             let piece_len = bytes.iter().position(|byte| *byte == 0).map_or(bytes.len(), |zero| zero + 1);
             let (mut piece, rest) = bytes.split_at(piece_len);
             bytes = rest;
-            self.beyond_credit |= !self.commands.credit.take(piece_len);
-            let beyond_credit = self.beyond_credit;
-            if piece.ends_with(&[0]) {
-                self.beyond_credit = false;
-            }
+            let is_beyond_credit = self.commands.link.count(piece);
             let Some(frame) = self.decoder.next_frame(&mut piece) else { continue };
             let payload = Payload::parse_from_host(frame);
-            if beyond_credit && !matches!(payload, Ok(Payload::HelloRequest { .. })) {
-                self.frames_discarded = self.frames_discarded.wrapping_add(1);
+            if is_beyond_credit && !matches!(payload, Ok(Payload::HelloRequest { .. })) {
+                self.commands.link.count_discarded();
             } else {
-                self.commands.take(payload, status, &mut self.queue);
+                self.commands.take(payload, status);
             }
         }
     }
@@ -86,26 +65,12 @@ impl<'a> Session<'a> {
     /// sends telemetry and unsolicited changes of state. Call this after every tick or, if there is no time for that,
     /// at least once a telemetry period, and pass on touch reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
-        self.commands.tracker.expire(status.telemetry.tick);
-        self.commands.forget_old_touch(status.telemetry.tick);
-        // First, so that a request that waited for the commit meets the state that the board is in.
-        self.commands.report_state(status, &mut self.queue);
-        self.commands.step_commit(status, &mut self.queue);
-        #[cfg(feature = "stream")]
-        self.commands.report_stream(status, &mut self.queue);
-        if cfg!(feature = "telemetry")
-            && let Some(period_ticks) = self.commands.telemetry_period_ticks()
-            && status.telemetry.tick.wrapping_sub(self.telemetry_sent_at_tick) >= period_ticks
-        {
-            self.telemetry_sent_at_tick = status.telemetry.tick;
-            self.queue.send_unsolicited(&FromBoard::Telemetry(status.telemetry));
-        }
+        self.commands.poll(status);
     }
 
     /// Takes a report of the board's touch source that arrived at `tick`.
     pub fn touch(&mut self, touch: Touch, tick: u32) {
-        self.commands.own_touch_reported(tick);
-        self.commands.tracker.report(touch, tick);
+        self.commands.motion.report(touch, tick, &self.commands.board);
     }
 
     /// The next order for the ticker, which takes one before each tick.
@@ -115,7 +80,7 @@ impl<'a> Session<'a> {
 
     /// Takes back the coefficients that [`Ticker::apply`] returned.
     pub fn take_back(&mut self, spare: &'a mut Active) {
-        self.commands.take_back(spare);
+        self.commands.scenes.take_back(spare);
     }
 
     /// Passes the next order to a ticker on the same thread, and takes back the coefficients that it returns. Returns
@@ -131,27 +96,23 @@ impl<'a> Session<'a> {
 
     /// Moves bytes for the serial line into `bytes`, and returns their number.
     pub fn transmit(&mut self, bytes: &mut [u8]) -> usize {
-        let count = self.queue.drain(bytes);
-        if count > 0 {
-            self.commands.credit.grant_reported();
-        }
-        count
+        self.commands.link.transmit(bytes)
     }
 
     /// The supervisor's state once the ticker has applied every order so far.
     pub fn state(&self) -> State {
-        self.commands.state
+        self.commands.states.state()
     }
 
     /// The bytes of the committed scene; `None` without a scene, or once the upload of another has begun.
     pub fn scene(&self) -> Option<&[u8]> {
-        self.commands.scene()
+        self.commands.scenes.bytes()
     }
 
     /// Header of the committed scene; `None` without a scene. Unlike [`Session::scene`], it stays available during the
     /// upload of the next scene.
     pub fn scene_header(&self) -> Option<&Header> {
-        self.commands.playing.header.as_ref()
+        self.commands.scenes.header()
     }
 
     /// CRC-32 of the scene that [`Session::scene_to_store`] returns; `None` when that returns `None`.
@@ -164,14 +125,14 @@ impl<'a> Session<'a> {
     /// disarmed.
     #[cfg(feature = "store")]
     pub fn scene_to_store(&self) -> Option<StoredScene<'_>> {
-        self.commands.scene_to_store()
+        self.commands.crc32_to_store().and_then(|_| self.commands.scenes.to_store())
     }
 
     /// Commits a stored scene: `read` fills a buffer with the bytes at an offset, and returns `false` beyond the end.
     /// Returns whether the bytes are a scene that this firmware can play; other bytes are ignored.
     #[cfg(feature = "store")]
     pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
-        self.commands.restore(read).is_some()
+        self.commands.restore(read)
     }
 
     /// Whether this start must leave the stored scene alone; if so, the hello says it. See [`SceneStore::new`].
@@ -179,7 +140,7 @@ impl<'a> Session<'a> {
     /// [`SceneStore::new`]: crate::store::SceneStore::new
     #[cfg(feature = "store")]
     pub(crate) fn skips_stored_scene(&mut self) -> bool {
-        self.commands.skips_stored_scene()
+        self.commands.scenes.skips_stored_scene(&self.commands.board)
     }
 
     /// Whether a person has started the board: the power came on, or the reset pin was used.
@@ -191,7 +152,7 @@ impl<'a> Session<'a> {
     /// Number of frames received intact and within the host's credit, and number of frames discarded as corrupt or
     /// beyond the credit.
     pub fn frame_counts(&self) -> (u32, u32) {
-        let discarded = self.frames_discarded;
+        let discarded = self.commands.link.frames_discarded();
         (self.decoder.frames().wrapping_sub(discarded), self.decoder.rejected().wrapping_add(discarded))
     }
 }

@@ -165,7 +165,11 @@ mod tests {
                 x.abs().max(y.abs()) <= 0.2 && layers.is_touched_at(*layer, finger.x_m, finger.y_m)
             })
         };
-        let titles = (0..layers.layer_count()).filter(is_missed).map(|layer| layers.title(layer).to_owned()).collect();
+        let titles = (0..layers.layer_count())
+            .filter(is_missed)
+            .filter_map(|layer| layers.title(layer))
+            .map(ToString::to_string)
+            .collect();
         (titles, stroke.duration_s())
     }
 }

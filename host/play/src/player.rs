@@ -185,7 +185,10 @@ impl<L: Link + Recorded> Player<L> {
                     return Err(refused.into());
                 }
                 let title = layers.program().titles.get(usize::from(change.record));
-                return Err(PlayError::TriggerEnd { layer: title.cloned().unwrap_or_default(), refused });
+                return Err(PlayError::TriggerEnd {
+                    layer: title.map(ToString::to_string).unwrap_or_default(),
+                    refused,
+                });
             }
         }
         Ok(())

@@ -19,6 +19,7 @@ use super::program::Program;
 use super::reach::{Reach, ReachError, carrier};
 use super::springs::Springs;
 use super::tick_cost;
+use super::titles::{LayerNumber, LayerTitle};
 use super::voltage::Voltage;
 use super::warning;
 
@@ -214,9 +215,11 @@ fn note_absent_layers(scene: &Scene, played: &[&Layer], log: &mut Log) {
 
 /// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have
 /// been merged.
-fn layer_map(scene: &Scene, titles: &[String]) -> LayerMap {
-    let record = |title: &String| (0..).zip(titles).find_map(|(record, other)| (other == title).then_some(record));
-    let records = scene.layers.iter().map(|layer| record(&layer.title).filter(|_| layer.live));
+fn layer_map(scene: &Scene, titles: &[LayerTitle]) -> LayerMap {
+    let record = |number: LayerNumber| {
+        (0..).zip(titles).find_map(|(record, title)| (title.number() == number).then_some(record))
+    };
+    let records = scene.layers.iter().map(|layer| record(layer.number()).filter(|_| layer.live));
     LayerMap::new(scene.layers.iter().zip(records))
 }
 

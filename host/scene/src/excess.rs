@@ -11,7 +11,7 @@ use super::log::Log;
 use super::mistake::FitMistake;
 use super::program::Program;
 use super::reach::{ROUNDING, Reach};
-use super::titles::listed;
+use super::titles::{LayerTitle, listed};
 use crate::reference::Reference;
 
 /// From this multiple of the reach on, another unit was probably meant.
@@ -40,7 +40,7 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
             .collect();
         let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise };
         log.set_layer(match &demand.layers[..] {
-            [one] => Some(one.layer.number.table),
+            [one] => Some(one.layer.number().table),
             _ => None,
         });
         let found = demand.sides(excess.found, log);
@@ -184,7 +184,7 @@ impl Demand<'_> {
                 format!("{}, {}, asks for", layer.title, insertions.join(", "))
             };
         }
-        let titles: Vec<&str> = self.layers.iter().map(|played| played.layer.title.as_str()).collect();
+        let titles: Vec<&LayerTitle> = self.layers.iter().map(|played| &played.layer.title).collect();
         let mm = |metres: f64| digits(metres * 1e3, f64::round);
         format!(
             "{} together (x {} to {} mm, y {} to {} mm) ask for",

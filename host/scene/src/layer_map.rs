@@ -2,8 +2,9 @@
 
 use thiserror::Error;
 
-use super::layer::{Layer, LayerNumber};
+use super::layer::Layer;
 use super::nearest::Nearest;
+use super::titles::LayerNumber;
 
 /// The layers of a file, each with its record in the compiled program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -77,7 +78,7 @@ impl LayerMap {
     /// The layers from bottom to top, each with its record if the host may change it.
     pub(super) fn new<'l>(layers: impl IntoIterator<Item = (&'l Layer, Option<u8>)>) -> Self {
         let entry = |(layer, record): (&Layer, Option<u8>)| Entry {
-            number: layer.number,
+            number: layer.number(),
             name: layer.name.clone(),
             family: layer.family.clone(),
             record,

@@ -38,11 +38,11 @@ impl Scene {
         let written: Vec<Written> = self.source.files().iter().flat_map(written).collect();
         let mut found: Vec<(LayerTable, Vec<Rectangle>)> = Vec::new();
         for layer in &self.layers {
-            if found.last().is_none_or(|(table, _)| table.number != layer.number.table) {
+            if found.last().is_none_or(|(table, _)| table.number != layer.number().table) {
                 found.push((self.layer_table(layer, &written), Vec::new()));
             }
             if let Some((table, regions)) = found.last_mut() {
-                table.layers.push(layer.number.to_string());
+                table.layers.push(layer.number().to_string());
                 regions.extend(layer.region.as_ref().map(Region::bounds));
             }
         }
@@ -57,7 +57,7 @@ impl Scene {
         let end = text.map_or(start, |table| table.places.end);
         let line = |offset| self.source.line_and_column(offset).0;
         LayerTable {
-            number: layer.number.table,
+            number: layer.number().table,
             name: text.and_then(|table| table.name.clone()),
             kind: layer.kind.word(),
             gain: layer.gain,

@@ -103,6 +103,6 @@ pub use schema::json_schema;
 pub use screen::{Screen, Slab};
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
-pub use titles::{fold_copies, table_number};
+pub use titles::{LayerNumber, LayerTitle, fold_copies};
 pub use touched_layers::{LayerMiddle, TouchedLayers};
 pub use warning::Warning;

@@ -7,7 +7,7 @@ use super::cover::{Excess, beyond, excesses};
 use super::digits::{digits, down, up};
 use super::program::Program;
 use super::reference::{Piece, Reference};
-use super::titles::listed;
+use super::titles::{LayerTitle, listed};
 
 /// Most places that are searched for an excess. A refused gain takes some forty searches, during which the host does not
 /// serve the board.
@@ -46,8 +46,7 @@ impl Program {
     pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
         let within = self.within_reach();
         let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
-        let titles: Vec<&str> =
-            excess.layers.iter().filter_map(|number| self.titles.get(*number)).map(String::as_str).collect();
+        let titles: Vec<&LayerTitle> = excess.layers.iter().filter_map(|number| self.titles.get(*number)).collect();
         let Interval { low, high } = excess.found;
         let is_above = high - within.high > within.low - low;
         Some(Clamped {

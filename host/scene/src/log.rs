@@ -97,7 +97,7 @@ impl<'s> Log<'s> {
 
     /// Adds a warning about a layer.
     pub(super) fn warn_about(&mut self, layer: &Layer, warning: Warning) {
-        self.remark(DiagnosticKind::Warning, layer.places.table(), Some(layer.number.table), warning);
+        self.remark(DiagnosticKind::Warning, layer.places.table(), Some(layer.number().table), warning);
     }
 
     /// Adds a note about a byte offset of the files.
@@ -107,7 +107,7 @@ impl<'s> Log<'s> {
 
     /// Notes that part of a layer, or all of it, is not needed.
     pub(super) fn note_optimisation(&mut self, layer: &Layer, optimisation: Optimisation) {
-        self.remark(DiagnosticKind::Note, layer.places.table(), Some(layer.number.table), optimisation);
+        self.remark(DiagnosticKind::Note, layer.places.table(), Some(layer.number().table), optimisation);
     }
 
     fn remark(&mut self, kind: DiagnosticKind, offset: usize, layer: Option<usize>, message: impl Into<Message>) {

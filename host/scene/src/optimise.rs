@@ -44,7 +44,7 @@ fn flatten(items: &mut [Played], points: &[Point], log: &mut Log) {
         let Interval { low, high } = layer.bounds(points);
         if low.to_bits() == high.to_bits() {
             item.record.layer = Layer::Constant(Constant { electric_friction_n: low });
-            log.note_optimisation(item.layer, Optimisation::Flat { layer: item.layer.title.clone() });
+            log.note_optimisation(item.layer, Optimisation::Flat { layer: item.layer.title.to_string() });
         }
     }
 }
@@ -59,7 +59,7 @@ fn drop_covered(items: &mut Vec<Played>, header: &Header, log: &mut Log) {
         };
         match items.iter().skip(number + 1).find(hides) {
             Some(by) if !item.layer.live => {
-                let (layer, by) = (item.layer.title.clone(), by.layer.title.clone());
+                let (layer, by) = (item.layer.title.to_string(), by.layer.title.to_string());
                 log.note_optimisation(item.layer, Optimisation::Covered { layer, by });
                 items.remove(number);
             }
@@ -106,7 +106,7 @@ fn drop_idle(items: &mut Vec<Played>, log: &mut Log) {
         };
         let goes = idle && !item.layer.live;
         if goes {
-            log.note_optimisation(item.layer, Optimisation::Idle { layer: item.layer.title.clone() });
+            log.note_optimisation(item.layer, Optimisation::Idle { layer: item.layer.title.to_string() });
         } else {
             bare = false;
         }
@@ -136,7 +136,7 @@ fn fold(items: &mut Vec<Played>, log: &mut Log) {
             number += 1;
             continue;
         };
-        let (layer, into) = (above.layer.title.clone(), below.layer.title.clone());
+        let (layer, into) = (above.layer.title.to_string(), below.layer.title.to_string());
         log.note_optimisation(above.layer, Optimisation::Folded { layer, into });
         items.remove(number + 1);
         if let Some(below) = items.get_mut(number) {

@@ -10,6 +10,7 @@ use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
 use super::played_finger::PlayedFinger;
 use super::reach::{Reach, loaded_contact};
+use super::titles::LayerTitle;
 use super::warning::Warning;
 
 /// The first protocol version with [`Header::layers_fixed`].
@@ -28,8 +29,8 @@ pub struct Program {
     pub points: Vec<Point>,
     /// The pictures that records name, each one once.
     pub bitmaps: Vec<Bitmap>,
-    /// The name of each record in messages: its number from one, and its name or kind.
-    pub titles: Vec<String>,
+    /// The title of each record in messages, with the number of its layer.
+    pub titles: Vec<LayerTitle>,
     /// Which record each layer of the file became, for a host that changes layers while they play.
     pub layers: LayerMap,
     /// The friction that the finger can be given.

@@ -119,7 +119,7 @@ impl Counted {
         let titles = program.titles.iter().zip(self.layers);
         OutOfReach {
             screen_percent: 100.0 * self.places as f64 / places.max(1) as f64,
-            layers: titles.filter(|(_, applies)| *applies).map(|(title, _)| title.clone()).collect(),
+            layers: titles.filter(|(_, applies)| *applies).map(|(title, _)| title.to_string()).collect(),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::log::Log;
 use super::mistake::FitMistake;
 use super::program::Program;
 use super::reference::Shape;
-use super::titles::listed;
+use super::titles::{LayerTitle, listed};
 
 /// Reports a mistake if the longest tick is estimated at more than `cycles_max`. Its position is that of the topmost
 /// layer at the place.
@@ -28,9 +28,8 @@ pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut
         Some(Meeting { layers, place_m, .. }) if meet => (layers, rounded_mm(place_m)),
         _ => (layer_numbers(worst.cell.layers).collect(), middle_mm(&worst.cell)),
     };
-    let titles: Vec<&str> =
-        layers.iter().filter_map(|number| program.titles.get(*number)).map(String::as_str).collect();
-    let topmost = scene.layers.iter().rfind(|layer| titles.last().is_some_and(|title| *title == layer.title));
+    let titles: Vec<&LayerTitle> = layers.iter().filter_map(|number| program.titles.get(*number)).collect();
+    let topmost = titles.last().and_then(|title| scene.layers.iter().find(|layer| layer.number() == title.number()));
     let cycles = worst.cycles();
     let mistake = FitMistake::TickTooLong { cycles, cycles_max, layers: listed(&titles), meet, x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
@@ -52,8 +51,8 @@ impl Program {
     }
 
     /// Titles in messages of the layers that may act in a cell, from bottom to top.
-    pub fn titles_in(&self, cell: &Cell) -> Vec<&str> {
-        layer_numbers(cell.layers).filter_map(|number| self.titles.get(number)).map(String::as_str).collect()
+    pub fn titles_in(&self, cell: &Cell) -> Vec<&LayerTitle> {
+        layer_numbers(cell.layers).filter_map(|number| self.titles.get(number)).collect()
     }
 
     /// Finds the place in a cell where the layers that meet take most cycles.

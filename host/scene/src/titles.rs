@@ -1,58 +1,117 @@
-//! Titles of layers in messages: `layer 3 "name"`, or `layer 3.1 "name 1"` for a copy that `repeat` has made.
+//! Numbers and titles of layers in messages.
+
+use std::fmt::{self, Display};
+
+use serde::{Serialize, Serializer};
 
 /// Copies of one layer from which on a list names only the first.
 const FOLDED_MIN: usize = 3;
 
+/// The number of a layer, by which it is known in messages and in `frixel play --control`: `3`, or `3.2` for a layer
+/// with `repeat`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerNumber {
+    /// The number of its `[[layer]]` among those of the scene, from one at the bottom.
+    pub table: usize,
+    /// The number of the copy, from one, of a layer with `repeat`.
+    pub copy: Option<usize>,
+}
+
+impl Display for LayerNumber {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { table, copy } = self;
+        match copy {
+            Some(copy) => write!(formatter, "{table}.{copy}"),
+            None => write!(formatter, "{table}"),
+        }
+    }
+}
+
+/// What messages call a layer: its number, with its name or kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LayerTitle {
+    number: LayerNumber,
+    text: String,
+}
+
+impl LayerTitle {
+    /// The title of a layer with a name, or else of its kind.
+    ///
+    /// ```
+    /// use frixel_scene::{LayerNumber, LayerTitle};
+    /// let number = LayerNumber { table: 3, copy: Some(1) };
+    /// assert_eq!(LayerTitle::new(number, Some("wood 1"), "grating").as_str(), "layer 3.1 \"wood 1\"");
+    /// assert_eq!(LayerTitle::new(number, None, "grating").as_str(), "layer 3.1 (grating)");
+    /// ```
+    pub fn new(number: LayerNumber, name: Option<&str>, kind: &str) -> Self {
+        let text = name.map_or_else(|| format!("layer {number} ({kind})"), |name| format!("layer {number} \"{name}\""));
+        Self { number, text }
+    }
+
+    /// The number of the layer.
+    pub fn number(&self) -> LayerNumber {
+        self.number
+    }
+
+    /// The title as messages have it.
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+}
+
+impl Display for LayerTitle {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(&self.text)
+    }
+}
+
+impl Serialize for LayerTitle {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.text)
+    }
+}
+
 /// The titles of layers as a sentence lists them, with copies folded.
-pub(super) fn listed(titles: &[&str]) -> String {
+pub(super) fn listed(titles: &[&LayerTitle]) -> String {
     fold_copies(titles).join(" and ")
 }
 
 /// The titles of layers for a list. Of several copies of one layer that follow one another, only the first is named, and
 /// the others are counted.
-pub fn fold_copies(titles: &[&str]) -> Vec<String> {
-    let groups = titles.chunk_by(|one, other| copied(one).is_some() && copied(one) == copied(other));
+pub fn fold_copies(titles: &[&LayerTitle]) -> Vec<String> {
+    let are_copies =
+        |one: LayerNumber, other: LayerNumber| one.copy.is_some() && other.copy.is_some() && one.table == other.table;
+    let groups = titles.chunk_by(|one, other| are_copies(one.number, other.number));
     let words = groups.flat_map(|group| match group {
         [first, rest @ ..] if group.len() >= FOLDED_MIN => vec![format!("{first} with {} more copies", rest.len())],
-        titles => titles.iter().map(|title| (*title).to_owned()).collect(),
+        titles => titles.iter().map(ToString::to_string).collect(),
     });
     words.collect()
 }
 
-/// The number of the table in the file that a copy was made from; `None` for the title of a layer that is no copy.
-fn copied(title: &str) -> Option<usize> {
-    number(title).filter(|(_, is_copy)| *is_copy).map(|(table, _)| table)
-}
-
-/// The number of a layer's table in the file; copies of a layer have the same. `None` for a text that is no title.
-///
-/// ```
-/// # use frixel_scene::table_number;
-/// assert_eq!(table_number("layer 3 \"wood\""), Some(3));
-/// assert_eq!(table_number("layer 3.1 \"wood 1\""), Some(3));
-/// assert_eq!(table_number("the bare screen"), None);
-/// ```
-pub fn table_number(title: &str) -> Option<usize> {
-    number(title).map(|(table, _)| table)
-}
-
-/// The number of a layer's table in the file, and whether the layer is a copy.
-fn number(title: &str) -> Option<(usize, bool)> {
-    let number = title.strip_prefix("layer ")?.split(' ').next()?;
-    let (table, is_copy) = number.split_once('.').map_or((number, false), |(table, _)| (table, true));
-    Some((table.parse().ok()?, is_copy))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::listed;
+    use super::{LayerNumber, LayerTitle, listed};
+
+    fn titles<const N: usize>(layers: [(usize, Option<usize>, Option<&str>); N]) -> [LayerTitle; N] {
+        layers.map(|(table, copy, name)| LayerTitle::new(LayerNumber { table, copy }, name, "noise"))
+    }
 
     #[test]
     fn copies_are_folded() {
-        let titles =
-            ["layer 1 \"a.b\"", "layer 2.1 \"k 1\"", "layer 2.2 \"k 2\"", "layer 2.3 \"k 3\"", "layer 3 (noise)"];
-        assert_eq!(listed(&titles), "layer 1 \"a.b\" and layer 2.1 \"k 1\" with 2 more copies and layer 3 (noise)");
-        assert_eq!(listed(&titles[..3]), "layer 1 \"a.b\" and layer 2.1 \"k 1\" and layer 2.2 \"k 2\"");
-        assert_eq!(listed(&["layer 1 \"2.1\"", "layer 2 \"2.1\"", "layer 3 \"2.1\""]).matches("copies").count(), 0);
+        let [a, first, second, third, noise] = titles([
+            (1, None, Some("a.b")),
+            (2, Some(1), Some("k 1")),
+            (2, Some(2), Some("k 2")),
+            (2, Some(3), Some("k 3")),
+            (3, None, None),
+        ]);
+        assert_eq!(
+            listed(&[&a, &first, &second, &third, &noise]),
+            "layer 1 \"a.b\" and layer 2.1 \"k 1\" with 2 more copies and layer 3 (noise)"
+        );
+        assert_eq!(listed(&[&a, &first, &second]), "layer 1 \"a.b\" and layer 2.1 \"k 1\" and layer 2.2 \"k 2\"");
+        let [one, two, three] = titles([(1, None, Some("2.1")), (2, None, Some("2.1")), (3, None, Some("2.1"))]);
+        assert_eq!(listed(&[&one, &two, &three]).matches("copies").count(), 0);
     }
 }

@@ -1,6 +1,7 @@
 //! Which layers of a program a finger has touched.
 
 use super::program::Program;
+use super::titles::LayerTitle;
 use crate::reference::Reference;
 
 /// Places that are tried along each side of a layer's region.
@@ -11,7 +12,7 @@ const PLACES: u32 = 40;
 pub struct TouchedLayers {
     reference: Reference,
     screen_m: (f64, f64),
-    titles: Vec<String>,
+    titles: Vec<LayerTitle>,
     touched: Vec<bool>,
 }
 
@@ -50,8 +51,8 @@ impl TouchedLayers {
     }
 
     /// The name of a layer in messages.
-    pub fn title(&self, index: usize) -> &str {
-        self.titles.get(index).map_or("", String::as_str)
+    pub fn title(&self, index: usize) -> Option<&LayerTitle> {
+        self.titles.get(index)
     }
 
     /// The layers that were never touched, by their index from the bottom.

@@ -14,7 +14,7 @@ use super::layer::Layer;
 use super::program::Program;
 use super::reach::{ROUNDING, Reach};
 use super::reference::Reference;
-use super::titles::listed;
+use super::titles::{LayerTitle, listed};
 
 /// A reason to doubt a program. Its text is one sentence for the scene's designer.
 #[derive(Clone, Debug, PartialEq, Error, Serialize)]
@@ -184,7 +184,7 @@ pub(super) fn of_layers(layers: &[Layer]) -> Vec<(&Layer, Warning)> {
     let edges = layers.iter().enumerate().filter_map(|(number, layer)| {
         let has_no_end = matches!(layer.kind, Kind::Edge(_)) && layer.region.is_none() && !layer.is_copy;
         let has_regions_below = layers.iter().take(number).any(|below| below.region.is_some());
-        (has_no_end && has_regions_below).then(|| (layer, Warning::EdgeAcrossScreen { layer: layer.title.clone() }))
+        (has_no_end && has_regions_below).then(|| (layer, Warning::EdgeAcrossScreen { layer: layer.title.to_string() }))
     });
     edges.chain(hiding(layers)).chain(same_names(layers)).collect()
 }
@@ -203,9 +203,9 @@ fn hiding(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     let while_on = while_on.filter(|number| is_above(*number) && has_regions(*number));
     for_good.into_iter().chain(while_on).filter(|number| *number > 0).filter_map(|number| {
         let layer = layers.get(number)?;
-        let hidden: Vec<&str> = layers.iter().take(number).map(|below| below.title.as_str()).collect();
+        let hidden: Vec<&LayerTitle> = layers.iter().take(number).map(|below| &below.title).collect();
         let (is_live, hidden) = (layer.live, listed(&hidden));
-        Some((layer, Warning::HidesAllBelow { layer: layer.title.clone(), is_live, hidden }))
+        Some((layer, Warning::HidesAllBelow { layer: layer.title.to_string(), is_live, hidden }))
     })
 }
 
@@ -213,15 +213,15 @@ fn hiding(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
 fn same_names(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     let twin = |number: usize, layer: &Layer| {
         let below = layers.iter().take(number).filter(|other| other.name.is_some() && other.name == layer.name);
-        below.map(|other| other.number).next()
+        below.map(Layer::number).next()
     };
     let twins = layers.iter().enumerate().filter_map(move |(number, layer)| Some((layer, twin(number, layer)?)));
     let mut warned = Vec::new();
     twins.filter_map(move |(layer, lower)| {
-        let is_first = !warned.contains(&layer.number.table);
-        warned.push(layer.number.table);
-        let (number, lower) = (layer.number.to_string(), lower.to_string());
-        is_first.then(|| (layer, Warning::NameTwice { layer: layer.title.clone(), number, lower }))
+        let is_first = !warned.contains(&layer.number().table);
+        warned.push(layer.number().table);
+        let (number, lower) = (layer.number().to_string(), lower.to_string());
+        is_first.then(|| (layer, Warning::NameTwice { layer: layer.title.to_string(), number, lower }))
     })
 }
 

@@ -3,7 +3,7 @@
 use frixel_felt::check::feel;
 use frixel_felt::perception::Perception;
 use frixel_layers::range;
-use frixel_scene::{LayerTable, Program, Scene, table_number};
+use frixel_scene::{LayerTable, Program, Scene};
 use serde::Serialize;
 
 /// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
@@ -61,8 +61,8 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
     scene.layer_tables().into_iter().map(describe).collect()
 }
 
-/// The sentence on the layer with this number.
-fn felt(number: usize, perception: &Perception) -> String {
-    let layer = perception.layers.iter().find(|layer| table_number(&layer.layer) == Some(number));
+/// The sentence on the layer of the table with this number, or on its first copy.
+fn felt(table: usize, perception: &Perception) -> String {
+    let layer = perception.layers.iter().find(|layer| layer.layer.number().table == table);
     layer.map_or(String::new(), feel::sentence)
 }

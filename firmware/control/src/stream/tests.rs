@@ -13,7 +13,9 @@ struct Ends<'a> {
 
 impl<'a> Ends<'a> {
     fn new(buffer: &'a StreamBuffer) -> Self {
-        Self { intake: StreamIntake::new(buffer), player: Player::new(buffer, 1.0 / TICK_HZ as f32) }
+        let mut player = Player::new(1.0 / TICK_HZ as f32);
+        player.attach(buffer);
+        Self { intake: StreamIntake::new(buffer), player }
     }
 
     fn start(&mut self, sample_hz: u32, start_level: u16) {
@@ -32,7 +34,7 @@ impl<'a> Ends<'a> {
     }
 
     fn advance(&mut self) -> StreamSample {
-        self.player.advance();
+        self.player.advance(&mut StreamSample::default());
         self.player.now()
     }
 
@@ -143,7 +145,7 @@ proptest! {
                     ends.start(1 + index % TICK_HZ, 1 + (index % 800) as u16);
                 }
                 1 if ends.intake.first.is_some() => ends.end(),
-                2 => { ends.player.stop(); before.weight = 0.0; }
+                2 => { ends.player.stop(&mut StreamSample::default()); before.weight = 0.0; }
                 3 => ends.take(index, &vec![100 * stream; count as usize]),
                 4..=8 => ends.take(index % 1_500, &vec![100 * stream; count as usize]),
                 _ => for _ in 0..index % 1_000 {

@@ -20,8 +20,6 @@
 mod orders;
 mod status;
 
-#[cfg(feature = "stream")]
-use frixel_layers::StreamSample;
 use frixel_layers::{BitmapPool, Clicks, Inputs};
 use frixel_model::InverseTable;
 use frixel_wire::dac_code::DacCode;
@@ -31,10 +29,10 @@ use crate::carrier::Carrier;
 use crate::envelope::Envelope;
 use crate::finger::{Finger, STALE_AFTER_PERIODS};
 use crate::order::Counters;
+use crate::stream::Player;
 #[cfg(feature = "stream")]
-use crate::stream::{Player, StreamBuffer};
+use crate::stream::StreamBuffer;
 use crate::supervisor::{self, Supervisor};
-use crate::tick_count::{earlier, is_past};
 use crate::{Active, Board, Drive, Sense, Track};
 
 /// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
@@ -46,18 +44,13 @@ pub struct Ticker<'a> {
     finger: Finger,
     /// The finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
-    /// The earliest of the end of the finger's track, the host timeout and the longest time of play without an open
-    /// switch; `None` if none applies.
-    expiry_tick: Option<u32>,
     /// Coefficients of the current scene.
     active: &'a mut Active,
     pool: &'a BitmapPool,
     clicks: Clicks,
     /// Inputs of the layers: position and velocity of the finger, tick, stream.
     inputs: Inputs,
-    /// `None` on a board without a stream buffer.
-    #[cfg(feature = "stream")]
-    stream: Option<Player<'a>>,
+    stream: Player<'a>,
     envelope: Envelope,
     carrier: Carrier,
     /// Target friction at the last tick. This and the next fields hold the results of the last tick.
@@ -93,13 +86,11 @@ impl<'a> Ticker<'a> {
             supervisor: Supervisor::new(board),
             finger: Finger::Up,
             was_lifted: false,
-            expiry_tick: None,
             active,
             pool,
             clicks: Clicks::NONE,
             inputs: Inputs::default(),
-            #[cfg(feature = "stream")]
-            stream: None,
+            stream: Player::new(board.tick_period_s()),
             envelope: Envelope::default(),
             carrier,
             electric_friction_n: 0.0,
@@ -120,7 +111,7 @@ impl<'a> Ticker<'a> {
     /// Plays streams from `buffer` from now on. The session writes their samples into it.
     #[cfg(feature = "stream")]
     pub fn attach_stream(&mut self, buffer: &'a StreamBuffer) {
-        self.stream = Some(Player::new(buffer, self.timing.tick_period_s));
+        self.stream.attach(buffer);
     }
 
     /// Runs one tick. Call this exactly [`Board::tick_hz`] times a second, with at most one call of [`Ticker::apply`]
@@ -139,13 +130,14 @@ impl<'a> Ticker<'a> {
         self.arm_switch = sense.arm_switch;
 
         // Leave if anything stops the output: a fault (amplifier, monitor, arm switch, or raised by the board), no
-        // Active state (Stop, Disarm, host timeout), no track (lift, expiry), no scene.
-        self.supervisor.check(sense, self.dac_code);
-        if self.expiry_tick.is_some_and(|tick| is_past(tick, self.tick)) {
-            self.handle_expiry();
-        }
-        #[cfg(feature = "stream")]
-        self.advance_stream();
+        // Active state (Stop, Disarm, host timeout), no track (lift, expiry), no scene. The supervisor and the finger
+        // come first, so that what they find at this tick stops the output at this tick; and a lift is taken in any
+        // state, so that none is left for a later play.
+        let driven_code = self.dac_code;
+        self.supervisor.check(sense, driven_code);
+        self.supervisor.expire(self.tick);
+        self.finger.expire(self.tick);
+        self.stream.advance(&mut self.inputs.stream);
         let was_lifted = core::mem::take(&mut self.was_lifted);
         let (State::Active, Some(track), false) = (self.supervisor.state(), self.finger.track(), was_lifted) else {
             return self.zero_output();
@@ -167,7 +159,7 @@ impl<'a> Ticker<'a> {
         if self.envelope.follow(target_v_rms, self.active.slew_step_v) {
             self.counters.slewed_ticks = self.counters.slewed_ticks.wrapping_add(1);
         }
-        self.supervisor.set_amplifier_enabled(true, self.dac_code);
+        self.supervisor.set_amplifier_enabled(true, driven_code);
         let dac_code = self.carrier.next(self.envelope.voltage_v_rms(), &self.active.carrier, self.tick);
 
         self.electric_friction_n = friction_n;
@@ -186,9 +178,8 @@ impl<'a> Ticker<'a> {
     /// Sets the output to zero at once, without the slew limit.
     #[inline(never)]
     fn zero_output(&mut self) -> Drive {
-        #[cfg(feature = "stream")]
         if self.supervisor.state() != State::Active {
-            self.stop_stream();
+            self.stream.stop(&mut self.inputs.stream);
         }
         self.supervisor.set_amplifier_enabled(false, self.dac_code);
         self.clicks.lift();
@@ -198,43 +189,6 @@ impl<'a> Ticker<'a> {
         self.target_v_rms = 0.0;
         self.dac_code = DacCode::ZERO;
         Drive { dac_code: DacCode::ZERO, amplifier_enable: false }
-    }
-
-    /// Drops a finger whose track has expired, and leaves the state if one of the supervisor's times has passed.
-    #[cold]
-    #[inline(never)]
-    fn handle_expiry(&mut self) {
-        self.finger.expire(self.tick);
-        self.supervisor.expire(self.tick);
-        self.find_next_expiry();
-    }
-
-    /// Finds the next expiry. Called after every order and every expiry; a fault may leave it early, which costs one
-    /// extra call of [`Self::handle_expiry`].
-    fn find_next_expiry(&mut self) {
-        self.expiry_tick = match (self.finger.until_tick(), self.supervisor.expiry_tick()) {
-            (Some(finger_tick), Some(supervisor_tick)) => Some(earlier(finger_tick, supervisor_tick)),
-            (finger_tick, supervisor_tick) => finger_tick.or(supervisor_tick),
-        };
-    }
-
-    #[cfg(feature = "stream")]
-    #[inline]
-    fn advance_stream(&mut self) {
-        if let Some(stream) = &mut self.stream
-            && !stream.is_over()
-        {
-            stream.advance();
-            self.inputs.stream = stream.now();
-        }
-    }
-
-    #[cfg(feature = "stream")]
-    fn stop_stream(&mut self) {
-        if let Some(stream) = &mut self.stream {
-            stream.stop();
-            self.inputs.stream = StreamSample::default();
-        }
     }
 }
 

@@ -10,7 +10,7 @@ impl<'a> Ticker<'a> {
     /// Applies an order of the session, before a tick. Returns the coefficients that an [`Order::Load`] replaced.
     #[inline(never)]
     pub fn apply(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
-        let spare = match order {
+        match order {
             Order::Track(track) => {
                 self.was_lifted |= self.finger.follow(&track, self.tick, self.timing.track_ticks_max);
                 None
@@ -21,9 +21,7 @@ impl<'a> Ticker<'a> {
                 None
             }
             order => self.apply_host_order(order),
-        };
-        self.find_next_expiry();
-        spare
+        }
     }
 
     /// Applies an order that is not about the finger.
@@ -43,17 +41,9 @@ impl<'a> Ticker<'a> {
                 self.clicks.lift();
             }
             #[cfg(feature = "stream")]
-            Order::StartStream(start) => {
-                if let Some(stream) = &mut self.stream {
-                    stream.start(start);
-                }
-            }
+            Order::StartStream(start) => self.stream.start(start),
             #[cfg(feature = "stream")]
-            Order::EndStream { last } => {
-                if let Some(stream) = &mut self.stream {
-                    stream.end(last);
-                }
-            }
+            Order::EndStream { last } => self.stream.end(last),
             // The supervisor has already applied them.
             Order::HostHeard | Order::Arm | Order::Disarm | Order::Play | Order::Stop | Order::ClearFault => {}
             // `apply` has handled them.
@@ -70,9 +60,8 @@ impl<'a> Ticker<'a> {
         self.carrier.retime(&self.active.carrier);
         self.envelope.limit(self.active.voltage_max_v_rms);
         self.clicks.reset();
-        #[cfg(feature = "stream")]
         if !self.active.has_stream() {
-            self.stop_stream();
+            self.stream.stop(&mut self.inputs.stream);
         }
         spare
     }

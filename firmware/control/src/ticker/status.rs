@@ -7,8 +7,6 @@ use super::{Ticker, is_out_of_reach};
 use crate::Status;
 use crate::finger::Finger;
 use crate::order::Counters;
-#[cfg(feature = "stream")]
-use crate::stream::Player;
 
 impl Ticker<'_> {
     /// The state of the supervisor.
@@ -60,10 +58,6 @@ impl Ticker<'_> {
         let slewed = self.envelope.voltage_v_rms().to_bits() != self.target_v_rms.to_bits();
         let balanced = self.carrier.early_edges() > 0 && self.carrier.last_early_tick() == self.tick;
         let still = self.finger.track().is_some_and(|track| track.ramp.gain_at(self.tick) < 1.0);
-        #[cfg(feature = "stream")]
-        let is_dry = self.stream.as_ref().is_some_and(Player::is_dry);
-        #[cfg(not(feature = "stream"))]
-        let is_dry = false;
         [
             (Flags::NO_FINGER, self.finger.track().is_none()),
             (Flags::TOUCH_STALE, self.finger == Finger::Stale),
@@ -72,19 +66,14 @@ impl Ticker<'_> {
             (Flags::SLEWED, slewed),
             (Flags::CARRIER_BALANCED, balanced),
             (Flags::HOST_SILENT, self.supervisor.host_silent()),
-            (Flags::STREAM_DRY, is_dry),
+            (Flags::STREAM_DRY, self.stream.is_dry()),
         ]
         .into_iter()
         .fold(Flags::default(), |flags, (flag, raised)| if raised { flags.with(flag) } else { flags })
     }
 
     fn counters(&self) -> Counters {
-        let counters = Counters { balanced_edges: self.carrier.early_edges(), ..self.counters };
-        #[cfg(feature = "stream")]
-        if let Some(stream) = &self.stream {
-            let (stream_underruns, stream_gaps) = stream.counts();
-            return Counters { stream_underruns, stream_gaps, ..counters };
-        }
-        counters
+        let (stream_underruns, stream_gaps) = self.stream.counts();
+        Counters { balanced_edges: self.carrier.early_edges(), stream_underruns, stream_gaps, ..self.counters }
     }
 }

@@ -1,23 +1,15 @@
 //! Selects the finger to follow if there are several: one electrode can only give the effect for one finger at a time.
 
-use frixel_layers::range::LENGTH_MAX_M;
-use frixel_layers::{Leader, within};
-use frixel_wire::fault::Flags;
-use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
+use frixel_layers::Leader;
 use heapless::Vec;
 
-use crate::Touch;
-use crate::commands::Commands;
-use frixel_control::Status;
-
-/// Number of the finger if the host reports only one.
-pub(crate) const ONLY_FINGER: u8 = 0;
+use super::Touch;
 
 /// Largest number of fingers that are tracked. Further fingers are ignored.
 const FINGERS_MAX: usize = 10;
 
 /// The fingers that the host has reported, and the pending reports of the one that is followed.
-pub(crate) struct Fingers {
+pub(super) struct Fingers {
     /// Numbers of the fingers, in the order of their touch-down.
     down: Vec<u8, FINGERS_MAX>,
     /// The finger that is followed.
@@ -29,12 +21,12 @@ pub(crate) struct Fingers {
 }
 
 impl Fingers {
-    pub(crate) const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self { down: Vec::new(), followed: None, gone: false, place: None }
     }
 
     /// Takes a finger's position.
-    pub(crate) fn touch(&mut self, finger: u8, place: Touch, rule: Leader) {
+    pub(super) fn touch(&mut self, finger: u8, place: Touch, rule: Leader) {
         if !self.down.contains(&finger) && self.down.push(finger).is_err() {
             return;
         }
@@ -45,7 +37,7 @@ impl Fingers {
     }
 
     /// Records a lift. The lift of an unknown finger is reported too, because the tracker may still follow it.
-    pub(crate) fn lift(&mut self, finger: u8, rule: Leader) {
+    pub(super) fn lift(&mut self, finger: u8, rule: Leader) {
         self.down.retain(|other| *other != finger);
         if self.down.is_empty() {
             self.let_go();
@@ -54,7 +46,7 @@ impl Fingers {
     }
 
     /// Forgets all fingers.
-    pub(crate) fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         if self.followed.is_some() {
             self.let_go();
         }
@@ -63,7 +55,7 @@ impl Fingers {
 
     /// The next report. If another finger is to be followed, a lift is reported first, so that the distance between the
     /// two is not taken for a movement.
-    pub(crate) fn next(&mut self) -> Option<Touch> {
+    pub(super) fn next(&mut self) -> Option<Touch> {
         if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
     }
 
@@ -86,55 +78,6 @@ impl Fingers {
         self.gone = true;
         self.place = None;
         self.followed = None;
-    }
-}
-
-impl Commands<'_> {
-    pub(crate) fn touch(
-        &mut self,
-        finger: u8,
-        (x_m, y_m): (f32, f32),
-        age_ticks: u16,
-        status: &Status,
-    ) -> Result<Accepted, Refusal> {
-        if !self.board.touch_from_host {
-            return Err(Refusal::TouchSource);
-        }
-        for place_m in [x_m, y_m] {
-            let field = ConfigField::TouchPlace;
-            within(field, place_m, -LENGTH_MAX_M as f32, LENGTH_MAX_M as f32, ConfigRefusal::WHOLE_SCENE)
-                .map_err(Refusal::Config)?;
-        }
-        let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
-        if status.telemetry.flags.contains(Flags::TOUCH_STALE) {
-            // There was no report for a while: drop fingers whose lift was lost.
-            self.fingers.forget();
-        }
-        self.fingers.touch(finger, place, self.playing.leader());
-        self.report_fingers(status);
-        Ok(Accepted::Done)
-    }
-
-    pub(crate) fn lift(&mut self, finger: u8, status: &Status) -> Result<Accepted, Refusal> {
-        if !self.board.touch_from_host {
-            return Err(Refusal::TouchSource);
-        }
-        self.fingers.lift(finger, self.playing.leader());
-        self.report_fingers(status);
-        Ok(Accepted::Done)
-    }
-
-    /// Forgets all fingers, because a new client has connected.
-    pub(crate) fn forget_fingers(&mut self, status: &Status) {
-        self.fingers.forget();
-        self.report_fingers(status);
-    }
-
-    /// Passes the pending reports of the followed finger to the tracker, as of the next tick.
-    fn report_fingers(&mut self, status: &Status) {
-        while let Some(touch) = self.fingers.next() {
-            self.tracker.report(touch, status.telemetry.tick.wrapping_add(1));
-        }
     }
 }
 

@@ -1,6 +1,112 @@
-//! The finger's motion: touch reports in, tracks out.
+//! The finger's motion.
+//!
+//! Takes touch reports, of the board's own source and of the host; gives the finger's tracks and lifts as orders. It
+//! knows no scene, no state and no host: the rule for which of several fingers is followed, and whether the scene
+//! predicts the place, are passed to it.
+//!
+//! `fingers` selects the host's finger to follow; `tracker` turns reports into tracks, with `estimator` and
+//! `standstill`.
 
 mod estimator;
-pub(crate) mod fingers;
+mod fingers;
 mod standstill;
-pub(crate) mod tracker;
+mod tracker;
+
+use frixel_control::{Board, Order, Status, is_past};
+use frixel_layers::range::LENGTH_MAX_M;
+use frixel_layers::{Leader, within};
+use frixel_wire::fault::Flags;
+use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
+
+use fingers::Fingers;
+pub use tracker::Touch;
+use tracker::Tracker;
+
+/// Number of the finger if the host reports only one.
+pub(crate) const ONLY_FINGER: u8 = 0;
+/// Age of the last report of the board's own touch source up to which the source counts as working, in s. Long enough
+/// to touch the screen and then the host; a source that reports nothing while no finger is there must be touched first.
+const OWN_TOUCH_AGE_MAX_S: f32 = 10.0;
+
+/// Fingers and tracker.
+pub(crate) struct Motion {
+    /// Fingers that the host reported.
+    fingers: Fingers,
+    tracker: Tracker,
+    /// The tick from which on the last report of the board's own touch source is too old to show that the source works;
+    /// `None` without one.
+    own_touch_until_tick: Option<u32>,
+}
+
+impl Motion {
+    pub(crate) fn new(board: &Board) -> Self {
+        Self { fingers: Fingers::new(), tracker: Tracker::new(board), own_touch_until_tick: None }
+    }
+
+    /// Takes a finger's place that the host reports, as of the next tick.
+    pub(crate) fn touch(
+        &mut self,
+        finger: u8,
+        (x_m, y_m): (f32, f32),
+        age_ticks: u16,
+        rule: Leader,
+        status: &Status,
+    ) -> Result<Accepted, Refusal> {
+        for place_m in [x_m, y_m] {
+            let field = ConfigField::TouchPlace;
+            within(field, place_m, -LENGTH_MAX_M as f32, LENGTH_MAX_M as f32, ConfigRefusal::WHOLE_SCENE)
+                .map_err(Refusal::Config)?;
+        }
+        let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
+        if status.telemetry.flags.contains(Flags::TOUCH_STALE) {
+            // There was no report for a while: drop fingers whose lift was lost.
+            self.fingers.forget();
+        }
+        self.fingers.touch(finger, place, rule);
+        self.report_fingers(status);
+        Ok(Accepted::Done)
+    }
+
+    /// Takes a finger's lift that the host reports.
+    pub(crate) fn lift(&mut self, finger: u8, rule: Leader, status: &Status) -> Accepted {
+        self.fingers.lift(finger, rule);
+        self.report_fingers(status);
+        Accepted::Done
+    }
+
+    /// Forgets all fingers of the host, because a new client has connected.
+    pub(crate) fn forget_fingers(&mut self, status: &Status) {
+        self.fingers.forget();
+        self.report_fingers(status);
+    }
+
+    /// Passes the pending reports of the followed finger to the tracker, as of the next tick.
+    fn report_fingers(&mut self, status: &Status) {
+        while let Some(touch) = self.fingers.next() {
+            self.tracker.report(touch, status.telemetry.tick.wrapping_add(1));
+        }
+    }
+
+    /// Takes a report of the board's own touch source that arrived at `tick`.
+    pub(crate) fn report(&mut self, touch: Touch, tick: u32, board: &Board) {
+        self.own_touch_until_tick = Some(tick.wrapping_add(board.ticks(OWN_TOUCH_AGE_MAX_S)));
+        self.tracker.report(touch, tick);
+    }
+
+    /// Whether the board's own touch source has reported lately.
+    pub(crate) fn own_touch_works(&self) -> bool {
+        self.own_touch_until_tick.is_some()
+    }
+
+    /// Forgets a track that has ended, and a report that has become too old. Called more often than tick counts wrap
+    /// around.
+    pub(crate) fn expire(&mut self, now_tick: u32) {
+        self.tracker.expire(now_tick);
+        self.own_touch_until_tick = self.own_touch_until_tick.filter(|tick| !is_past(*tick, now_tick));
+    }
+
+    /// The next lift or track. See [`Tracker::next_order`].
+    pub(crate) fn next_order<'a>(&mut self, predicts: bool) -> Option<Order<'a>> {
+        self.tracker.next_order(predicts)
+    }
+}

@@ -6,8 +6,8 @@
 
 use frixel_layers::range::LENGTH_MAX_M;
 
-use crate::motion::estimator::{Estimate, Estimator};
-use crate::motion::standstill::{Standstill, StandstillTiming};
+use super::estimator::{Estimate, Estimator};
+use super::standstill::{Standstill, StandstillTiming};
 use frixel_control::STALE_AFTER_PERIODS;
 use frixel_control::is_past;
 use frixel_control::{Board, Order, Track};
@@ -136,6 +136,8 @@ impl Tracker {
 
     /// The next order that results from the reports so far: a lift or a track. The track is led to where the finger is
     /// now if the scene `predicts`, and stays where the finger was measured otherwise.
+    // Not inlined into the main loop, whose stack would then hold its values all the time.
+    #[inline(never)]
     pub(crate) fn next_order<'a>(&mut self, predicts: bool) -> Option<Order<'a>> {
         if core::mem::take(&mut self.lift) {
             self.track = None;

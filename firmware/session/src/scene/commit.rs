@@ -1,32 +1,24 @@
 //! Commit: passes the uploaded scene to the ticker.
 //!
-//! A commit takes the time of hundreds of ticks. [`Commands::step_commit`] advances it by one step of at most a
+//! A commit takes the time of hundreds of ticks. [`Scenes::step_commit`] advances it by one step of at most a
 //! millisecond, so that touches, signs of life and stops are served in between. Requests whose outcome depends on the
-//! commit wait until it has ended. A hello drops both: the client that would have been answered is gone.
+//! commit wait until it has ended. A hello drops it: the client that would have been answered is gone.
 
-use frixel_layers::{Scene, disabled_record};
-use frixel_wire::fault::State;
-use frixel_wire::message::{Accepted, Refusal};
+use frixel_control::{Board, Order};
+use frixel_layers::{ActiveLayers, Scene, disabled_record};
+use frixel_wire::message::Refusal;
 use frixel_wire::scene::{RECORDS_MAX, SceneError};
-use heapless::Vec;
 
-use crate::commands::Commands;
-use crate::link::transmit_queue::TransmitQueue;
-use crate::scene::live::Playing;
-use crate::scene::loading::Loading;
-use crate::scene::upload::Upload;
-use frixel_control::{Order, Status};
+use super::loading::Loading;
+use super::upload::Upload;
+use super::{BitmapNames, Committed, Scenes};
+use crate::states::Orders;
 
 /// Records that a step of a commit checks.
 const RECORDS_PER_STEP: usize = 16;
 
-/// CRC-32 names of bitmaps.
-pub(crate) type BitmapNames = Vec<u32, RECORDS_MAX>;
-
 /// A commit under way.
-pub(crate) struct Commit {
-    /// Sequence number of the request.
-    sequence: u16,
+pub(super) struct Commit {
     crc32: u32,
     step: Step,
 }
@@ -43,51 +35,49 @@ enum Step {
     HandOver,
 }
 
-impl Commit {
-    /// A commit that was requested.
-    pub(crate) fn new(sequence: u16, crc32: u32) -> Self {
-        Self { sequence, crc32, step: Step::Check }
+impl<'a> Scenes<'a> {
+    /// Begins a commit of the uploaded scene with this CRC-32.
+    pub(crate) fn begin_commit(&mut self, crc32: u32) {
+        self.commit = Some(Commit { crc32, step: Step::Check });
     }
-}
 
-impl Commands<'_> {
-    /// Does the next step of the commit and answers after the last; without a commit, carries out the first of the
-    /// requests that waited for it.
-    pub(crate) fn step_commit(&mut self, status: &Status, queue: &mut TransmitQueue) {
-        let Some(mut commit) = self.commit.take() else {
-            if let Some(request) = self.waiting.pop_front() {
-                self.carry_out(request, status, queue);
+    /// Whether a commit is under way.
+    pub(crate) fn is_committing(&self) -> bool {
+        self.commit.is_some()
+    }
+
+    /// Does the next step of the commit under way. Returns its outcome after the last. A scene that continues
+    /// without a host is refused unless it `may_play_alone`.
+    pub(crate) fn step_commit(
+        &mut self,
+        board: &Board,
+        may_play_alone: bool,
+        orders: &mut Orders<'a>,
+    ) -> Option<Result<(), Refusal>> {
+        let mut commit = self.commit.take()?;
+        match self.step(&mut commit, board, may_play_alone, orders) {
+            Ok(false) => {
+                self.commit = Some(commit);
+                None
             }
-            return;
-        };
-        match self.step(&mut commit) {
-            Ok(false) => self.commit = Some(commit),
-            Ok(true) => self.answer(commit.sequence, Ok(Accepted::Done), queue),
-            Err(refusal) => self.answer(commit.sequence, Err(refusal), queue),
+            Ok(true) => Some(Ok(())),
+            Err(refusal) => Some(Err(refusal)),
         }
-    }
-
-    /// Drops the commit under way and the requests that wait for it, unanswered. The committed scene stays.
-    pub(crate) fn drop_commit(&mut self) {
-        self.commit = None;
-        self.waiting.clear();
-    }
-
-    /// Commits the uploaded scene at once.
-    #[cfg(feature = "store")]
-    pub(crate) fn commit_at_once(&mut self, crc32: u32) -> Result<(), Refusal> {
-        let mut commit = Commit::new(0, crc32);
-        while !self.step(&mut commit)? {}
-        Ok(())
     }
 
     /// Does one step. Returns whether it was the last.
     #[inline(never)]
-    fn step(&mut self, commit: &mut Commit) -> Result<bool, Refusal> {
+    fn step(
+        &mut self,
+        commit: &mut Commit,
+        board: &Board,
+        may_play_alone: bool,
+        orders: &mut Orders<'a>,
+    ) -> Result<bool, Refusal> {
         let crc32 = commit.crc32;
         match &mut commit.step {
             Step::Check => {
-                self.check_upload(crc32)?;
+                self.check_upload(crc32, board, orders)?;
                 commit.step = Step::CheckRecords(0);
             }
             Step::CheckRecords(first) => {
@@ -98,16 +88,16 @@ impl Commands<'_> {
                     if end < scene.record_count() { Step::CheckRecords(end) } else { Step::Load(Loading::Drive) };
             }
             Step::Load(loading) => {
-                if self.load_step(loading)? {
+                if self.load_step(loading, board)? {
                     commit.step = Step::HandOver;
                 }
             }
-            Step::HandOver => return self.hand_scene_over(crc32).map(|()| true),
+            Step::HandOver => return self.hand_over(crc32, may_play_alone, orders).map(|()| true),
         }
         Ok(false)
     }
 
-    fn check_upload(&self, crc32: u32) -> Result<(), Refusal> {
+    fn check_upload(&self, crc32: u32, board: &Board, orders: &Orders) -> Result<(), Refusal> {
         if let Some(upload) = &self.upload {
             return Err(end_upload_first(upload));
         }
@@ -115,9 +105,9 @@ impl Commands<'_> {
         if found != crc32 {
             return Err(Refusal::CrcMismatch { expected: crc32, found });
         }
-        self.room_for_order()?;
+        orders.check_room()?;
         let scene = self.uploaded_scene()?;
-        if scene.record_count() > usize::from(self.board.limits.records_max) {
+        if scene.record_count() > usize::from(board.limits.records_max) {
             // A scene has no more records than a byte counts.
             return Err(Refusal::Scene(SceneError::TooManyRecords { found: scene.record_count() as u8 }));
         }
@@ -129,33 +119,46 @@ impl Commands<'_> {
         Scene::open(bytes).map_err(not_a_scene)
     }
 
-    fn load_step(&mut self, loading: &mut Loading) -> Result<bool, Refusal> {
+    fn load_step(&mut self, loading: &mut Loading, board: &Board) -> Result<bool, Refusal> {
         let (bytes, _) = self.staging.scene().ok_or(Refusal::NoScene)?;
         let scene = Scene::open(bytes).map_err(not_a_scene)?;
         let spare = self.spare.as_mut().ok_or(Refusal::Busy)?;
-        let stepped = loading.step(spare, &scene, &self.board, &self.directory);
+        let stepped = loading.step(spare, &scene, board, &self.directory);
         if stepped.is_err() {
             self.announced_bitmaps.clear();
         }
         stepped
     }
 
-    fn hand_scene_over(&mut self, crc32: u32) -> Result<(), Refusal> {
-        self.room_for_order()?;
+    fn hand_over(&mut self, crc32: u32, may_play_alone: bool, orders: &mut Orders<'a>) -> Result<(), Refusal> {
+        orders.check_room()?;
         let scene = self.uploaded_scene()?;
-        if scene.header().autonomous {
-            self.check_autonomous(self.state == State::Active)?;
+        if scene.header().autonomous && !may_play_alone {
+            return Err(Refusal::Autonomous);
         }
         let active = self.spare.as_deref().ok_or(Refusal::Busy)?;
-        let (bitmaps, playing) = (bitmaps_of(&scene), Playing::new(&scene, &active.layers));
+        let committed = Committed::new(crc32, &scene, &active.layers);
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
-        self.committed_bitmaps = bitmaps;
-        self.playing = playing;
-        #[cfg(feature = "stream")]
-        self.drop_stream_without_layer();
-        self.committed_crc32 = crc32;
+        self.committed = committed;
+        if !self.committed.has_stream {
+            // No order: the ticker ends the stream when it takes the scene.
+            let _ = self.stream.end();
+        }
         self.announced_bitmaps.clear();
-        self.send_order(Order::Load(spare))
+        orders.send(Order::Load(spare))
+    }
+}
+
+impl Committed {
+    fn new(crc32: u32, scene: &Scene, active: &ActiveLayers) -> Self {
+        Self {
+            crc32,
+            bitmaps: bitmaps_of(scene),
+            header: Some(*scene.header()),
+            // This fits: a scene has at most `RECORDS_MAX` records.
+            layers: scene.record_count() as u8,
+            has_stream: active.has_stream(),
+        }
     }
 }
 

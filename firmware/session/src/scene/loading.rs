@@ -7,7 +7,7 @@ use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableErro
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
-use crate::scene::bitmap_directory::Directory;
+use super::bitmap_directory::Directory;
 
 /// Cells of the grid whose cost a step of loading finds.
 const CELLS_PER_STEP: usize = 64;

@@ -1,19 +1,28 @@
 //! Handles uploads, and allocates memory for them.
 
+use frixel_control::{Board, Order};
 use frixel_layers::{HEADER_LEN, POINT_LEN, RECORD_LEN, SCENE_MAX_LEN, StoredBitmap as Bitmap};
-use frixel_wire::fault::State;
-use frixel_wire::message::{Accepted, FromBoard, Refusal};
+use frixel_wire::message::{Accepted, Refusal};
 use frixel_wire::scene::POINTS_MAX;
 
-use crate::commands::Commands;
-use crate::link::transmit_queue::TransmitQueue;
-use crate::scene::live::Playing;
-use crate::scene::upload::{ChunkReport, Destination, Upload};
-use frixel_control::Order;
+use super::upload::{ChunkReport, Destination, Upload};
+use super::{Committed, Scenes};
+use crate::states::Orders;
 
-impl Commands<'_> {
-    pub(crate) fn begin_scene(&mut self, len: u32, crc32: u32) -> Result<Accepted, Refusal> {
-        let records = usize::from(self.board.limits.records_max);
+/// Whether the committed scene may be removed from the ticker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Removal {
+    /// Nothing plays.
+    Allowed,
+    /// The scene plays.
+    Plays,
+    /// Nothing should play, but the ticker may not have stopped yet.
+    Unsettled,
+}
+
+impl<'a> Scenes<'a> {
+    pub(crate) fn begin_scene(&mut self, len: u32, crc32: u32, board: &Board) -> Result<Accepted, Refusal> {
+        let records = usize::from(board.limits.records_max);
         let max = (HEADER_LEN + records * RECORD_LEN + POINTS_MAX * POINT_LEN).min(SCENE_MAX_LEN) as u32;
         if len > max {
             return Err(Refusal::SceneTooLarge { len, max });
@@ -29,7 +38,9 @@ impl Commands<'_> {
         width: u16,
         height: u16,
         crc32: u32,
-        settled: bool,
+        board: &Board,
+        removal: Removal,
+        orders: &mut Orders<'a>,
     ) -> Result<Accepted, Refusal> {
         self.drop_upload();
         if self.spare.is_none() {
@@ -43,7 +54,8 @@ impl Commands<'_> {
         if self.directory.find(crc32).is_some() {
             return Ok(Accepted::AlreadyHeld);
         }
-        let bitmap = match self.make_room(width, height, crc32, settled) {
+        let pool_len = board.limits.bitmap_pool_bytes;
+        let bitmap = match self.make_room(width, height, crc32, pool_len, removal, orders) {
             // The bitmaps of this scene do not fit: drop them, so that another scene can be uploaded.
             Err(full @ Refusal::BitmapPoolFull { .. }) => {
                 self.announced_bitmaps.clear();
@@ -57,29 +69,33 @@ impl Commands<'_> {
 
     /// Allocates a bitmap: first without removing any, then after removing those that no scene uses, and then, if
     /// nothing plays, after removing the committed scene and compacting the others.
-    fn make_room(&mut self, width: u16, height: u16, crc32: u32, settled: bool) -> Result<Bitmap, Refusal> {
-        let pool_len = self.board.limits.bitmap_pool_bytes;
+    fn make_room(
+        &mut self,
+        width: u16,
+        height: u16,
+        crc32: u32,
+        pool_len: u32,
+        removal: Removal,
+        orders: &mut Orders<'a>,
+    ) -> Result<Bitmap, Refusal> {
         if let Ok(bitmap) = self.directory.allocate(width, height, crc32, pool_len) {
             return Ok(bitmap);
         }
-        let (committed, announced) = (&self.committed_bitmaps, &self.announced_bitmaps);
+        let (committed, announced) = (&self.committed.bitmaps, &self.announced_bitmaps);
         self.directory.retain(|bitmap| committed.contains(&bitmap.crc32) || announced.contains(&bitmap.crc32));
         let refused = match self.directory.allocate(width, height, crc32, pool_len) {
             Ok(bitmap) => return Ok(bitmap),
             Err(free) => Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free },
         };
-        if self.state == State::Active {
-            return Err(refused);
+        match removal {
+            Removal::Allowed => {}
+            Removal::Plays => return Err(refused),
+            // The ticker may still read what would be overwritten.
+            Removal::Unsettled => return Err(Refusal::Busy),
         }
-        if !settled {
-            // The ticker may not have stopped yet, and may still read what would be overwritten.
-            return Err(Refusal::Busy);
-        }
-        if self.committed_crc32 != 0 {
-            self.send_order(Order::Unload)?;
-            self.committed_crc32 = 0;
-            self.playing = Playing::default();
-            self.committed_bitmaps.clear();
+        if self.committed.crc32 != 0 {
+            orders.send(Order::Unload)?;
+            self.committed = Committed::default();
             let announced = &self.announced_bitmaps;
             self.directory.retain(|bitmap| announced.contains(&bitmap.crc32));
         }
@@ -87,11 +103,12 @@ impl Commands<'_> {
         self.directory.allocate(width, height, crc32, pool_len).map_err(|_| refused)
     }
 
-    pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8], queue: &mut TransmitQueue) {
-        if let Some(upload) = &mut self.upload
-            && let ChunkReport::Progress { next_chunk } = upload.take(number, bytes, &mut self.staging, self.pool)
-        {
-            self.report(&FromBoard::Progress { next_chunk, received_bytes: self.credit.received() }, queue);
+    /// Takes a chunk of the upload under way. Returns the next one to expect, if that is to be reported.
+    pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8]) -> Option<u16> {
+        let upload = self.upload.as_mut()?;
+        match upload.take(number, bytes, &mut self.staging, self.pool) {
+            ChunkReport::Progress { next_chunk } => Some(next_chunk),
+            ChunkReport::Nothing => None,
         }
     }
 
@@ -117,7 +134,7 @@ impl Commands<'_> {
     }
 
     /// Drops an upload under way.
-    pub(crate) fn drop_upload(&mut self) {
+    pub(super) fn drop_upload(&mut self) {
         if let Some(Upload { destination: Destination::Bitmap(unfinished), .. }) = self.upload.take()
             && cfg!(feature = "bitmap")
         {

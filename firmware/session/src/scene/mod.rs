@@ -1,10 +1,133 @@
-//! Scenes: upload, commit, changes while one plays, and what is stored over power-off.
+//! The scenes: the one that is uploaded, the one that a commit prepares, and the one that the ticker has.
+//!
+//! Takes the bytes of scenes, bitmaps and streams, and the changes of a scene while it plays; gives the coefficients of
+//! a scene and what changes it as orders, through the [`Orders`](crate::states::Orders) that are passed to it. It knows
+//! no line, no finger and no state: whether the scene that plays may be removed, and whether one may play without a
+//! host, are passed to it.
+//!
+//! `upload` collects bytes, `memory` allocates for them and ends uploads, `commit` hands a scene over (`loading`
+//! computes its coefficients step by step), `live` changes layers, `stream` holds the samples of a stream, and `stored`
+//! converts a scene to bytes that outlast power-off.
 
-pub(crate) mod bitmap_directory;
-pub(crate) mod commit;
-pub(crate) mod live;
-pub(crate) mod loading;
-pub(crate) mod memory;
+mod bitmap_directory;
+mod commit;
+mod live;
+mod loading;
+mod memory;
 #[cfg(feature = "store")]
-pub(crate) mod stored;
-pub(crate) mod upload;
+mod stored;
+#[cfg_attr(not(feature = "stream"), path = "no_stream.rs")]
+mod stream;
+mod upload;
+
+use frixel_control::Active;
+use frixel_layers::{BitmapPool, Header, Leader};
+use frixel_wire::scene::RECORDS_MAX;
+use heapless::Vec;
+
+use bitmap_directory::Directory;
+use commit::Commit;
+pub use loading::{TableRows, active_bytes_filled, table_rows};
+pub(crate) use memory::Removal;
+#[cfg(feature = "store")]
+pub use stored::StoredScene;
+pub(crate) use stream::PROGRESS_PERIOD_S;
+use stream::Stream;
+use upload::{Staging, Upload};
+
+/// CRC-32 names of bitmaps.
+type BitmapNames = Vec<u32, RECORDS_MAX>;
+
+/// The uploaded, the next and the committed scene.
+pub(crate) struct Scenes<'a> {
+    pool: &'a BitmapPool,
+    directory: Directory,
+    upload: Option<Upload>,
+    staging: Staging,
+    /// Bitmaps announced since the last commit: those of the next scene.
+    announced_bitmaps: BitmapNames,
+    /// Buffer for the coefficients of the next scene; `None` until the ticker has returned that of the previous scene.
+    spare: Option<&'a mut Active>,
+    /// The commit under way.
+    commit: Option<Commit>,
+    committed: Committed,
+    /// The stored scene was not loaded at this start.
+    stored_scene_skipped: bool,
+    pub(crate) stream: Stream<'a>,
+}
+
+/// The ticker's scene: facts that are still needed after its bytes were overwritten.
+#[derive(Default)]
+struct Committed {
+    /// CRC-32 of its bytes; zero without a scene.
+    crc32: u32,
+    bitmaps: BitmapNames,
+    header: Option<Header>,
+    layers: u8,
+    has_stream: bool,
+}
+
+impl<'a> Scenes<'a> {
+    pub(crate) fn new(pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+        Self {
+            pool,
+            directory: Directory::default(),
+            upload: None,
+            staging: Staging::new(),
+            announced_bitmaps: Vec::new(),
+            spare: Some(spare),
+            commit: None,
+            committed: Committed::default(),
+            stored_scene_skipped: false,
+            stream: Stream::new(),
+        }
+    }
+
+    /// Takes back the coefficients that the ticker no longer uses.
+    pub(crate) fn take_back(&mut self, spare: &'a mut Active) {
+        self.spare = Some(spare);
+    }
+
+    /// CRC-32 of the committed scene; zero without a scene.
+    pub(crate) fn crc32(&self) -> u32 {
+        self.committed.crc32
+    }
+
+    /// Header of the committed scene.
+    pub(crate) fn header(&self) -> Option<&Header> {
+        self.committed.header.as_ref()
+    }
+
+    /// The bytes of the committed scene, until the upload of another begins.
+    pub(crate) fn bytes(&self) -> Option<&[u8]> {
+        let (bytes, crc32) = self.staging.scene()?;
+        (crc32 == self.committed.crc32).then_some(bytes)
+    }
+
+    /// Whether the committed scene continues without a host.
+    pub(crate) fn is_autonomous(&self) -> bool {
+        self.header().is_some_and(|header| header.autonomous)
+    }
+
+    /// Whether the finger's place is predicted; yes without a scene.
+    pub(crate) fn predicts(&self) -> bool {
+        self.header().is_none_or(|header| header.prediction)
+    }
+
+    /// The rule for which of several fingers is followed; the earliest one without a scene.
+    pub(crate) fn leader(&self) -> Leader {
+        self.header().map_or(Leader::First, |header| header.leader)
+    }
+
+    /// The stored scene was not loaded at this start, and no other has been committed.
+    pub(crate) fn is_stored_scene_skipped(&self) -> bool {
+        self.stored_scene_skipped && self.committed.crc32 == 0
+    }
+
+    /// Drops what the previous client has begun: an upload, a commit and announced bitmaps. The committed scene stays.
+    pub(crate) fn drop_unfinished(&mut self) {
+        self.drop_upload();
+        self.commit = None;
+        self.announced_bitmaps.clear();
+    }
+}

@@ -3,15 +3,16 @@
 //! In words of 8 bytes, little-endian: length of the scene (4 bytes) and number of bitmaps (4); for each bitmap its
 //! CRC-32 (4), width (2) and height (2); the scene; the samples of each bitmap, filled up to whole words with zeros.
 
-use frixel_wire::fault::State;
+use frixel_control::Board;
+use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 use frixel_wire::frame::crc32;
+use frixel_wire::message::Refusal;
 use frixel_wire::scene::{RECORDS_MAX, bitmap_digest};
 use heapless::Vec;
 
-use crate::commands::Commands;
-use crate::scene::commit::BitmapNames;
+use super::{BitmapNames, Scenes};
+use crate::states::Orders;
 use crate::store::WORD_LEN;
-use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 
 /// After this many starts in a row that ended in a fault, the stored scene is not loaded: it may be what makes every
 /// start fail, and a board that restarts for ever takes no other scene. Two faults may be a disturbance.
@@ -75,34 +76,37 @@ impl StoredScene<'_> {
     }
 }
 
-impl Commands<'_> {
-    /// CRC-32 of the scene to store: the committed one, if the board is disarmed.
-    pub(crate) fn crc32_to_store(&self) -> Option<u32> {
-        (self.state == State::Disarmed && self.scene().is_some()).then_some(self.committed_crc32)
-    }
-
-    pub(crate) fn scene_to_store(&self) -> Option<StoredScene<'_>> {
-        let crc32 = self.crc32_to_store()?;
+impl<'a> Scenes<'a> {
+    /// The committed scene; `None` without one, or once the upload of another has begun.
+    pub(crate) fn to_store(&self) -> Option<StoredScene<'_>> {
         let mut bitmaps = Vec::new();
-        for (index, crc32) in self.committed_bitmaps.iter().enumerate() {
-            if !self.committed_bitmaps.iter().take(index).any(|before| before == crc32) {
+        for (index, crc32) in self.committed.bitmaps.iter().enumerate() {
+            if !self.committed.bitmaps.iter().take(index).any(|before| before == crc32) {
                 bitmaps.push(self.directory.find(*crc32)?).ok()?;
             }
         }
-        Some(StoredScene { scene: self.scene()?, crc32, bitmaps, pool: self.pool })
+        Some(StoredScene { scene: self.bytes()?, crc32: self.committed.crc32, bitmaps, pool: self.pool })
     }
 
     /// Whether this start must leave the stored scene alone, because the last starts ended in faults. If so, the hello
     /// says it until a scene is committed.
-    pub(crate) fn skips_stored_scene(&mut self) -> bool {
-        self.stored_scene_skipped = self.board.reset_fault_starts >= FAULT_STARTS_MAX;
+    pub(crate) fn skips_stored_scene(&mut self, board: &Board) -> bool {
+        self.stored_scene_skipped = board.reset_fault_starts >= FAULT_STARTS_MAX;
         self.stored_scene_skipped
     }
 
     /// Commits a scene from the bytes of a [`StoredScene`]. If this fails, its bytes and bitmaps are dropped.
-    pub(crate) fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> Option<()> {
+    pub(crate) fn restore(
+        &mut self,
+        read: impl Fn(u32, &mut [u8]) -> bool,
+        board: &Board,
+        may_play_alone: bool,
+        orders: &mut Orders<'a>,
+    ) -> Option<()> {
         let mut names = BitmapNames::new();
-        let restored = self.restore_parts(&read, &mut names);
+        let restored = self
+            .restore_parts(&read, &mut names, board.limits.bitmap_pool_bytes)
+            .and_then(|crc32| self.commit_at_once(crc32, board, may_play_alone, orders).ok());
         if restored.is_none() {
             self.staging.begin();
             self.directory.retain(|bitmap| !names.contains(&bitmap.crc32));
@@ -110,12 +114,17 @@ impl Commands<'_> {
         restored
     }
 
-    fn restore_parts(&mut self, read: &impl Fn(u32, &mut [u8]) -> bool, names: &mut BitmapNames) -> Option<()> {
+    /// Puts scene and bitmaps where uploads would put them, and returns the CRC-32 of the scene.
+    fn restore_parts(
+        &mut self,
+        read: &impl Fn(u32, &mut [u8]) -> bool,
+        names: &mut BitmapNames,
+        pool_len: u32,
+    ) -> Option<u32> {
         let (scene_len, count) = read_pair(read, 0)?;
         if scene_len as usize > SCENE_MAX_LEN || count as usize > RECORDS_MAX {
             return None;
         }
-        let pool_len = self.board.limits.bitmap_pool_bytes;
         let mut offset = samples_offset(count, scene_len);
         for index in 0..count {
             let (name, size) = read_pair(read, (index + 1) * WORD_LEN as u32)?;
@@ -125,8 +134,23 @@ impl Commands<'_> {
             self.restore_samples(read, offset, &bitmap)?;
             offset = offset.checked_add(whole_words(bitmap.len()))?;
         }
-        let crc32 = self.restore_scene(read, scene_offset(count), scene_len)?;
-        self.commit_at_once(crc32).ok()
+        self.restore_scene(read, scene_offset(count), scene_len)
+    }
+
+    /// Commits the uploaded scene at once.
+    fn commit_at_once(
+        &mut self,
+        crc32: u32,
+        board: &Board,
+        may_play_alone: bool,
+        orders: &mut Orders<'a>,
+    ) -> Result<(), Refusal> {
+        self.begin_commit(crc32);
+        loop {
+            if let Some(outcome) = self.step_commit(board, may_play_alone, orders) {
+                return outcome;
+            }
+        }
     }
 
     fn restore_samples(&mut self, read: &impl Fn(u32, &mut [u8]) -> bool, from: u32, bitmap: &Bitmap) -> Option<()> {

@@ -1,118 +1,127 @@
-//! The board's state: the commands that change it, the orders to the ticker, and the reports to the host.
+//! The states: Disarmed, Armed, Active, Faulted, as the session asks for them and as the ticker reports them.
+//!
+//! Takes the commands that arm, disarm, play and stop, and the ticker's status; gives refusals, changes of state to
+//! report, and the next order for the ticker. Orders of other parts go through its [`Orders`]. It knows no scene and no
+//! finger: whether the scene may play, and the order that the finger has next, are passed to it.
 
 mod autonomous;
+mod orders;
 
-use frixel_wire::fault::{Flags, State};
-use frixel_wire::message::{Accepted, Command, FromBoard, Refusal};
+use frixel_control::{Order, Status};
+use frixel_wire::fault::State;
+use frixel_wire::message::{Accepted, Command, Refusal};
 
-use crate::commands::Commands;
-use crate::link::transmit_queue::TransmitQueue;
-use frixel_control::Order;
-use frixel_control::Status;
+pub(crate) use autonomous::may_play_alone;
+pub(crate) use orders::Orders;
 
-/// Orders that may wait for the ticker. A command is refused as busy when there is no room.
-pub(crate) const ORDERS_MAX: usize = 8;
-/// Number of them that are reserved for Stop and Disarm, so that these are never refused for lack of room.
-const ORDERS_RESERVED: usize = 2;
+/// The board's state and the orders to the ticker.
+pub(crate) struct States<'a> {
+    pub(crate) orders: Orders<'a>,
+    /// State once the ticker has applied every order.
+    state: State,
+    /// A valid frame has arrived since the last order that says so.
+    host_heard: bool,
+    /// An [`Order::HostHeard`] has already waited for one order of the finger.
+    sign_of_life_waited: bool,
+}
 
-impl<'a> Commands<'a> {
-    /// Reports a change of state that the host did not request.
-    pub(crate) fn report_state(&mut self, status: &Status, queue: &mut TransmitQueue) {
-        let before = self.state;
-        self.follow_state(status);
-        if self.state != before {
-            let fault = status.fault.filter(|_| self.state == State::Faulted).map(|(fault, _)| fault);
-            let flags = Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0);
-            queue.send(&FromBoard::StateChanged { state: self.state, fault, flags });
-            // An Arm or a Play that was sent before the board disarmed itself must not take effect after it.
-            if matches!(self.state, State::Disarmed | State::Faulted) {
-                self.refuse_waiting(queue);
-            }
-        }
+impl<'a> States<'a> {
+    pub(crate) const fn new() -> Self {
+        Self { orders: Orders::new(), state: State::Disarmed, host_heard: false, sign_of_life_waited: false }
     }
 
-    /// Adopts the ticker's state once the ticker has applied every order.
-    fn follow_state(&mut self, status: &Status) {
-        if self.is_settled(status) {
-            self.set_state(status.telemetry.state);
-        }
+    pub(crate) fn state(&self) -> State {
+        self.state
     }
 
-    /// Sets the state. Leaving the Active state ends the stream.
-    fn set_state(&mut self, state: State) {
-        self.state = state;
-        #[cfg(feature = "stream")]
-        if state != State::Active {
-            self.forget_stream();
-        }
+    /// Records a sign of life of the host.
+    pub(crate) fn host_heard(&mut self) {
+        self.host_heard = true;
     }
 
+    /// Whether the ticker has applied every order.
     pub(crate) fn is_settled(&self, status: &Status) -> bool {
-        status.orders_applied == self.orders_sent
+        status.orders_applied == self.orders.sent()
     }
 
-    /// Handles the commands that are refused while a fault is latched.
-    pub(crate) fn drive(&mut self, command: Command, status: &Status) -> Result<Accepted, Refusal> {
+    /// Adopts the ticker's state once the ticker has applied every order. Returns whether the state has changed.
+    pub(crate) fn follow(&mut self, status: &Status) -> bool {
+        let before = self.state;
+        if self.is_settled(status) {
+            self.state = status.telemetry.state;
+        }
+        self.state != before
+    }
+
+    /// Refuses a command that needs a playing scene, unless one plays.
+    pub(crate) fn check_active(&self, status: &Status) -> Result<(), Refusal> {
+        match (self.state, status.fault) {
+            (State::Active, _) => Ok(()),
+            (State::Faulted, Some((fault, _))) => Err(Refusal::Faulted(fault)),
+            (state, _) => Err(Refusal::WrongState(state)),
+        }
+    }
+
+    /// Handles the commands that are refused while a fault is latched. `may_play` refuses a Play without a scene, and
+    /// one of a scene that may not play here.
+    pub(crate) fn drive(
+        &mut self,
+        command: Command,
+        status: &Status,
+        may_play: impl FnOnce() -> Result<(), Refusal>,
+    ) -> Result<Accepted, Refusal> {
         if self.state == State::Faulted
             && let Some((fault, _)) = status.fault
         {
             return Err(Refusal::Faulted(fault));
         }
         match command {
-            Command::Disarm if matches!(self.orders.back(), Some(Order::Disarm)) => Ok(Accepted::Done),
+            Command::Disarm if self.orders.ends_with_disarm() => Ok(Accepted::Done),
             Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
-            Command::Arm => self.change_state(Order::Arm, &[State::Disarmed], State::Armed),
-            Command::Play if self.committed_crc32 == 0 => Err(Refusal::NoScene),
+            Command::Arm => self.change(Order::Arm, &[State::Disarmed], State::Armed),
             Command::Play => {
-                if self.playing.is_autonomous() {
-                    self.check_autonomous(true)?;
-                }
-                self.change_state(Order::Play, &[State::Armed], State::Active)
+                may_play()?;
+                self.change(Order::Play, &[State::Armed], State::Active)
             }
-            Command::Stop => self.change_state(Order::Stop, &[State::Active], State::Armed),
-            _ => self.change_state(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
+            Command::Stop => self.change(Order::Stop, &[State::Active], State::Armed),
+            _ => self.change(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
         }
     }
 
-    pub(crate) fn change_state(&mut self, order: Order<'a>, from: &[State], to: State) -> Result<Accepted, Refusal> {
+    /// Clears a latched fault.
+    pub(crate) fn clear_fault(&mut self) -> Result<Accepted, Refusal> {
+        self.change(Order::ClearFault, &[State::Faulted], State::Disarmed)
+    }
+
+    /// Disarms for a new client: the previous one is gone.
+    pub(crate) fn disarm_for_new_client(&mut self) {
+        // Ignore a refusal: there was nothing to disarm. There is always room for this order.
+        let _ = self.change(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
+    }
+
+    fn change(&mut self, order: Order<'a>, from: &[State], to: State) -> Result<Accepted, Refusal> {
         if !from.contains(&self.state) {
             return Err(Refusal::WrongState(self.state));
         }
-        self.send_order(order)?;
-        self.set_state(to);
+        self.orders.send(order)?;
+        self.state = to;
         Ok(Accepted::Done)
     }
 
-    /// Refuses if there is no room for another order, not counting the room reserved for Stop and Disarm.
-    pub(crate) fn room_for_order(&self) -> Result<(), Refusal> {
-        if self.orders.len() + ORDERS_RESERVED >= ORDERS_MAX { Err(Refusal::Busy) } else { Ok(()) }
-    }
-
-    #[inline(never)]
-    pub(crate) fn send_order(&mut self, order: Order<'a>) -> Result<(), Refusal> {
-        if !matches!(order, Order::Stop | Order::Disarm) {
-            self.room_for_order()?;
-        }
-        self.orders.push_back(order).map_err(|_| Refusal::Busy)?;
-        self.orders_sent = self.orders_sent.wrapping_add(1);
-        Ok(())
-    }
-
-    /// The next order. Commands of the host come first: they are few, so they delay a lift by a few ticks only. An
-    /// [`Order::HostHeard`] waits for at most one order of the finger: it waits so that pings do not delay tracks, and
+    /// The next order. Orders that wait come first: they are few, so they delay a lift by a few ticks only. An
+    /// [`Order::HostHeard`] waits for at most one order of the `finger`: it waits so that pings do not delay tracks, and
     /// not longer, so that a touch source that reports at every tick does not cause a host timeout.
-    pub(crate) fn next_order(&mut self) -> Option<Order<'a>> {
-        if let Some(order) = self.orders.pop_front() {
+    pub(crate) fn next_order(&mut self, finger: impl FnOnce() -> Option<Order<'a>>) -> Option<Order<'a>> {
+        if let Some(order) = self.orders.next() {
             self.host_heard &= !order.is_sign_of_life();
             return Some(order);
         }
-        let predicts = self.playing.header.is_none_or(|header| header.prediction);
+        let order = if self.host_heard && self.sign_of_life_waited { None } else { finger() };
         if !self.host_heard {
-            return self.tracker.next_order(predicts);
+            return order;
         }
-        let finger_first = if self.sign_of_life_waited { None } else { self.tracker.next_order(predicts) };
-        self.sign_of_life_waited = finger_first.is_some();
-        self.host_heard = finger_first.is_some();
-        finger_first.or(Some(Order::HostHeard))
+        self.sign_of_life_waited = order.is_some();
+        self.host_heard = order.is_some();
+        order.or(Some(Order::HostHeard))
     }
 }

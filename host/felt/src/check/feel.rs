@@ -4,20 +4,19 @@ use crate::perception::{
     AlikeLayers, BorderStep, BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Texture,
     VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps_text,
 };
-use frixel_scene::table_number;
+use frixel_scene::LayerTitle;
 
 /// The subject of a sentence: a layer, or the border of two.
 struct Subject {
     text: String,
-    /// The numbers of its layers in the file; `None` for the bare screen. Copies of a layer have the same number.
-    layers: Vec<Option<usize>>,
+    /// The numbers of its layers' tables in the file; `None` for the bare screen. Copies of a layer have the same.
+    tables: Vec<Option<usize>>,
 }
 
 /// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one
 /// for each note.
 pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
-    let layers =
-        perception.layers.iter().map(|layer| (Subject::new(layer.layer.clone(), [&layer.layer]), sentence(layer)));
+    let layers = perception.layers.iter().map(|layer| (Subject::layer(&layer.layer), sentence(layer)));
     let borders = perception.steps.iter().map(|border| (sides(border), step(&border.step)));
     let alike = perception.alike.iter().map(alike);
     let notes = perception.notes.iter().map(|note| ("note", note.clone()));
@@ -31,8 +30,8 @@ pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
 }
 
 impl Subject {
-    fn new<'t>(text: String, titles: impl IntoIterator<Item = &'t String>) -> Self {
-        Self { text, layers: titles.into_iter().map(|title| table_number(title)).collect() }
+    fn layer(layer: &LayerTitle) -> Self {
+        Self { text: layer.to_string(), tables: vec![Some(layer.number().table)] }
     }
 }
 
@@ -46,7 +45,7 @@ fn grouped(texts: Vec<(Subject, String)>, more: &str) -> Vec<String> {
             groups.push((Vec::new(), text));
         }
         let Some((subjects, _)) = groups.get_mut(group) else { continue };
-        match subjects.iter_mut().find(|(other, _)| other.layers == subject.layers) {
+        match subjects.iter_mut().find(|(other, _)| other.tables == subject.tables) {
             Some((_, copies)) => *copies += 1,
             None => subjects.push((subject, 0)),
         }
@@ -87,7 +86,8 @@ fn alike(alike: &AlikeLayers) -> (Subject, String) {
     let friction = difference_weber_steps
         .map(|steps| format!("{steps:.1} Weber steps apart in friction; 1 is needed to tell them apart by it"));
     let [one, other] = layers;
-    (Subject::new(format!("{one} and {other}"), layers), voltage.or(friction).unwrap_or_default())
+    let tables = layers.iter().map(|layer| Some(layer.number().table)).collect();
+    (Subject { text: format!("{one} and {other}"), tables }, voltage.or(friction).unwrap_or_default())
 }
 
 /// The layers and borders that are near the threshold, and of which nothing else is felt.
@@ -101,19 +101,20 @@ fn near_threshold(perception: &Perception) -> Vec<Subject> {
     let is_near = |layer: &&LayerPerception| !is_felt(layer) && verdicts(layer).contains(&Verdict::NearThreshold);
     let layers = perception.layers.iter().filter(is_near);
     let borders_felt = |border: &BorderStep| {
-        let sides = [&border.from, &border.to];
-        perception.layers.iter().any(|layer| is_felt(layer) && sides.contains(&&Some(layer.layer.clone())))
+        let sides = [&border.from, &border.to].map(|side| side.as_ref().map(LayerTitle::number));
+        perception.layers.iter().any(|layer| is_felt(layer) && sides.contains(&Some(layer.layer.number())))
     };
     let is_near = |border: &&BorderStep| border.step.verdict == Verdict::NearThreshold && !borders_felt(border);
     let borders = perception.steps.iter().filter(is_near).map(sides);
     let borders = borders.map(|subject| Subject { text: format!("the step {}", subject.text), ..subject });
-    layers.map(|layer| Subject::new(layer.layer.clone(), [&layer.layer])).chain(borders).collect()
+    layers.map(|layer| Subject::layer(&layer.layer)).chain(borders).collect()
 }
 
 fn sides(border: &BorderStep) -> Subject {
-    let side = |title: &Option<String>| title.clone().unwrap_or_else(|| "the bare screen".to_owned());
-    let sides = [&border.from, &border.to].map(side);
-    Subject::new(format!("from {} to {}", sides[0], sides[1]), &sides)
+    let sides = [border.from.as_ref(), border.to.as_ref()];
+    let [from, to] = sides.map(|side| side.map_or("the bare screen", LayerTitle::as_str));
+    let tables = sides.map(|side| side.map(|layer| layer.number().table)).to_vec();
+    Subject { text: format!("from {from} to {to}"), tables }
 }
 
 fn step(step: &Step) -> String {

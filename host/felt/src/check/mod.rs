@@ -115,7 +115,7 @@ impl LongestTick {
             cycles_limit,
             x_mm,
             y_mm,
-            layers: program.titles_in(&cell).into_iter().map(str::to_owned).collect(),
+            layers: program.titles_in(&cell).into_iter().map(ToString::to_string).collect(),
         }
     }
 }

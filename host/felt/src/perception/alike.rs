@@ -1,6 +1,6 @@
 //! Layers that a person cannot tell apart by their strength.
 
-use frixel_scene::{Program, without_place};
+use frixel_scene::{LayerTitle, Program, without_place};
 use serde::Serialize;
 
 use super::{JudgedLayer, Texture, USUAL_M_PER_S, VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps};
@@ -13,8 +13,8 @@ const ALIKE_WEBER_STEPS: f64 = 1.0;
 /// Two layers whose difference is less than a person can tell. One of the differences is known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AlikeLayers {
-    /// Titles of the layers.
-    pub layers: [String; 2],
+    /// The layers.
+    pub layers: [LayerTitle; 2],
     /// Textures of about the same frequency: difference of their voltages at the 95th percentile of their friction, dB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference_db: Option<f64>,

@@ -21,8 +21,8 @@ use serde::Serialize;
 use crate::percentile::percentiles;
 pub use alike::AlikeLayers;
 use click::ClickStep;
-use frixel_scene::Program;
 use frixel_scene::reference::Reference;
+use frixel_scene::{LayerTitle, Program};
 use slide::Slide;
 pub(crate) use thresholds::RELAXATION_LENGTH_MM;
 pub use thresholds::{
@@ -61,8 +61,8 @@ pub struct Perception {
 /// What a person will feel of a layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayerPerception {
-    /// The layer's title.
-    pub layer: String,
+    /// The layer's number and title.
+    pub layer: LayerTitle,
     /// From the 5th to the 95th percentile of the friction along a slide over the layer: of ten slides, five along each
     /// side, that with the largest contrast. From the least to the largest friction if the layer is an edge, or if
     /// [`Self::is_narrow`].
@@ -132,10 +132,10 @@ pub struct Texture {
 /// A step where one layer borders another.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BorderStep {
-    /// Title of the layer on one side; absent for the bare screen.
-    pub from: Option<String>,
-    /// Title of the layer on the other side, which is above.
-    pub to: Option<String>,
+    /// The layer on one side; absent for the bare screen.
+    pub from: Option<LayerTitle>,
+    /// The layer on the other side, which is above.
+    pub to: Option<LayerTitle>,
     /// The step in the mean friction.
     pub step: Step,
 }

@@ -78,7 +78,7 @@ fn a_hidden_layer_is_not_judged() {
     let hidden = "[[layer]]\nname = \"below\"\nkind = \"constant\"\nlive = true\nfriction_n = 0.26\n";
     let above = "[[layer]]\nname = \"above\"\nkind = \"constant\"\nlive = true\nfriction_n = 0.27\n";
     let perception = of(&format!("{hidden}{above}"));
-    assert_eq!(only(&perception).layer, "layer 2 \"above\"");
+    assert_eq!(only(&perception).layer.as_str(), "layer 2 \"above\"");
 }
 
 #[test]

@@ -289,14 +289,16 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use frixel_felt::recorder::FeltRow;
+    use frixel_scene::{LayerNumber, LayerTitle};
 
     use super::*;
 
     #[test]
     fn a_layer_that_is_off_has_its_name_and_no_colour() {
         let mut trace = Trace::new();
-        let titles = ["layer 1 \"ok\"", "layer 1 \"ok\"", "layer 1 \"ok\"", "layer 2 (noise)"];
-        for (number, title) in titles.into_iter().enumerate() {
+        let title = |table, name| LayerTitle::new(LayerNumber { table, copy: None }, name, "noise");
+        let (ok, noise) = (title(1, Some("ok")), title(2, None));
+        for (number, title) in [&ok, &ok, &ok, &noise].into_iter().enumerate() {
             let layer = trace.layer(title, number == 1);
             trace.push(&FeltRow { t_s: number as f64, ..FeltRow::default() }, Some(layer));
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use frixel_driver::{Counters, StreamStatus};
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
-use frixel_scene::{Origin, Reach, fold_copies};
+use frixel_scene::{LayerTitle, Origin, Reach, fold_copies};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,8 +72,8 @@ pub(crate) struct Report {
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
-    /// Names of the layers of the last scene that the finger never touched.
-    pub untouched_layers: Vec<String>,
+    /// The layers of the last scene that the finger never touched.
+    pub untouched_layers: Vec<LayerTitle>,
     /// When that scene replaced the one before, s; `null` if the first scene played to the end.
     pub replaced_at_s: Option<f64>,
 }
@@ -184,7 +184,7 @@ impl Report {
     /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
     /// another one, if it did.
     #[must_use]
-    pub(crate) fn with_untouched(self, untouched_layers: Vec<String>, replaced_at_s: Option<f64>) -> Self {
+    pub(crate) fn with_untouched(self, untouched_layers: Vec<LayerTitle>, replaced_at_s: Option<f64>) -> Self {
         Self { untouched_layers, replaced_at_s, ..self }
     }
 
@@ -266,7 +266,7 @@ impl Report {
         }
         if !self.untouched_layers.is_empty() {
             let since = |t_s: f64| format!("; since {t_s:.2} s, when the scene was replaced");
-            let titles: Vec<&str> = self.untouched_layers.iter().map(String::as_str).collect();
+            let titles: Vec<&LayerTitle> = self.untouched_layers.iter().collect();
             let layers = fold_copies(&titles).join(", ");
             line("never touched", format!("{layers}{}", self.replaced_at_s.map_or(String::new(), since)));
         }

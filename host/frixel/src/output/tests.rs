@@ -17,7 +17,7 @@ use frixel_driver::Counters;
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
 use frixel_felt::recorder::FeltRow;
 use frixel_scene::reference::Reference;
-use frixel_scene::{Program, compile};
+use frixel_scene::{LayerNumber, LayerTitle, Program, compile};
 
 const LIMITS: BoardLimits = Board::SIMULATOR.limits;
 
@@ -446,8 +446,9 @@ fn report_as_json() {
 
 #[test]
 fn layers_that_were_never_touched_are_counted_from_the_last_replacement() {
+    let title = |table, copy, name| LayerTitle::new(LayerNumber { table, copy }, Some(name), "button");
     let titles =
-        ["layer 1 \"base\"", "layer 3.1 \"key 1\"", "layer 3.2 \"key 2\"", "layer 3.3 \"key 3\""].map(str::to_owned);
+        [title(1, None, "base"), title(3, Some(1), "key 1"), title(3, Some(2), "key 2"), title(3, Some(3), "key 3")];
     let summary = |replaced_at_s| report(&NOTHING).with_untouched(titles.to_vec(), replaced_at_s).summary();
     let layers = "never touched    layer 1 \"base\", layer 3.1 \"key 1\" with 2 more copies";
     assert!(summary(None).contains(&format!("{layers}\n")), "{}", summary(None));

@@ -1,6 +1,7 @@
 //! Downsampling of rows for pictures, in memory that does not grow with the length of a play.
 
 use frixel_felt::recorder::FeltRow;
+use frixel_scene::LayerTitle;
 
 use super::off_strip;
 
@@ -31,7 +32,7 @@ pub(crate) struct Trace {
     /// Length of the finger's way so far, mm, and its last place.
     way_mm: f64,
     last_place_mm: Option<(f64, f64)>,
-    titles: Vec<String>,
+    layers: Vec<LayerTitle>,
 }
 
 /// A layer that [`Trace::layer`] knows.
@@ -175,16 +176,16 @@ impl Trace {
             speeds: Speeds { mm_s: Vec::new(), rows_per_speed: 1, rows: 0 },
             way_mm: 0.0,
             last_place_mm: None,
-            titles: Vec::new(),
+            layers: Vec::new(),
         }
     }
 
-    /// A layer for [`Self::push`], by its title in messages. Layers with the same title are one.
-    pub(crate) fn layer(&mut self, title: &str, is_off: bool) -> TracedLayer {
-        let known = self.titles.iter().position(|known| known == title);
+    /// A layer for [`Self::push`]. Where a scene replaces another, layers with the same number and name are one.
+    pub(crate) fn layer(&mut self, layer: &LayerTitle, is_off: bool) -> TracedLayer {
+        let known = self.layers.iter().position(|known| known == layer);
         let index = known.unwrap_or_else(|| {
-            self.titles.push(title.to_owned());
-            self.titles.len() - 1
+            self.layers.push(layer.clone());
+            self.layers.len() - 1
         });
         TracedLayer { index, is_off }
     }
@@ -206,7 +207,7 @@ impl Trace {
 
     /// The title of a layer.
     pub(super) fn title(&self, layer: TracedLayer) -> &str {
-        self.titles.get(layer.index).map_or("", String::as_str)
+        self.layers.get(layer.index).map_or("", LayerTitle::as_str)
     }
 
     /// Spans in order of time.

@@ -1,5 +1,5 @@
 //! The boards that a scene can play on, each behind a [`ByteStream`](frixel_driver::ByteStream) or a
-//! [`Link`](frixel_driver::Link) that records the play.
+//! [`Link`] that records the play.
 //!
 //! - [`SimStream`]: a simulated board in this process, in virtual time.
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.

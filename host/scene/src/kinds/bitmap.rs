@@ -136,7 +136,8 @@ impl Words for Bitmap {
         let visible = layer.region.as_ref().map(Region::bounds);
         let placed = lowering.place_bitmap(layer, self, visible)?;
         let has_own_height = self.height_mm.is_some();
-        let warning = Warning::of_stretch(&layer.title, placed.height_factor, placed.height_kept_mm, has_own_height);
+        let warning =
+            Warning::of_stretch(layer.title.as_str(), placed.height_factor, placed.height_kept_mm, has_own_height);
         lowering.warn(layer, warning);
         let record = Record {
             crc32: placed.crc32,

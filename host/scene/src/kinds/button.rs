@@ -71,7 +71,7 @@ impl Words for Button {
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         if let Some(Region::Rectangle(sides) | Region::Ellipse(sides)) = &layer.region {
             let side_mm = sides.width_mm.min(sides.height_mm);
-            lowering.warn(layer, Warning::of_rim(&layer.title, self.rim_width_mm, side_mm));
+            lowering.warn(layer, Warning::of_rim(layer.title.as_str(), self.rim_width_mm, side_mm));
         }
         let record = Record {
             rim_width_m: (self.rim_width_mm * MM) as f32,

@@ -77,7 +77,7 @@ impl Words for Edge {
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let outside_mm = layer.region.as_ref().map_or(0.0, |region| self.outside_mm(region.bounds()));
-        lowering.warn(layer, Warning::of_line(&layer.title, outside_mm));
+        lowering.warn(layer, Warning::of_line(layer.title.as_str(), outside_mm));
         let record = Record {
             x_m: (self.x_mm * MM) as f32,
             y_m: (self.y_mm * MM) as f32,

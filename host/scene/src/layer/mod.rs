@@ -4,8 +4,6 @@ mod amount;
 mod region;
 mod repeat;
 
-use std::fmt::{self, Display};
-
 use frixel_layers::Blend;
 
 pub(crate) use amount::{Amount, LowHigh, UNITS, Unit};
@@ -18,31 +16,12 @@ use super::log::Log;
 use super::mistake::FieldMistake;
 use super::source::Places;
 use super::tables;
-
-/// The number of a layer in messages and in `frixel play --control`: that of its `[[layer]]` among those of the scene,
-/// from one at the bottom; with that of the copy, from one, for a layer with `repeat`: `3.2`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct LayerNumber {
-    pub(crate) table: usize,
-    pub(crate) copy: Option<usize>,
-}
-
-impl Display for LayerNumber {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { table, copy } = self;
-        match copy {
-            Some(copy) => write!(formatter, "{table}.{copy}"),
-            None => write!(formatter, "{table}"),
-        }
-    }
-}
+use super::titles::{LayerNumber, LayerTitle};
 
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layer {
-    /// The layer's title in messages: its number from one, and its name or kind.
-    pub(crate) title: String,
-    pub(crate) number: LayerNumber,
+    pub(crate) title: LayerTitle,
     pub(crate) name: Option<String>,
     /// The name of the layer that `repeat` made it from.
     pub(crate) family: Option<String>,
@@ -79,13 +58,13 @@ impl Layer {
             return None;
         };
         let number = LayerNumber { table: number, copy: None };
-        let title = title(number, name.as_deref(), kind_name.word());
-        fields.rename(title.clone());
+        let title = LayerTitle::new(number, name.as_deref(), kind_name.word());
+        fields.rename(title.to_string());
         let Common { region, repeat, blend, gain, live, unit, above } = Common::read(&mut fields, kind_name, log);
         let kind = kind_name.read(&mut fields, unit, log);
         let places = fields.close(log);
         if blend == Blend::Add && above == Some(Above::Zero) {
-            log.add(places.field("above"), FieldMistake::AddedTotal { layer: title.clone() });
+            log.add(places.field("above"), FieldMistake::AddedTotal { layer: title.to_string() });
         }
         let is_total = kind_name.has_totals() && blend == Blend::Replace;
         let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
@@ -93,14 +72,13 @@ impl Layer {
         let kind = kind?;
         kind.check(&places, log);
         let (family, is_copy) = (None, false);
-        let layer = Self { title, number, name, family, is_copy, region, blend, gain, above, live, kind, places };
+        let layer = Self { title, name, family, is_copy, region, blend, gain, above, live, kind, places };
         Some(repeat.of(&layer, kind_name))
     }
-}
 
-/// The title of a layer in messages.
-fn title(number: LayerNumber, name: Option<&str>, kind: &str) -> String {
-    name.map_or_else(|| format!("layer {number} ({kind})"), |name| format!("layer {number} \"{name}\""))
+    pub(crate) fn number(&self) -> LayerNumber {
+        self.title.number()
+    }
 }
 
 /// Reads the fields of a layer of a kind, whose amounts have a unit, to log their mistakes.

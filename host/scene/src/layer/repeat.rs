@@ -4,8 +4,9 @@ use super::super::fields::Fields;
 use super::super::log::Log;
 use super::super::mistake::FieldMistake;
 use super::super::tables;
-use super::{Layer, title};
+use super::Layer;
 use crate::kinds::KindName;
+use crate::titles::{LayerNumber, LayerTitle};
 
 /// The copies of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,11 +46,11 @@ impl Repeat {
         let copies = (1..).zip(places).map(|(copy, (column, row))| {
             let (x_mm, y_mm) = (f64::from(column) * self.dx_mm, f64::from(row) * self.dy_mm);
             let mut moved = layer.clone();
-            moved.number.copy = Some(copy);
+            let number = LayerNumber { copy: Some(copy), ..layer.number() };
             moved.is_copy = copy > 1;
             moved.family.clone_from(&layer.name);
             moved.name = layer.name.as_ref().map(|name| format!("{name} {copy}"));
-            moved.title = title(moved.number, moved.name.as_deref(), kind.word());
+            moved.title = LayerTitle::new(number, moved.name.as_deref(), kind.word());
             moved.region = moved.region.map(|region| region.moved_by(x_mm, y_mm));
             moved.kind.move_by(x_mm, y_mm);
             moved

@@ -59,7 +59,7 @@ impl<'a, 's> Lowering<'a, 's> {
 
     /// The record of a layer; `None` if it has a mistake.
     pub(super) fn record(&mut self, layer: &Layer) -> Option<Record> {
-        self.log.set_layer(Some(layer.number.table));
+        self.log.set_layer(Some(layer.number().table));
         let record = self.lower(layer);
         self.log.set_layer(None);
         record

@@ -38,7 +38,7 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
         let field = if layer.region.is_some() { "region" } else { "x_mm" };
         // Round up to a micrometre, so that a move by this distance is enough.
         let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
-        let layer_title = layer.title.clone();
+        let layer_title = layer.title.to_string();
         log.add(
             layer.places.field(field),
             FitMistake::OffScreen { layer: layer_title, edge, beyond_mm, screen_width_mm, screen_height_mm },

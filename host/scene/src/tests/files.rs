@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::reference::Reference;
-use crate::{FileUnavailable, Files, FingerProfile};
+use crate::{FileUnavailable, Files, FingerProfile, LayerTitle};
 
 const BUTTONS: &str = "version = 2\n\n[defaults]\nrim_width_mm = 2\nrim_fraction = 0.8\nface_fraction = 0.4\n\n\
     [[layer]]\nname = \"back\"\nkind = \"button\"\nregion = { x_mm = 10, y_mm = 60, width_mm = 30, height_mm = 12 }\n";
@@ -28,7 +28,8 @@ fn included_layers_lie_below_and_play_as_if_they_stood_here() {
     let apart = program(&format!("{SHORT}{FLAT}"), &[("common.toml", BUTTONS)]);
     let together = program(&format!("{BUTTONS}{FLAT}"), &[]);
     assert_eq!(apart.scene_bytes(), together.scene_bytes());
-    assert_eq!(apart.titles, ["layer 1 \"back\"", "layer 2 \"flat\""]);
+    let titles: Vec<&str> = apart.titles.iter().map(LayerTitle::as_str).collect();
+    assert_eq!(titles, ["layer 1 \"back\"", "layer 2 \"flat\""]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Names and numbers of layers, mistakes that layers share, and what drafts and gains keep to.
 
 use super::*;
-use crate::{DiagnosticKind, Warning};
+use crate::{DiagnosticKind, LayerTitle, Warning};
 
 const TRACK: &str = "[[layer]]\nname = \"track\"\nkind = \"constant\"\nfriction_fraction = 0.2\n\
     region = { x_mm = 10, y_mm = 10, width_mm = 100, height_mm = 10 }\n";
@@ -39,11 +39,11 @@ fn a_layer_has_one_number() {
     let program = compile_text(&format!("version = 2\n{text}{TRACK}live = true\n")).expect("it compiles");
     assert_eq!(program.titles.len(), 8);
     for (record, title) in (0..).zip(&program.titles) {
-        let number = title.split(' ').nth(1).expect("a number");
-        assert_eq!(program.layers.record(number), Ok(record), "{title}");
+        assert_eq!(program.layers.record(&title.number().to_string()), Ok(record), "{title}");
     }
+    let titles: Vec<&str> = program.titles.iter().map(LayerTitle::as_str).collect();
     assert_eq!(
-        program.titles[4..],
+        titles[4..],
         ["layer 3.1 (constant)", "layer 3.2 (constant)", "layer 3.3 (constant)", "layer 4 \"track\""]
     );
 }

@@ -3,6 +3,7 @@
 use frixel_layers::{Layer, Region};
 
 use super::{HEAD, compile_text};
+use crate::LayerTitle;
 use crate::reference::Reference;
 
 const PADS: &str = "[[layer]]\nname = \"pad\"\nkind = \"constant\"\nfriction_n = 0.26\n\
@@ -21,8 +22,8 @@ fn copies_lie_in_columns_and_rows() {
         })
         .collect();
     assert_eq!(places_mm, [(10.0, 20.0), (22.0, 20.0), (34.0, 20.0), (10.0, 30.0), (22.0, 30.0), (34.0, 30.0)]);
-    assert_eq!(program.titles[0], "layer 1.1 \"pad 1\"");
-    assert_eq!(program.titles[5], "layer 1.6 \"pad 6\"");
+    assert_eq!(program.titles[0].as_str(), "layer 1.1 \"pad 1\"");
+    assert_eq!(program.titles[5].as_str(), "layer 1.6 \"pad 6\"");
 }
 
 #[test]
@@ -36,7 +37,8 @@ fn places_of_a_kind_move_with_the_copy() {
             (reference.electric_friction_n(x_m, 0.0283), reference.electric_friction_n(x_m + 0.04, 0.0283));
         assert!((first_n - second_n).abs() < 1e-8, "{first_n} {second_n}");
     }
-    assert_eq!(program.titles, ["layer 1.1 (rings)", "layer 1.2 (rings)"]);
+    let titles: Vec<&str> = program.titles.iter().map(LayerTitle::as_str).collect();
+    assert_eq!(titles, ["layer 1.1 (rings)", "layer 1.2 (rings)"]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::output_file::{
 };
 use crate::scene_file::SceneFiles;
 use frixel_felt::recorder::FeltRow;
-use frixel_scene::{Program, TouchedLayers};
+use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
 use super::super::experiment::cut_off;
 use super::rigs::Target;
@@ -156,7 +156,7 @@ impl Outputs {
         let layer = self.touched.add(1e-3 * x_mm, 1e-3 * y_mm)?;
         let last = self.off.iter().rfind(|(from_s, _)| *from_s < row.t_s);
         let is_off = last.is_some_and(|(_, off)| off.contains(&layer));
-        Some(self.trace.layer(self.touched.title(layer), is_off))
+        Some(self.trace.layer(self.touched.title(layer)?, is_off))
     }
 
     /// Says which layers of the scene are off from a time on, by index.
@@ -183,9 +183,9 @@ impl Outputs {
         self.replaced_at_s
     }
 
-    /// Names of the layers of the last scene that the finger never touched.
-    pub(super) fn untouched_layers(&self) -> Vec<String> {
-        self.touched.untouched().map(|layer| self.touched.title(layer).to_owned()).collect()
+    /// The layers of the last scene that the finger never touched.
+    pub(super) fn untouched_layers(&self) -> Vec<LayerTitle> {
+        self.touched.untouched().filter_map(|layer| self.touched.title(layer)).cloned().collect()
     }
 
     /// Joins the rows with a log, writes `felt.csv` anew with them, and draws them.
