@@ -35,8 +35,6 @@ fn included_layers_lie_below_and_play_as_if_they_stood_here() {
 #[test]
 fn names_of_100_000_characters_are_not_echoed_whole() {
     let long = "\u{e9}".repeat(100_000);
-    let bitmap =
-        "kind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 10\nheight_mm = 10\nblack_fraction = 0\nwhite_fraction = 1";
     let texts = [
         format!("[[layer]]\nkind = \"{long}\"\n"),
         format!("\"{long}\" = 1\n"),
