@@ -48,7 +48,7 @@ fn names_of_100_000_characters_are_not_echoed_whole() {
     ];
     for text in texts {
         let scene = scene(&format!("version = 2\n{text}"), &[]);
-        let said: Vec<String> = mistakes(&scene).iter().map(|located| located.text.clone()).collect();
+        let said: Vec<String> = mistakes(&scene).iter().map(|located| located.message.to_string()).collect();
         let lens: Vec<usize> = said.iter().map(String::len).collect();
         let shown: String = text.chars().filter(|character| *character != '\u{e9}').collect();
         assert!(said.iter().any(|sentence| sentence.contains('\u{2026}')), "{shown}: {lens:?}");
