@@ -42,7 +42,7 @@ mod scenes;
 
 #[cfg(feature = "scenes")]
 pub use self::{
-    finger::{FingerReport, Pace, RandomFinger},
+    finger::{Pace, RandomFinger},
     monitor::IdealMonitor,
     random::Random,
     random_scene::RandomScene,
