@@ -28,7 +28,6 @@ const USES: [(&str, &[&str]); 6] = [
         "libm",
         &[
             "bench",
-            "board-mps2-an386",
             "frixel",
             "frixel-felt",
             "frixel-hil-sim",
