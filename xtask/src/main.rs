@@ -4,6 +4,8 @@ mod bench;
 mod budgets;
 mod check;
 mod command;
+#[cfg(test)]
+mod dependency_uses;
 mod fuzz;
 mod licences;
 mod needs;

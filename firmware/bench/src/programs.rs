@@ -9,7 +9,7 @@ use core::str;
 use cortex_m_semihosting::hprintln;
 use frixel_layers::Layer;
 use frixel_session::Touch;
-use frixel_testkit::{FingerReport, Pace, RandomFinger, RandomScene};
+use frixel_testkit::{Pace, RandomFinger, RandomScene};
 
 use crate::count::{Case, Counter};
 use crate::tick::{Bench, PING_TICKS, STREAM_TICKS};
@@ -67,10 +67,7 @@ impl Bench {
             if tick.is_multiple_of(STREAM_TICKS) {
                 self.host.stream(tick / STREAM_TICKS);
             }
-            let touch = finger.tick().map(|report| match report {
-                FingerReport::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
-                FingerReport::Up => Touch::Up,
-            });
+            let touch = finger.tick();
             self.count(&mut case, touch);
         }
         let (instructions, tick) = case.worst();

@@ -5,8 +5,9 @@ use cortex_m::singleton;
 use frixel_control::{Board, Status, Ticker};
 use frixel_drivers::serial::SerialLink;
 use frixel_session::{Queues, Session, SessionEnds};
+use frixel_testkit::IdealMonitor;
 
-use crate::tick::{self, HostWait, SimulatedMonitor, Tick};
+use crate::tick::{self, HostWait, Tick};
 use crate::uart::{self, Uart};
 use crate::{fault, fault_injection, shared};
 
@@ -33,7 +34,10 @@ pub fn run(
     let tick = Tick {
         ticker,
         queues: tick_ends,
-        monitor: SimulatedMonitor::new(board),
+        monitor: IdealMonitor::new(
+            board.limits.full_scale_v_peak,
+            board.amplifier.time_constant_s / board.tick_period_s(),
+        ),
         count: 0,
         host_wait: HostWait::default(),
     };

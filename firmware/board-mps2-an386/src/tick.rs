@@ -3,10 +3,10 @@
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
 use cortex_m_rt::exception;
-use frixel_control::{Board, Sense, Ticker};
+use frixel_control::{Sense, Ticker};
 use frixel_exchange::layout;
 use frixel_session::TickEnds;
-use frixel_wire::dac_code::DacCode;
+use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::Fault;
 
 use crate::owned::Owned;
@@ -23,8 +23,8 @@ pub struct Tick {
     pub ticker: Ticker<'static>,
     /// Its ends of the queues between it and the session.
     pub queues: TickEnds,
-    /// The amplifier's monitor.
-    pub monitor: SimulatedMonitor,
+    /// There is no amplifier: its monitor follows the driven voltage as the board's amplifier is specified to.
+    pub monitor: IdealMonitor,
     /// Ticks since reset.
     pub count: u32,
     /// The wait for a host that has not answered for its slice of time.
@@ -62,33 +62,6 @@ impl HostWait {
     }
 }
 
-/// The amplifier's monitor. There is no amplifier: the monitor follows the driven voltage as the board's amplifier is
-/// specified to, a tick late, as on a board that latches a tick's code at its end.
-pub struct SimulatedMonitor {
-    voltage_v: f32,
-    latched_code: DacCode,
-    volts_per_code: f32,
-    step: f32,
-}
-
-impl SimulatedMonitor {
-    /// The monitor of a board at 0 V.
-    pub fn new(board: &Board) -> Self {
-        let tick_period_s = 1.0 / board.tick_hz as f32;
-        Self {
-            voltage_v: 0.0,
-            latched_code: DacCode::ZERO,
-            volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
-            step: 1.0 - libm::expf(-tick_period_s / board.amplifier.time_constant_s),
-        }
-    }
-
-    fn follow(&mut self, dac_code: DacCode) {
-        self.voltage_v += self.step * (f32::from(self.latched_code.bits()) * self.volts_per_code - self.voltage_v);
-        self.latched_code = dac_code;
-    }
-}
-
 /// Starts the tick.
 pub fn start(tick: Tick, tick_hz: u32, mut systick: SYST) {
     // SAFETY: SysTick is enabled below.
@@ -122,7 +95,7 @@ impl Tick {
         self.queues.apply_order(&mut self.ticker);
         let sense = Sense {
             amplifier_fault: shared::get(layout::AMPLIFIER_FAULT) != 0,
-            monitor_v: self.monitor.voltage_v,
+            monitor_v: self.monitor.voltage_v(),
             arm_switch: !self.ticker.waits_for_release(),
         };
         let drive = self.ticker.tick(&sense);

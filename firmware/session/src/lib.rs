@@ -66,7 +66,7 @@ mod states;
 #[cfg(feature = "store")]
 pub mod store;
 
-pub use motion::Touch;
+pub use frixel_wire::touch::Touch;
 pub use queues::{Queues, SessionEnds, TickEnds};
 #[cfg(feature = "store")]
 pub use scene::StoredScene;

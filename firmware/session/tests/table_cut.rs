@@ -6,8 +6,8 @@ use crate::support;
 
 use frixel_control::Board;
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
-use frixel_session::{TableRows, Touch, table_rows};
-use frixel_testkit::{FingerReport, Pace, RandomFinger, RandomScene};
+use frixel_session::{TableRows, table_rows};
+use frixel_testkit::{Pace, RandomFinger, RandomScene};
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, ConfigField, Refusal};
@@ -62,10 +62,7 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
                 board.send(&frame);
                 board.command(Command::Ping).unwrap();
             }
-            board.touch = finger.tick().map(|report| match report {
-                FingerReport::Down { x_m, y_m, age_ticks } => Touch::Down { x_m, y_m, age_ticks },
-                FingerReport::Up => Touch::Up,
-            });
+            board.touch = finger.tick();
             let dac_code = board.tick().dac_code.bits();
             let telemetry = board.status().telemetry;
             Played { asked_bits: telemetry.asked_electric_friction_n.to_bits(), dac_code, flags: telemetry.flags }

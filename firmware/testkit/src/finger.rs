@@ -1,24 +1,9 @@
 //! A finger that slides, rests, jumps and lifts, and touch sources of different report rates.
 
 use frixel_layers::Header;
+use frixel_wire::touch::Touch;
 
 use crate::random::Random;
-
-/// A report of the touch source.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FingerReport {
-    /// The finger was at this place `age_ticks` ticks ago.
-    Down {
-        /// From the left edge of the screen, m.
-        x_m: f32,
-        /// From the top edge of the screen, m.
-        y_m: f32,
-        /// Ticks since it was there.
-        age_ticks: u32,
-    },
-    /// There is no finger.
-    Up,
-}
 
 /// How far beyond the edges of the screen the finger moves, m.
 const OFF_SCREEN_M: f32 = 5e-3;
@@ -72,7 +57,7 @@ impl RandomFinger {
     }
 
     /// Advances one tick, and returns the touch source's report at that tick.
-    pub fn tick(&mut self) -> Option<FingerReport> {
+    pub fn tick(&mut self) -> Option<Touch> {
         if self.left_ticks == 0 {
             self.turn();
         }
@@ -91,7 +76,7 @@ impl RandomFinger {
         }
         self.until_report_ticks = self.report_ticks - 1;
         let [x_m, y_m] = self.place_m;
-        Some(if self.lifted { FingerReport::Up } else { FingerReport::Down { x_m, y_m, age_ticks: self.age_ticks } })
+        Some(if self.lifted { Touch::Up } else { Touch::Down { x_m, y_m, age_ticks: self.age_ticks } })
     }
 
     /// Begins another movement.

@@ -1,4 +1,4 @@
-//! Test support that several crates share, on desktop and chip. No board image contains it.
+//! Test support that several crates share, on desktop and chip. No image of a real board contains it.
 //!
 //! - [`HEADER`], [`record`], [`scene`]: scenes to begin with.
 //! - [`samples`]: a sample of each kind of layer, from which tests and benchmarks make what they need of every kind.
@@ -29,7 +29,7 @@ pub mod golden;
 mod finger;
 #[cfg(feature = "scenes")]
 mod layers;
-#[cfg(feature = "scenes")]
+#[cfg(feature = "monitor")]
 mod monitor;
 #[cfg(feature = "scenes")]
 mod random;
@@ -40,10 +40,11 @@ pub mod samples;
 #[cfg(feature = "scenes")]
 mod scenes;
 
+#[cfg(feature = "monitor")]
+pub use self::monitor::IdealMonitor;
 #[cfg(feature = "scenes")]
 pub use self::{
-    finger::{FingerReport, Pace, RandomFinger},
-    monitor::IdealMonitor,
+    finger::{Pace, RandomFinger},
     random::Random,
     random_scene::RandomScene,
     scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points},

@@ -14,3 +14,4 @@ pub mod hello;
 pub mod message;
 pub mod payload;
 pub mod scene;
+pub mod touch;

@@ -103,7 +103,7 @@ impl<'a> Ticker<'a> {
     }
 
     /// Sets the tick count, for tests of its wrap-around.
-    #[doc(hidden)]
+    #[cfg(feature = "set-tick")]
     pub fn set_tick(&mut self, tick: u32) {
         self.tick = tick;
     }

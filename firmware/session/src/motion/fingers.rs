@@ -1,9 +1,8 @@
 //! Selects the finger to follow if there are several: one electrode can only give the effect for one finger at a time.
 
 use frixel_layers::Leader;
+use frixel_wire::touch::Touch;
 use heapless::Vec;
-
-use super::Touch;
 
 /// Largest number of fingers that are tracked. Further fingers are ignored.
 const FINGERS_MAX: usize = 10;

@@ -17,9 +17,9 @@ use frixel_layers::range::LENGTH_MAX_M;
 use frixel_layers::{Leader, within};
 use frixel_wire::fault::Flags;
 use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
+use frixel_wire::touch::Touch;
 
 use fingers::Fingers;
-pub use tracker::Touch;
 use tracker::Tracker;
 
 /// Number of the finger if the host reports only one.

@@ -11,22 +11,7 @@ use super::standstill::{Standstill, StandstillTiming};
 use frixel_control::STALE_AFTER_PERIODS;
 use frixel_control::is_past;
 use frixel_control::{Board, Order, Track};
-
-/// One report of the touch source.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Touch {
-    /// A finger is on the screen.
-    Down {
-        /// From the left edge of the screen, in m.
-        x_m: f32,
-        /// From the top edge of the screen, in m.
-        y_m: f32,
-        /// Ticks since the position was measured, as far as the source knows.
-        age_ticks: u32,
-    },
-    /// No finger is on the screen.
-    Up,
-}
+use frixel_wire::touch::Touch;
 
 /// Samples older than this are ignored, in s.
 const SAMPLE_AGE_MAX_S: f32 = 0.1;
