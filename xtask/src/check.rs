@@ -58,23 +58,48 @@ pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 const STAGES: [Stage; 14] = [
     Stage { name: "format", tier: Tier::First, needs: &[FORMAT], run: format },
     Stage { name: "lints", tier: Tier::First, needs: &[CLIPPY], run: lints },
-    Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET], run: feature_sets },
-    Stage { name: "images", tier: Tier::First, needs: &[M4F_TARGET, M3_TARGET, CLIPPY, FORMAT], run: images },
-    Stage { name: "tests", tier: Tier::First, needs: &[], run: tests },
-    Stage { name: "documentation tests", tier: Tier::First, needs: &[], run: test_programs::run_documentation },
+    Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET, Need::Git], run: feature_sets },
+    Stage {
+        name: "images",
+        tier: Tier::First,
+        needs: &[M4F_TARGET, M3_TARGET, CLIPPY, FORMAT, Need::Git],
+        run: images,
+    },
+    Stage { name: "tests", tier: Tier::First, needs: &[Need::Git], run: tests },
+    Stage {
+        name: "documentation tests",
+        tier: Tier::First,
+        needs: &[Need::Git],
+        run: test_programs::run_documentation,
+    },
     Stage { name: "documentation", tier: Tier::First, needs: &[], run: documentation },
-    Stage { name: "crates of the page for WebAssembly", tier: Tier::First, needs: &[WASM_TARGET, CLIPPY], run: page },
+    Stage {
+        name: "crates of the page for WebAssembly",
+        tier: Tier::First,
+        needs: &[WASM_TARGET, CLIPPY, Need::Git],
+        run: page,
+    },
     Stage { name: "scripts of the studio", tier: Tier::First, needs: &studio_tests::SCRIPT_NEEDS, run: studio_scripts },
     Stage { name: "studio in a browser", tier: Tier::First, needs: &studio_tests::NEEDS, run: studio_in_a_browser },
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator],
+        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
         run: tests_on_emulators,
     },
-    Stage { name: "budgets", tier: Tier::All, needs: &[M4F_TARGET, M3_TARGET, Need::Emulator], run: budgets_stage },
+    Stage {
+        name: "budgets",
+        tier: Tier::All,
+        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
+        run: budgets_stage,
+    },
     Stage { name: "other systems", tier: Tier::All, needs: &portability::NEEDS, run: other_systems },
-    Stage { name: "fuzz targets for libFuzzer", tier: Tier::All, needs: &[Need::CppCompiler], run: fuzz::run_all },
+    Stage {
+        name: "fuzz targets for libFuzzer",
+        tier: Tier::All,
+        needs: &[Need::CppCompiler, Need::Git],
+        run: fuzz::run_all,
+    },
 ];
 
 /// Looks at what the machine has, runs every check of a tier, and prints the time of each and the results of the test

@@ -25,6 +25,8 @@ pub(crate) enum Need {
     Target(&'static str),
     /// The emulator of Cortex-M processors.
     Emulator,
+    /// Which lists the files that a check depends on.
+    Git,
     Node,
     Npm,
     Chromium,
@@ -39,6 +41,7 @@ impl Need {
             Self::Component(_, component) => component.to_owned(),
             Self::Target(target) => format!("target {target}"),
             Self::Emulator => "qemu-system-arm".to_owned(),
+            Self::Git => "git".to_owned(),
             Self::Node => format!("node {NODE_MAJOR_MIN} or newer"),
             Self::Npm => "npm".to_owned(),
             Self::Chromium => "Chromium".to_owned(),
@@ -52,6 +55,7 @@ impl Need {
             Self::Component(_, component) => format!("`rustup component add {component}`"),
             Self::Target(target) => format!("`rustup target add {target}` (rustup: https://rustup.rs)"),
             Self::Emulator => "Debian: `apt-get install qemu-system-arm`".to_owned(),
+            Self::Git => "Debian: `apt-get install git`".to_owned(),
             Self::Node => "Debian: `apt-get install nodejs`".to_owned(),
             Self::Npm => "Debian: `apt-get install npm`".to_owned(),
             Self::Chromium => "Debian: `apt-get install chromium`, or set CHROMIUM to its path".to_owned(),
@@ -109,6 +113,7 @@ impl Machine {
                 .text("rustc", &["--print", "target-libdir", "--target", target])
                 .is_some_and(|libraries| Path::new(&libraries).is_dir()),
             Need::Emulator => runs("qemu-system-arm"),
+            Need::Git => runs("git"),
             Need::Node => self.text("node", &["--version"]).is_some_and(|version| is_new_enough(&version)),
             Need::Npm => runs("npm"),
             Need::Chromium => self.chromium.is_file(),
@@ -207,11 +212,12 @@ mod tests {
 
     const TARGET: Need = Need::Target("thumbv7m-none-eabi");
     const CLIPPY: Need = Need::Component("clippy", "clippy");
-    const STAGES: [(&str, &[Need]); 4] = [
+    const STAGES: [(&str, &[Need]); 5] = [
         ("lints", &[CLIPPY]),
         ("images", &[TARGET, CLIPPY]),
         ("browser", &[Need::Node, Need::Npm, Need::Chromium]),
         ("emulators", &[TARGET, Need::Emulator]),
+        ("tests", &[Need::Git]),
     ];
 
     /// A folder of made-up programs, which is the whole PATH.
@@ -263,6 +269,8 @@ mod tests {
             "missing  node 20 or newer",
             "missing  npm",
             "missing  Chromium",
+            "missing  git: Debian: `apt-get install git`",
+            "SKIPPED  tests: without git",
             "SKIPPED  lints: without clippy",
             "SKIPPED  images: without target thumbv7m-none-eabi, clippy",
             "SKIPPED  browser: without node 20 or newer, npm, Chromium",

@@ -8,7 +8,7 @@ use crate::studio;
 const WINDOWS: &str = "x86_64-pc-windows-gnu";
 const MACOS: &str = "aarch64-apple-darwin";
 /// What [`other_systems`] needs.
-pub(crate) const NEEDS: [Need; 2] = [Need::Target(WINDOWS), Need::Target(MACOS)];
+pub(crate) const NEEDS: [Need; 3] = [Need::Target(WINDOWS), Need::Target(MACOS), Need::Git];
 /// The crates of the page whose code differs for WebAssembly. The `clippy.toml` of these, and of those that they
 /// depend on, disallows clocks, files, threads and processes on every platform.
 const WASM_CRATES: [&str; 3] = ["frixel-hil-sim", "frixel-lab", "frixel-studio"];

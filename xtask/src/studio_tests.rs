@@ -10,9 +10,9 @@ use crate::needs::Need;
 use crate::{results, studio};
 
 /// What types and lints need.
-pub(crate) const SCRIPT_NEEDS: [Need; 2] = [Need::Node, Need::Npm];
+pub(crate) const SCRIPT_NEEDS: [Need; 3] = [Need::Node, Need::Npm, Need::Git];
 /// What the tests need.
-pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
+pub(crate) const NEEDS: [Need; 5] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium, Need::Git];
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";

@@ -9,6 +9,8 @@ use frixel_wire::payload::{Payload, hello_request_frame};
 use super::error::{DeviceError, LinkClosed};
 use super::link::Link;
 
+/// Most ticks a second that a hello may claim: 25 times those of the fastest board.
+const TICK_HZ_MAX: u32 = 1_000_000;
 /// Number of hello requests before the board counts as absent.
 const TRIES: u32 = 5;
 /// Time to wait for the answer to each of them.
@@ -39,7 +41,7 @@ pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Res
 fn check_limits(hello: &Hello, port: String) -> Result<(), DeviceError> {
     let limits = &hello.limits;
     let numbers = [
-        ("tick_hz", f64::from(hello.tick_hz), hello.tick_hz > 0),
+        ("tick_hz", f64::from(hello.tick_hz), (1..=TICK_HZ_MAX).contains(&hello.tick_hz)),
         ("voltage_max_v_peak", limits.voltage_max_v_peak.into(), is_limit(limits.voltage_max_v_peak)),
         ("full_scale_v_peak", limits.full_scale_v_peak.into(), is_limit(limits.full_scale_v_peak)),
         ("edge_time_constant_s", limits.edge_time_constant_s.into(), is_limit(limits.edge_time_constant_s)),

@@ -81,6 +81,31 @@ impl Drop for Running {
     }
 }
 
+/// A thread for each of them would be there until its request times out.
+#[test]
+fn idle_connections_have_a_limit() {
+    let studio = Running::new(None);
+    let is_served = || {
+        let mut answer = Vec::new();
+        let asked = TcpStream::connect(&studio.host).and_then(|mut stream| {
+            write!(stream, "GET / HTTP/1.1\r\nHost: {}\r\n\r\n", studio.host)?;
+            stream.read_to_end(&mut answer)
+        });
+        asked.is_ok() && answer.starts_with(b"HTTP/1.1 200")
+    };
+    // On a busy machine, the first of them may be over before the last one is there.
+    let is_refused = || {
+        let idle: Vec<TcpStream> = (0..100).map(|_| TcpStream::connect(&studio.host).unwrap()).collect();
+        let is_refused = !is_served();
+        drop(idle);
+        is_refused
+    };
+    assert!((0..10).any(|_| is_refused()));
+    while !is_served() {
+        thread::sleep(Duration::from_millis(10));
+    }
+}
+
 fn status(answer: &str) -> &str {
     answer.split(' ').nth(1).unwrap_or_default()
 }

@@ -22,15 +22,30 @@ test("bad files and big ones are sentences", async () => {
   await assertSays(page, /bad\.png: .*cut off/);
   await give(page, ["bad.png", Buffer.concat([png.subarray(0, 900), png.subarray(-12)])], ["scene.toml", scene]);
   await assertSays(page, /bad\.png/);
-  const big = Buffer.alloc(20_000_000, 0x41);
-  for (const name of ["big.toml", "big.png", "big.zip"]) {
-    await give(page, [name, big]);
-    await assertSays(page, new RegExp(`${name}: the file has 20\\.0 MB`));
+  for (const [name, mb] of [["big.toml", 20], ["big.png", 20], ["big.zip", 33]]) {
+    await give(page, [name, Buffer.alloc(mb * 1e6, 0x41)]);
+    await assertSays(page, new RegExp(`${name}: the file has ${mb}\\.0 MB`));
   }
+  // As large as what it may unpack to.
+  await give(page, ["large.zip", Buffer.alloc(31e6, 0x41)]);
+  await assertSays(page, /large\.zip: .*cannot be read/);
   await give(page, ["broken.zip", png]);
   await assertSays(page, /broken\.zip: .*cannot be read/);
   await give(page, ["song.mp3", png]);
   await assertSays(page, /song\.mp3: expected a scene/);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a zip whose settings are null opens", async () => {
+  const { page, errors, close } = await openStudio();
+  const zip = await page.evaluate(async () => {
+    const { zipSync } = await import(await studio.moduleUrl("vendor/studio-vendor.js"));
+    const [scene, settings] = ["version = 2\n# of a zip\n", "null"].map((text) => new TextEncoder().encode(text));
+    return [...zipSync({ "scene.toml": scene, "studio.json": settings })];
+  });
+  await give(page, ["null.zip", Buffer.from(zip)]);
+  await page.waitForFunction(() => studioPage.editor.text.includes("# of a zip"));
   assert.deepEqual(errors, []);
   await close();
 });

@@ -103,6 +103,38 @@ test("what was changed is in Open after New, the gallery, a link and a closed ta
   assert.deepEqual(errors, []);
 });
 
+test("the map of a scene is not shown when another one was opened meanwhile", async () => {
+  const { page, errors, close } = await openStudio();
+  const shown = await page.evaluate(async () => {
+    const { engine, map, player } = studioPage;
+    const shown = [];
+    const { show } = map;
+    map.show = (picture, check) => {
+      shown.push(document.getElementById("scene-name").value);
+      show.call(map, picture, check);
+    };
+    // A map that is ready when another scene is open.
+    const isOpen = async (name) => {
+      while (document.getElementById("scene-name").value !== name) await new Promise((resolve) => setTimeout(resolve));
+    };
+    const drawn = engine.map.bind(engine);
+    engine.map = async (...scene) => {
+      engine.map = drawn;
+      document.getElementById("new").click();
+      const picture = await drawn(...scene);
+      await isOpen("untitled");
+      return picture;
+    };
+    player.now(studioPage.editor.text);
+    await isOpen("untitled");
+    while (shown.length === 0) await new Promise((resolve) => setTimeout(resolve));
+    return shown;
+  });
+  assert.deepEqual(shown, ["untitled"]);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
 test("two tabs never write the same piece of work", async () => {
   const { page, errors } = await openStudio();
   await change(page, WHOLE_SCREEN_GRATING);

@@ -117,7 +117,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { player, editor, map, scope, layers, board, compare } = parts;
+  const { project, player, editor, map, scope, layers, board, compare } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
@@ -143,7 +143,8 @@ function showWhatPlays(parts, scene) {
     if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
     if (compare.isRunning) return;
     map.show(picture, check);
-    map.thumbnail().then((thumbnail) => scene.show(thumbnail));
+    const { opened } = project;
+    map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
   };
   player.onFailure = notify;
   player.onStatus = (status) => {

@@ -209,8 +209,9 @@ fn a_pulled_cable_ends_every_call_at_once() {
 #[test]
 fn a_hello_whose_limits_are_no_limits_is_refused() {
     type Spoil = fn(&mut Hello);
-    let spoilt: [(&str, Spoil); 5] = [
+    let spoilt: [(&str, Spoil); 6] = [
         ("tick_hz", |hello| hello.tick_hz = 0),
+        ("tick_hz", |hello| hello.tick_hz = 1 << 31),
         ("voltage_max_v_peak", |hello| hello.limits.voltage_max_v_peak = f32::NAN),
         ("electrode_capacitance_max_f", |hello| hello.limits.electrode_capacitance_max_f = f32::NAN),
         ("current_max_a_rms", |hello| hello.limits.current_max_a_rms = -1.0),

@@ -61,6 +61,12 @@ pub enum OutputFileError {
         /// How to keep the rows.
         advice: &'static str,
     },
+    /// Another program's file has the name of an unfinished recording.
+    #[error("{} is in the way, and no recording left it: rename it, or record with --overwrite", .partial.display())]
+    Foreign {
+        /// Path of the file.
+        partial: PathBuf,
+    },
     /// There is nothing to finish.
     #[error("there is no {} with rows of a recording that was cut off: leave --finish out", .partial.display())]
     NothingCutOff {

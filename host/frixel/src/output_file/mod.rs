@@ -225,7 +225,9 @@ impl OutputFile {
         if self.exists() {
             return Ok(false);
         }
-        self.write(bytes).map(|()| true)
+        let mut writer = self.filled(bytes)?;
+        writer.keep_earlier();
+        writer.commit().map(|()| true)
     }
 }
 

@@ -78,11 +78,17 @@ impl Recording {
     /// the first ones of this recording.
     pub(crate) fn start(&self) -> Result<FileWriter, OutputFileError> {
         let Some(file) = self.output.file() else { return self.output.create() };
+        if is_of_another_program(&partial_beside(file)) && !self.overwrites {
+            return Err(OutputFileError::Foreign { partial: self.partial() });
+        }
         let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
         if has_rows(&earlier) && !self.overwrites {
             return Err(OutputFileError::CutOff { partial: self.partial(), advice: self.advice });
         }
         writer.begin_anew();
+        if !self.overwrites {
+            writer.keep_earlier();
+        }
         Ok(writer)
     }
 
@@ -107,6 +113,15 @@ pub(crate) fn is_play_of_person(folder: &Path) -> bool {
     summary.get("simulated") == Some(&serde_json::Value::Bool(false))
 }
 
+/// Whether a file is nothing that a recording leaves without a row: nothing at all, or the names of columns.
+fn is_of_another_program(partial: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(partial).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    let is_of_name = |byte: &u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"_,".contains(byte);
+    let names = head.strip_suffix(b"\n").unwrap_or(&head);
+    read.is_ok() && !has_rows(&String::from_utf8_lossy(&head)) && !names.iter().all(is_of_name)
+}
+
 /// Whether there is a row below the header.
 fn has_rows(text: &str) -> bool {
     text.bytes().filter(|byte| *byte == b'\n').count() > 1
@@ -129,4 +144,26 @@ pub(crate) fn is_recording(path: &Path) -> bool {
     let is_stroke =
         has(STROKE_COLUMNS) && columns.iter().all(|name| [&STROKE_COLUMNS[..], &["force_n"]].concat().contains(name));
     is_stroke || has(FRICTION_COLUMNS) || text.lines().any(|line| line.trim() == PERCEPTUAL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_another_program_is_not_taken_for_an_empty_recording() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        let start = |overwrites| Recording::new(&path, "-o", &Inputs::default(), overwrites, "").unwrap().start();
+        for foreign in ["A letter.", "A letter.\n", "t_s;x_mm", "\0\u{1}"] {
+            std::fs::write(partial_beside(&path), foreign).unwrap();
+            assert!(matches!(start(false), Err(OutputFileError::Foreign { .. })), "{foreign:?}");
+            assert_eq!(std::fs::read_to_string(partial_beside(&path)).unwrap(), foreign);
+            assert!(start(true).is_ok());
+        }
+        for own in ["", "t_s,x_", "t_s,x_mm,y_mm\n"] {
+            std::fs::write(partial_beside(&path), own).unwrap();
+            assert!(start(false).is_ok(), "{own:?}");
+        }
+    }
 }

@@ -51,6 +51,8 @@ struct NewFile {
     unfinished: Unfinished,
     /// The first write replaces what is there.
     begins_anew: bool,
+    /// A file that has the name already keeps it.
+    is_new: bool,
 }
 
 impl FileWriter {
@@ -117,6 +119,13 @@ impl FileWriter {
         }
     }
 
+    /// Lets a file that has the name at the commit keep it: the commit then fails with [`OutputFileError::Rename`].
+    pub(super) fn keep_earlier(&mut self) {
+        if let Sink::File(new) = &mut self.sink {
+            new.is_new = true;
+        }
+    }
+
     /// Removes the part of a row at the end.
     pub(super) fn cut(&mut self) -> Result<(), OutputFileError> {
         let Sink::File(new) = &mut self.sink else { return Ok(()) };
@@ -126,8 +135,9 @@ impl FileWriter {
 
     fn new(path: &Path, destination: &Path, written: &Path, file: File, unfinished: Unfinished) -> Self {
         let (written, destination) = (written.to_owned(), destination.to_owned());
+        let (begins_anew, is_new) = (false, false);
         let new =
-            NewFile { file, written, destination, len: 0, lines: 0, failed: None, unfinished, begins_anew: false };
+            NewFile { file, written, destination, len: 0, lines: 0, failed: None, unfinished, begins_anew, is_new };
         Self { path: path.to_owned(), sink: Sink::File(new), pending: Vec::new() }
     }
 
@@ -173,7 +183,12 @@ impl FileWriter {
         }
         // The file is whole: from here on it stays under whichever name it has.
         new.unfinished = Unfinished::IsNamed;
-        fs::rename(&new.written, &new.destination).map_err(|source| OutputFileError::Rename {
+        let renamed = if new.is_new {
+            rename_new(&new.written, &new.destination)
+        } else {
+            fs::rename(&new.written, &new.destination)
+        };
+        renamed.map_err(|source| OutputFileError::Rename {
             path: self.path.clone(),
             written: new.written.clone(),
             source,
@@ -282,6 +297,17 @@ pub(crate) fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Re
     files.iter_mut().try_for_each(FileWriter::rename)
 }
 
+/// Renames a file, unless another one has the name already. That is looked at in one step with the renaming, except on
+/// file systems without hard links.
+fn rename_new(written: &Path, destination: &Path) -> io::Result<()> {
+    match fs::hard_link(written, destination) {
+        Ok(()) => fs::remove_file(written),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(error),
+        Err(_) if destination.exists() => Err(ErrorKind::AlreadyExists.into()),
+        Err(_) => fs::rename(written, destination),
+    }
+}
+
 fn count_lines(bytes: &[u8]) -> u64 {
     bytes.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n")).count() as u64
 }
@@ -310,7 +336,7 @@ pub(super) fn open_locked(path: &Path, written: &Path) -> Result<File, OutputFil
 
 #[cfg(test)]
 mod tests {
-    use super::super::Inputs;
+    use super::super::{Inputs, Recording};
     use super::*;
 
     /// Whatever ends the renaming, no file of the run before stands beside one of this run.
@@ -330,6 +356,26 @@ mod tests {
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).ok();
         assert_eq!(read("a").as_deref(), Some("of this run"));
         assert_eq!(["b", "c", "stale"].map(read), [None, None, None]);
+    }
+
+    /// A file that another process gives the name between the look and the commit.
+    #[test]
+    fn a_new_file_replaces_none_that_came_meanwhile() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        let output = OutputFile::new(&path, "-o", &Inputs::default()).unwrap();
+        let recording = Recording::new(&path, "-o", &Inputs::default(), false, "").unwrap();
+        for rows in ["a result\n", "a,recording\n1,2\n"] {
+            let mut writer =
+                if rows.starts_with("a result") { output.create().unwrap() } else { recording.start().unwrap() };
+            writer.keep_earlier();
+            writer.write_all(rows.as_bytes()).unwrap();
+            fs::write(&path, "came meanwhile").unwrap();
+            let Err(OutputFileError::Rename { written, .. }) = writer.commit() else { panic!("it is replaced") };
+            assert_eq!(fs::read_to_string(&path).unwrap(), "came meanwhile");
+            assert_eq!(fs::read_to_string(written).unwrap(), rows);
+            fs::remove_file(&path).unwrap();
+        }
     }
 
     /// Nothing is written behind a gap: rows that are missing in the middle would not be noticed.

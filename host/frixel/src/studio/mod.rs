@@ -24,6 +24,8 @@ pub(crate) use page::page;
 const LOOK_PERIOD: Duration = Duration::from_millis(20);
 /// Longest time that a client may take to send its request.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
+/// Most connections at a time, each of which has a thread. A browser opens six.
+const CONNECTIONS_MAX: usize = 64;
 /// The port of an address that states none.
 const HTTP_PORT: u16 = 80;
 /// Path of the bridge.
@@ -98,6 +100,8 @@ impl Studio {
     pub fn run(self, interrupted: &dyn Fn() -> bool) -> Result<(), StudioError> {
         while !interrupted() {
             match self.listener.accept() {
+                // Every connection holds the site; one beyond the limit is closed without an answer.
+                Ok(_) if Arc::strong_count(&self.site) > CONNECTIONS_MAX => {}
                 Ok((stream, _)) => {
                     let site = Arc::clone(&self.site);
                     // A client that misbehaves only ends its own connection.

@@ -182,3 +182,23 @@ pub fn write_csv(output: impl Write, rows: &[Row]) -> Result<(), CalibrationErro
 fn rounded(value: f64, step: f64) -> f64 {
     (value / step).round() / (1.0 / step).round()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_read_is_said_in_words_of_its_own() {
+        for (text, found) in [
+            ("t,v,s\n1,2,3\n", "the header has no column time_s"),
+            (
+                "time_s,voltage_v_rms,speed_mm_s\n1,2,three\n",
+                "row 2, column speed_mm_s: expected a number, found \"three\"",
+            ),
+            ("time_s,voltage_v_rms,speed_mm_s\n1,2\n", "row 2: expected 3 cells as in the header, found 2"),
+        ] {
+            let said = read_board(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(said.contains(found) && said.ends_with("it was changed"), "{said}");
+        }
+    }
+}

@@ -4,14 +4,14 @@ use thiserror::Error;
 
 use crate::kinds::KindName;
 use crate::nearest::Nearest;
-use crate::printable::{NAME_MAX_CHARS, Shown};
+use crate::printable::{NAME_MAX_CHARS, Shown, brief};
 
 /// A mistake in a field, or between fields of a table.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FieldMistake {
     /// The table has no field of this name.
-    #[error("unknown field `{field}` in {table}; {nearest}")]
+    #[error("unknown field `{}` in {table}; {nearest}", brief(.field))]
     UnknownField {
         /// The field, as written.
         field: String,
@@ -100,7 +100,7 @@ pub enum FieldMistake {
         max_ms: f64,
     },
     /// A word is not one of the choices.
-    #[error("`{field} = \"{found}\"` is not known; {nearest}")]
+    #[error("`{field} = \"{}\"` is not known; {nearest}", brief(.found))]
     UnknownChoice {
         /// The field.
         field: &'static str,

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::TILDE_ADVICE;
 use crate::nearest::Nearest;
-use crate::printable::Shown;
+use crate::printable::{Shown, brief};
 
 /// A mistake of a whole file, or between the files of a scene.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -40,7 +40,7 @@ pub enum FileMistake {
     #[error("this scene has version 2 already: there is nothing to migrate")]
     NothingToMigrate,
     /// No screen or finger of this name is bundled.
-    #[error("no {what} \"{found}\" is bundled, and the name of a file has an ending such as .toml; {nearest}")]
+    #[error("no {what} \"{}\" is bundled, and the name of a file has an ending such as .toml; {nearest}", brief(.found))]
     UnknownProfile {
         /// `finger` or `screen`.
         what: &'static str,
@@ -98,7 +98,8 @@ pub enum FileMistake {
     },
     /// A file that is to be included is not there.
     #[error(
-        "{file} includes {included}, which was not found: names start from the folder of {file}{}",
+        "{file} includes {}, which was not found: names start from the folder of {file}{}",
+        brief(.included),
         did_you_mean(.nearest.as_deref())
     )]
     IncludedMissing {
@@ -110,7 +111,7 @@ pub enum FileMistake {
         nearest: Option<String>,
     },
     /// A file that is to be included cannot be used.
-    #[error("{file} includes {included}, which cannot be used: {reason}")]
+    #[error("{file} includes {}, which cannot be used: {reason}", brief(.included))]
     IncludedUnusable {
         /// The file with this `include`.
         file: String,
@@ -141,7 +142,9 @@ pub enum FileMistake {
     },
     /// There is no file of this name.
     #[error(
-        "{what} \"{file}\" was not found in {folder}{}: {}",
+        "{what} \"{}\" was not found in {}{}: {}",
+        brief(.file),
+        brief(.folder),
         which_has(.nearest.as_deref()),
         if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the folder of the file that names it" }
     )]
@@ -162,7 +165,7 @@ pub enum FileMistake {
         field: &'static str,
     },
     /// A file cannot be used.
-    #[error("{what} \"{file}\" cannot be used: {reason}")]
+    #[error("{what} \"{}\" cannot be used: {reason}", brief(.file))]
     FileUnusable {
         /// `picture`, `finger` or `screen`.
         what: &'static str,

@@ -12,17 +12,23 @@ pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// Decodes the bytes of a PNG file.
 pub(super) fn decode(png: &[u8]) -> Result<Picture, PictureError> {
     let damaged = |error: png::DecodingError| PictureError::Damaged(error.to_string());
-    let limits = Limits { bytes: 8 * PIXELS_MAX };
-    let mut decoder = Decoder::new_with_limits(Cursor::new(png), limits);
-    // Expands palettes to colours, fewer bits than eight to eight, and a transparent colour to an alpha channel.
-    decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info().map_err(damaged)?;
+    let mut reader = decoder(png).read_info().map_err(damaged)?;
     let (width, height) = reader.info().size();
     refuse_too_large(width as usize, height as usize)?;
     let size = reader.output_buffer_size().ok_or_else(|| PictureError::Damaged("it has no size".to_owned()))?;
     let mut bytes = vec![0; size];
     let frame = reader.next_frame(&mut bytes).map_err(damaged)?;
     Ok(grey(&bytes, &frame))
+}
+
+/// A decoder that leaves out what is not used: a colour profile or a text can unpack to a thousand times its size.
+fn decoder(png: &[u8]) -> Decoder<Cursor<&[u8]>> {
+    let mut decoder = Decoder::new_with_limits(Cursor::new(png), Limits { bytes: 8 * PIXELS_MAX });
+    // Expands palettes to colours, fewer bits than eight to eight, and a transparent colour to an alpha channel.
+    decoder.set_transformations(Transformations::EXPAND);
+    decoder.set_ignore_iccp_chunk(true);
+    decoder.set_ignore_text_chunk(true);
+    decoder
 }
 
 fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {
@@ -56,5 +62,29 @@ fn sample(pixel: &[u8], channel: usize, wide: bool) -> u16 {
         u16::from_be_bytes([byte(2 * channel), byte(2 * channel + 1)])
     } else {
         u16::from_be_bytes([byte(channel), byte(channel)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::borrow::Cow;
+
+    use png::{Encoder, Info};
+
+    use super::*;
+
+    /// 2 MB of such a chunk took 534 MB.
+    #[test]
+    fn a_colour_profile_in_a_picture_is_not_unpacked() {
+        let mut info = Info::with_size(2, 1);
+        (info.color_type, info.bit_depth) = (ColorType::Grayscale, BitDepth::Eight);
+        info.icc_profile = Some(Cow::Owned(vec![0; 1 << 20]));
+        let mut png = Vec::new();
+        let mut writer = Encoder::with_info(&mut png, info).unwrap().write_header().unwrap();
+        writer.write_image_data(&[0, 255]).unwrap();
+        writer.finish().unwrap();
+        assert!(png.windows(4).any(|name| name == b"iCCP"));
+        assert_eq!(decoder(&png).read_info().unwrap().info().icc_profile, None);
+        assert!(decode(&png).is_ok());
     }
 }

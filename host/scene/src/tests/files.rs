@@ -33,6 +33,30 @@ fn included_layers_lie_below_and_play_as_if_they_stood_here() {
 }
 
 #[test]
+fn names_of_100_000_characters_are_not_echoed_whole() {
+    let long = "\u{e9}".repeat(100_000);
+    let texts = [
+        format!("[[layer]]\nkind = \"{long}\"\n"),
+        format!("\"{long}\" = 1\n"),
+        format!("[defaults]\n\"{long}\" = 1\n"),
+        format!("{FLAT}\"{long}\" = 1\n"),
+        format!("{FLAT}blend = \"{long}\"\n"),
+        format!("include = [\"{long}.toml\"]\n"),
+        format!("include = [\"{long}/\"]\n"),
+        format!("finger = \"{long}\"\n"),
+        format!("screen = \"{long}.toml\"\n"),
+    ];
+    for text in texts {
+        let scene = scene(&format!("version = 2\n{text}"), &[]);
+        let said: Vec<String> = mistakes(&scene).iter().map(|located| located.message.to_string()).collect();
+        let lens: Vec<usize> = said.iter().map(String::len).collect();
+        let shown: String = text.chars().filter(|character| *character != '\u{e9}').collect();
+        assert!(said.iter().any(|sentence| sentence.contains('\u{2026}')), "{shown}: {lens:?}");
+        assert!(lens.iter().all(|len| *len < 2_000), "{lens:?}");
+    }
+}
+
+#[test]
 fn tables_come_from_any_one_of_the_files() {
     let common = "version = 2\nfinger = \"moist\"\n[drive]\nvoltage_max_v_rms = 100\n";
     let apart = program(&format!("{SHORT}{FLAT}"), &[("common.toml", common)]);

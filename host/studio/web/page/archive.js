@@ -8,7 +8,7 @@ import { strFromU8, strToU8, unzipSync, zipSync } from "../vendor/studio-vendor.
 /** @import { SavedScene } from "./project.js" */
 
 /** Most bytes that a zip may unpack to, and most files in it. A small zip can hold gigabytes of zeros. */
-const UNPACKED_MAX_BYTES = 32_000_000;
+export const UNPACKED_MAX_BYTES = 32_000_000;
 const FILES_MAX = 100;
 /** Name of the scene where the settings say none. */
 const ENTRY = "scene.toml";
@@ -36,7 +36,7 @@ export function projectOf(bytes, { isOwn = false } = {}) {
   /** @type {{ name?: unknown, entry?: string, profiles?: Profiles }} */
   let settings = {};
   try {
-    settings = chosen ? JSON.parse(strFromU8(chosen)) : {};
+    settings = (chosen && JSON.parse(strFromU8(chosen))) ?? {};
   } catch {
     // Without settings the scene plays with its own finger and screen.
   }

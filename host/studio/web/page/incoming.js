@@ -1,7 +1,7 @@
 // Files that a person drops or opens: scenes, pictures, profiles and saved projects.
 // @ts-check
 
-import { projectOf } from "./archive.js";
+import { projectOf, UNPACKED_MAX_BYTES } from "./archive.js";
 import { byId, forgetNotice, notify, sentenceOf } from "./dom.js";
 import { isPicture } from "./project.js";
 
@@ -14,7 +14,7 @@ import { isPicture } from "./project.js";
  * Largest text, picture and zip, bytes.
  * @type {Record<string, number>}
  */
-const MAX_BYTES = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: 16_000_000 };
+const MAX_BYTES = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: UNPACKED_MAX_BYTES };
 const JPEG = [0xff, 0xd8, 0xff];
 /**
  * The first bytes of pictures, by the ending of their names.

@@ -141,7 +141,7 @@ export class Player {
   /** @param {string} text */
   async #play(text) {
     const files = await this.#project.filesFor(text);
-    const { entry, profiles } = this.#project;
+    const { entry, profiles, opened } = this.#project;
     /** @type {Parameters<Engine["play"]>} */
     const scene = [files, entry, { ...profiles }];
     const check = await this.#engine.check(...scene);
@@ -155,7 +155,7 @@ export class Player {
       const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
       const size = { ...sizePx, speedMmPerS: 100 };
       const map = await this.#engine.map(...scene, size).catch((error) => this.onFailure(sentenceOf(error)));
-      if (map) this.onMap(map, check);
+      if (map && this.#project.opened === opened) this.onMap(map, check);
     }
   }
 

@@ -36,6 +36,8 @@ export class Project {
    * @type {Profiles}
    */
   profiles = {};
+  /** How many scenes were opened: what was begun for one may be ready when another is open. */
+  opened = 0;
 
   /** @param {Engine} engine */
   constructor(engine) {
@@ -62,6 +64,7 @@ export class Project {
    */
   async replaceFiles(files) {
     const carried = await carriedFiles();
+    this.opened += 1;
     this.files.clear();
     for (const [name, content] of files) if (!isSame(content, carried[name])) this.add(name, content);
   }

@@ -1,6 +1,6 @@
 //! The forces of a sensor: from a file, or from standard input while the board plays.
 
-use std::io::{BufReader, Read, Write, stdin};
+use std::io::{self, BufReader, Read, Write, stdin};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -21,20 +21,28 @@ pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording, OutputFileError> {
 
 /// Standard input, which is read while the board plays, so that its writer does not block.
 pub(super) struct StandardInput {
-    reader: JoinHandle<()>,
+    reader: JoinHandle<io::Result<()>>,
     bytes: Arc<Mutex<Vec<u8>>>,
 }
 
 impl StandardInput {
     /// Reads, and writes a copy.
-    pub(super) fn read(mut copy: Option<FileWriter>) -> Self {
+    pub(super) fn read(copy: Option<FileWriter>) -> Self {
+        Self::read_from(Bounded::new(stdin(), input::CSV_MAX_BYTES), copy)
+    }
+
+    fn read_from(mut input: Bounded<impl Read + Send + 'static>, mut copy: Option<FileWriter>) -> Self {
         let bytes = Arc::new(Mutex::new(Vec::new()));
         let shared = Arc::clone(&bytes);
         let reader = thread::spawn(move || {
-            let mut input = Bounded::new(stdin(), input::CSV_MAX_BYTES);
             let mut chunk = [0; 4096];
-            // A pipe that breaks has ended, and so has one that goes on beyond the limit.
-            while let Ok(count @ 1..) = input.read(&mut chunk) {
+            loop {
+                let count = match input.read(&mut chunk) {
+                    Ok(0) => return Ok(()),
+                    Ok(count) => count,
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                    Err(error) => return Err(error),
+                };
                 let chunk = chunk.get(..count).unwrap_or_default();
                 // The copy serves only if this process does not reach the end.
                 let _ = copy.as_mut().map(|copy| copy.write_all(chunk).and_then(|()| copy.flush()));
@@ -44,13 +52,18 @@ impl StandardInput {
         Self { reader, bytes }
     }
 
-    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring.
-    pub(super) fn after(&self, time_max: Duration) -> Vec<u8> {
+    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring. An input that goes
+    /// on beyond the limit is an error, since its end would be missing.
+    pub(super) fn after(self, time_max: Duration) -> io::Result<Vec<u8>> {
         let begun = Instant::now();
         while !self.reader.is_finished() && begun.elapsed() < time_max {
             thread::sleep(Duration::from_millis(5));
         }
-        std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner))
+        if self.reader.is_finished() {
+            // A thread that panicked has said so.
+            self.reader.join().unwrap_or(Ok(()))?;
+        }
+        Ok(std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner)))
     }
 }
 
@@ -62,4 +75,19 @@ pub(super) fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
         read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?))
     };
     rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_beyond_the_limit_are_not_cut_without_a_word() {
+        let read = |len: usize| {
+            let input = Bounded::new(io::repeat(b'7').take(len as u64), 10_000);
+            StandardInput::read_from(input, None).after(Duration::from_mins(1))
+        };
+        assert_eq!(read(10_000).unwrap(), [b'7'; 10_000]);
+        assert_eq!(read(10_001).unwrap_err().to_string(), "it goes on after 10000 bytes, the most that are read");
+    }
 }

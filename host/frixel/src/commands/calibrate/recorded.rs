@@ -78,7 +78,7 @@ pub(super) fn on_port(
     };
     drop(partial);
     let forces = match from_stdin {
-        Some(input) => read_forces(input.after(FORCES_LATE).as_slice())?,
+        Some(input) => read_forces(input.after(FORCES_LATE).map_err(CommandError::reading(forces))?.as_slice())?,
         None => forces::read(forces)?,
     };
     Ok((board, forces))
