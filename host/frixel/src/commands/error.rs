@@ -180,6 +180,11 @@ pub(crate) enum CommandError {
         path.display()
     )]
     LogTooShort { path: PathBuf, behind_s: f64 },
+    #[error(
+        "--with-log joins the log of a virtual board, and the board at this port is not one: leave it out, so that what \
+         a finger does on it is recorded"
+    )]
+    LogOfARealBoard,
     #[error(transparent)]
     Feed(#[from] StreamError),
     #[error(

@@ -27,6 +27,7 @@ pub(super) fn follow<L: RecordedLink>(
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
+    check_log(args, is_simulated)?;
     let outputs = Outputs::create(args, files, is_simulated, &plan.program)?;
     let player = player(waiting::watch(device, interrupt), plan.recorder()?);
     let waits = plan.target == Target::Simulator;
@@ -38,6 +39,12 @@ pub(super) fn follow<L: RecordedLink>(
     let ended = play.until_over();
     let playing = begin.elapsed().saturating_sub(play.writing);
     Ok(play.finish(ended, playing))
+}
+
+/// Refuses to join a log to what a finger did on a real board: the joined rows replace a recording while they are
+/// written, and that of a person cannot be made again.
+fn check_log(args: &PlayArgs, is_simulated: bool) -> Result<(), CommandError> {
+    if args.with_log.is_some() && !is_simulated { Err(CommandError::LogOfARealBoard) } else { Ok(()) }
 }
 
 /// Why a board refuses a program, a sentence each.
@@ -181,5 +188,20 @@ impl<L: RecordedLink> Play<'_, L> {
 
     fn error(&self, error: PlayError) -> CommandError {
         CommandError::of_play(&self.args.port, error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_is_not_joined_to_what_a_finger_did_on_a_real_board() {
+        let mut args = PlayArgs::ideal("a.toml".as_ref());
+        assert!(check_log(&args, false).is_ok());
+        args.with_log = Some("felt.csv".into());
+        assert!(check_log(&args, true).is_ok());
+        let refused = check_log(&args, false).unwrap_err().to_string();
+        assert!(refused.starts_with("--with-log joins the log of a virtual board"), "{refused}");
     }
 }
