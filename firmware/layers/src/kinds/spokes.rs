@@ -51,7 +51,8 @@ impl Kind for Spokes {
     fn prepare(&self, _layer: u8, _preparation: &mut Preparation) -> Result<SpokesCoefficients, Refusal> {
         let (wave, zero_turns) = CentredWave::new(self.wave);
         let number = f32::from(self.number);
-        let per_narrow_m = core::f32::consts::TAU / (number.max(1.0) * NARROW_M);
+        // Infinite without spokes, so that nothing fades.
+        let per_narrow_m = core::f32::consts::TAU / (number * NARROW_M);
         Ok(SpokesCoefficients {
             wave,
             x_m: self.x_m,
@@ -84,6 +85,7 @@ impl Evaluate for SpokesCoefficients {
         let [x_m, y_m] = context.inputs.place_m;
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let fade = (x_m * x_m + y_m * y_m) * self.per_square_m;
+        // Not a number, and no fading, in the middle of no spokes.
         let swing_n = if fade < 1.0 { fade * self.swing_n } else { self.swing_n };
         self.middle_n + swing_n * self.wave.at(self.number * angle_turns(x_m, y_m) + self.phase_turns)
     }
@@ -118,6 +120,14 @@ mod tests {
                 let [above, below] = [-1e-8, 1e-8].map(|down_m| at(wave, number, [-0.045, down_m]));
                 assert!((above - below).abs() < 2e-4, "{number} {wave:?}: {above} {below}");
             }
+        }
+    }
+
+    /// `PROTOCOL.md`: nothing is narrower than 1 mm.
+    #[test]
+    fn no_spokes_are_the_wave_at_its_phase_everywhere() {
+        for right_m in [0.0, 1e-5, 1e-3, 0.03] {
+            assert_eq!(at(Wave::Square { duty: 0.5 }, 0, [right_m, 0.0]).to_bits(), 1.0_f32.to_bits(), "{right_m}");
         }
     }
 

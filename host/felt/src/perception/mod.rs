@@ -24,7 +24,6 @@ use click::ClickStep;
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
 use slide::Slide;
-pub(crate) use thresholds::RELAXATION_LENGTH_MM;
 pub use thresholds::{
     NATURAL_NOISE_RMS_N, NEAR_THRESHOLD, NOISE_BAND_HZ, TEXTURE_MIN_HZ, VOLTAGE_DIFFERENCE_DB, Verdict, WEBER_FRACTION,
     lag_gain, natural_noise_amplitude_n, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text,

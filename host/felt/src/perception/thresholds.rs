@@ -1,6 +1,7 @@
 //! Numbers about what fingers feel, with their sources. Those quoted from memory say so, and are to be checked before
 //! anyone builds on them; `docs/truth.md` lists them.
 
+use frixel_hil_sim::RELAXATION_LENGTH_M;
 use serde::Serialize;
 
 /// Weber fraction of friction: the smallest change of the total friction that is felt, for a transient decrease
@@ -14,10 +15,6 @@ pub(super) const WEBER_FRACTION_SAFE: f64 = 0.27;
 
 /// Difference threshold of electrovibration voltage, dB (doi:10.1038/s41598-018-22865-x).
 pub const VOLTAGE_DIFFERENCE_DB: f64 = 1.21;
-
-/// Length over which friction follows its target while sliding, mm: a cutoff of 13.8 Hz for each mm/s
-/// (arXiv 2505.11162) is `1 / (2 pi 13.8)` mm at every speed.
-pub(crate) const RELAXATION_LENGTH_MM: f64 = 1.0 / (std::f64::consts::TAU * 13.8);
 
 /// Root mean square of a finger's own friction noise from [`NOISE_BAND_HZ`], N. Its spectral density falls as 1/f, so
 /// each octave has the same share. Computed from one trial of one bare finger at 0.53 N and 40 mm/s
@@ -156,7 +153,7 @@ pub fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
 
 /// The part of a texture's amplitude that is left behind the lag of friction, from 0 to 1.
 pub fn lag_gain(wavelength_mm: f64) -> f64 {
-    1.0 / libm::hypot(1.0, std::f64::consts::TAU * RELAXATION_LENGTH_MM / wavelength_mm)
+    1.0 / libm::hypot(1.0, std::f64::consts::TAU * 1e3 * RELAXATION_LENGTH_M / wavelength_mm)
 }
 
 #[cfg(test)]

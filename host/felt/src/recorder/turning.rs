@@ -1,8 +1,6 @@
 //! Where a finger lands or turns.
 
-use frixel_hil_sim::FingerState;
-
-use crate::perception::RELAXATION_LENGTH_MM;
+use frixel_hil_sim::{FingerState, RELAXATION_LENGTH_M};
 
 /// The part of its full pull against the motion from which the skin counts as turned.
 const TURNED: f64 = 0.95;
@@ -30,7 +28,7 @@ impl Turning {
             return libm::hypot(self.pull[0], self.pull[1]) < TURNED;
         }
         let direction = [x_step_m / step_m, y_step_m / step_m];
-        let share = -libm::expm1(-1e3 * step_m / RELAXATION_LENGTH_MM);
+        let share = -libm::expm1(-step_m / RELAXATION_LENGTH_M);
         for (pull, direction) in self.pull.iter_mut().zip(direction) {
             *pull += share * (direction - *pull);
         }
