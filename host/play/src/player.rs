@@ -22,7 +22,7 @@ const STEP_MAX: Duration = Duration::from_millis(50);
 const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
 /// Extra time beyond the last recorded tick, because the link's clock is rounded.
 const MARGIN: Duration = Duration::from_millis(5);
-/// Longer than any host is connected: pings with this period are never sent.
+/// Longer than a stop takes: with this time between pings, none is sent meanwhile.
 const NEVER: Duration = Duration::from_hours(1);
 
 /// How one program has replaced another.
