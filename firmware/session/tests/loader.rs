@@ -7,7 +7,7 @@ use frixel_layers::{Blend, Constant, HEADER_LEN, Layer, Point, RECORD_LEN, Recor
 use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{HEADER, Memory, TestBoard, scene_with_points};
+use support::{HEADER, TestBoard, scene_with_points};
 
 const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
 
@@ -38,9 +38,7 @@ mod whole {
     use super::*;
 
     fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.hello();
+        let mut board = TestBoard::connected();
         board.upload_bitmap(3, 2, &SAMPLES).unwrap();
         match board.load(&scene_with_points(&HEADER, &[record], points)) {
             Ok(_) => None,
@@ -51,9 +49,7 @@ mod whole {
 
     #[test]
     fn every_kind_plays() {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.hello();
+        let mut board = TestBoard::connected();
         board.upload_bitmap(3, 2, &SAMPLES).unwrap();
         // One after another: all of them under one finger are refused, for what a tick would take.
         for record in records() {
@@ -116,9 +112,7 @@ mod whole {
     #[test]
     fn side_tables_are_refused_by_what_they_hold() {
         let of = |layer, count: usize| {
-            let mut memory = Memory::new();
-            let mut board = TestBoard::new(&mut memory);
-            board.hello();
+            let mut board = TestBoard::connected();
             // Side by side: one on another they would take too long.
             let beside = |number: usize| {
                 let (x_m, y_m) = (1e-3 + 7.5e-3 * (number % 16) as f32, 0.01 + 0.01 * (number / 16) as f32);
@@ -161,9 +155,7 @@ fn nearly() -> impl Strategy<Value = Vec<u8>> {
 
 /// Loads these bytes and, when they are taken, plays them for a while.
 fn load_and_play(scene: &[u8]) -> bool {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let _ = board.upload_bitmap(3, 2, &SAMPLES);
     if board.load(scene).is_err() {
         return false;
