@@ -3,7 +3,7 @@
 
 use crate::support;
 
-use frixel_layers::{Blend, Constant, HEADER_LEN, Layer, Point, RECORD_LEN, Record, Region, Speed};
+use frixel_layers::{Blend, Constant, HEADER_LEN, Layer, RECORD_LEN, Record, Region};
 use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
@@ -18,11 +18,6 @@ fn records() -> Vec<Record> {
     records.map(|record| Record { layer: with_picture(record.layer), ..record }).collect()
 }
 
-#[track_caller]
-fn record_that(is: impl Fn(&Record) -> bool) -> Record {
-    records().into_iter().find(is).unwrap()
-}
-
 /// A layer, and one below it that is always felt.
 fn on_a_ground(record: Record) -> Vec<Record> {
     let ground = Layer::Constant(Constant { electric_friction_n: 0.005 });
@@ -32,10 +27,16 @@ fn on_a_ground(record: Record) -> Vec<Record> {
 // Uploading pictures and starting streams are the session's own features.
 #[cfg(all(feature = "bitmap", feature = "stream"))]
 mod whole {
+    use frixel_layers::{Point, Speed};
     use frixel_wire::message::{Command, ConfigField, ConfigRefusal, Refusal};
     use support::record;
 
     use super::*;
+
+    #[track_caller]
+    fn record_that(is: impl Fn(&Record) -> bool) -> Record {
+        records().into_iter().find(is).unwrap()
+    }
 
     fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
         let mut board = TestBoard::connected();
