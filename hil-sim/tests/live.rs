@@ -3,9 +3,7 @@
 
 use crate::script;
 
-use frixel_hil_sim::{
-    AmplifierConfig, BoardMemory, Point, Rig, RigConfig, Stroke, TickRecord, TouchConfig, contact_of,
-};
+use frixel_hil_sim::{AmplifierConfig, BoardMemory, Point, Rig, RigConfig, Stroke, TickRecord, TouchConfig};
 use frixel_layers::{Blend, Constant, Grating, Header, Layer, Record, Wave, Waveform};
 use frixel_testkit::Random;
 use frixel_wire::fault::Flags;
@@ -131,7 +129,7 @@ fn a_gain_out_of_reach_is_clamped_flagged_and_counted() {
     let mut memory = BoardMemory::new();
     let mut script = play(&mut memory, &scene(&HEADER, &[constant(0.01)]));
     assert_eq!(script.status().counters.saturated_ticks, 0);
-    let reach_n = contact_of(&HEADER).unwrap().electric_friction_n(150.0);
+    let reach_n = HEADER.friction_law().unwrap().electric_friction_n(150.0);
     script.command(Command::SetLayer { layer: 0, on: true, gain: 100.0 });
     let counted = script.status().counters.saturated_ticks;
     for ticks in 1..=100 {
@@ -156,7 +154,7 @@ fn the_electrode_has_the_voltage_asked_for_from_the_third_period_after_any_chang
         let mut memory = BoardMemory::new();
         let mut script = Script::new(Rig::new(&mut memory, &config, slow, 1).unwrap());
         let header = Header { waveform, ..HEADER };
-        let reach_n = contact_of(&header).unwrap().electric_friction_n(f64::from(header.voltage_max_v_rms));
+        let reach_n = header.friction_law().unwrap().electric_friction_n(f64::from(header.voltage_max_v_rms));
         script.play(&scene(&header, &[constant(0.999 * reach_n as f32)]));
         let mut random = Random::new(1);
         let (mut voltage_v_rms, mut constant_ticks, mut checked_phases) = (0.0, 0, 0);

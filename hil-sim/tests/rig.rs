@@ -1,7 +1,7 @@
 //! The whole path in one process: frames over a virtual line into the firmware, its voltage onto a simulated finger.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord, contact_of};
+use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord};
 use frixel_layers::{Header, Waveform};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
@@ -87,7 +87,7 @@ fn a_hello_takes_the_time_that_its_bytes_take_on_the_line() {
 fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
     for waveform in [Waveform::Square, Waveform::Sine] {
         let header = Header { waveform, ..HEADER };
-        let contact = contact_of(&header).unwrap();
+        let contact = header.friction_law().unwrap();
         let reach_n = contact.electric_friction_n(150.0);
         for part in [0.1, 0.5, 0.95] {
             let wanted_n = contact.natural_friction_n() + part * reach_n;

@@ -23,5 +23,6 @@ pub fn header() -> Header {
         leader: Leader::First,
         layers_fixed: false,
         electric_friction_max_n: None,
+        law: None,
     }
 }
