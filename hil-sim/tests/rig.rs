@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord};
-use frixel_layers::{Header, Waveform};
+use frixel_layers::{FingerLaw, Header, LawPoint, Waveform};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, FromBoard, Request};
@@ -85,8 +85,13 @@ fn a_hello_takes_the_time_that_its_bytes_take_on_the_line() {
 
 #[test]
 fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
-    for waveform in [Waveform::Square, Waveform::Sine] {
-        let header = Header { waveform, ..HEADER };
+    let points = [(50.0, 4e-3), (100.0, 0.03), (150.0, 0.2)]
+        .map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
+    let law = FingerLaw::new(2.0, &points);
+    assert!(law.is_some());
+    let empirical = Header { finger_radius_m: 0.0, stiffness_pa_per_m: 0.0, effective_gap_m: 0.0, law, ..HEADER };
+    for header in [HEADER, Header { waveform: Waveform::Sine, ..HEADER }, empirical] {
+        let waveform = header.waveform;
         let contact = header.friction_law().unwrap();
         let reach_n = contact.electric_friction_n(150.0);
         for part in [0.1, 0.5, 0.95] {

@@ -16,7 +16,7 @@ pub enum FrictionLaw {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredFriction {
     /// The law, measured under one normal load.
-    pub law: EmpiricalLaw<f64>,
+    pub law: EmpiricalLaw,
     /// Friction coefficient without voltage.
     pub friction_coefficient: f64,
     /// Normal load, N. The law does not depend on it: under another load than that of the measurement, only the

@@ -5,7 +5,7 @@ use frixel_model::{EmpiricalLaw, LawError, LawPoint};
 use crate::point::{POINT_LEN, Point};
 
 /// Most points of a law that this build takes: none without laws.
-pub const LAW_POINTS_MAX: usize = if cfg!(feature = "empirical") { EmpiricalLaw::<f64>::POINTS_MAX } else { 0 };
+pub const LAW_POINTS_MAX: usize = if cfg!(feature = "empirical") { EmpiricalLaw::POINTS_MAX } else { 0 };
 
 /// The numbers of an [`EmpiricalLaw`]: the exponent below its first point, and its points, 1 to [`LAW_POINTS_MAX`].
 /// Whether they are a law is checked at the commit.
@@ -77,7 +77,7 @@ impl FingerLaw {
     /// # Errors
     ///
     /// The numbers are no law, or the voltage is above that of the last point.
-    pub fn up_to(&self, voltage_max_v_rms: f32) -> Result<EmpiricalLaw<f64>, LawError> {
+    pub fn up_to(&self, voltage_max_v_rms: f32) -> Result<EmpiricalLaw, LawError> {
         EmpiricalLaw::new(self.exponent, self.points(), voltage_max_v_rms)
     }
 }

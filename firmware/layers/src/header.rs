@@ -283,7 +283,7 @@ impl Header {
                 (ConfigField::EffectiveGap, self.effective_gap_m, 1e-12, 1e-2),
             ],
             Some(law) => {
-                let [least, most] = EmpiricalLaw::<f64>::EXPONENTS;
+                let [least, most] = EmpiricalLaw::EXPONENTS;
                 [(ConfigField::LawExponent, law.exponent(), least, most); 3]
             }
         };

@@ -17,6 +17,9 @@ use super::bitmap_directory::Directory;
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table that a step of loading computes.
 const ROWS_PER_STEP: usize = 4;
+/// The same of an empirical law, whose powers a board computes without help of its FPU.
+#[cfg(feature = "empirical")]
+const LAW_ROWS_PER_STEP: usize = 2;
 
 /// The next step of loading a scene.
 #[derive(Clone, Debug)]
@@ -119,7 +122,7 @@ impl Loading {
             #[cfg(feature = "empirical")]
             Self::LawRows(filling) => {
                 let (Some(table), Some(law)) = (&mut active.table, &header.law) else { return Ok(true) };
-                return filling.fill(table, ROWS_PER_STEP).map_err(|error| Refusal::Config(no_law(&error, law)));
+                return filling.fill(table, LAW_ROWS_PER_STEP).map_err(|error| Refusal::Config(no_law(&error, law)));
             }
         };
         Ok(false)
@@ -206,7 +209,7 @@ fn begin_law_table(
 #[cfg(feature = "empirical")]
 fn no_law(error: &LawError, law: &FingerLaw) -> ConfigRefusal {
     let voltage_v_rms = |point: usize| law.points().get(point).map_or(0.0, |point| point.voltage_v_rms);
-    let [least, most] = EmpiricalLaw::<f64>::EXPONENTS;
+    let [least, most] = EmpiricalLaw::EXPONENTS;
     let (field, found, min, max) = match *error {
         LawError::Exponent { found } | LawError::Slope { found, .. } => (ConfigField::LawExponent, found, least, most),
         LawError::Order { point } => {
