@@ -4,6 +4,7 @@ mod answers;
 mod noise;
 mod session;
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -114,7 +115,8 @@ fn report(
     print_line(format_args!("  {:<16} {highest:.0} V rms is {:.0} dB above it", "highest", -level_db))?;
     let mut method = format!("two-alternative staircase, {} trials, {STIMULUS_HZ} Hz", args.trials);
     if let Some(seed) = args.observer {
-        method += &format!(", simulated observer {seed}");
+        // Writing to a string cannot fail.
+        let _ = write!(method, ", simulated observer {seed}");
         if let Some(truth_db) = Observer::drawn(seed).threshold_db() {
             let line = format_args!("  {:<16} has a threshold of {:.1} V rms", "the observer", volts(truth_db)?);
             print_line(line)?;
