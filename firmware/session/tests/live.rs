@@ -7,15 +7,13 @@ use frixel_control::{Board, Drive};
 use frixel_layers::{Blend, Constant, Header, Layer, Leader, Record};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
-use support::{HEADER, Memory, TestBoard, constant, record, scene};
+use support::{HEADER, TestBoard, constant, record, scene};
 
 const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
 
 #[test]
 fn a_layer_is_changed_only_while_it_plays() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     assert_eq!(board.command(HALF), Err(Refusal::WrongState(State::Disarmed)));
     board.load(&constant(0.01)).unwrap();
     board.command(Command::Arm).unwrap();
@@ -29,8 +27,7 @@ fn a_layer_is_changed_only_while_it_plays() {
 
 #[test]
 fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let layer = record(Layer::Constant(Constant { electric_friction_n: 0.01 }));
     board.play(&scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]));
     board.slide(1_000);
@@ -57,8 +54,7 @@ fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number()
 
 #[test]
 fn a_layers_number_is_of_the_scene_that_was_committed_last() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.play(&constant(0.01));
     let layer = record(Layer::Constant(Constant { electric_friction_n: 0.002 }));
     board.upload_scene(&scene(&HEADER, &[layer, layer, layer])).unwrap();
@@ -79,8 +75,7 @@ mod streams {
 
     #[test]
     fn a_board_without_a_buffer_takes_no_stream_and_says_so() {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::without_stream(&mut memory);
+        let mut board = TestBoard::without_stream(Board::SIMULATOR);
         assert_eq!(board.hello().features & feature::STREAM, 0);
         board.play(&constant(0.01));
         for command in [Command::StartStream { sample_hz: 1_000, start_level: 1 }, Command::EndStream] {
@@ -90,8 +85,7 @@ mod streams {
 
     #[test]
     fn a_scene_without_a_stream_layer_takes_no_stream() {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
+        let mut board = TestBoard::new();
         assert_ne!(board.hello().features & feature::STREAM, 0);
         let start = Command::StartStream { sample_hz: 1_000, start_level: 1 };
         assert_eq!(board.command(start), Err(Refusal::WrongState(State::Disarmed)));
@@ -105,9 +99,8 @@ mod streams {
 #[test]
 fn the_scene_says_which_of_two_fingers_is_followed() {
     for (leader, second_leads) in [(Leader::First, false), (Leader::Latest, true)] {
-        let mut memory = Memory::new();
         let board = Board { touch_from_host: true, ..Board::SIMULATOR };
-        let mut board = TestBoard::of(board, &mut memory);
+        let mut board = TestBoard::of(board);
         board.play(&scene(
             &Header { leader, ..HEADER },
             &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))],
