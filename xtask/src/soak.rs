@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 8] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -36,6 +36,12 @@ const PARTS: [Part; 7] = [
         what: "`frixel calibrate` and `frixel fit` of 200 people with 20 seeds each, against steady friction",
         needs: &[],
         run: fit,
+    },
+    Part {
+        name: "thresholds",
+        what: "thresholds of 1,000 simulated observers, and of 1,000 who guess",
+        needs: &[],
+        run: thresholds,
     },
     Part {
         name: "experiments",
@@ -98,6 +104,10 @@ fn people() -> Result<(), String> {
 
 fn fit() -> Result<(), String> {
     ignored("fits through the commands", &["--release", "--package", "frixel", "--lib"], &["calibrate::coverage"])
+}
+
+fn thresholds() -> Result<(), String> {
+    ignored("thresholds of 1,000 observers", &["--release", "--package", "frixel-lab", "--lib"], &["threshold::"])
 }
 
 fn experiments() -> Result<(), String> {
