@@ -111,6 +111,7 @@ mod carrier;
 mod coating;
 mod contact;
 mod double_single;
+mod empirical;
 mod error;
 mod finger;
 mod real;
@@ -123,6 +124,7 @@ mod table;
 pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
 pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attraction_pa, effective_gap_m};
 pub use contact::{Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
+pub use empirical::{EmpiricalLaw, LawError, LawPoint};
 pub use error::{Expected, InverseError, ParameterError, StateError};
 pub use finger::Finger;
 pub use fixed::types::{U0F32, U1F31};
@@ -131,5 +133,6 @@ pub use shear::{ShearOnset, TissueSpring};
 pub use soft::{PowerLawShape, SoftContact, SoftFinger, SoftLoadedContact, SoftLowerBound, contact_exponent};
 pub use state::{ContactModel, ContactState, Sensitivity};
 pub use table::{
-    FixedTable, InverseTable, InverseTableFilling, Precision, SizedTable, TableBuilder, TableError, TableShape,
+    EmpiricalTableFilling, FixedTable, InverseTable, InverseTableFilling, Precision, SizedTable, TableBuilder,
+    TableError, TableShape,
 };

@@ -3,6 +3,7 @@
 mod accuracy;
 mod common;
 mod documented;
+mod empirical;
 mod finite_answers;
 mod inverse_table;
 mod properties;

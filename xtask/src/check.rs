@@ -190,7 +190,7 @@ fn unless_host_unchanged(name: &str, check: impl FnOnce() -> Result<Outcome, Str
 }
 
 /// Checks the session without features, and with each feature alone, with warnings as errors. Also runs the tests of
-/// the layers without features.
+/// the layers and of the session without features.
 fn check_feature_sets() -> Result<(), String> {
     let path = root().join(SESSION).join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -207,9 +207,12 @@ fn check_feature_sets() -> Result<(), String> {
         let alone = [&none[..], &["--features", feature]].concat();
         cargo(&format!("session with {feature}"), SESSION, &alone, &flags)?;
     }
-    let package = ["test", "--quiet", "--locked", "--package", "frixel-layers", "--no-default-features"];
-    let tests = [&package[..], &["--lib", "--test", "disabled"]].concat();
-    results::run("layers without features", cargo_in(".").args(tests))
+    for (package, tests) in [("frixel-layers", &["--lib", "--test", "disabled"][..]), ("frixel-session", &["--tests"])]
+    {
+        let test = ["test", "--quiet", "--locked", "--no-default-features", "--package", package];
+        results::run(&format!("{package} without features"), cargo_in(".").args(test).args(tests))?;
+    }
+    Ok(())
 }
 
 /// A firmware image outside the workspace.

@@ -8,7 +8,7 @@ use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, FromBoard};
-use support::{Memory, TestBoard, constant, request};
+use support::{TestBoard, constant_scene, request};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
@@ -28,9 +28,9 @@ fn window_of(command: Command) -> Vec<u8> {
 }
 
 /// A playing board with no bytes under way, and a client that stops reading.
-fn playing(memory: &mut Memory) -> TestBoard<'_> {
-    let mut board = TestBoard::new(memory);
-    board.play(&constant(0.02));
+fn playing() -> TestBoard {
+    let mut board = TestBoard::new();
+    board.play(&constant_scene(0.02));
     board.slide(2000);
     board.messages.clear();
     board.reads = false;
@@ -52,8 +52,7 @@ fn count_orders(board: &mut TestBoard, bytes: &[u8]) -> (bool, usize) {
 
 #[test]
 fn frames_within_the_window_are_taken_to_the_last_byte() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let window = window_of(Command::Ping);
     let (last, before) = window.split_at(window.len() - 9);
     assert_eq!(count_orders(&mut board, last), (true, 0));
@@ -62,8 +61,7 @@ fn frames_within_the_window_are_taken_to_the_last_byte() {
 
 #[test]
 fn a_frame_beyond_the_credit_is_no_sign_of_life_and_no_order() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     count_orders(&mut board, &window_of(Command::Ping));
     let (taken, _) = board.session.frame_counts();
     for command in [Command::Ping, Command::Stop, Command::Disarm, Command::ClearFault] {
@@ -74,8 +72,7 @@ fn a_frame_beyond_the_credit_is_no_sign_of_life_and_no_order() {
 
 #[test]
 fn a_frame_beyond_the_credit_is_no_touch() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
+    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR });
     board.hello();
     board.reads = false;
     assert_eq!(count_orders(&mut board, &window_of(Command::Lift)), (true, 1));
@@ -86,8 +83,7 @@ fn a_frame_beyond_the_credit_is_no_touch() {
 /// What a client has left behind, however much it is, keeps nothing playing.
 #[test]
 fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let flood = requests(Command::Ping, 1 << 20);
     // 5 bytes a tick are 2 Mbaud.
     let mut bytes = flood.chunks(5);
@@ -111,8 +107,7 @@ fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
 /// A client that reads again is granted credit again. The frames that it sent beyond its credit stay lost.
 #[test]
 fn credit_comes_back_when_answers_are_read() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     count_orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
     assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (false, 0));
     board.reads = true;
@@ -126,8 +121,7 @@ fn credit_comes_back_when_answers_are_read() {
 /// Several hello requests may be under way before the first answer comes.
 #[test]
 fn a_hello_request_needs_no_credit_and_sets_it_anew() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     count_orders(&mut board, &requests(Command::Ping, 2 * WINDOW));
     board.reads = true;
     assert_eq!(board.hello().state, State::Disarmed);
@@ -139,8 +133,7 @@ fn a_hello_request_needs_no_credit_and_sets_it_anew() {
 /// The end of a frame has come when there is credit again, its beginning was beyond it.
 #[test]
 fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     count_orders(&mut board, &window_of(Command::Ping));
     let frame = request(1, Command::Ping);
     let (beginning, end) = frame.split_at(frame.len() - 1);
@@ -154,8 +147,7 @@ fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
 /// The board discards a bad frame that runs beyond the credit up to its zero byte, and no further.
 #[test]
 fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     count_orders(&mut board, &window_of(Command::Ping));
     assert_eq!(count_orders(&mut board, &[0x55; 40]), (false, 0));
     assert_eq!(count_orders(&mut board, &[0]), (false, 0));
@@ -167,8 +159,7 @@ fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
 /// Nothing in it can be answered, so nothing is granted for it.
 #[test]
 fn a_window_without_a_zero_byte_leaves_credit_for_a_hello_request_alone() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.reads = true;
     assert_eq!(count_orders(&mut board, &[0x55; WINDOW]), (false, 0));
     assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (false, 0));
@@ -182,9 +173,7 @@ fn a_window_without_a_zero_byte_leaves_credit_for_a_hello_request_alone() {
 /// not accumulate.
 #[test]
 fn noise_does_not_use_credit_up() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     for _ in 0..100 {
         board.send(&[0x55; 400]);
         board.send(&[0]);
@@ -197,8 +186,7 @@ fn noise_does_not_use_credit_up() {
 #[cfg(feature = "telemetry")]
 #[test]
 fn an_answer_always_has_its_place_and_telemetry_is_left_out() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, &mut memory);
+    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR });
     board.hello();
     board.command(Command::Subscribe { period_ticks: 40 }).unwrap();
     board.messages.clear();

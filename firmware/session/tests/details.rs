@@ -8,7 +8,7 @@ use frixel_control::Board;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
-use support::{Memory, TestBoard, constant};
+use support::{TestBoard, constant_scene};
 
 /// Ticks of the host timeout of these scenes, and a margin.
 const TIMEOUT_TICKS: u32 = 11_000;
@@ -31,9 +31,8 @@ fn answers(board: &mut TestBoard) -> Vec<(u16, Result<Accepted, Refusal>)> {
 
 /// The state of a playing board after its host timeout, with this payload every eighth of it.
 fn state_with_only(payload: &[u8]) -> State {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.play(&constant(0.01));
+    let mut board = TestBoard::new();
+    board.play(&constant_scene(0.01));
     for _ in 0..8 {
         board.ticks(TIMEOUT_TICKS / 8);
         send(&mut board, payload);
@@ -43,9 +42,7 @@ fn state_with_only(payload: &[u8]) -> State {
 
 #[test]
 fn what_is_not_understood_is_dropped_or_refused_and_costs_credit() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let mut sent = 0;
     // A sequence number of four bytes, a request of nothing, an unknown kind, and a message of a board.
     for payload in [&[2, 0xff, 0xff, 0xff, 0x01][..], &[2], &[0x42, 1, 2], &[3, 0, 0, 0, 0, 0]] {
@@ -77,10 +74,8 @@ fn only_what_is_understood_is_a_sign_of_life() {
 
 #[test]
 fn the_first_refusal_of_several() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
-    let crc = crc32(&constant(0.01));
+    let mut board = TestBoard::connected();
+    let crc = crc32(&constant_scene(0.01));
     assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
     assert_eq!(board.command(Command::Stop), Err(Refusal::WrongState(State::Disarmed)));
     assert_eq!(board.command(Command::Disarm), Ok(Accepted::Done));
@@ -89,13 +84,13 @@ fn the_first_refusal_of_several() {
     assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
     board.command(Command::Disarm).unwrap();
     board.press_switch();
-    board.upload_scene(&constant(0.01)).unwrap();
+    board.upload_scene(&constant_scene(0.01)).unwrap();
     let mismatch = Refusal::CrcMismatch { expected: crc, found: !crc };
     let refused = board.command(Command::Commit { crc32: !crc }).unwrap_err();
     assert_eq!(std::mem::discriminant(&refused), std::mem::discriminant(&mismatch));
     board.command(Command::UploadScene { len: 10, crc32: 1 }).unwrap();
     assert_eq!(board.command(Command::Commit { crc32: crc }), Err(Refusal::UploadIncomplete { next_chunk: 0 }));
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     assert_eq!(board.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
     board.command(Command::Arm).unwrap();
     board.sense.amplifier_fault = true;
@@ -107,8 +102,7 @@ fn the_first_refusal_of_several() {
 
 #[test]
 fn a_switch_that_is_not_held_is_said_before_a_wrong_state() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board::SIMULATOR, &mut memory);
+    let mut board = TestBoard::of(Board::SIMULATOR);
     board.hello();
     board.sense.arm_switch = false;
     board.ticks(2);
@@ -117,9 +111,7 @@ fn a_switch_that_is_not_held_is_said_before_a_wrong_state() {
 
 #[test]
 fn an_upload_of_nothing_ends_at_once_and_is_no_scene() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     board.command(Command::UploadScene { len: 0, crc32: 0 }).unwrap();
     assert_eq!(board.command(Command::UploadEnd), Ok(Accepted::Done));
     let refused = board.command(Command::Commit { crc32: 0 });
@@ -128,11 +120,10 @@ fn an_upload_of_nothing_ends_at_once_and_is_no_scene() {
 
 #[test]
 fn a_scene_is_committed_as_often_as_a_client_likes() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.play(&constant(0.01));
+    let mut board = TestBoard::new();
+    board.play(&constant_scene(0.01));
     for _ in 0..2 {
-        assert_eq!(board.command(Command::Commit { crc32: crc32(&constant(0.01)) }), Ok(Accepted::Done));
+        assert_eq!(board.command(Command::Commit { crc32: crc32(&constant_scene(0.01)) }), Ok(Accepted::Done));
         board.ticks(400);
     }
     assert_eq!(board.status().telemetry.state, State::Active);

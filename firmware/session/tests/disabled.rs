@@ -2,16 +2,15 @@
 
 use crate::support;
 
-use frixel_layers::{BITMAP_POOL_LEN, Constant, FEATURES, Header, KIND_FEATURES, Layer, Record, Region, Waveform};
+use frixel_layers::{BITMAP_POOL_LEN, FEATURES, Header, KIND_FEATURES, Record, Region, Waveform};
 use frixel_testkit::samples::{POINTS, sample_records};
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
-use support::{HEADER, Memory, TestBoard, constant, record, scene, scene_with_points};
+use support::{HEADER, TestBoard, constant, constant_scene, scene, scene_with_points};
 
 #[test]
 fn the_hello_tells_what_there_is() {
-    let mut memory = Memory::new();
-    let hello = TestBoard::new(&mut memory).hello();
+    let hello = TestBoard::new().hello();
     let of_the_session = [
         (cfg!(feature = "sine-carrier"), feature::SINE_CARRIER),
         (cfg!(feature = "telemetry"), feature::TELEMETRY),
@@ -28,13 +27,11 @@ fn the_hello_tells_what_there_is() {
 /// Cargo builds the tests of the workspace with the features of all crates together: a kind is there, or it is refused.
 #[test]
 fn a_layer_plays_or_is_refused_by_its_number() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     for sample in sample_records() {
         let Record { layer, region, .. } = sample.record;
         let needed = layer.feature() | if matches!(region, Region::Polygon { .. }) { feature::POLYGON } else { 0 };
-        let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })), sample.record];
+        let records = [constant(0.01), sample.record];
         let found = board.load(&scene_with_points(&HEADER, &records, &POINTS)).err();
         let missing = layer.bitmap_crc32().map(|crc32| Refusal::BitmapMissing { crc32 });
         let is_there = FEATURES & needed == needed;
@@ -44,25 +41,21 @@ fn a_layer_plays_or_is_refused_by_its_number() {
 
 #[test]
 fn a_carrier_plays_or_is_refused() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let header = Header { waveform: Waveform::Sine, ..HEADER };
-    let found = board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))])).err();
+    let found = board.load(&scene(&header, &[constant(0.01)])).err();
     let refused = Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE };
     assert_eq!(found, (!cfg!(feature = "sine-carrier")).then_some(refused));
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     assert!(board.slide(2000)[1000..].iter().all(|drive| drive.dac_code.bits() != 0));
 }
 
 #[test]
 fn commands_of_disabled_features_are_rejected() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let found = board.command(Command::UploadBitmap { width: 20, height: 10, crc32: 7 }).err();
     let full = Refusal::BitmapPoolFull { len: 200, free: 0 };
-    assert_eq!(found, (BITMAP_POOL_LEN == 0).then_some(full));
+    assert_eq!(found, (!cfg!(feature = "bitmap")).then_some(full));
     let found = board.command(Command::Subscribe { period_ticks: 40 }).err();
     assert_eq!(found, (!cfg!(feature = "telemetry")).then_some(Refusal::UnknownCommand));
     let found = board.command(Command::TickTimes).err();

@@ -3,11 +3,11 @@
 
 use crate::support;
 
-use frixel_layers::{Blend, Constant, HEADER_LEN, Layer, Point, RECORD_LEN, Record, Region, Speed};
+use frixel_layers::{Blend, Constant, HEADER_LEN, Layer, RECORD_LEN, Record, Region};
 use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{HEADER, Memory, TestBoard, scene_with_points};
+use support::{HEADER, TestBoard, scene_with_points};
 
 const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
 
@@ -16,11 +16,6 @@ fn records() -> Vec<Record> {
     let with_picture = |layer| with_picture(layer, bitmap_crc32(3, 2, &SAMPLES));
     let records = sample_records().map(|sample| sample.record);
     records.map(|record| Record { layer: with_picture(record.layer), ..record }).collect()
-}
-
-#[track_caller]
-fn record_that(is: impl Fn(&Record) -> bool) -> Record {
-    records().into_iter().find(is).unwrap()
 }
 
 /// A layer, and one below it that is always felt.
@@ -32,15 +27,19 @@ fn on_a_ground(record: Record) -> Vec<Record> {
 // Uploading pictures and starting streams are the session's own features.
 #[cfg(all(feature = "bitmap", feature = "stream"))]
 mod whole {
+    use frixel_layers::{Point, Speed};
     use frixel_wire::message::{Command, ConfigField, ConfigRefusal, Refusal};
     use support::record;
 
     use super::*;
 
+    #[track_caller]
+    fn record_that(is: impl Fn(&Record) -> bool) -> Record {
+        records().into_iter().find(is).unwrap()
+    }
+
     fn refusal(record: Record, points: &[Point]) -> Option<ConfigRefusal> {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.hello();
+        let mut board = TestBoard::connected();
         board.upload_bitmap(3, 2, &SAMPLES).unwrap();
         match board.load(&scene_with_points(&HEADER, &[record], points)) {
             Ok(_) => None,
@@ -51,9 +50,7 @@ mod whole {
 
     #[test]
     fn every_kind_plays() {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.hello();
+        let mut board = TestBoard::connected();
         board.upload_bitmap(3, 2, &SAMPLES).unwrap();
         // One after another: all of them under one finger are refused, for what a tick would take.
         for record in records() {
@@ -116,9 +113,7 @@ mod whole {
     #[test]
     fn side_tables_are_refused_by_what_they_hold() {
         let of = |layer, count: usize| {
-            let mut memory = Memory::new();
-            let mut board = TestBoard::new(&mut memory);
-            board.hello();
+            let mut board = TestBoard::connected();
             // Side by side: one on another they would take too long.
             let beside = |number: usize| {
                 let (x_m, y_m) = (1e-3 + 7.5e-3 * (number % 16) as f32, 0.01 + 0.01 * (number / 16) as f32);
@@ -161,9 +156,7 @@ fn nearly() -> impl Strategy<Value = Vec<u8>> {
 
 /// Loads these bytes and, when they are taken, plays them for a while.
 fn load_and_play(scene: &[u8]) -> bool {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let _ = board.upload_bitmap(3, 2, &SAMPLES);
     if board.load(scene).is_err() {
         return false;

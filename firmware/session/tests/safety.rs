@@ -3,21 +3,21 @@
 mod support;
 
 use frixel_control::{AmplifierSpec, Board, Drive, ReadyWhileDisabled, SwitchingTime};
-use frixel_layers::{Constant, Header, Layer};
+use frixel_layers::Header;
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::hello::BoardKind;
 use frixel_wire::message::{Command, FromBoard, Refusal};
-use support::{HEADER, Memory, TestBoard, constant, record, scene};
+use support::{HEADER, TestBoard, constant, constant_scene, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
 const HOST_TIMEOUT_TICKS: u32 = 10_000;
 
-fn playing(memory: &mut Memory) -> TestBoard<'_> {
-    let mut board = TestBoard::new(memory);
-    board.play(&constant(0.02));
+fn playing() -> TestBoard {
+    let mut board = TestBoard::new();
+    board.play(&constant_scene(0.02));
     let driven = board.slide(2000);
     assert!(driven[1000..].iter().all(|drive| drive.dac_code.bits() != 0 && drive.amplifier_enable));
     board
@@ -25,16 +25,14 @@ fn playing(memory: &mut Memory) -> TestBoard<'_> {
 
 #[test]
 fn the_output_is_zero_before_the_first_hello() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     assert!((0..1000).all(|_| board.tick() == OFF));
 }
 
 #[test]
 fn a_fault_puts_the_output_to_zero_in_its_own_tick() {
     for ticks in 400..440 {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         assert_ne!(board.slide(ticks).last(), Some(&OFF));
         board.sense.amplifier_fault = true;
         assert_eq!(board.tick(), OFF, "{ticks}");
@@ -43,12 +41,11 @@ fn a_fault_puts_the_output_to_zero_in_its_own_tick() {
 
 #[test]
 fn nothing_is_driven_before_a_host_has_armed_and_played() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     assert!(board.slide(400).iter().all(|drive| *drive == OFF));
     board.hello();
     assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
-    board.load(&constant(0.02)).unwrap();
+    board.load(&constant_scene(0.02)).unwrap();
     assert_eq!(board.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
     board.command(Command::Arm).unwrap();
     assert!(board.slide(400).iter().all(|drive| *drive == OFF));
@@ -57,8 +54,7 @@ fn nothing_is_driven_before_a_host_has_armed_and_played() {
 #[test]
 fn stop_and_disarm_put_the_output_to_zero_at_the_next_tick() {
     for command in [Command::Stop, Command::Disarm] {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         board.command(command).unwrap();
         assert_eq!(board.tick(), OFF);
     }
@@ -66,8 +62,7 @@ fn stop_and_disarm_put_the_output_to_zero_at_the_next_tick() {
 
 #[test]
 fn a_lifted_finger_ends_the_drive_at_once() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.touch = Some(Touch::Up);
     assert_eq!(board.tick(), OFF);
     assert!(board.status().telemetry.flags.contains(Flags::NO_FINGER));
@@ -76,8 +71,7 @@ fn a_lifted_finger_ends_the_drive_at_once() {
 
 #[test]
 fn touch_data_older_than_three_report_periods_ends_the_drive() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     // The last report came 400 ticks before the first of these.
     let driven: Vec<Drive> = (0..1000).map(|_| board.tick()).collect();
     let first_off = driven.iter().position(|drive| *drive == OFF).unwrap();
@@ -87,8 +81,7 @@ fn touch_data_older_than_three_report_periods_ends_the_drive() {
 
 #[test]
 fn a_silent_host_disarms_within_its_timeout() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.command(Command::Ping).unwrap();
     let mut on = 0;
     for i in 0..2 * HOST_TIMEOUT_TICKS {
@@ -102,15 +95,14 @@ fn a_silent_host_disarms_within_its_timeout() {
         matches!(message, FromBoard::StateChanged { state: State::Disarmed, fault: None, flags: Flags::HOST_SILENT })
     });
     assert!(reported, "{:?}", board.messages);
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     assert!(!board.status().telemetry.flags.contains(Flags::HOST_SILENT));
 }
 
 /// A board stays armed only for the client that armed it.
 #[test]
 fn the_hello_of_a_new_client_disarms_the_board() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     assert_eq!(board.hello().state, State::Disarmed);
     assert_eq!(board.tick(), OFF);
     assert_eq!(board.status().telemetry.state, State::Disarmed);
@@ -128,13 +120,12 @@ fn the_hello_of_a_new_client_disarms_the_board() {
 
 fn autonomous() -> Vec<u8> {
     let header = Header { autonomous: true, ..HEADER };
-    scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))])
+    scene(&header, &[constant(0.02)])
 }
 
 #[test]
 fn an_autonomous_scene_goes_on_without_a_host() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.play(&autonomous());
     board.ticks(2 * HOST_TIMEOUT_TICKS);
     assert_eq!(board.status().telemetry.state, State::Active);
@@ -146,9 +137,7 @@ fn an_autonomous_scene_goes_on_without_a_host() {
 /// Only a playing scene may continue without a host.
 #[test]
 fn a_board_armed_for_an_autonomous_scene_needs_its_host() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     board.load(&autonomous()).unwrap();
     board.command(Command::Arm).unwrap();
     board.ticks(HOST_TIMEOUT_TICKS - 1);
@@ -178,8 +167,7 @@ fn assert_faults(board: &mut TestBoard, fault: Fault, within_ticks: u32) {
 
 #[test]
 fn an_amplifier_fault_latches() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.sense.amplifier_fault = true;
     assert_faults(&mut board, Fault::Amplifier, 0);
     board.command(Command::ClearFault).unwrap();
@@ -193,8 +181,7 @@ fn an_amplifier_fault_latches() {
 
 #[test]
 fn a_switch_let_go_faults() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.sense.arm_switch = false;
     assert_faults(&mut board, Fault::ArmSwitch, 0);
     board.command(Command::ClearFault).unwrap();
@@ -203,16 +190,14 @@ fn a_switch_let_go_faults() {
 
 #[test]
 fn a_monitor_that_does_not_follow_faults_within_a_millisecond() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.sense.monitor_v = 60.0; // beside what it should read, of which 10 V and a quarter of the driven voltage are tolerated
     assert_faults(&mut board, Fault::Monitor, 40);
 }
 
 #[test]
 fn a_missed_deadline_faults() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.ticker.raise(Fault::Deadline, 4300);
     assert_faults(&mut board, Fault::Deadline, 0);
 }
@@ -220,9 +205,8 @@ fn a_missed_deadline_faults() {
 #[test]
 fn friction_out_of_reach_is_clamped_flagged_and_counted() {
     for electric_friction_n in [0.5, -0.01] {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.play(&constant(electric_friction_n));
+        let mut board = TestBoard::new();
+        board.play(&constant_scene(electric_friction_n));
         let driven = board.slide(1200);
         let status = board.status();
         assert!(status.telemetry.flags.contains(Flags::SATURATED));
@@ -236,10 +220,9 @@ fn friction_out_of_reach_is_clamped_flagged_and_counted() {
 
 #[test]
 fn the_envelope_keeps_its_slew_limit() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let header = Header { slew_v_per_s: 2e5, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     board.command(Command::Ping).unwrap();
     let mut last_v_rms = 0.0;
     for i in 0..200 {
@@ -257,8 +240,7 @@ fn the_envelope_keeps_its_slew_limit() {
 
 #[test]
 fn a_touch_source_that_repeats_one_report_stops_the_output() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     for i in 0..4000 {
         if i % 400 == 0 {
             board.command(Command::Ping).unwrap();
@@ -271,8 +253,7 @@ fn a_touch_source_that_repeats_one_report_stops_the_output() {
 
 #[test]
 fn a_touch_report_that_is_not_a_number_changes_nothing() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.touch = Some(Touch::Down { x_m: f32::NAN, y_m: f32::INFINITY, age_ticks: 0 });
     assert!(board.tick().dac_code.bits() != 0);
     assert!(board.slide(1200).iter().all(|drive| drive.dac_code.bits() != 0));
@@ -280,11 +261,10 @@ fn a_touch_report_that_is_not_a_number_changes_nothing() {
 
 #[test]
 fn a_new_scenes_voltage_limit_holds_from_its_first_tick() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     assert!(board.status().telemetry.voltage_v_rms > 100.0);
     let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 10.0, ..HEADER };
-    board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
+    board.load(&scene(&header, &[constant(1e-5)])).unwrap();
     board.tick();
     assert!(board.status().telemetry.voltage_v_rms <= 20.0);
 }
@@ -302,8 +282,7 @@ fn slide_and_rest(board: &mut TestBoard, tick: u32) {
 /// The scene is swapped around the tick in which the standstill ramp begins.
 #[test]
 fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let still = |board: &TestBoard| board.status().telemetry.flags.contains(Flags::STILL);
     let still_at = (0..20_000).find(|tick| {
         slide_and_rest(&mut board, *tick);
@@ -311,12 +290,11 @@ fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
     });
     let still_at = still_at.unwrap();
     for ticks in still_at - 12..still_at + 4 {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         (0..ticks).for_each(|tick| slide_and_rest(&mut board, tick));
         assert!(board.status().telemetry.voltage_v_rms > 100.0, "{ticks}");
         let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 1e9, ..HEADER };
-        board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
+        board.load(&scene(&header, &[constant(1e-5)])).unwrap();
         for tick in ticks..ticks + 40 {
             slide_and_rest(&mut board, tick);
             assert!(board.status().telemetry.voltage_v_rms <= 20.0, "{ticks}, {tick}");
@@ -327,8 +305,7 @@ fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
 #[test]
 fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
     for period_ticks in (1..=24).chain([40, 400, 667]) {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         let mut x_m = 0.03;
         let mut slide = |board: &mut TestBoard, step_m: f32| {
             for tick in 0..6_000_u32.max(40 * period_ticks) {
@@ -352,16 +329,14 @@ fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
 
 #[test]
 fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let header = Header { voltage_max_v_rms: 45.0, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    board.play(&scene(&header, &[constant(1.0)]));
     board.slide(400);
     board.amplifier_dead = true;
     assert_faults(&mut board, Fault::Monitor, 40);
 
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.sense.monitor_v = 49.0;
     board.ticks(40);
     assert_eq!(board.status().fault.map(|(fault, _)| fault), Some(Fault::Monitor));
@@ -369,8 +344,7 @@ fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
 
 #[test]
 fn the_first_fault_is_the_one_that_is_reported() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     board.ticker.raise(Fault::Deadline, 4300);
     board.ticker.raise(Fault::Watchdog, 1);
     board.sense.amplifier_fault = true;
@@ -382,8 +356,7 @@ fn the_first_fault_is_the_one_that_is_reported() {
 #[test]
 fn a_source_that_reports_at_every_tick_is_followed_as_any_other() {
     for period_ticks in 1..6 {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         for tick in 0..2_000_u32 {
             if tick.is_multiple_of(period_ticks) {
                 let x_m = 0.03 + 0.1 * 25e-6 * tick as f32;
@@ -431,9 +404,8 @@ fn ticks_to_fault(board: &mut TestBoard, monitor_v: impl Fn(u32) -> f32) -> Opti
 #[test]
 fn an_output_that_is_at_zero_within_the_turn_off_time_is_no_fault() {
     for amplifier_v in [10.0, 49.0, 150.0] {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(REAL_BOARD, &mut memory);
-        board.play(&constant(0.02));
+        let mut board = TestBoard::of(REAL_BOARD);
+        board.play(&constant_scene(0.02));
         board.slide(2000);
         board.touch = Some(Touch::Up);
         board.tick();
@@ -446,9 +418,8 @@ fn an_output_that_is_at_zero_within_the_turn_off_time_is_no_fault() {
 #[test]
 fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
     for command in [Command::Stop, Command::Disarm] {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(REAL_BOARD, &mut memory);
-        board.play(&constant(0.02));
+        let mut board = TestBoard::of(REAL_BOARD);
+        board.play(&constant_scene(0.02));
         board.slide(2000);
         board.command(command).unwrap();
         board.tick();
@@ -459,9 +430,8 @@ fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
 
 #[test]
 fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
-    board.play(&constant(0.02));
+    let mut board = TestBoard::of(REAL_BOARD);
+    board.play(&constant_scene(0.02));
     board.slide(2000);
     board.touch = Some(Touch::Up);
     board.tick();
@@ -470,10 +440,9 @@ fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
 
 #[test]
 fn an_output_above_the_last_voltage_is_a_fault_at_once_when_the_enable_has_fallen() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    let mut board = TestBoard::of(REAL_BOARD);
     let header = Header { voltage_max_v_rms: 20.0, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    board.play(&scene(&header, &[constant(1.0)]));
     board.slide(2000);
     board.touch = Some(Touch::Up);
     board.tick();
@@ -484,9 +453,8 @@ fn an_output_above_the_last_voltage_is_a_fault_at_once_when_the_enable_has_falle
 #[test]
 fn a_finger_that_comes_back_before_the_amplifier_is_off_is_no_fault_unless_the_rest_stays() {
     for (off_ticks, is_stuck) in [1, 5, 20, 39].into_iter().flat_map(|ticks| [(ticks, false), (ticks, true)]) {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(REAL_BOARD, &mut memory);
-        board.play(&constant(0.02));
+        let mut board = TestBoard::of(REAL_BOARD);
+        board.play(&constant_scene(0.02));
         board.slide(2000);
         board.touch = Some(Touch::Up);
         board.tick();
@@ -505,9 +473,8 @@ fn a_finger_that_comes_back_before_the_amplifier_is_off_is_no_fault_unless_the_r
 
 #[test]
 fn a_dead_amplifier_is_a_fault_half_a_millisecond_after_its_turn_on_time() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
-    board.play(&constant(0.02));
+    let mut board = TestBoard::of(REAL_BOARD);
+    board.play(&constant_scene(0.02));
     board.amplifier_dead = true;
     let ticks = (1..400).find(|_| {
         board.slide(1);
@@ -520,8 +487,7 @@ fn a_dead_amplifier_is_a_fault_half_a_millisecond_after_its_turn_on_time() {
 fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it_fails() {
     for ready_while_disabled in [ReadyWhileDisabled::Low, ReadyWhileDisabled::DontCare] {
         let amplifier = AmplifierSpec { ready_while_disabled, ..REAL_BOARD.amplifier };
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(Board { amplifier, ..REAL_BOARD }, &mut memory);
+        let mut board = TestBoard::of(Board { amplifier, ..REAL_BOARD });
         // Until here the line was high, as if it were stuck.
         let stuck = (ready_while_disabled == ReadyWhileDisabled::Low).then_some((Fault::Amplifier, 0));
         assert_eq!(board.status().fault, stuck);
@@ -531,7 +497,7 @@ fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it
             board.command(Command::ClearFault).unwrap();
             board.press_switch();
         }
-        board.play(&constant(0.02));
+        board.play(&constant_scene(0.02));
         for tick in 0..4_000 {
             let drive = if tick < 3_000 { board.slide(1)[0] } else { board.tick() };
             // Ready a millisecond after the enable rises, and until it falls.
@@ -549,18 +515,16 @@ fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it
 #[test]
 fn an_autonomous_scene_needs_a_switch_that_must_be_held_and_a_touch_source_on_the_board() {
     for (hold_to_run, touch_from_host) in [(false, false), (true, true), (false, true)] {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(Board { hold_to_run, touch_from_host, ..REAL_BOARD }, &mut memory);
+        let mut board = TestBoard::of(Board { hold_to_run, touch_from_host, ..REAL_BOARD });
         board.hello();
         assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous), "{hold_to_run}, {touch_from_host}");
-        board.load(&constant(0.02)).unwrap();
+        board.load(&constant_scene(0.02)).unwrap();
     }
 }
 
 #[test]
 fn an_autonomous_scene_plays_only_if_the_boards_touch_source_has_reported_lately() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    let mut board = TestBoard::of(REAL_BOARD);
     board.hello();
     board.load(&autonomous()).unwrap();
     board.command(Command::Arm).unwrap();
@@ -579,9 +543,8 @@ fn an_autonomous_scene_plays_only_if_the_boards_touch_source_has_reported_lately
 
 #[test]
 fn a_playing_scene_is_not_replaced_by_an_autonomous_one_without_a_report_of_the_touch_source() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
-    board.play(&constant(0.02));
+    let mut board = TestBoard::of(REAL_BOARD);
+    board.play(&constant_scene(0.02));
     assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous));
     touched(&mut board);
     board.load(&autonomous()).unwrap();
@@ -589,8 +552,7 @@ fn a_playing_scene_is_not_replaced_by_an_autonomous_one_without_a_report_of_the_
 
 #[test]
 fn a_switch_that_is_let_go_ends_an_autonomous_scene() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(REAL_BOARD, &mut memory);
+    let mut board = TestBoard::of(REAL_BOARD);
     board.hello();
     board.load(&autonomous()).unwrap();
     touched(&mut board);
@@ -607,11 +569,10 @@ fn a_switch_that_is_let_go_ends_an_autonomous_scene() {
 fn a_switch_that_never_opens_in_ten_minutes_of_play_is_a_fault() {
     const TICK_HZ: u32 = 5_000;
     const MINUTE: u32 = 60 * TICK_HZ;
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..REAL_BOARD }, &mut memory);
+    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..REAL_BOARD });
     let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
     board.hello();
-    board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))])).unwrap();
+    board.load(&scene(&header, &[constant(0.02)])).unwrap();
     let play = |board: &mut TestBoard| {
         touched(board);
         board.command(Command::Play).unwrap();
@@ -639,10 +600,9 @@ fn a_switch_that_never_opens_in_ten_minutes_of_play_is_a_fault() {
 #[test]
 fn a_simulated_board_plays_an_autonomous_scene_for_longer_than_ten_minutes() {
     const TICK_HZ: u32 = 5_000;
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..Board::SIMULATOR }, &mut memory);
+    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..Board::SIMULATOR });
     let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     board.ticks(11 * 60 * TICK_HZ);
     assert_eq!(board.status().telemetry.state, State::Active);
 }

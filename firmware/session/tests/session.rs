@@ -20,28 +20,25 @@ use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
-use support::{COMMIT_POLLS_MAX, HEADER, Memory, TestBoard, constant, record, request, scene};
+use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, record, request, scene};
 
 #[test]
 fn a_board_says_who_it_is_and_what_it_holds() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let hello = board.hello();
     assert_eq!((hello.tick_hz, hello.state, hello.scene_crc32), (40_000, State::Disarmed, 0));
-    let scene = constant(0.01);
+    let scene = constant_scene(0.01);
     board.load(&scene).unwrap();
     assert_eq!(board.hello().scene_crc32, crc32(&scene));
 }
 
 #[test]
 fn a_scene_is_used_whole_or_not_at_all() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
-    let first = constant(0.01);
+    let mut board = TestBoard::connected();
+    let first = constant_scene(0.01);
     board.load(&first).unwrap();
 
-    let mut second = constant(0.02);
+    let mut second = constant_scene(0.02);
     second.resize(second.len() * 4, 0);
     board.command(Command::UploadScene { len: second.len() as u32, crc32: crc32(&second) }).unwrap();
     board.chunk(0, &second[..CHUNK_LEN]);
@@ -56,9 +53,7 @@ fn a_scene_is_used_whole_or_not_at_all() {
 #[cfg(feature = "bitmap")]
 #[test]
 fn chunks_may_repeat_and_a_gap_is_reported_once() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let samples: Vec<u8> = (0..1000_u32).map(|i| (i * 7) as u8).collect();
     board.command(Command::UploadBitmap { width: 100, height: 10, crc32: bitmap_crc32(100, 10, &samples) }).unwrap();
     let chunks: Vec<&[u8]> = samples.chunks(CHUNK_LEN).collect();
@@ -78,9 +73,7 @@ fn chunks_may_repeat_and_a_gap_is_reported_once() {
 #[cfg(feature = "bitmap")]
 #[test]
 fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let samples = vec![3; 400];
     let expected = bitmap_crc32(20, 20, &samples);
     board.command(Command::UploadBitmap { width: 20, height: 20, crc32: expected }).unwrap();
@@ -95,9 +88,7 @@ fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
 #[cfg(feature = "bitmap")]
 #[test]
 fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let first = vec![1; 250 * 250];
     let second = vec![2; 250 * 250];
     board.upload_bitmap(250, 250, &first).unwrap();
@@ -116,9 +107,7 @@ fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
 
 #[test]
 fn numbers_that_the_board_cannot_play_are_refused_by_name() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let field = |board: &mut TestBoard, header: Header, layer| match board.load(&scene(&header, &[record(layer)])) {
         Err(Refusal::Config(refusal)) => Some(refusal.field),
         other => panic!("{other:?}"),
@@ -146,9 +135,7 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
 /// What PROTOCOL.md says of `00 00 00 80`.
 #[test]
 fn minus_zero_is_a_zero() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let fine = Layer::Constant(Constant { electric_friction_n: 0.01 });
     let load = |board: &mut TestBoard, header: &Header, layer| board.load(&scene(header, &[record(layer)]));
     assert_eq!(load(&mut board, &Header { normal_load_n: -0.0, ..HEADER }, fine).err(), None);
@@ -161,9 +148,7 @@ fn minus_zero_is_a_zero() {
 /// A scene may say its largest friction although its layers may be changed: what a change makes larger is clamped.
 #[test]
 fn a_largest_friction_without_fixed_layers_is_taken() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let header = Header { layers_fixed: false, electric_friction_max_n: Some(0.02), ..HEADER };
     let layer = Layer::Constant(Constant { electric_friction_n: 0.01 });
     assert_eq!(board.load(&scene(&header, &[record(layer)])).err(), None);
@@ -175,10 +160,8 @@ fn a_largest_friction_without_fixed_layers_is_taken() {
 
 #[test]
 fn bytes_that_are_not_a_scene_are_refused() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
-    let mut unknown = constant(0.01);
+    let mut board = TestBoard::connected();
+    let mut unknown = constant_scene(0.01);
     unknown[56] = 99;
     assert_eq!(board.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
     assert!(matches!(
@@ -194,15 +177,14 @@ fn bytes_that_are_not_a_scene_are_refused() {
 /// The bytes of a scene with few points and many records are no more than those of one with many points.
 #[test]
 fn a_scene_of_more_records_than_the_board_says_is_refused() {
-    let mut memory = Memory::new();
     let mut board = Board::SIMULATOR;
     board.limits.records_max = 2;
-    let mut board = TestBoard::of(board, &mut memory);
+    let mut board = TestBoard::of(board);
     board.hello();
     let of = |count: usize| {
         let beside = |number| {
             let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
-            Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
+            Record { region, ..constant(0.01) }
         };
         scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
     };
@@ -213,10 +195,8 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
 /// A commit checks the records in several steps.
 #[test]
 fn a_scene_is_refused_for_any_malformed_record() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
-    let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })); RECORDS_MAX];
+    let mut board = TestBoard::connected();
+    let records = [constant(0.01); RECORDS_MAX];
     for record in [0, 15, 16, 40, RECORDS_MAX - 1] {
         let mut bytes = scene(&HEADER, &records);
         bytes[HEADER_LEN + (record + 1) * RECORD_LEN - 1] = 1;
@@ -238,10 +218,9 @@ fn answered(board: &mut TestBoard) -> Vec<u16> {
 /// What a host must be able to say at any time does not wait for the work of a commit that came before it.
 #[test]
 fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.play(&constant(0.01));
-    let next = constant(0.015);
+    let mut board = TestBoard::new();
+    board.play(&constant_scene(0.01));
+    let next = constant_scene(0.015);
     board.upload_scene(&next).unwrap();
     board.messages.clear();
     let bytes = [
@@ -269,9 +248,8 @@ fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() 
 }
 
 /// A board with a scene that was uploaded and is not committed.
-fn with_uploaded_scene<'a>(memory: &'a mut Memory, scene: &[u8]) -> TestBoard<'a> {
-    let mut board = TestBoard::new(memory);
-    board.hello();
+fn with_uploaded_scene(scene: &[u8]) -> TestBoard {
+    let mut board = TestBoard::connected();
     board.upload_scene(scene).unwrap();
     board.messages.clear();
     board
@@ -279,9 +257,8 @@ fn with_uploaded_scene<'a>(memory: &'a mut Memory, scene: &[u8]) -> TestBoard<'a
 
 #[test]
 fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
-    let mut memory = Memory::new();
-    let scene = constant(0.01);
-    let mut board = with_uploaded_scene(&mut memory, &scene);
+    let scene = constant_scene(0.01);
+    let mut board = with_uploaded_scene(&scene);
     let bytes = [
         request(901, Command::Commit { crc32: crc32(&scene) }),
         request(902, Command::Arm),
@@ -302,9 +279,8 @@ fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
 #[test]
 fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
     for last in [Command::Stop, Command::Disarm] {
-        let mut memory = Memory::new();
-        let scene = constant(0.01);
-        let mut board = with_uploaded_scene(&mut memory, &scene);
+        let scene = constant_scene(0.01);
+        let mut board = with_uploaded_scene(&scene);
         board.command(Command::Arm).unwrap();
         let bytes = [
             request(901, Command::Commit { crc32: crc32(&scene) }),
@@ -326,9 +302,8 @@ fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
 
 #[test]
 fn a_board_that_stops_by_itself_refuses_the_requests_that_wait_for_a_commit() {
-    let mut memory = Memory::new();
-    let scene = constant(0.01);
-    let mut board = with_uploaded_scene(&mut memory, &scene);
+    let scene = constant_scene(0.01);
+    let mut board = with_uploaded_scene(&scene);
     board.command(Command::Arm).unwrap();
     let bytes = [request(901, Command::Commit { crc32: crc32(&scene) }), request(902, Command::Play)];
     board.session.receive(&bytes.concat(), &board.status());
@@ -343,9 +318,8 @@ fn a_board_that_stops_by_itself_refuses_the_requests_that_wait_for_a_commit() {
 
 #[test]
 fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
-    let mut memory = Memory::new();
-    let scene = constant(0.01);
-    let mut board = with_uploaded_scene(&mut memory, &scene);
+    let scene = constant_scene(0.01);
+    let mut board = with_uploaded_scene(&scene);
     board.session.receive(&request(901, Command::Commit { crc32: crc32(&scene) }), &board.status());
     for sequence in 902..912 {
         board.session.receive(&request(sequence, Command::EndStream), &board.status());
@@ -361,9 +335,8 @@ fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
 
 #[test]
 fn a_hello_drops_a_commit_and_what_waits_for_it() {
-    let mut memory = Memory::new();
-    let scene = constant(0.01);
-    let mut board = with_uploaded_scene(&mut memory, &scene);
+    let scene = constant_scene(0.01);
+    let mut board = with_uploaded_scene(&scene);
     let commit = request(901, Command::Commit { crc32: crc32(&scene) });
     let bytes = [commit.clone(), request(902, Command::Arm)].concat();
     board.session.receive(&bytes, &board.status());
@@ -380,9 +353,7 @@ fn a_hello_drops_a_commit_and_what_waits_for_it() {
 #[cfg(feature = "telemetry")]
 #[test]
 fn telemetry_comes_at_its_period_and_ends() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     assert!(matches!(
         board.command(Command::Subscribe { period_ticks: 39 }),
         Err(Refusal::TelemetryTooFast { period_min_ticks: 40 })
@@ -399,8 +370,7 @@ fn telemetry_comes_at_its_period_and_ends() {
 
 #[test]
 fn answers_give_credit_for_every_byte_since_the_hello() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.send(&[1, 2, 3, 0]);
     board.hello();
     let first = board.answer(Command::Ping).received_bytes;
@@ -411,26 +381,23 @@ fn answers_give_credit_for_every_byte_since_the_hello() {
 
 #[test]
 fn a_scene_is_replaced_while_it_plays() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.play(&constant(0.005));
+    let mut board = TestBoard::new();
+    board.play(&constant_scene(0.005));
     board.slide(2000);
     let before = board.status().telemetry;
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     board.slide(400);
     let after = board.status().telemetry;
     assert_eq!((before.state, after.state), (State::Active, State::Active));
     assert!((before.asked_electric_friction_n - 0.005).abs() < 1e-6);
     assert!((after.asked_electric_friction_n - 0.01).abs() < 1e-6);
-    board.load(&constant(0.015)).unwrap();
+    board.load(&constant_scene(0.015)).unwrap();
 }
 
 #[test]
 fn orders_that_zero_the_output_always_have_room() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
-    board.load(&constant(0.01)).unwrap();
+    let mut board = TestBoard::connected();
+    board.load(&constant_scene(0.01)).unwrap();
     // All in one piece, before the ticker has looked.
     let mut bytes = Vec::new();
     let commands = [Command::Arm, Command::Play, Command::Stop, Command::Play, Command::Stop, Command::Play];
@@ -452,9 +419,7 @@ fn orders_that_zero_the_output_always_have_room() {
 #[cfg(feature = "bitmap")]
 #[test]
 fn the_same_bytes_in_another_shape_are_another_bitmap() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let samples = vec![7; 800];
     assert_eq!(board.upload_bitmap(40, 20, &samples), Ok(Accepted::Done));
     assert_eq!(board.upload_bitmap(20, 40, &samples), Ok(Accepted::Done));
@@ -474,9 +439,7 @@ fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
 #[cfg(feature = "bitmap")]
 #[test]
 fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 33_000]);
     board.upload_bitmap(300, 100, &first).unwrap();
     board.upload_bitmap(300, 100, &second).unwrap();
@@ -493,9 +456,7 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
 #[cfg(feature = "bitmap")]
 #[test]
 fn announced_bitmaps_stay_however_often_they_are_named() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 30_000]);
     board.upload_bitmap(300, 100, &first).unwrap();
     board.upload_bitmap(300, 100, &second).unwrap();
@@ -511,9 +472,7 @@ fn announced_bitmaps_stay_however_often_they_are_named() {
 #[cfg(feature = "bitmap")]
 #[test]
 fn bitmaps_of_a_scene_that_was_refused_give_way() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let playing = vec![1; 20_000];
     board.upload_bitmap(200, 100, &playing).unwrap();
     board.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(200, 100, &playing)))]));
@@ -532,8 +491,7 @@ proptest! {
     fn arbitrary_bytes_leave_the_board_disarmed_and_listening(
         bytes in proptest::collection::vec(any::<u8>(), 0..2000),
     ) {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
+        let mut board = TestBoard::new();
         board.send(&bytes);
         board.send(&[0]);
         board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
@@ -548,9 +506,7 @@ proptest! {
         floats in proptest::collection::vec(prop_oneof![any::<f32>(), -1.0_f32..200.0], 12),
         layer in proptest::collection::vec(any::<f32>(), 6),
     ) {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.hello();
+        let mut board = TestBoard::connected();
         let header = Header {
             finger_radius_m: floats[0].abs() * 1e-3,
             stiffness_pa_per_m: floats[1].abs() * 1e6,
@@ -583,16 +539,15 @@ proptest! {
 }
 
 /// What a command makes the session order, signs of life left out.
-fn orders_for<'a>(board: &mut TestBoard<'a>, command: Command) -> Vec<Order<'a>> {
+fn orders_for(board: &mut TestBoard, command: Command) -> Vec<Order<'static>> {
     board.session.receive(&request(7, command), &board.ticker.status());
     std::iter::from_fn(|| board.session.next_order()).filter(|order| !matches!(order, Order::HostHeard)).collect()
 }
 
 #[test]
 fn a_touch_of_the_host_goes_to_the_ticker_once() {
-    let mut memory = Memory::new();
     let board = Board { touch_from_host: true, ..Board::SIMULATOR };
-    let mut board = TestBoard::of(board, &mut memory);
+    let mut board = TestBoard::of(board);
     board.hello();
     board.tick();
     assert!(orders_for(&mut board, Command::Ping).is_empty());
@@ -615,8 +570,7 @@ fn a_touch_of_the_host_goes_to_the_ticker_once() {
 
 #[test]
 fn a_board_with_a_touch_source_takes_none_from_the_host() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let hello = board.hello();
     assert_eq!(hello.features & feature::HOST_TOUCH, 0);
     for command in [Command::Touch { x_m: 0.02, y_m: 0.03, age_ticks: 0 }, Command::Lift] {
@@ -643,14 +597,13 @@ fn fault_text(board: &mut TestBoard) -> String {
 #[test]
 fn the_text_of_a_fault_is_reported_whole() {
     for len in [0, 1, 31, 32, 33, 64, 191, 192, 250] {
-        let mut memory = Memory::new();
         let reset_text: &'static str = "stack overflow at 0x1fff_fff8; ".repeat(9).leak().get(..len).unwrap();
         let board = Board {
             reset_fault: Some((Fault::StackOverflow, 7)),
             reset_text: reset_text.as_bytes(),
             ..Board::SIMULATOR
         };
-        let mut board = TestBoard::of(board, &mut memory);
+        let mut board = TestBoard::of(board);
         let hello = board.hello();
         assert_eq!((hello.last_fault, hello.fault_detail), (Some(Fault::StackOverflow), 7));
         assert_eq!(fault_text(&mut board), reset_text[..len.min(192)]);
@@ -662,15 +615,13 @@ fn the_text_of_a_fault_is_reported_whole() {
 #[cfg(feature = "telemetry")]
 #[test]
 fn tick_times_are_those_that_the_tick_recorded_and_zero_where_nothing_measures() {
-    let meter = frixel_control::TickMeter::new(3_700);
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    static METER: frixel_control::TickMeter = frixel_control::TickMeter::new(3_700);
+    let mut board = TestBoard::connected();
     assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(TickTimes::default())));
 
-    board.session.attach_tick_meter(&meter);
+    board.session.attach_tick_meter(&METER);
     for cycles in [400, 2_000, 2_131, 3_701] {
-        meter.record(cycles);
+        METER.record(cycles);
     }
     board.ticker.raise(Fault::Deadline, 3_701);
     board.tick();

@@ -13,7 +13,7 @@ use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
 use support::flash::{PAGE_LEN, SimulatedFlash};
-use support::{HEADER, Memory, TestBoard, constant, record, scene};
+use support::{HEADER, TestBoard, constant_scene, record, scene};
 
 const SLOT: Slot = Slot { first_page: 1, pages: 3 };
 const PAGES: usize = 8;
@@ -220,8 +220,7 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
     assert_eq!(load(&flash_with(&[&bytes], false), in_force), (built_in, refused));
     assert_eq!(load(&flash_with(&[&bytes[..20]], false), in_force), (built_in, refused));
 
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board { notices: refused, ..Board::SIMULATOR }, &mut memory);
+    let mut board = TestBoard::of(Board { notices: refused, ..Board::SIMULATOR });
     assert_eq!(board.hello().notices, refused);
 }
 
@@ -240,9 +239,9 @@ fn played(board: &mut TestBoard) -> Vec<Drive> {
 }
 
 /// A board that has written a scene with a picture to its flash, the flash and the scene.
-fn with_stored_texture(memory: &mut Memory) -> (TestBoard<'_>, SimulatedFlash, Vec<u8>) {
+fn with_stored_texture() -> (TestBoard, SimulatedFlash, Vec<u8>) {
     let mut flash = scene_flash();
-    let mut board = TestBoard::new(memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
     let scene = textured(&mut board);
@@ -254,13 +253,11 @@ fn with_stored_texture(memory: &mut Memory) -> (TestBoard<'_>, SimulatedFlash, V
 
 #[test]
 fn the_last_scene_plays_after_power_off() {
-    let mut memory = Memory::new();
-    let (mut board, flash, scene) = with_stored_texture(&mut memory);
+    let (mut board, flash, scene) = with_stored_texture();
     let before = played(&mut board);
     assert!(before.iter().any(|drive| drive.dac_code.bits() != 0));
 
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     let hello = board.hello();
     assert_eq!(hello.scene_crc32, crc32(&scene));
@@ -270,25 +267,19 @@ fn the_last_scene_plays_after_power_off() {
 }
 
 /// Starts a board with this flash after so many starts that ended in a fault, each of which has reset it.
-fn start_after_faults<'a>(
-    memory: &'a mut Memory,
-    flash: &SimulatedFlash,
-    fault_starts: u8,
-) -> (TestBoard<'a>, SceneStore) {
+fn start_after_faults(flash: &SimulatedFlash, fault_starts: u8) -> (TestBoard, SceneStore) {
     let reset_cause = if fault_starts > 0 { ResetCause::Software } else { ResetCause::PowerOn };
     let board = Board { reset_cause, reset_fault_starts: fault_starts, ..Board::SIMULATOR };
-    let mut board = TestBoard::of(board, memory);
+    let mut board = TestBoard::of(board);
     let store = SceneStore::new(SCENE_SLOT, 40_000, flash, &mut board.session);
     (board, store)
 }
 
 #[test]
 fn a_stored_scene_is_skipped_after_three_starts_in_a_row_that_ended_in_a_fault() {
-    let mut memory = Memory::new();
-    let (_, flash, scene) = with_stored_texture(&mut memory);
+    let (_, flash, scene) = with_stored_texture();
     for (fault_starts, skipped) in [(0, false), (1, false), (2, false), (3, true), (4, true), (255, true)] {
-        let mut memory = Memory::new();
-        let (mut board, store) = start_after_faults(&mut memory, &flash, fault_starts);
+        let (mut board, store) = start_after_faults(&flash, fault_starts);
         let hello = board.hello();
         let expected = if skipped { (0, notice::STORED_SCENE_SKIPPED) } else { (crc32(&scene), 0) };
         assert_eq!((hello.scene_crc32, hello.notices), expected, "{fault_starts}");
@@ -300,17 +291,14 @@ fn a_stored_scene_is_skipped_after_three_starts_in_a_row_that_ended_in_a_fault()
 
 #[test]
 fn a_skipped_scene_plays_again_once_a_start_has_not_followed_faults() {
-    let mut memory = Memory::new();
-    let (_, mut flash, scene) = with_stored_texture(&mut memory);
-    let mut memory = Memory::new();
-    let (mut board, mut store) = start_after_faults(&mut memory, &flash, 3);
+    let (_, mut flash, scene) = with_stored_texture();
+    let (mut board, mut store) = start_after_faults(&flash, 3);
     let done = flash.done;
     board.hello();
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done, "skipping a scene writes nothing");
 
-    let mut memory = Memory::new();
-    let (mut board, _) = start_after_faults(&mut memory, &flash, 0);
+    let (mut board, _) = start_after_faults(&flash, 0);
     let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.notices), (crc32(&scene), 0));
     assert!(played(&mut board).iter().any(|drive| drive.dac_code.bits() != 0));
@@ -318,12 +306,10 @@ fn a_skipped_scene_plays_again_once_a_start_has_not_followed_faults() {
 
 #[test]
 fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
-    let mut memory = Memory::new();
-    let (_, mut flash, _) = with_stored_texture(&mut memory);
-    let mut memory = Memory::new();
-    let (mut board, mut store) = start_after_faults(&mut memory, &flash, 3);
+    let (_, mut flash, _) = with_stored_texture();
+    let (mut board, mut store) = start_after_faults(&flash, 3);
     board.hello();
-    let fine = constant(0.02);
+    let fine = constant_scene(0.02);
     board.load(&fine).unwrap();
     let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
@@ -333,8 +319,7 @@ fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
     finish_writing(&mut store, &mut flash, &board, 45 * 60 * 40_000);
     assert_eq!(store.stored_crc32(), Some(crc32(&fine)));
 
-    let mut memory = Memory::new();
-    let (mut board, _) = start_after_faults(&mut memory, &flash, 0);
+    let (mut board, _) = start_after_faults(&flash, 0);
     let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
     assert!(played(&mut board).iter().any(|drive| drive.dac_code.bits() != 0));
@@ -343,19 +328,17 @@ fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
 /// There is nothing to skip, and nothing to say.
 #[test]
 fn a_board_that_has_stored_no_scene_skips_none() {
-    let mut memory = Memory::new();
-    let (mut board, _) = start_after_faults(&mut memory, &scene_flash(), 3);
+    let (mut board, _) = start_after_faults(&scene_flash(), 3);
     assert_eq!(board.hello().notices, 0);
 }
 
 #[test]
 fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     let mut flash = scene_flash();
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     let begun = u32::MAX - 1000; // the tick count may wrap
     for after in [0, 1, STORE_AFTER_TICKS - 1] {
         store.step(&mut flash, &board.session, begun.wrapping_add(after));
@@ -364,7 +347,7 @@ fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     finish_writing(&mut store, &mut flash, &board, begun.wrapping_add(STORE_AFTER_TICKS));
     let done = flash.done;
     assert!(done > 0);
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done, "the same scene is not written again");
 }
@@ -386,20 +369,19 @@ fn load_and_wait(board: &mut TestBoard, store: &mut SceneStore, flash: &mut Simu
 fn two_writes_of_a_slot_are_45_minutes_apart_and_the_last_scene_wins() {
     const INTERVAL_TICKS: u32 = 45 * 60 * 40_000;
     let mut flash = scene_flash();
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
     let mut begun = 100;
-    load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), begun);
+    load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), begun);
     begun += STORE_AFTER_TICKS;
     finish_writing_at(&mut store, &mut flash, &board, begun);
-    assert_eq!(store.stored_crc32(), Some(crc32(&constant(0.01))), "the first does not wait");
+    assert_eq!(store.stored_crc32(), Some(crc32(&constant_scene(0.01))), "the first does not wait");
 
     // Over the wrap of the tick count, too: 2^32 ticks are some 40 intervals.
     let mut erased = flash.done;
     for number in 0..50 {
-        let scenes = [0.02, 0.03, 0.04].map(|newtons| constant(newtons + 1e-4 * number as f32));
+        let scenes = [0.02, 0.03, 0.04].map(|newtons| constant_scene(newtons + 1e-4 * number as f32));
         for (scene, tenth) in scenes.iter().zip([2, 5, 8]) {
             let tick = begun.wrapping_add(INTERVAL_TICKS / 10 * tenth);
             load_and_wait(&mut board, &mut store, &mut flash, scene, tick);
@@ -419,21 +401,19 @@ fn a_board_that_resets_again_and_again_does_not_write() {
     let mut flash = scene_flash();
     let causes = [ResetCause::Software, ResetCause::Watchdog, ResetCause::BrownOut, ResetCause::Other(9)];
     for (number, reset_cause) in (1_u8..).zip(causes) {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR }, &mut memory);
+        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR });
         let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
         board.hello();
-        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01 * f32::from(number)), 0);
+        load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01 * f32::from(number)), 0);
         finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
         assert_eq!(flash.done, 0, "{reset_cause:?}");
     }
     for reset_cause in [ResetCause::PowerOn, ResetCause::Pin] {
         let mut flash = scene_flash();
-        let mut memory = Memory::new();
-        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR }, &mut memory);
+        let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR });
         let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
         board.hello();
-        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), 0);
+        load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), 0);
         finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
         assert!(flash.done > 0, "{reset_cause:?}: a person's scene is stored at once");
     }
@@ -443,8 +423,7 @@ fn a_board_that_resets_again_and_again_does_not_write() {
 #[test]
 fn a_write_that_arming_interrupts_goes_on_once_the_board_is_disarmed() {
     let mut flash = scene_flash();
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
     let scene = textured(&mut board);
@@ -466,8 +445,7 @@ fn a_write_that_arming_interrupts_goes_on_once_the_board_is_disarmed() {
     assert!(cuts > 3, "{cuts}");
     assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
 
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &uninterrupted, &mut board.session);
     board.hello();
     let scene = textured(&mut board);
@@ -480,15 +458,14 @@ fn a_write_that_arming_interrupts_goes_on_once_the_board_is_disarmed() {
 #[test]
 fn nothing_is_written_unless_the_board_is_disarmed() {
     let mut flash = scene_flash();
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    let kept = constant(0.01);
+    let kept = constant_scene(0.01);
     board.load(&kept).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
 
-    board.load(&constant(0.02)).unwrap();
+    board.load(&constant_scene(0.02)).unwrap();
     board.command(Command::Arm).unwrap();
     let done = flash.done;
     finish_writing(&mut store, &mut flash, &board, 0);
@@ -509,20 +486,17 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done);
     assert!(flash.is_at_rest(), "somebody has to see the operation to its end");
-    let mut memory = Memory::new();
-    let mut after = TestBoard::new(&mut memory);
+    let mut after = TestBoard::new();
     SceneStore::new(SCENE_SLOT, 40_000, &flash.after_power_on(), &mut after.session);
     assert_eq!(after.hello().scene_crc32, crc32(&kept));
 }
 
 #[test]
 fn a_scene_that_the_board_can_no_longer_play_is_left_alone() {
-    let mut memory = Memory::new();
-    let (_, flash, _) = with_stored_texture(&mut memory);
+    let (_, flash, _) = with_stored_texture();
 
     let limits = BoardLimits { voltage_max_v_peak: 50.0, ..Board::SIMULATOR.limits };
-    let mut memory = Memory::new();
-    let mut board = TestBoard::of(Board { limits, ..Board::SIMULATOR }, &mut memory);
+    let mut board = TestBoard::of(Board { limits, ..Board::SIMULATOR });
     let store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     assert_eq!(store.stored_crc32(), None);
     assert_eq!((board.hello().scene_crc32, board.session.scene()), (0, None));
@@ -533,9 +507,7 @@ fn a_scene_that_the_board_can_no_longer_play_is_left_alone() {
 /// What a good CRC stands over need not be good itself.
 #[test]
 fn a_bitmap_that_is_not_its_name_is_not_held() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     let scene = textured(&mut board);
     board.load(&scene).unwrap();
     let kept = board.session.scene_to_store().unwrap();
@@ -543,8 +515,7 @@ fn a_bitmap_that_is_not_its_name_is_not_held() {
     let sample = bytes.len() - 16 - 100;
     bytes[sample] ^= 1;
 
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     assert!(!board.session.restore(|offset, word| {
         word.copy_from_slice(&bytes[offset as usize..][..word.len()]);
         true
@@ -557,11 +528,10 @@ fn a_bitmap_that_is_not_its_name_is_not_held() {
 fn a_flash_that_fails_is_tried_once_for_each_scene() {
     let mut flash = scene_flash();
     flash.operations_fail = true;
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    for (scene, failures) in [(constant(0.01), 1), (constant(0.01), 1), (constant(0.02), 2)] {
+    for (scene, failures) in [(constant_scene(0.01), 1), (constant_scene(0.01), 1), (constant_scene(0.02), 2)] {
         board.load(&scene).unwrap();
         finish_writing(&mut store, &mut flash, &board, 0);
         assert_eq!(store.failures(), failures);
@@ -581,8 +551,7 @@ proptest! {
             bytes[..4].copy_from_slice(&scene_len.to_le_bytes());
             bytes[4..8].copy_from_slice(&bitmaps.to_le_bytes());
         }
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
+        let mut board = TestBoard::new();
         let restored = board.session.restore(|offset, word| {
             let offset = offset as usize;
             match bytes.get(offset..offset + word.len()) {

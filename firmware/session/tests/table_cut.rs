@@ -5,7 +5,7 @@
 use crate::support;
 
 use frixel_control::Board;
-use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
+use frixel_layers::{Header, Scene, electric_friction_max_n};
 use frixel_session::{TableRows, table_rows};
 use frixel_testkit::{Pace, RandomFinger, RandomScene};
 use frixel_wire::fault::Flags;
@@ -14,7 +14,7 @@ use frixel_wire::message::{Command, ConfigField, Refusal};
 use frixel_wire::payload::samples_frame;
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{HEADER, Memory, TestBoard, scene, scene_with_points};
+use support::{HEADER, TestBoard, constant, scene, scene_with_points};
 
 const SAMPLES: [u8; 6] = [0, 255, 100, 150, 200, 250];
 const TICKS: u32 = 3_000;
@@ -43,9 +43,7 @@ struct Played {
 
 /// Plays a scene under the finger of a seed, with a stream if it has a layer for one.
 fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
-    board.hello();
+    let mut board = TestBoard::connected();
     board.upload_bitmap(3, 2, &SAMPLES).unwrap();
     board.load(&scene_with_points(header, &random.records, &random.points)).unwrap();
     board.command(Command::Arm).unwrap();
@@ -109,15 +107,6 @@ fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
     assert!(driven > 40);
 }
 
-const fn constant(electric_friction_n: f32) -> Record {
-    Record {
-        region: Region::Screen,
-        blend: Blend::Replace,
-        gain: 1.0,
-        layer: Layer::Constant(Constant { electric_friction_n }),
-    }
-}
-
 #[test]
 fn a_table_ends_where_the_header_says() {
     let of = |electric_friction_max_n| rows(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.001)]));
@@ -133,8 +122,7 @@ fn a_table_ends_where_the_header_says() {
 #[test]
 fn friction_above_the_end_of_the_table_is_counted_as_saturated() {
     for (electric_friction_max_n, saturated) in [(None, false), (Some(0.02), false), (Some(0.005), true)] {
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
+        let mut board = TestBoard::new();
         board.play(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.02)]));
         board.slide(2_000);
         let counted = board.status().counters.saturated_ticks > 0;
@@ -146,9 +134,7 @@ fn friction_above_the_end_of_the_table_is_counted_as_saturated() {
 fn a_largest_friction_that_is_no_number_is_refused() {
     for electric_friction_max_n in [f32::NAN, f32::INFINITY, -0.01] {
         let header = Header { electric_friction_max_n: Some(electric_friction_max_n), ..HEADER };
-        let mut memory = Memory::new();
-        let mut board = TestBoard::new(&mut memory);
-        board.hello();
+        let mut board = TestBoard::connected();
         let refused = board.load(&scene(&header, &[constant(0.01)])).unwrap_err();
         assert!(
             matches!(refused, Refusal::Config(refusal) if refusal.field == ConfigField::ElectricFrictionMax),
@@ -159,8 +145,7 @@ fn a_largest_friction_that_is_no_number_is_refused() {
 
 #[test]
 fn a_scene_that_says_that_its_layers_stay_refuses_to_change_them() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
     let change = Command::SetLayer { layer: 0, on: true, gain: 2.0 };
     assert_eq!(board.command(change), Err(Refusal::LayersFixed));

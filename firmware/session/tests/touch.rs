@@ -4,7 +4,7 @@
 use crate::support;
 
 use frixel_control::{Board, Drive, Order, Track};
-use frixel_layers::{Constant, Header, Layer, Record, Region};
+use frixel_layers::{Header, Record, Region};
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Flags, State};
@@ -12,7 +12,7 @@ use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
 use frixel_wire::message::{Answer, Command};
 use frixel_wire::payload::chunk_frame;
 use frixel_wire::scene::RECORDS_MAX;
-use support::{COMMIT_POLLS_MAX, HEADER, Memory, TestBoard, constant, record, request, scene};
+use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, request, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 const REPORT_TICKS: u32 = 400;
@@ -27,9 +27,9 @@ fn report(tick: u32) -> Touch {
 }
 
 /// A board that plays a constant under a finger, `ticks` after the first report; the next report is due then.
-fn playing(memory: &mut Memory) -> TestBoard<'_> {
-    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR }, memory);
-    board.play(&constant(0.02));
+fn playing() -> TestBoard {
+    let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR });
+    board.play(&constant_scene(0.02));
     for tick in 0..4 * REPORT_TICKS {
         slide(&mut board, tick);
     }
@@ -49,7 +49,7 @@ fn slide(board: &mut TestBoard, tick: u32) -> Drive {
 fn largest_scene() -> Vec<u8> {
     let beside = |number: usize| {
         let region = Region::Rectangle { x_m: 0.0015 * number as f32, y_m: 0.0, width_m: 0.0015, height_m: 0.1 };
-        Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
+        Record { region, ..constant(0.01) }
     };
     scene(&HEADER, &(0..RECORDS_MAX).map(beside).collect::<Vec<_>>())
 }
@@ -81,8 +81,7 @@ fn lift_during_the_largest_commit(pipelined: &[u8], lift: impl Fn(&mut TestBoard
     let scene = largest_scene();
     let mut lifted_at_poll = 0;
     loop {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         board.upload_scene(&scene).unwrap();
         let commit = request(999, Command::Commit { crc32: crc32(&scene) });
         board.session.receive(&[&commit, pipelined].concat(), &board.ticker.status());
@@ -129,8 +128,7 @@ fn a_lift_acts_within_2_ms_when_requests_wait_for_the_largest_commit() {
 
 #[test]
 fn a_commit_goes_on_while_other_commands_are_answered() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let scene = largest_scene();
     board.upload_scene(&scene).unwrap();
     board.session.receive(&request(999, Command::Commit { crc32: crc32(&scene) }), &board.ticker.status());
@@ -148,8 +146,7 @@ fn a_commit_goes_on_while_other_commands_are_answered() {
 
 #[test]
 fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let tick = board.status().telemetry.tick + 1;
     board.session.touch(Touch::Up, tick);
     board.session.touch(report(1_600), tick);
@@ -160,10 +157,9 @@ fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
 /// A lift that a track does not report, but its contact number does.
 #[test]
 fn another_contact_is_a_lift_first() {
-    let mut memory = Memory::new();
     let header = Header { slew_v_per_s: 1e5, ..HEADER };
-    let mut board = TestBoard::new(&mut memory);
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    let mut board = TestBoard::new();
+    board.play(&scene(&header, &[constant(0.02)]));
     for tick in 0..1_600 {
         slide(&mut board, tick);
     }
@@ -191,8 +187,7 @@ fn next_track(board: &mut TestBoard, touch: Touch) -> Track {
 #[test]
 fn a_track_that_is_handed_over_late_is_the_same_track() {
     for delay_ticks in [0, 1, 7, 80] {
-        let mut memory = Memory::new();
-        let mut board = playing(&mut memory);
+        let mut board = playing();
         let track = next_track(&mut board, report(4 * REPORT_TICKS));
         board.ticks(delay_ticks.max(1));
         board.ticker.apply(Order::Track(track));
@@ -207,8 +202,7 @@ fn a_track_that_is_handed_over_late_is_the_same_track() {
 
 #[test]
 fn a_track_that_is_handed_over_after_its_end_drives_nothing() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let track = next_track(&mut board, report(4 * REPORT_TICKS));
     board.ticks(STALE_TICKS + 10);
     board.ticker.apply(Order::Track(track));
@@ -219,8 +213,7 @@ fn a_track_that_is_handed_over_after_its_end_drives_nothing() {
 /// The tick follows a track for at most three report periods, even if its end is later.
 #[test]
 fn a_track_of_late_end_expires_after_three_report_periods() {
-    let mut memory = Memory::new();
-    let mut board = playing(&mut memory);
+    let mut board = playing();
     let track = next_track(&mut board, report(4 * REPORT_TICKS));
     for endless in [track.until_tick + 1_000_000, track.from_tick.wrapping_add(i32::MAX as u32)] {
         board.ticker.apply(Order::Track(Track { until_tick: endless, ..track }));
@@ -231,10 +224,9 @@ fn a_track_of_late_end_expires_after_three_report_periods() {
 
 #[test]
 fn a_track_that_ended_long_ago_never_comes_back() {
-    let mut memory = Memory::new();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     let header = Header { autonomous: true, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     let first_tick = board.status().telemetry.tick;
     for tick in 0..400 {
         slide(&mut board, tick);
@@ -248,18 +240,17 @@ fn a_track_that_ended_long_ago_never_comes_back() {
 }
 
 /// A board whose tick count wraps in `ticks`.
-fn playing_until_wrap(memory: &mut Memory, ticks: u32) -> TestBoard<'_> {
-    let mut board = TestBoard::new(memory);
+fn playing_until_wrap(ticks: u32) -> TestBoard {
+    let mut board = TestBoard::new();
     board.ticker.set_tick(0_u32.wrapping_sub(ticks));
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     board
 }
 
 #[test]
 fn the_finger_is_followed_while_the_tick_count_wraps() {
     for ticks in [10, 390, 399, 401, 1_000] {
-        let mut memory = Memory::new();
-        let mut board = playing_until_wrap(&mut memory, ticks);
+        let mut board = playing_until_wrap(ticks);
         for tick in 0..4_000 {
             let drive = slide(&mut board, tick);
             assert_ne!(drive, OFF, "wraps in {ticks}, tick {tick}");
@@ -274,15 +265,13 @@ fn the_finger_is_followed_while_the_tick_count_wraps() {
 #[test]
 fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
     for ticks in [1, 500, 1_199, 1_200, 1_201] {
-        let mut memory = Memory::new();
-        let mut board = playing_until_wrap(&mut memory, ticks);
+        let mut board = playing_until_wrap(ticks);
         board.touch = Some(report(0));
         let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 1..=STALE_TICKS + 1).contains(&on), "wraps in {ticks}: on for {on}");
     }
     for ticks in [5, 5_000, 9_999, 10_001] {
-        let mut memory = Memory::new();
-        let mut board = playing_until_wrap(&mut memory, ticks);
+        let mut board = playing_until_wrap(ticks);
         let on = (0..20_000).take_while(|tick| slide(&mut board, *tick) != OFF).count();
         assert!((9_998..=10_001).contains(&on), "wraps in {ticks}: on for {on}");
         assert!(board.status().telemetry.flags.contains(Flags::HOST_SILENT));
@@ -292,8 +281,7 @@ fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
 #[test]
 fn a_still_finger_is_ramped_away_while_the_tick_count_wraps() {
     for ticks in [100, 2_100, 2_300, 2_500] {
-        let mut memory = Memory::new();
-        let mut board = playing_until_wrap(&mut memory, ticks);
+        let mut board = playing_until_wrap(ticks);
         let mut volts = Vec::new();
         for tick in 0..4_000_u32 {
             if tick.is_multiple_of(REPORT_TICKS) {

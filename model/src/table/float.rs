@@ -4,14 +4,14 @@ use core::num::NonZeroU32;
 use core::ops::Range;
 
 use super::bound::TOP_MARGIN;
-use super::interpolation::polynomial;
+use super::interpolation::{Curve, polynomial};
 use super::{TableBuilder, TableError};
-use crate::{LoadedContact, Real};
+use crate::Real;
 
 /// The mapping from bit patterns of the friction to rows, and the values outside the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub(super) struct Grid {
+pub(crate) struct RowGrid {
     first_bits: u32,
     /// Number of rows per 2^32 bit patterns.
     density: NonZeroU32,
@@ -19,9 +19,9 @@ pub(super) struct Grid {
     voltage_max_v_rms: f32,
 }
 
-impl Grid {
+impl RowGrid {
     /// `rows` rows of about `2^32/density` patterns each, the last one up to and with `friction_max_n`.
-    pub(super) fn new(
+    pub(crate) fn new(
         rows: usize,
         density: NonZeroU32,
         friction_max_n: f32,
@@ -33,17 +33,23 @@ impl Grid {
     }
 
     /// Where a row begins; the end of the last row is where the row behind it would begin.
-    pub(super) fn start_n(&self, row: usize) -> f32 {
+    pub(crate) fn start_n(&self, row: usize) -> f32 {
         f32::from_bits((u64::from(self.first_bits) + offset(row as u64, self.density)) as u32)
     }
 
     /// The row of a friction, or a number past the last row when the friction is outside.
     #[inline]
-    pub(super) fn row(&self, friction_n: f32) -> usize {
+    pub(crate) fn row(&self, friction_n: f32) -> usize {
         // Below the range the subtraction wraps to a large number; the bits of negative numbers and not-a-number are
         // large themselves.
         let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
         ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
+    }
+
+    /// The row behind the one that has `asked_max_n`, which counts as `least_n` at least; `rows` when that is not below
+    /// the largest friction or not a number.
+    pub(super) fn end_row(&self, rows: usize, asked_max_n: f32, least_n: f32) -> usize {
+        if asked_max_n < self.friction_max_n { self.row(asked_max_n.max(least_n)) + 1 } else { rows }
     }
 
     pub(super) fn friction_max_n(&self) -> f32 {
@@ -65,28 +71,28 @@ impl Grid {
     }
 
     /// Truncates the table before row `end` and returns the voltage there; `None` if no row is truncated.
-    pub(super) fn cut_at<T: Real>(&mut self, end: usize, contact: &LoadedContact<T>) -> Option<f32> {
+    pub(super) fn cut_at<T: Real>(&mut self, end: usize, curve: &impl Curve<T>) -> Option<f32> {
         let end_n = self.start_n(end);
         let friction_max_n = end_n.next_down();
         if friction_max_n >= self.friction_max_n {
             return None;
         }
         self.friction_max_n = friction_max_n;
-        self.voltage_max_v_rms = round_down(contact.voltage_v_rms(T::from(end_n)));
+        self.voltage_max_v_rms = round_down(curve.voltage_v_rms(T::from(end_n)));
         Some(self.voltage_max_v_rms)
     }
 
-    /// Fills the rows `needed` of all the table's `rows` with the curve of `contact`.
+    /// Fills the rows `needed` of all the table's `rows` with a curve.
     pub(super) fn fill<T: Real, const C: usize>(
         &self,
-        contact: &LoadedContact<T>,
+        curve: &impl Curve<T>,
         rows: &mut [[f32; C]],
         needed: Range<usize>,
     ) -> Result<(), TableError> {
         let last = rows.len().saturating_sub(1);
         let point = |friction_n: f32| {
             let friction_n = T::from(friction_n);
-            (friction_n, contact.voltage_v_rms(friction_n))
+            (friction_n, curve.voltage_v_rms(friction_n))
         };
         let mut start = point(self.start_n(needed.start));
         for (index, row) in rows.iter_mut().enumerate().take(needed.end).skip(needed.start) {
@@ -94,7 +100,7 @@ impl Grid {
             if index == last {
                 end.1 = end.1 * T::from(1.0 - TOP_MARGIN);
             }
-            *row = polynomial::<T, C>(contact, start, end, power_of_two(self.start_n(index)));
+            *row = polynomial::<T, C>(curve, start, end, power_of_two(self.start_n(index)));
             if row.iter().any(|coefficient| !coefficient.is_finite()) {
                 return Err(TableError::Unrepresentable);
             }
@@ -121,7 +127,7 @@ fn power_of_two(value: f32) -> f32 {
 }
 
 /// The largest `f32` that is not above `value`.
-pub(super) fn round_down<T: Real>(value: T) -> f32 {
+pub(crate) fn round_down<T: Real>(value: T) -> f32 {
     let nearest = value.to_f32();
     if T::from(nearest) > value { nearest.next_down() } else { nearest }
 }
@@ -129,7 +135,7 @@ pub(super) fn round_down<T: Real>(value: T) -> f32 {
 /// A table in f32 over borrowed rows, with `C` coefficients per row; created by [`TableBuilder::build_f32`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizedTable<'rows, const C: usize> {
-    grid: Grid,
+    grid: RowGrid,
     rows: &'rows [[f32; C]],
 }
 
@@ -139,7 +145,7 @@ impl<'rows, const C: usize> SizedTable<'rows, C> {
         let rows = storage.get_mut(..layout.rows).ok_or(TableError::TooManySegments)?;
         let friction_max_n = round_down(builder.friction_max_n);
         let voltage_max_v_rms = round_down(builder.contact.voltage_v_rms(builder.friction_max_n));
-        let grid = Grid::new(layout.rows, layout.density, friction_max_n, voltage_max_v_rms)?;
+        let grid = RowGrid::new(layout.rows, layout.density, friction_max_n, voltage_max_v_rms)?;
         grid.fill(builder.contact, rows, 0..layout.rows)?;
         Ok(Self { grid, rows })
     }

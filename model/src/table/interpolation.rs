@@ -8,7 +8,26 @@ use crate::{LoadedContact, Real};
 const INNER: f32 = core::f32::consts::SQRT_2 - 1.0;
 
 /// A point of the curve: friction and voltage.
-pub(super) type Point<T> = (T, T);
+pub(crate) type Point<T> = (T, T);
+
+/// What a table is made of: the rms voltage as a function of the electric friction.
+pub(crate) trait Curve<T> {
+    /// The voltage, in volts rms, for a friction above zero, in newtons.
+    fn voltage_v_rms(&self, electric_friction_n: T) -> T;
+
+    /// The voltage for a friction within a row, whose ends are given.
+    #[inline]
+    fn voltage_between(&self, _start: Point<T>, _end: Point<T>, electric_friction_n: T) -> T {
+        self.voltage_v_rms(electric_friction_n)
+    }
+}
+
+impl<T: Real> Curve<T> for LoadedContact<T> {
+    #[inline]
+    fn voltage_v_rms(&self, electric_friction_n: T) -> T {
+        Self::voltage_v_rms(self, electric_friction_n)
+    }
+}
 
 /// Coefficients, constant first, of the polynomial in the friction through `start`, `end` and, with more than two
 /// coefficients, one or two points of the curve between them.
@@ -16,12 +35,12 @@ pub(super) type Point<T> = (T, T);
 /// It is made in the friction over `unit`, a power of two near it, so that no product on the way leaves the range of
 /// `f32`.
 pub(super) fn polynomial<T: Real, const C: usize>(
-    contact: &LoadedContact<T>,
+    curve: &impl Curve<T>,
     start: Point<T>,
     end: Point<T>,
     unit: f32,
 ) -> [f32; C] {
-    let mut points = points::<T, C>(contact, start, end);
+    let mut points: [_; C] = points(curve, start, end);
     for (x, _) in &mut points {
         *x = *x / T::from(unit);
     }
@@ -39,10 +58,10 @@ pub(super) fn local_polynomial<const C: usize>(
     end: Point<f64>,
 ) -> [f64; C] {
     let width = end.0 - start.0;
-    through(&points::<f64, C>(contact, start, end).map(|(x, v)| ((x - start.0) / width, v)))
+    through(&points(contact, start, end).map(|(x, v)| ((x - start.0) / width, v)))
 }
 
-fn points<T: Real, const C: usize>(contact: &LoadedContact<T>, start: Point<T>, end: Point<T>) -> [Point<T>; C] {
+fn points<T: Real, const C: usize>(curve: &impl Curve<T>, start: Point<T>, end: Point<T>) -> [Point<T>; C] {
     let (middle, half) = (T::from(0.5) * (start.0 + end.0), T::from(0.5) * (end.0 - start.0));
     let inner: &[f32] = match C {
         4 => &[-INNER, INNER],
@@ -52,7 +71,7 @@ fn points<T: Real, const C: usize>(contact: &LoadedContact<T>, start: Point<T>, 
     let mut points = [start; C];
     for (point, at) in points.iter_mut().skip(1).zip(inner) {
         let x = middle + T::from(*at) * half;
-        *point = (x, contact.voltage_v_rms(x));
+        *point = (x, curve.voltage_between(start, end, x));
     }
     if let Some(last) = points.last_mut() {
         *last = end;

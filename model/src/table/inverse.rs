@@ -4,14 +4,19 @@ use core::num::NonZeroU32;
 use core::ops::Range;
 
 use super::TableError;
-use super::float::{Grid, round_down};
+use super::float::{RowGrid, round_down};
+use super::interpolation::Curve;
 use crate::double_single::DoubleSingle;
-use crate::{Finger, LoadedContact, Real};
+use crate::{EmpiricalLaw, Finger, LawError, LawPoint, LoadedContact, Real};
 
 /// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
 const ROWS: usize = 126;
 /// Four rows per octave of 2^23 bit patterns. The `unwrap` is evaluated by the compiler.
 const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
+/// Rows in a table of an empirical law: 15.75 octaves.
+pub(crate) const LAW_ROWS: usize = ROWS;
+/// Eight rows per octave for an empirical law, which may be steeper than a contact.
+pub(crate) const LAW_DENSITY: NonZeroU32 = NonZeroU32::new(8 << 9).unwrap();
 /// The table reaches at least down to this voltage.
 const KNEE_V_RMS: f32 = 1.0;
 /// Or down to this fraction of the largest voltage, if that is lower.
@@ -37,7 +42,7 @@ const KNEE_PART: f32 = 1.0 / 200.0;
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C)]
 pub struct InverseTable {
-    grid: Grid,
+    grid: RowGrid,
     rows: [[f32; 4]; ROWS],
 }
 
@@ -105,6 +110,47 @@ impl InverseTable {
         Self::begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
     }
 
+    /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The truncation
+    /// is as in [`Self::build_up_to`].
+    ///
+    /// [`Self::RELATIVE_ERROR`] holds for frictions from 2^-15 of that at the largest voltage on. Below the range the
+    /// voltage is zero.
+    ///
+    /// ```
+    /// use frixel_model::{EmpiricalLaw, InverseTable, LawPoint};
+    /// let points = [(50.0, 0.01), (100.0, 0.06), (150.0, 0.09)]
+    ///     .map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
+    /// let law = EmpiricalLaw::<f64>::new(2.0, &points, 150.0)?;
+    /// let table = InverseTable::of_law(2.0, &points, 150.0, f32::INFINITY)?;
+    /// let voltage_v_rms = table.voltage_v_rms(0.05);
+    /// assert!((law.electric_friction_n(f64::from(voltage_v_rms)) / f64::from(0.05_f32) - 1.0).abs() < 1e-5);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn of_law(
+        exponent: f32,
+        points: &[LawPoint],
+        voltage_max_v_rms: f32,
+        asked_max_n: f32,
+    ) -> Result<Self, LawError> {
+        let (mut table, mut filling) = Self::begin_law(exponent, points, voltage_max_v_rms, asked_max_n)?;
+        filling.fill(&mut table, ROWS)?;
+        Ok(table)
+    }
+
+    /// Starts building the table of [`Self::of_law`] in steps, as [`Self::begin`] does for a finger.
+    #[inline(never)]
+    pub fn begin_law(
+        exponent: f32,
+        points: &[LawPoint],
+        voltage_max_v_rms: f32,
+        asked_max_n: f32,
+    ) -> Result<(Self, EmpiricalTableFilling), LawError> {
+        let curve = EmpiricalLaw::new(exponent, points, voltage_max_v_rms)?;
+        let grid = curve.grid();
+        let end = grid.end_row(ROWS, asked_max_n, grid.start_n(0));
+        Ok((Self { grid, rows: [[0.0; 4]; ROWS] }, EmpiricalTableFilling(Filling { curve, rows: 0..end })))
+    }
+
     fn in_double_single(
         contact: LoadedContact<DoubleSingle>,
         voltage_max_v_rms: DoubleSingle,
@@ -127,15 +173,15 @@ impl InverseTable {
         if !(knee_n >= f32::MIN_POSITIVE && friction_max_n < f32::MAX) {
             return Err(TableError::Unrepresentable);
         }
-        let grid = Grid::new(ROWS, DENSITY, friction_max_n, largest)?;
+        let grid = RowGrid::new(ROWS, DENSITY, friction_max_n, largest)?;
         let knee_row = grid.row(knee_n);
         if knee_row >= ROWS {
             return Err(TableError::TooManySegments);
         }
-        let end = if asked_max_n < friction_max_n { grid.row(asked_max_n.max(knee_n)) + 1 } else { ROWS };
+        let end = grid.end_row(ROWS, asked_max_n, knee_n);
         let knee_start = DoubleSingle::from(grid.start_n(knee_row));
         let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
-        Ok((Self { grid, rows: [line; ROWS] }, InverseTableFilling { contact, rows: knee_row..end }))
+        Ok((Self { grid, rows: [line; ROWS] }, InverseTableFilling(Filling { curve: contact, rows: knee_row..end })))
     }
 
     /// Number of rows that hold a piece of the curve. The others cost no evaluation of the closed form.
@@ -167,28 +213,55 @@ impl InverseTable {
 
 /// The remaining computation of an [`InverseTable`]; created by [`InverseTable::begin`].
 #[derive(Clone, Debug)]
-pub struct InverseTableFilling {
-    contact: LoadedContact<DoubleSingle>,
-    rows: Range<usize>,
-}
+pub struct InverseTableFilling(Filling<LoadedContact<DoubleSingle>>);
 
 impl InverseTableFilling {
     /// Number of rows that are still to be computed.
     pub fn rows(&self) -> usize {
-        self.rows.len()
+        self.0.rows.len()
     }
 
     /// Computes the next `rows_max` rows, with three evaluations of the closed form each. `table` must be the table
     /// that [`InverseTable::begin`] returned with `self`. Returns whether the table is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
+        self.0.fill(table, rows_max)
+    }
+}
+
+/// The remaining computation of the [`InverseTable`] of an empirical law; created by [`InverseTable::begin_law`].
+#[derive(Clone, Debug)]
+pub struct EmpiricalTableFilling(Filling<EmpiricalLaw<DoubleSingle>>);
+
+impl EmpiricalTableFilling {
+    /// Number of rows that are still to be computed.
+    pub fn rows(&self) -> usize {
+        self.0.rows.len()
+    }
+
+    /// Computes the next `rows_max` rows, with three powers each. `table` must be the table that
+    /// [`InverseTable::begin_law`] returned with `self`. Returns whether the table is finished.
+    pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, LawError> {
+        self.0.fill(table, rows_max).map_err(|_: TableError| LawError::Unrepresentable)
+    }
+}
+
+/// The rows of a table that are still to be computed, and their curve.
+#[derive(Clone, Debug)]
+struct Filling<C> {
+    curve: C,
+    rows: Range<usize>,
+}
+
+impl<C: Curve<DoubleSingle>> Filling<C> {
+    fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
         let Range { start, end } = self.rows;
         let next = end.min(start.saturating_add(rows_max));
-        table.grid.fill(&self.contact, &mut table.rows, start..next)?;
+        table.grid.fill(&self.curve, &mut table.rows, start..next)?;
         self.rows.start = next;
         if next < end {
             return Ok(false);
         }
-        if let Some((cut, end_v_rms)) = table.rows.get_mut(end..).zip(table.grid.cut_at(end, &self.contact)) {
+        if let Some((cut, end_v_rms)) = table.rows.get_mut(end..).zip(table.grid.cut_at(end, &self.curve)) {
             cut.fill([end_v_rms, 0.0, 0.0, 0.0]);
         }
         Ok(true)

@@ -26,7 +26,10 @@ use core::fmt::{Display, Formatter, Result as FmtResult};
 pub use builder::{Precision, TableBuilder, TableShape};
 pub use fixed::FixedTable;
 pub use float::SizedTable;
-pub use inverse::{InverseTable, InverseTableFilling};
+pub(crate) use float::{RowGrid, round_down};
+pub(crate) use interpolation::{Curve, Point};
+pub use inverse::{EmpiricalTableFilling, InverseTable, InverseTableFilling};
+pub(crate) use inverse::{LAW_DENSITY, LAW_ROWS};
 
 /// Why a table cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,7 +19,7 @@ use frixel_control::{Active, Board, Drive, Sense, Status, Ticker};
 use frixel_layers::{Bitmap, BitmapPool, Layer};
 use frixel_session::{Session, Touch};
 use frixel_testkit::IdealMonitor;
-pub use frixel_testkit::{HEADER, record, scene, scene_with_points};
+pub use frixel_testkit::{HEADER, constant, record, scene, scene_with_points};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
@@ -29,28 +29,9 @@ use frixel_wire::scene::bitmap_crc32;
 /// Most polls that a commit takes.
 pub const COMMIT_POLLS_MAX: u32 = 128;
 
-/// The memory that session and tick of a board share. It outlives the [`TestBoard`] that borrows it.
-pub struct Memory {
-    pool: BitmapPool,
-    actives: [Active; 2],
-    #[cfg(feature = "stream")]
-    stream: StreamBuffer,
-}
-
-impl Memory {
-    pub fn new() -> Box<Self> {
-        Box::new(Self {
-            pool: BitmapPool::new(),
-            actives: [Active::new(), Active::new()],
-            #[cfg(feature = "stream")]
-            stream: StreamBuffer::new(),
-        })
-    }
-}
-
-pub struct TestBoard<'a> {
-    pub session: Session<'a>,
-    pub ticker: Ticker<'a>,
+pub struct TestBoard {
+    pub session: Session<'static>,
+    pub ticker: Ticker<'static>,
     /// What the board sees when a test says nothing else: switch held, and a monitor that reads right.
     pub sense: Sense,
     /// A report of the board's touch source, which the next tick uses up.
@@ -66,34 +47,36 @@ pub struct TestBoard<'a> {
     sequence: u16,
 }
 
-impl<'a> TestBoard<'a> {
-    pub fn new(memory: &'a mut Memory) -> Self {
-        Self::of(Board::SIMULATOR, memory)
+impl TestBoard {
+    pub fn new() -> Self {
+        Self::of(Board::SIMULATOR)
     }
 
-    pub fn of(board: Board, memory: &'a mut Memory) -> Self {
-        Self::made_of(board, memory, true)
+    /// A board whose host has said hello.
+    pub fn connected() -> Self {
+        let mut board = Self::new();
+        board.hello();
+        board
+    }
+
+    pub fn of(board: Board) -> Self {
+        #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "there is nothing to attach"))]
+        let mut test_board = Self::without_stream(board);
+        #[cfg(feature = "stream")]
+        {
+            let stream: &StreamBuffer = leaked(StreamBuffer::new());
+            test_board.ticker.attach_stream(stream);
+            test_board.session.attach_stream(stream);
+        }
+        test_board
     }
 
     /// A board that has no buffer for a stream.
-    pub fn without_stream(memory: &'a mut Memory) -> Self {
-        Self::made_of(Board::SIMULATOR, memory, false)
-    }
-
-    fn made_of(board: Board, memory: &'a mut Memory, with_stream: bool) -> Self {
-        let _ = with_stream;
-        let pool = &memory.pool;
-        let [first, second] = &mut memory.actives;
-        #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "there is nothing to attach"))]
-        let (mut ticker, mut session) = (Ticker::new(&board, pool, first), Session::new(board, pool, second));
-        #[cfg(feature = "stream")]
-        if with_stream {
-            ticker.attach_stream(&memory.stream);
-            session.attach_stream(&memory.stream);
-        }
+    pub fn without_stream(board: Board) -> Self {
+        let pool: &BitmapPool = leaked(BitmapPool::new());
         let mut test_board = Self {
-            ticker,
-            session,
+            ticker: Ticker::new(&board, pool, leaked(Active::new())),
+            session: Session::new(board, pool, leaked(Active::new())),
             sense: Sense { arm_switch: true, ..Sense::default() },
             touch: None,
             messages: Vec::new(),
@@ -269,6 +252,11 @@ impl<'a> TestBoard<'a> {
     }
 }
 
+/// Memory that session and tick share for as long as the program runs, as on a board.
+fn leaked<T>(value: T) -> &'static mut T {
+    Box::leak(Box::new(value))
+}
+
 pub fn request(sequence: u16, command: Command) -> Vec<u8> {
     let mut frame = [0; FRAME_MAX_LEN];
     payload::request_frame(&Request { sequence, command }, &mut frame).unwrap().to_vec()
@@ -290,6 +278,6 @@ pub fn bitmap(crc32: u32) -> Layer {
 }
 
 /// A scene of a friction that is the same everywhere.
-pub fn constant(electric_friction_n: f32) -> Vec<u8> {
-    scene(&HEADER, &[frixel_testkit::constant(electric_friction_n)])
+pub fn constant_scene(electric_friction_n: f32) -> Vec<u8> {
+    scene(&HEADER, &[constant(electric_friction_n)])
 }

@@ -1,9 +1,9 @@
 //! Finds where layers overlap, and the range of their target friction there.
 //!
-//! The edges of all layers cut the screen into cells. Within a cell, the same rectangles apply everywhere. The friction
-//! of a single layer in a cell is known exactly, or nearly. For several varying layers, and for a layer whose outline
-//! crosses the cell, only a bound is known, which the friction need not reach. Such a cell is also searched for a place
-//! that is out of reach.
+//! The edges of all layers cut the screen into cells. Within a cell, the same rectangles apply everywhere. The bounds
+//! of a single layer in a cell count as reached, unless it says otherwise. For several varying layers, and for a layer
+//! whose outline crosses the cell, only a bound is known, which the friction need not reach. Such a cell is also searched
+//! for a place that is out of reach.
 
 mod cell;
 
@@ -46,8 +46,8 @@ struct Stack {
     /// Numbers of the layers, starting with the last one that replaces all below it.
     layers: Vec<usize>,
     bound: Interval<f64>,
-    /// Number of layers that make the bound inexact. With up to one, the bound is reached; with more, the cell is
-    /// searched.
+    /// What keeps the bound from being reached: the layers' own [`doubts`](crate::kinds::Field::doubts_in), and the
+    /// outlines in the cell. With up to one, the bound counts as reached; with more, the cell is searched.
     doubts: usize,
     outlined: bool,
 }
@@ -56,7 +56,7 @@ struct Stack {
 struct Suspect {
     cell: Cell,
     stack: Stack,
-    /// Places to evaluate across and down; `None` if the bound is reached.
+    /// Places to evaluate across and down; `None` if the bound counts as reached.
     grid: Option<(f64, f64)>,
 }
 

@@ -117,8 +117,8 @@ pub(crate) trait Field: Debug + Send + Sync {
         self.interval_at(x_m, y_m)
     }
 
-    /// 0 if the friction is the same all over the cell, 1 if [`Field::interval_in`] is exact, 2 if it may be wider than
-    /// the actual range. `outline_m` is the layer's own rectangle: left, top, right, bottom.
+    /// 0 if the friction is the same all over the cell, 1 if [`Field::interval_in`] counts as reached where no other
+    /// layer varies, 2 if only evaluating places shows what is reached. `outline_m` is the layer's own rectangle: left, top, right, bottom.
     fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
         let _ = (cell, outline_m);
         1

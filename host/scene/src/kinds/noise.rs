@@ -118,6 +118,8 @@ impl Field for NoiseField {
         f64::midpoint(self.low_n, self.high_n) + 0.5 * (self.high_n - self.low_n) * mean
     }
 
+    /// The range that the scene file names, which a cell need not reach: it counts as reached, so that what is said of
+    /// a layer's reach depends on its own numbers, and not on the seed.
     fn interval_in(&self, _cell: Cell) -> Interval<f64> {
         Interval { low: self.low_n, high: self.high_n }
     }

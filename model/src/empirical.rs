@@ -1,0 +1,284 @@
+//! An empirical law: electric friction as a monotone function of the voltage, for a finger that the contact model does
+//! not describe.
+
+use core::error::Error;
+use core::fmt::{Display, Formatter, Result as FmtResult};
+
+use crate::Real;
+use crate::table::{Curve, LAW_DENSITY, LAW_ROWS, Point, RowGrid, round_down};
+
+/// A point of an empirical law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawPoint {
+    /// Rms voltage, in volts.
+    pub voltage_v_rms: f32,
+    /// Electric friction at this voltage, in newtons.
+    pub electric_friction_n: f32,
+}
+
+/// A point and the segment below it, in which `V ~ x^power`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Segment<T> {
+    voltage_v_rms: T,
+    electric_friction_n: T,
+    power: T,
+}
+
+impl<T: Real> Segment<T> {
+    fn voltage_v_rms(&self, electric_friction_n: T) -> T {
+        self.voltage_v_rms * (electric_friction_n / self.electric_friction_n).pow(self.power)
+    }
+
+    fn electric_friction_n(&self, voltage_v_rms: T) -> T {
+        self.electric_friction_n * (voltage_v_rms / self.voltage_v_rms).pow(T::ONE / self.power)
+    }
+}
+
+/// Electric friction `x` as a function of the rms voltage `V`, under one normal load.
+///
+/// 1. Power laws through the points: below the first one, `x ~ V^exponent`; between two, the power law through both.
+///    A single point and an exponent are a power law.
+/// 2. `x_top` is the friction of these at the largest voltage, rounded down to an `f32`. The *knots* of the law are the
+///    126 numbers whose `f32` bit patterns are that of `x_top` plus 1, less 1 to 126 times 2^20, and the number of the
+///    pattern of `x_top` plus 1 itself: eight to an octave. At the knots, the law is that of step 1; between two knots,
+///    it is the power law through both.
+///
+/// So a bend at a point is rounded off within an eighth of an octave of friction, and each row of the board's
+/// [`InverseTable`](crate::InverseTable) lies within one power law, which is what makes its error provable. Below the
+/// lowest knot, less than 2^-15 of the friction at the largest voltage, a board drives nothing.
+///
+/// ```
+/// use frixel_model::{EmpiricalLaw, LawPoint};
+/// let point = LawPoint { voltage_v_rms: 150.0, electric_friction_n: 0.09 };
+/// let law = EmpiricalLaw::<f64>::new(2.0, &[point], 100.0)?;
+/// assert!((law.electric_friction_n(50.0) / 0.01 - 1.0).abs() < 1e-6);
+/// assert!((law.voltage_v_rms(0.01) / 50.0 - 1.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmpiricalLaw<T> {
+    segments: [Segment<T>; POINTS_MAX],
+    grid: RowGrid,
+}
+
+/// Why numbers are no empirical law, or not up to a voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LawError {
+    /// There is no point, or there are more than [`EmpiricalLaw::POINTS_MAX`].
+    PointCount {
+        /// How many there are.
+        found: usize,
+    },
+    /// The exponent below the first point is outside of [`EmpiricalLaw::EXPONENTS`].
+    Exponent {
+        /// The exponent.
+        found: f32,
+    },
+    /// A point is not above zero and finite, or not above the one before it, in voltage or in friction.
+    Order {
+        /// Number of the point, from 0.
+        point: usize,
+    },
+    /// The friction grows from the point before this one with a power of the voltage outside of
+    /// [`EmpiricalLaw::EXPONENTS`].
+    Slope {
+        /// Number of the point, from 0.
+        point: usize,
+        /// The power.
+        found: f32,
+    },
+    /// The largest voltage is not above zero, or above that of the last point.
+    Voltage {
+        /// The largest voltage, V rms.
+        found: f32,
+        /// Voltage of the last point, V rms.
+        max: f32,
+    },
+    /// The friction at the largest voltage is too small or too large for a table.
+    Unrepresentable,
+}
+
+impl Display for LawError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
+        let [least, most] = EXPONENTS;
+        match *self {
+            Self::PointCount { found } => write!(f, "a law has 1 to {POINTS_MAX} points, and this one {found}"),
+            Self::Exponent { found } => write!(f, "the exponent is {found}, and {least} to {most} is possible"),
+            Self::Order { point } => {
+                write!(f, "point {} does not lie above the one before, in volts and in newtons", point + 1)
+            }
+            Self::Slope { point, found } => write!(
+                f,
+                "up to point {} friction grows with the power {found:.3} of the voltage, and {least} to {most} is possible",
+                point + 1
+            ),
+            Self::Voltage { found, max } => {
+                write!(f, "the largest voltage is {found} V rms, and the law ends at {max} V rms")
+            }
+            Self::Unrepresentable => f.write_str("the friction at the largest voltage is too small or too large"),
+        }
+    }
+}
+
+impl Error for LawError {}
+
+/// See [`EmpiricalLaw::POINTS_MAX`].
+const POINTS_MAX: usize = 16;
+/// See [`EmpiricalLaw::EXPONENTS`].
+const EXPONENTS: [f32; 2] = [0.5, 12.0];
+/// Powers that are outside of [`EXPONENTS`] by less than this, relative to them, count as rounding errors of `f32`.
+const EXPONENT_ROUNDING: f32 = 1e-5;
+
+impl<T> EmpiricalLaw<T> {
+    /// Most points of a law.
+    pub const POINTS_MAX: usize = POINTS_MAX;
+    /// Least and greatest power of the voltage with which friction may grow: [`crate::InverseTable::RELATIVE_ERROR`]
+    /// holds between them.
+    pub const EXPONENTS: [f32; 2] = EXPONENTS;
+}
+
+impl<T: Real> EmpiricalLaw<T> {
+    /// The law of these points, with this exponent below the first, up to a largest voltage, which is at most that of
+    /// the last point: a law is never extrapolated.
+    pub fn new(exponent: f32, points: &[LawPoint], voltage_max_v_rms: f32) -> Result<Self, LawError> {
+        let Some((last, 1..=POINTS_MAX)) = points.last().map(|last| (*last, points.len())) else {
+            return Err(LawError::PointCount { found: points.len() });
+        };
+        let [least, most] = EXPONENTS;
+        if !(least..=most).contains(&exponent) {
+            return Err(LawError::Exponent { found: exponent });
+        }
+        let of = |point: &LawPoint, power| Segment {
+            voltage_v_rms: T::from(point.voltage_v_rms),
+            electric_friction_n: T::from(point.electric_friction_n),
+            power,
+        };
+        let mut segments = [of(&last, T::ONE / T::from(exponent)); POINTS_MAX];
+        let mut before: Option<LawPoint> = None;
+        for (number, (segment, point)) in segments.iter_mut().zip(points).enumerate() {
+            let LawPoint { voltage_v_rms, electric_friction_n } = before.unwrap_or(LawPoint::ZERO);
+            let is_above = point.voltage_v_rms > voltage_v_rms && point.electric_friction_n > electric_friction_n;
+            if !(is_above && point.voltage_v_rms.is_finite() && point.electric_friction_n.is_finite()) {
+                return Err(LawError::Order { point: number });
+            }
+            *segment = of(point, segment.power);
+            if let Some(before) = before {
+                segment.power = power(of(&before, T::ONE).at(), segment.at());
+                let found = (T::ONE / segment.power).to_f32();
+                if !(found >= least * (1.0 - EXPONENT_ROUNDING) && found <= most * (1.0 + EXPONENT_ROUNDING)) {
+                    return Err(LawError::Slope { point: number, found });
+                }
+            }
+            before = Some(*point);
+        }
+        // The segments behind the last point repeat that one.
+        let count = points.len();
+        if let Some((last, rest)) =
+            segments.split_at_mut_checked(count).and_then(|(own, rest)| Some((*own.last()?, rest)))
+        {
+            rest.fill(last);
+        }
+        if !(voltage_max_v_rms > 0.0 && voltage_max_v_rms <= last.voltage_v_rms) {
+            return Err(LawError::Voltage { found: voltage_max_v_rms, max: last.voltage_v_rms });
+        }
+        let voltage = T::from(voltage_max_v_rms);
+        let top_n =
+            round_down(segment_for(&segments, |segment| segment.voltage_v_rms >= voltage).electric_friction_n(voltage));
+        if !(top_n < f32::MAX) {
+            return Err(LawError::Unrepresentable);
+        }
+        let grid = RowGrid::new(LAW_ROWS, LAW_DENSITY, top_n, voltage_max_v_rms)
+            .ok()
+            .filter(|grid| grid.start_n(0) >= f32::MIN_POSITIVE)
+            .ok_or(LawError::Unrepresentable)?;
+        Ok(Self { segments, grid })
+    }
+
+    /// Electric friction in newtons at an rms voltage of zero or more; above the voltage of the last point, that of the
+    /// last point.
+    pub fn electric_friction_n(&self, voltage_v_rms: T) -> T {
+        if !(voltage_v_rms > T::ZERO) {
+            return T::ZERO;
+        }
+        let last = self.last();
+        let voltage_v_rms = voltage_v_rms.min(last.voltage_v_rms);
+        let by_points = segment_for(&self.segments, |segment| segment.voltage_v_rms >= voltage_v_rms)
+            .electric_friction_n(voltage_v_rms);
+        // Both laws agree at the knots, and rise, so that a friction is between the same knots by both.
+        match self.knots(by_points) {
+            Some((start, end)) => start.0 * (voltage_v_rms / start.1).pow(T::ONE / power(start, end)),
+            None => by_points,
+        }
+    }
+
+    /// The rms voltage in volts for an electric friction in newtons; zero for a friction of zero or less and for
+    /// not-a-number, and the voltage of the last point for more than its friction.
+    pub fn voltage_v_rms(&self, electric_friction_n: T) -> T {
+        if !(electric_friction_n > T::ZERO) {
+            return T::ZERO;
+        }
+        let electric_friction_n = electric_friction_n.min(self.last().electric_friction_n);
+        match self.knots(electric_friction_n) {
+            Some((start, end)) => between(start, end, electric_friction_n),
+            None => Curve::voltage_v_rms(self, electric_friction_n),
+        }
+    }
+
+    /// The grid of a table of this law.
+    pub(crate) fn grid(&self) -> RowGrid {
+        self.grid
+    }
+
+    fn last(&self) -> &Segment<T> {
+        let [.., last] = &self.segments;
+        last
+    }
+
+    /// The knots around a friction; `None` below the lowest and above the highest.
+    fn knots(&self, electric_friction_n: T) -> Option<(Point<T>, Point<T>)> {
+        let row = self.grid.row(electric_friction_n.to_f32());
+        let knot = |row| {
+            let friction_n = T::from(self.grid.start_n(row));
+            (friction_n, Curve::voltage_v_rms(self, friction_n))
+        };
+        (row < LAW_ROWS).then(|| (knot(row), knot(row + 1)))
+    }
+}
+
+impl<T: Real> Curve<T> for EmpiricalLaw<T> {
+    /// The law through the points.
+    fn voltage_v_rms(&self, electric_friction_n: T) -> T {
+        segment_for(&self.segments, |segment| segment.electric_friction_n >= electric_friction_n)
+            .voltage_v_rms(electric_friction_n)
+    }
+
+    fn voltage_between(&self, start: Point<T>, end: Point<T>, electric_friction_n: T) -> T {
+        between(start, end, electric_friction_n)
+    }
+}
+
+impl LawPoint {
+    const ZERO: Self = Self { voltage_v_rms: 0.0, electric_friction_n: 0.0 };
+}
+
+impl<T: Real> Segment<T> {
+    fn at(&self) -> Point<T> {
+        (self.electric_friction_n, self.voltage_v_rms)
+    }
+}
+
+/// The first segment that reaches as far as asked for, or the last.
+fn segment_for<T>(segments: &[Segment<T>; POINTS_MAX], reaches: impl Fn(&Segment<T>) -> bool) -> &Segment<T> {
+    let [.., last] = segments;
+    segments.iter().find(|segment| reaches(segment)).unwrap_or(last)
+}
+
+/// The power of the friction with which the voltage grows from one point to another.
+fn power<T: Real>(start: Point<T>, end: Point<T>) -> T {
+    (end.1 / start.1 - T::ONE).ln_1p() / (end.0 / start.0 - T::ONE).ln_1p()
+}
+
+/// The voltage of the power law through two points.
+fn between<T: Real>(start: Point<T>, end: Point<T>, friction_n: T) -> T {
+    start.1 * (friction_n / start.0).pow(power(start, end))
+}
