@@ -20,6 +20,7 @@ use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::model_csv::CsvError;
 use frixel_lab::stroke_file::StrokeFileError;
+use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
@@ -96,6 +97,13 @@ pub(crate) enum CommandError {
     NoAnswer { trial: usize },
     #[error("{count} answers to trial {trial} were neither 1 nor 2: answer each trial with 1 or 2 and Enter")]
     WrongAnswers { trial: usize, count: u32 },
+    #[error(
+        "{} of {} answers are right, which is no better than guessing, so that there is no threshold: check that the \
+         electrode is driven, and press less hard", .0.right, .0.trials
+    )]
+    Guessed(Guessed),
+    #[error("--observer answers in place of a person, and feels no board on {port}: leave --port out")]
+    ObserverOnBoard { port: String },
     #[error("the noise cannot be made ({0})")]
     Noise(hound::Error),
     #[error("{source}; what was recorded until then is in {}: {advice}", partial.display())]
@@ -119,8 +127,6 @@ pub(crate) enum CommandError {
     Write { path: PathBuf, source: io::Error },
     #[error("{} is no picture that can be played: {reason}", path.display())]
     Picture { path: PathBuf, reason: String },
-    #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
-    StrokeNotText { path: PathBuf },
     #[error(
         "{name} lasts {} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds", Shown(*.seconds)
     )]

@@ -4,11 +4,12 @@ mod answers;
 mod noise;
 mod session;
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 use frixel_lab::calibration::Protocol;
-use frixel_lab::threshold::{STIMULUS_HZ, Threshold, in_volts};
+use frixel_lab::threshold::{Observer, STIMULUS_HZ, Threshold, level_v_rms};
 use frixel_scene::{Evidence, Experiment, FingerProfile};
 use time::OffsetDateTime;
 
@@ -26,8 +27,12 @@ const CUT_OFF: &str = "add --finish to go on with it";
 #[derive(Debug, Args)]
 pub(super) struct ThresholdArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
-    #[arg(long, required_unless_present = "noise")]
+    #[arg(long, required_unless_present_any = ["noise", "observer"])]
     port: Option<String>,
+    /// Let a simulated observer answer, whose threshold is known: it differs from seed to seed. Needs no person and no
+    /// board.
+    #[arg(long, value_name = "SEED")]
+    observer: Option<u64>,
     /// The finger profile to write: how far a level is above threshold, and no newtons. Until the end, the answers are
     /// in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "FINGER.toml")]
@@ -39,7 +44,8 @@ pub(super) struct ThresholdArgs {
     #[arg(long, requires = "output")]
     finish: bool,
     /// Number of trials, 12 to 40: 12 find the threshold to a factor of 1.7 in amplitude, 40 to a factor of 1.25 (root
-    /// mean square over simulated observers).
+    /// mean square over simulated observers). After them follow checks at the highest voltage, 0 to 30: as many as tell
+    /// feeling from guessing.
     #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u8).range(12..=40))]
     trials: u8,
     /// Write a minute of masking noise to this WAV file and end. Play it over and over on closed headphones during the
@@ -81,6 +87,11 @@ pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
         say(recording.output(), format_args!("  {:<16} {}", "wrote", recording.output().path().display()))
     });
     reported.map_err(|error| match &recording {
+        // The session is over, and has no answers to go on with.
+        Some(recording) if matches!(error, CommandError::Guessed(_)) => {
+            recording.discard_partial();
+            error
+        }
         Some(recording) => experiment::cut_off(recording, error),
         None => error,
     })
@@ -93,22 +104,29 @@ fn report(
     protocol: &Protocol,
     screen_name: String,
 ) -> Result<FingerProfile, CommandError> {
-    let (threshold_v_rms, interval_v_rms) = in_volts(threshold, protocol).map_err(CommandError::Finger)?;
+    let volts = |level_db| level_v_rms(level_db, protocol).map_err(CommandError::Finger);
+    let Threshold { level_db, interval_db: (low_db, high_db) } = *threshold;
+    let (threshold_v_rms, interval_v_rms) = (volts(level_db)?, [volts(low_db)?, volts(high_db)?]);
     let highest = protocol.voltage_max_v_rms();
     print_line(format_args!(
         "  {:<16} {threshold_v_rms:.1} V rms ({:.1} to {:.1})",
         "threshold", interval_v_rms[0], interval_v_rms[1]
     ))?;
-    print_line(format_args!("  {:<16} {highest:.0} V rms is {:.0} dB above it", "highest", -threshold.level_db))?;
+    print_line(format_args!("  {:<16} {highest:.0} V rms is {:.0} dB above it", "highest", -level_db))?;
+    let mut method = format!("two-alternative staircase, {} trials, {STIMULUS_HZ} Hz", args.trials);
+    if let Some(seed) = args.observer {
+        // Writing to a string cannot fail.
+        let _ = write!(method, ", simulated observer {seed}");
+        if let Some(truth_db) = Observer::drawn(seed).threshold_db() {
+            let line = format_args!("  {:<16} has a threshold of {:.1} V rms", "the observer", volts(truth_db)?);
+            print_line(line)?;
+        }
+    }
     print_line(format_args!(
         "  {:<16} this gives no newtons: write scenes in fractions of what can be reached",
         "note"
     ))?;
-    let experiment = Experiment {
-        date: OffsetDateTime::now_utc().date().to_string(),
-        method: format!("two-alternative staircase, {} trials, {STIMULUS_HZ} Hz", args.trials),
-        screen: screen_name,
-    };
+    let experiment = Experiment { date: OffsetDateTime::now_utc().date().to_string(), method, screen: screen_name };
     let evidence = Evidence::Perceptual { experiment, threshold_v_rms, threshold_interval_v_rms: interval_v_rms };
     Ok(FingerProfile { evidence, ..FingerProfile::example() })
 }

@@ -23,8 +23,9 @@ use tempfile::TempDir;
 const SCENE: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
                      high_fraction = 0.9\n";
 
-/// What a threshold's person answers, more often than is asked.
-const ANSWERS: &str = "1\n2\n2\n1\n1\n1\n2\n1\n2\n2\n1\n2\n1\n1\n";
+/// What a person answers who finds each stimulus of the default seed, more often than 12 trials and their checks ask.
+const ANSWERS: &str = "2\n1\n1\n2\n2\n1\n1\n1\n2\n2\n1\n2\n2\n1\n1\n\
+                       1\n2\n2\n1\n2\n2\n1\n1\n2\n2\n2\n2\n2\n1\n2\n";
 
 /// A folder with an input of every kind.
 struct Folder(TempDir);

@@ -20,7 +20,7 @@ pub fn simulated_finger(
     let example = FingerProfile::example();
     let stiffness_pa_per_m = match example.elasticity {
         Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
-        Elasticity::Soft { .. } => CONVENTIONAL_STIFFNESS_PA_PER_M,
+        Elasticity::Soft { .. } | Elasticity::Empirical(_) => CONVENTIONAL_STIFFNESS_PA_PER_M,
     };
     let finger = Finger {
         radius_m: 1e-3 * example.radius_mm,
@@ -30,4 +30,11 @@ pub fn simulated_finger(
     let contact = Contact::new(&finger, coating_gap_m + 1e-6 * example.skin_gap_um);
     let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
     Ok((contact?, FingertipConfig::REALISTIC))
+}
+
+/// The seed of what is random in the simulation of a person: two people with one `--seed` do not share their noise and
+/// the wander of their load.
+pub fn simulation_seed(seed: u64, finger_seed: Option<u64>) -> u64 {
+    // The odd factor (2^64 over the golden ratio) keeps people apart from neighbouring seeds.
+    finger_seed.map_or(seed, |finger| seed ^ finger.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(32))
 }

@@ -32,7 +32,8 @@ pub enum FitError {
     },
     /// A voltage is above what any driver board has.
     #[error(
-        "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not millivolts and not DAC codes"
+        "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not DAC codes, or \
+         name the column voltage_mv_rms if it is in millivolts"
     )]
     VoltageTooHigh {
         /// Number of the row.
@@ -59,7 +60,7 @@ pub enum FitError {
     /// The load is not that of a finger on a touchscreen.
     #[error(
         "the median of normal_force_n is {median}, and a finger on a touchscreen presses with 0.03 to 3 N: the column \
-         {guess}; give newtons"
+         {guess}; give newtons, or name the column normal_force_mn if it is in millinewtons"
     )]
     LoadUnit {
         /// Median of the column.
@@ -71,13 +72,27 @@ pub enum FitError {
     #[error(
         "friction_n over normal_force_n has a median of {ratio:.3} at no voltage, and that of skin on glass is 0.05 \
          to 5: one of the \
-         columns {guess}; give newtons in both"
+         columns {guess}; give newtons in both, or name the column friction_mn or normal_force_mn if it is in \
+         millinewtons"
     )]
     FrictionUnit {
         /// Friction over load.
         ratio: f64,
         /// What the numbers probably are.
         guess: &'static str,
+    },
+    /// A force is none of a finger.
+    #[error(
+        "row {row}, column {column}: {found_n} N is no force of a finger: correct the cell, or name the column \
+         friction_mn or normal_force_mn if it is in millinewtons"
+    )]
+    ForceTooHigh {
+        /// Number of the row.
+        row: u64,
+        /// The column.
+        column: &'static str,
+        /// The force, in newtons.
+        found_n: f64,
     },
     /// Too few strokes.
     #[error(
@@ -239,9 +254,10 @@ pub enum FitError {
     },
     /// The exponent of voltage or load contradicts the model.
     #[error(
-        "electric friction grows as {quantity} to the power {value:.2} ({low:.2} to {high:.2}), and the model says \
-         {model:.2}: the contact model does not hold for these data, so no profile is fitted; check for volts peak in \
-         place of rms, and see docs/truth.md"
+        "electric friction grows as {quantity} to the power {value:.2} (99.9 % interval {low:.2} to {high:.2}), and the \
+         model says {model:.2}: the contact model does not hold for these data, so no profile is fitted; check {}, and \
+         see docs/truth.md",
+        what_bends(.quantity)
     )]
     LawBroken {
         /// `voltage` or `load`.
@@ -258,7 +274,7 @@ pub enum FitError {
     /// The gap of the fit is smaller than the screen's coating.
     #[error(
         "the measured attraction needs an effective gap of {gap_um:.3} um, and the coating alone has {coating_um:.3} \
-         um: check the coating, and that voltages are rms and not peak"
+         um: check the coating, and that the voltages are those at the electrode, not ahead of the amplifier"
     )]
     GapInsideCoating {
         /// Gap of the fit, in micrometres.
@@ -272,4 +288,13 @@ pub enum FitError {
          rows"
     )]
     NotConverged,
+}
+
+/// What bends the measured exponent of a quantity. A factor on volts or newtons does not.
+fn what_bends(quantity: &str) -> &'static str {
+    if quantity == "load" {
+        "that friction does not leak into the sensor's normal force, nor the load into its friction"
+    } else {
+        "that the amplifier reaches the highest voltage with the electrode connected, and that the force sensor is linear"
+    }
 }

@@ -2,7 +2,6 @@
 
 use frixel_model::ParameterError;
 
-use super::Threshold;
 use crate::calibration::Protocol;
 
 /// Duration of each of the two strokes, in seconds.
@@ -32,11 +31,9 @@ pub fn samples(protocol: &Protocol, level_db: f64, is_second: bool) -> Vec<u16> 
         .collect()
 }
 
-/// The voltages of a threshold and of its interval, in volts rms.
-pub fn in_volts(threshold: &Threshold, protocol: &Protocol) -> Result<(f64, [f64; 2]), ParameterError> {
-    let volts = |level_db: f64| protocol.voltage_of_share_v_rms(amplitude(level_db));
-    let Threshold { level_db, interval_db: (low_db, high_db) } = *threshold;
-    Ok((volts(level_db)?, [volts(low_db)?, volts(high_db)?]))
+/// The voltage at the peaks of a stimulus of this level, in volts rms.
+pub fn level_v_rms(level_db: f64, protocol: &Protocol) -> Result<f64, ParameterError> {
+    protocol.voltage_of_share_v_rms(amplitude(level_db))
 }
 
 /// The amplitude of a level, as a part of the largest.

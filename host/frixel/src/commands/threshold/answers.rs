@@ -45,8 +45,8 @@ impl Answers {
         Ok(Self { partial, writer: Some(writer), earlier })
     }
 
-    /// Gives the staircase the answers of the session that was cut off. Returns their number.
-    pub(super) fn repeat(&self, highest_v_rms: f64, staircase: &mut Staircase) -> Result<usize, CommandError> {
+    /// Gives the staircase the answers of the session that was cut off. Returns their levels, in decibels.
+    pub(super) fn repeat(&self, highest_v_rms: f64, staircase: &mut Staircase) -> Result<Vec<f64>, CommandError> {
         for (Answer { trial, highest_v_rms: found, level_db, is_right }, row) in self.earlier.iter().zip(2..) {
             let expected = (staircase.progress().0, highest_v_rms, staircase.next_level_db());
             if (*trial, *found, Some(*level_db)) != expected {
@@ -57,7 +57,7 @@ impl Answers {
             }
             staircase.answer(*level_db, *is_right);
         }
-        Ok(self.earlier.len())
+        Ok(self.earlier.iter().map(|answer| answer.level_db).collect())
     }
 
     /// Keeps an answer.

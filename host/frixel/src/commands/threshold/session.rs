@@ -10,7 +10,7 @@ use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::Protocol;
-use frixel_lab::threshold::{FADE_S, STROKE_S, Staircase, Threshold, samples};
+use frixel_lab::threshold::{FADE_S, Observer, STROKE_S, Staircase, Threshold, samples};
 use frixel_play::{Feed, Player};
 use frixel_scene::{Scene, compile};
 use frixel_wire::hello::BoardLimits;
@@ -41,7 +41,7 @@ pub(super) fn measure(
     interrupt: &Interrupt,
     answers: Answers,
 ) -> Result<(Threshold, Protocol), CommandError> {
-    // Without a port, there is a file of noise, which ends the command before.
+    // Without a port, a simulated observer answers; a file of noise ends the command before.
     let port = args.port.as_deref().unwrap_or("sim");
     if port == "sim" {
         let config = RigConfig::default();
@@ -51,6 +51,8 @@ pub(super) fn measure(
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
         let line = SimStream::new(rig, Recorder::idle());
         session(args, interrupt, Device::connect(PollingLink::new(line))?, protocol, answers)
+    } else if args.observer.is_some() {
+        Err(CommandError::ObserverOnBoard { port: port.to_owned() })
     } else {
         let device = experiment::connect(port, args.arm)?;
         let protocol = protocol(args, &device.hello().limits)?;
@@ -74,10 +76,14 @@ fn session<L: RecordedLink>(
         return Err(CommandError::NoAnswer { trial: 0 });
     };
     let mut random = Pcg64::seed_from_u64(args.seed);
+    let mut answering = Answering::new(args.observer);
     let highest_v_rms = protocol.voltage_max_v_rms();
-    for _ in 0..recorded.repeat(highest_v_rms, &mut staircase)? {
+    for level_db in recorded.repeat(highest_v_rms, &mut staircase)? {
         // As in the session that was cut off.
         let _ = random.next_u64();
+        if let Answering::Observer(observer) = &mut answering {
+            let _ = observer.answers_rightly(level_db);
+        }
     }
     let hello = *device.hello();
     let scene = protocol.scene().map_err(CommandError::Finger)?;
@@ -85,41 +91,79 @@ fn session<L: RecordedLink>(
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     let mut player = player(waiting::watch(device, interrupt), Recorder::idle());
     player.start(program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
-    print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
-    print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
-    let answers = answers();
+    if args.observer.is_none() {
+        print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
+        print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
+    }
     while let Some(level_db) = staircase.next_level_db() {
-        let (trial, trials) = staircase.progress();
+        let trial = staircase.progress().0;
         let is_second = random.next_u64() >> 63 == 1;
         let feed = Feed::of(samples(&protocol, level_db, is_second), protocol.sample_hz());
         player.stream(feed).map_err(CommandError::Play)?;
-        print(format_args!("  trial {trial} of {trials}: "))?;
+        print(format_args!("  {}: ", title(&staircase)))?;
         guide(&mut player, interrupt)?;
-        let mut wrong = 0;
-        let said_second = loop {
-            match answers.recv_timeout(ANSWER_POLL) {
-                Ok(line) if line.trim() == "1" => break false,
-                Ok(line) if line.trim() == "2" => break true,
-                Ok(_) if wrong + 1 == WRONG_ANSWERS_MAX => {
-                    player.stop()?;
-                    return Err(CommandError::WrongAnswers { trial, count: WRONG_ANSWERS_MAX });
-                }
-                Ok(_) => {
-                    wrong += 1;
-                    print(format_args!("  trial {trial} of {trials}, 1 or 2? "))?;
-                    wait(&mut player, interrupt, 0.0)?;
-                }
-                // A board whose host is silent disarms itself: serve it while the person thinks.
-                Err(RecvTimeoutError::Timeout) => wait(&mut player, interrupt, 0.0)?,
-                Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
+        let is_right = match &mut answering {
+            Answering::Person(answers) => ask(&mut player, interrupt, answers, &staircase)? == is_second,
+            Answering::Observer(observer) => {
+                let is_right = observer.answers_rightly(level_db);
+                print_line(if is_right == is_second { "2" } else { "1" })?;
+                is_right
             }
         };
-        let is_right = said_second == is_second;
         staircase.answer(level_db, is_right);
         recorded.add(Answer { trial, highest_v_rms, level_db, is_right })?;
     }
     player.stop()?;
-    Ok((staircase.threshold(), protocol))
+    Ok((staircase.threshold().map_err(CommandError::Guessed)?, protocol))
+}
+
+/// Who answers.
+enum Answering {
+    Person(Receiver<String>),
+    Observer(Observer),
+}
+
+impl Answering {
+    fn new(observer: Option<u64>) -> Self {
+        observer.map_or_else(|| Self::Person(answers()), |seed| Self::Observer(Observer::drawn(seed)))
+    }
+}
+
+/// The next trial, in words.
+fn title(staircase: &Staircase) -> String {
+    match staircase.progress() {
+        (trial, trials) if trial > trials => format!("check {}", trial - trials),
+        (trial, trials) => format!("trial {trial} of {trials}"),
+    }
+}
+
+/// Waits for a person's answer to the next trial: whether it was the second stroke.
+fn ask<L: RecordedLink>(
+    player: &mut Player<L>,
+    interrupt: &Interrupt,
+    answers: &Receiver<String>,
+    staircase: &Staircase,
+) -> Result<bool, CommandError> {
+    let trial = staircase.progress().0;
+    let mut wrong = 0;
+    loop {
+        match answers.recv_timeout(ANSWER_POLL) {
+            Ok(line) if line.trim() == "1" => return Ok(false),
+            Ok(line) if line.trim() == "2" => return Ok(true),
+            Ok(_) if wrong + 1 == WRONG_ANSWERS_MAX => {
+                player.stop()?;
+                return Err(CommandError::WrongAnswers { trial, count: WRONG_ANSWERS_MAX });
+            }
+            Ok(_) => {
+                wrong += 1;
+                print(format_args!("  {}, 1 or 2? ", title(staircase)))?;
+                wait(player, interrupt, 0.0)?;
+            }
+            // A board whose host is silent disarms itself: serve it while the person thinks.
+            Err(RecvTimeoutError::Timeout) => wait(player, interrupt, 0.0)?,
+            Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
+        }
+    }
 }
 
 /// Plays the two strokes of a trial, and shows their pace: an arrow for each part of the way.
