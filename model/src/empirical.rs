@@ -168,13 +168,13 @@ impl EmpiricalLaw {
         Ok(law)
     }
 
-    /// Electric friction in newtons at an rms voltage of zero or more; above the voltage of the last point, that of the
+    /// Electric friction in newtons at an rms voltage of zero or more. Above the last point the last power law continues:
+    /// within a carrier period the voltage on an electrode is above its rms value, which no board drives above that of the
     /// last point.
     pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
         if !(voltage_v_rms > 0.0) {
             return 0.0;
         }
-        let voltage_v_rms = voltage_v_rms.min(f64::from(self.last().voltage_v_rms));
         let (point, power_below) = self.segment::<f64>(|point| f64::from(point.voltage_v_rms) >= voltage_v_rms);
         let by_points = point.0 * (voltage_v_rms / point.1).pow(1.0 / power_below);
         // Both laws agree at the knots, and rise, so that a friction is between the same knots by both.
