@@ -279,7 +279,7 @@ fn a_wrong_stroke_is_refused_with_row_and_column() {
     }
     refuse(folder.path(), &["play", &brick(), "--stroke", "none.csv"], &["none.csv", "cannot be read"]);
     fs::write(folder.path().join("latin.csv"), b"t_s,x_mm,y_mm\n0,1,1\xb5\n").unwrap();
-    refuse(folder.path(), &["play", &brick(), "--stroke", "latin.csv"], &["latin.csv is not UTF-8 text"]);
+    refuse(folder.path(), &["play", &brick(), "--stroke", "latin.csv"], &["row 2, column y_mm", "found \"1\u{fffd}\""]);
     assert!(!folder.path().join("frixel-out").exists(), "nothing was played");
 }
 
