@@ -205,9 +205,9 @@ impl Trace {
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
     }
 
-    /// The title of a layer.
-    pub(super) fn title(&self, layer: TracedLayer) -> &str {
-        self.layers.get(layer.index).map_or("", LayerTitle::as_str)
+    /// The name of a layer; its title if it has no name.
+    pub(super) fn name(&self, layer: TracedLayer) -> &str {
+        self.layers.get(layer.index).map_or("", LayerTitle::name_or_title)
     }
 
     /// Spans in order of time.
