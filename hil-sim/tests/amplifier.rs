@@ -1,10 +1,10 @@
 //! Amplifiers as they are, in the in-process rig: healthy ones never fault, and broken ones do in time.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use crate::script::{HEADER, Script, record, scene};
+use crate::script::{HEADER, Script, constant, scene};
 use frixel_control::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
-use frixel_hil_sim::{AmplifierConfig, BoardMemory, Decay, FingerState, Rig, RigConfig, Stroke, WorldConfig};
-use frixel_layers::{Constant, Header, Layer, Waveform};
+use frixel_hil_sim::{AmplifierConfig, Decay, FingerState, RigConfig, Stroke, WorldConfig};
+use frixel_layers::{Header, Waveform};
 use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
@@ -46,7 +46,7 @@ const DECAYS: [(f64, Decay); 4] = [
 const TURN_OFF_TICKS: u64 = 42;
 
 /// Plays a constant on a board with this amplifier.
-fn play(memory: &mut BoardMemory, amplifier: AmplifierConfig, header: &Header, play: impl FnOnce(&mut Script)) {
+fn play(amplifier: AmplifierConfig, header: &Header, play: impl FnOnce(&mut Script)) {
     let world = WorldConfig {
         tick_hz: BOARD.tick_hz,
         full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
@@ -54,10 +54,10 @@ fn play(memory: &mut BoardMemory, amplifier: AmplifierConfig, header: &Header, p
         ..WorldConfig::IDEAL
     };
     let config = RigConfig { board: BOARD, world, ..RigConfig::default() };
-    let mut script = Script::new(Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 3.0).unwrap(), 1).unwrap());
+    let mut script = Script::new(&config, Stroke::sweep(0.12, 0.08, 3.0).unwrap(), 1);
     script.hello();
     // More friction than any voltage gives.
-    script.play(&scene(header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    script.play(&scene(header, &[constant(1.0)]));
     assert_eq!(script.status().telemetry.state, State::Active);
     play(&mut script);
 }
@@ -116,7 +116,6 @@ fn lift_and_stop(script: &mut Script, random: &mut Random, ticks: u64) {
 #[test]
 fn a_healthy_amplifier_never_faults_however_often_it_is_switched() {
     let mut random = Random::new(19);
-    let mut memory = BoardMemory::new();
     let mut driven = false;
     for (turn_off_delay_s, decay) in DECAYS {
         for voltage_v_peak in [10.0, 50.0, 100.0, 200.0] {
@@ -128,7 +127,7 @@ fn a_healthy_amplifier_never_faults_however_often_it_is_switched() {
                 (1_000.0, Waveform::Sine),
             ] {
                 let amplifier = AmplifierConfig { turn_off_delay_s, decay, ..AMPLIFIER };
-                play(&mut memory, amplifier, &header(voltage_v_peak, carrier_hz, waveform), |script| {
+                play(amplifier, &header(voltage_v_peak, carrier_hz, waveform), |script| {
                     lift_and_stop(script, &mut random, 13_000);
                     driven |= script.status().telemetry.voltage_v_rms > 100.0;
                 });
@@ -139,9 +138,9 @@ fn a_healthy_amplifier_never_faults_however_often_it_is_switched() {
 }
 
 /// The ticks from the first one without output, after a lift, until the board faults.
-fn ticks_from_lift_to_fault(memory: &mut BoardMemory, broken: AmplifierConfig, voltage_v_peak: f32) -> Option<u64> {
+fn ticks_from_lift_to_fault(broken: AmplifierConfig, voltage_v_peak: f32) -> Option<u64> {
     let mut ticks = None;
-    play(memory, AMPLIFIER, &header(voltage_v_peak, 1_000.0, Waveform::Square), |script| {
+    play(AMPLIFIER, &header(voltage_v_peak, 1_000.0, Waveform::Square), |script| {
         for _ in 0..3_000 {
             place_finger(script);
             script.step();
@@ -166,7 +165,6 @@ fn ticks_from_lift_to_fault(memory: &mut BoardMemory, broken: AmplifierConfig, v
 
 #[test]
 fn an_output_that_stays_or_is_slow_after_a_lift_faults_when_the_turn_off_time_is_over() {
-    let mut memory = BoardMemory::new();
     for decay in [
         Decay::Linear { v_per_s: 0.0 },
         Decay::Linear { v_per_s: 1.2e4 },
@@ -175,7 +173,7 @@ fn an_output_that_stays_or_is_slow_after_a_lift_faults_when_the_turn_off_time_is
         Decay::HighImpedance { time_constant_s: 5.3e-3 },
     ] {
         for voltage_v_peak in [20.0, 50.0, 200.0] {
-            let ticks = ticks_from_lift_to_fault(&mut memory, AmplifierConfig { decay, ..AMPLIFIER }, voltage_v_peak);
+            let ticks = ticks_from_lift_to_fault(AmplifierConfig { decay, ..AMPLIFIER }, voltage_v_peak);
             assert_eq!(ticks, Some(TURN_OFF_TICKS), "{decay:?}, {voltage_v_peak} V");
         }
     }
@@ -183,10 +181,9 @@ fn an_output_that_stays_or_is_slow_after_a_lift_faults_when_the_turn_off_time_is
 
 #[test]
 fn an_output_that_rises_after_a_lift_faults_within_two_ticks_of_its_rise() {
-    let mut memory = BoardMemory::new();
     for voltage_v_peak in [10.0, 50.0, 100.0] {
         let decay = Decay::Linear { v_per_s: -1e6 };
-        let ticks = ticks_from_lift_to_fault(&mut memory, AmplifierConfig { decay, ..AMPLIFIER }, voltage_v_peak);
+        let ticks = ticks_from_lift_to_fault(AmplifierConfig { decay, ..AMPLIFIER }, voltage_v_peak);
         // 25 V a tick, of which the monitor shows the first at the second reading.
         assert!(ticks.is_some_and(|ticks| ticks <= 4), "{voltage_v_peak} V: {ticks:?}");
     }
@@ -194,7 +191,6 @@ fn an_output_that_rises_after_a_lift_faults_within_two_ticks_of_its_rise() {
 
 #[test]
 fn a_monitor_that_dies_and_a_gain_that_changes_fault_within_half_a_millisecond() {
-    let mut memory = BoardMemory::new();
     for (broken, voltage_v_peak) in [
         (AmplifierConfig { monitor_gain: 0.0, ..AMPLIFIER }, 12.0),
         (AmplifierConfig { monitor_gain: 0.0, ..AMPLIFIER }, 200.0),
@@ -202,7 +198,7 @@ fn a_monitor_that_dies_and_a_gain_that_changes_fault_within_half_a_millisecond()
         (AmplifierConfig { gain: 1.5, ..AMPLIFIER }, 100.0),
         (AmplifierConfig { gain: 0.5, ..AMPLIFIER }, 100.0),
     ] {
-        play(&mut memory, AMPLIFIER, &header(voltage_v_peak, 1_000.0, Waveform::Square), |script| {
+        play(AMPLIFIER, &header(voltage_v_peak, 1_000.0, Waveform::Square), |script| {
             for _ in 0..3_000 {
                 place_finger(script);
                 script.step();

@@ -4,21 +4,20 @@
 
 use crate::script;
 
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord};
-use frixel_layers::Layer;
+use frixel_hil_sim::{RigConfig, Stroke, TickRecord};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::{self, Payload};
-use script::{HEADER, Script, record, scene};
+use script::{HEADER, Script, constant, scene};
 
 /// Ticks of the host timeout of the scene here.
 const HOST_TIMEOUT_TICKS: u64 = 10_000;
 
-fn playing(memory: &mut BoardMemory) -> Script<'_> {
+fn playing() -> Script {
     let stroke = Stroke::sweep(0.12, 0.08, 60.0).unwrap();
-    let mut script = Script::new(Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap());
-    script.play(&scene(&HEADER, &[record(Layer::Constant(frixel_layers::Constant { electric_friction_n: 0.02 }))]));
+    let mut script = Script::new(&RigConfig::default(), stroke, 1);
+    script.play(&scene(&HEADER, &[constant(0.02)]));
     script
 }
 
@@ -30,8 +29,7 @@ fn ping(sequence: u16) -> Vec<u8> {
 /// A mebibyte of pings takes five seconds on the line. All but a window of it was sent without credit.
 #[test]
 fn a_client_that_ignores_credit_and_is_killed_keeps_nothing_playing() {
-    let mut memory = BoardMemory::new();
-    let mut script = playing(&mut memory);
+    let mut script = playing();
     let window = u64::from(RigConfig::default().board.limits.receive_window_bytes);
     script.rig.send(&ping(0).repeat((1 << 20) / 9));
     let killed_at = script.step().tick;
@@ -48,8 +46,7 @@ fn a_client_that_ignores_credit_and_is_killed_keeps_nothing_playing() {
 /// Answers always have their place: telemetry is what is left out.
 #[test]
 fn a_host_that_did_not_read_for_three_seconds_finds_every_answer() {
-    let mut memory = BoardMemory::new();
-    let mut script = playing(&mut memory);
+    let mut script = playing();
     script.command(Command::Subscribe { period_ticks: 40 });
     let mut bytes = Vec::new();
     script.rig.receive(&mut bytes);

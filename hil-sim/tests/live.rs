@@ -3,16 +3,14 @@
 
 use crate::script;
 
-use frixel_hil_sim::{
-    AmplifierConfig, BoardMemory, Point, Rig, RigConfig, Stroke, TickRecord, TouchConfig, contact_of,
-};
-use frixel_layers::{Blend, Constant, Grating, Header, Layer, Record, Wave, Waveform};
+use frixel_hil_sim::{AmplifierConfig, Point, RigConfig, Stroke, TickRecord, TouchConfig, contact_of};
+use frixel_layers::{Blend, Grating, Header, Layer, Record, Wave, Waveform};
 use frixel_testkit::Random;
 use frixel_wire::fault::Flags;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::message::{Command, FromBoard};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
-use script::{HEADER, Script, record, scene};
+use script::{HEADER, Script, constant, record, scene};
 
 /// A touch source that reports in every fifth tick, so that orders and reports meet in one tick now and then.
 fn config() -> RigConfig {
@@ -24,10 +22,6 @@ fn config() -> RigConfig {
 
 fn slide() -> Stroke {
     Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.03 }, Point { x_m: 0.11, y_m: 0.05 }, 0.1).unwrap()
-}
-
-fn constant(electric_friction_n: f32) -> Record {
-    record(Layer::Constant(Constant { electric_friction_n }))
 }
 
 fn stripes(crest_n: f32, cycles_per_m_x: f32) -> Record {
@@ -44,8 +38,8 @@ fn stripes(crest_n: f32, cycles_per_m_x: f32) -> Record {
 }
 
 /// Plays `scene` from power-on for 1,000 ticks, and hands the board over.
-fn play<'a>(memory: &'a mut BoardMemory, scene: &[u8]) -> Script<'a> {
-    let mut script = Script::new(Rig::new(memory, &config(), slide(), 1).unwrap());
+fn play(scene: &[u8]) -> Script {
+    let mut script = Script::new(&config(), slide(), 1);
     script.play(scene);
     for _ in 0..1_000 {
         script.step();
@@ -62,8 +56,7 @@ fn amplitude(record: &TickRecord) -> u16 {
 fn ticks_to_dac(bulk_frames: usize) -> u64 {
     let mut most = 0;
     for phase in 0..10 {
-        let mut memory = BoardMemory::new();
-        let mut script = play(&mut memory, &scene(&HEADER, &[constant(0.02)]));
+        let mut script = play(&scene(&HEADER, &[constant(0.02)]));
         for _ in 0..phase {
             script.step();
         }
@@ -109,8 +102,7 @@ fn a_gain_is_at_the_dac_within_a_millisecond_on_an_idle_line_and_two_during_an_u
 #[test]
 fn a_layer_goes_off_and_comes_back_as_its_record_has_it_with_the_next_commit() {
     let both = scene(&HEADER, &[constant(0.01), stripes(0.006, 300.0)]);
-    let mut memory = BoardMemory::new();
-    let mut script = play(&mut memory, &both);
+    let mut script = play(&both);
     script.command(Command::SetLayer { layer: 1, on: false, gain: 1.0 });
     let asked = |script: &mut Script| script.step().status.telemetry.asked_electric_friction_n;
     for _ in 0..100 {
@@ -128,8 +120,7 @@ fn a_layer_goes_off_and_comes_back_as_its_record_has_it_with_the_next_commit() {
 
 #[test]
 fn a_gain_out_of_reach_is_clamped_flagged_and_counted() {
-    let mut memory = BoardMemory::new();
-    let mut script = play(&mut memory, &scene(&HEADER, &[constant(0.01)]));
+    let mut script = play(&scene(&HEADER, &[constant(0.01)]));
     assert_eq!(script.status().counters.saturated_ticks, 0);
     let reach_n = contact_of(&HEADER).unwrap().electric_friction_n(150.0);
     script.command(Command::SetLayer { layer: 0, on: true, gain: 100.0 });
@@ -153,8 +144,7 @@ fn the_electrode_has_the_voltage_asked_for_from_the_third_period_after_any_chang
         config.world.amplifier = AmplifierConfig::REALISTIC;
         let slow =
             Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.03 }, Point { x_m: 0.11, y_m: 0.05 }, 0.01).unwrap();
-        let mut memory = BoardMemory::new();
-        let mut script = Script::new(Rig::new(&mut memory, &config, slow, 1).unwrap());
+        let mut script = Script::new(&config, slow, 1);
         let header = Header { waveform, ..HEADER };
         let reach_n = contact_of(&header).unwrap().electric_friction_n(f64::from(header.voltage_max_v_rms));
         script.play(&scene(&header, &[constant(0.999 * reach_n as f32)]));
@@ -197,8 +187,7 @@ struct Swap {
 const SWAP_TICKS: usize = 3_000;
 
 fn run(first: &[u8], second: Option<(&[u8], usize)>) -> Vec<TickRecord> {
-    let mut memory = BoardMemory::new();
-    let mut script = play(&mut memory, first);
+    let mut script = play(first);
     let mut records = Vec::new();
     let mut commit = None;
     for tick in 0..SWAP_TICKS {
@@ -300,9 +289,8 @@ fn the_carrier_goes_on_over_the_swap() {
 /// The finger in the world is the committed scene's, also once the next upload has begun: it waits for the commit.
 #[test]
 fn a_commit_and_the_next_upload_in_one_tick_leave_no_old_finger() {
-    let mut memory = BoardMemory::new();
     let config = RigConfig { baud: 20_000_000, ..config() };
-    let mut script = Script::new(Rig::new(&mut memory, &config, slide(), 1).unwrap());
+    let mut script = Script::new(&config, slide(), 1);
     script.play(&scene(&HEADER, &[constant(0.01)]));
     let heavy = Header { normal_load_n: 1.0, ..HEADER };
     let commit = script.upload(&scene(&heavy, &[constant(0.01)]));
@@ -321,9 +309,8 @@ fn a_commit_and_the_next_upload_in_one_tick_leave_no_old_finger() {
 /// A line that is slower than what is asked for: telemetry is left out, and what comes is not old.
 #[test]
 fn telemetry_on_a_slow_line_stays_fresh() {
-    let mut memory = BoardMemory::new();
     let config = RigConfig { baud: 9_600, ..config() };
-    let mut script = Script::new(Rig::new(&mut memory, &config, slide(), 1).unwrap());
+    let mut script = Script::new(&config, slide(), 1);
     script.command(Command::Subscribe { period_ticks: 40 });
     let (mut decoder, mut bytes) = (Decoder::new(), Vec::new());
     let (mut heard, mut oldest) = (0, 0);

@@ -11,27 +11,21 @@ use crate::script;
 use frixel_control::Board;
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
-use frixel_hil_sim::{BoardMemory, Journal, LineFault, Point, Rig, RigConfig, Stroke};
+use frixel_hil_sim::{Journal, LineFault, Point, RigConfig, Stroke};
 use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
 };
 use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
-use script::{HEADER, Script, record, samples, scene, scene_with_points};
+use script::{HEADER, Script, constant, record, samples, scene, scene_with_points};
 
 const TICKS: u64 = 110_000;
 
-fn config(board: Board) -> RigConfig {
-    RigConfig { board, ..RigConfig::default() }
-}
-
 /// The journal of a board, from power-on, that `play` does something with.
 fn journal(board: Board, stroke: Stroke, seed: u64, play: impl FnOnce(&mut Script)) -> Journal {
-    let mut memory = BoardMemory::new();
-    let mut rig = Rig::new(&mut memory, &config(board), stroke, seed).unwrap();
-    rig.start_journal();
-    let mut script = Script::new(rig);
+    let mut script = Script::new(&RigConfig { board, ..RigConfig::default() }, stroke, seed);
+    script.rig.start_journal();
     play(&mut script);
     let journal = script.rig.take_journal().unwrap();
     let driven = journal.outputs().filter(|output| output.drive.dac_code.bits() != 0).count();
@@ -50,7 +44,6 @@ fn assert_same(image: &Image, journal: &Journal) {
 fn stripes(board: Board) -> Journal {
     let stroke = Stroke::sweep(0.12, 0.08, 3.0).unwrap();
     journal(board, stroke, 1, |script| {
-        let constant = record(Layer::Constant(Constant { electric_friction_n: 0.004 }));
         let stripes = Record {
             region: Region::Rectangle { x_m: 0.02, y_m: 0.0, width_m: 0.08, height_m: 0.08 },
             blend: Blend::Add,
@@ -65,7 +58,7 @@ fn stripes(board: Board) -> Journal {
             }),
         };
         // No hello, whose bytes would tell of a changed limit before any drive does.
-        script.play(&scene(&HEADER, &[constant, stripes]));
+        script.play(&scene(&HEADER, &[constant(0.004), stripes]));
         script.run(TICKS);
     })
 }
@@ -210,7 +203,6 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
     let points = POINTS.into_iter().chain(corners.map(|(x, y)| Corner { x, y })).collect();
     let regions = [Region::Screen, polygon, rectangle, ellipse];
     let blends = [Blend::Add, Blend::Max, Blend::Add, Blend::Multiply, Blend::Replace];
-    let ground = record(Layer::Constant(Constant { electric_friction_n: 0.003 }));
     let layers = sample_records().zip(regions.into_iter().cycle()).zip(blends.into_iter().cycle());
     let records = layers.map(|((sample, region), blend)| {
         let Record { layer, gain, .. } = sample.record;
@@ -218,7 +210,7 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
         let blend = if matches!(layer, Layer::Speed(_)) { Blend::Multiply } else { blend };
         Record { region, blend, gain, layer: with_picture(layer, crc32) }
     });
-    (iter::once(ground).chain(records).collect(), points)
+    (iter::once(constant(0.003)).chain(records).collect(), points)
 }
 
 #[test]

@@ -3,9 +3,8 @@
 
 use crate::script;
 
-use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke, TouchConfig};
-use frixel_layers::{Constant, Layer};
-use script::{HEADER, Script, record, scene};
+use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
+use script::{HEADER, Script, constant, scene};
 
 /// Long enough for the first ramp down: 50 ms of standstill, 10 ms of ramp, and the latency of the source.
 const SETTLE_TICKS: u64 = 6_000;
@@ -17,14 +16,12 @@ const SLOW_SOURCE: TouchConfig = TouchConfig { rate_hz: 60.0, ..TouchConfig::IDE
 
 /// Shares of the time in which a plate of constant friction drives the finger of `stroke`, one for each seed.
 fn driven_shares(touch: TouchConfig, stroke: impl Fn(u64) -> Stroke) -> Vec<f64> {
-    let plate = record(Layer::Constant(Constant { electric_friction_n: 0.02 }));
     (0..SEEDS)
         .map(|seed| {
             let mut config = RigConfig::default();
             config.world.touch = touch;
-            let mut memory = BoardMemory::new();
-            let mut script = Script::new(Rig::new(&mut memory, &config, stroke(seed), seed).unwrap());
-            script.play(&scene(&HEADER, &[plate]));
+            let mut script = Script::new(&config, stroke(seed), seed);
+            script.play(&scene(&HEADER, &[constant(0.02)]));
             script.run(SETTLE_TICKS);
             let mut driven = 0_u64;
             for _ in 0..MEASURED_TICKS / 1_000 {

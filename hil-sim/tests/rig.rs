@@ -1,59 +1,22 @@
 //! The whole path in one process: frames over a virtual line into the firmware, its voltage onto a simulated finger.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use frixel_hil_sim::{BoardMemory, LineFault, Point, Rig, RigConfig, Stroke, TickRecord, contact_of};
+use crate::script::{Script, constant, scene};
+use frixel_hil_sim::{LineFault, Point, RigConfig, Stroke, TickRecord, contact_of};
 use frixel_layers::{Header, Waveform};
 use frixel_wire::fault::State;
-use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
-use frixel_wire::message::{Command, FromBoard, Request};
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::payload::{self, Payload};
 
 /// A scene that needs no host.
 const HEADER: Header =
     Header { voltage_max_v_peak: 220.0, host_timeout_s: 1.0, autonomous: true, ..frixel_testkit::HEADER };
 
-fn constant(header: &Header, electric_friction_n: f32) -> Vec<u8> {
-    frixel_testkit::scene(header, &[frixel_testkit::constant(electric_friction_n)])
-}
-
-/// Sends one frame and returns the payload bytes of what comes back, with the ticks that it took.
-fn exchange(rig: &mut Rig, frame: &[u8]) -> (Vec<u8>, u64) {
-    let start = rig.tick();
-    rig.send(frame);
-    let mut decoder = Decoder::new();
-    let mut bytes = Vec::new();
-    while rig.tick() < start + 40_000 {
-        rig.step();
-        rig.receive(&mut bytes);
-        for byte in bytes.drain(..) {
-            if let Some(payload) = decoder.push(byte) {
-                return (payload.to_vec(), rig.tick() - start);
-            }
-        }
-    }
-    panic!("no answer within a second of virtual time");
-}
-
-fn command(rig: &mut Rig, command: Command) {
-    let mut frame = [0; FRAME_MAX_LEN];
-    let frame = payload::request_frame(&Request { sequence: 7, command }, &mut frame).unwrap();
-    let (payload, _) = exchange(rig, frame);
-    match Payload::parse_from_board(&payload).unwrap() {
-        Payload::FromBoard(FromBoard::Answer(answer)) => assert!(answer.outcome.is_ok(), "{command:?}: {answer:?}"),
-        other => panic!("{command:?} answered by {other:?}"),
-    }
-}
-
-fn play(rig: &mut Rig, scene: &[u8]) {
-    command(rig, Command::UploadScene { len: scene.len() as u32, crc32: crc32(scene) });
-    let mut frame = [0; FRAME_MAX_LEN];
-    let frame = payload::chunk_frame(0, scene, &mut frame).unwrap();
-    exchange(rig, frame);
-    command(rig, Command::UploadEnd);
-    command(rig, Command::Commit { crc32: crc32(scene) });
-    command(rig, Command::Arm);
-    command(rig, Command::Play);
-    rig.world_mut().start_stroke();
+/// Plays a constant under the finger's stroke.
+fn playing(header: &Header, electric_friction_n: f32, seed: u64) -> Script {
+    let mut script = Script::new(&RigConfig::default(), slide(), seed);
+    script.play(&scene(header, &[constant(electric_friction_n)]));
+    script
 }
 
 fn slide() -> Stroke {
@@ -71,11 +34,19 @@ fn felt_means_n(records: &[TickRecord]) -> Vec<f64> {
 
 #[test]
 fn a_hello_takes_the_time_that_its_bytes_take_on_the_line() {
-    let mut memory = BoardMemory::new();
-    let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
+    let mut rig = Script::new(&RigConfig::default(), slide(), 1).rig;
     let mut frame = [0; FRAME_MAX_LEN];
     let request = payload::hello_request_frame(&mut frame).unwrap();
-    let (answer, ticks) = exchange(&mut rig, request);
+    rig.send(request);
+    let (mut decoder, mut bytes) = (Decoder::new(), Vec::new());
+    let (answer, ticks) = (1..4_000)
+        .find_map(|ticks| {
+            rig.step();
+            rig.receive(&mut bytes);
+            let mut answers = bytes.drain(..).filter_map(|byte| decoder.push(byte).map(<[u8]>::to_vec));
+            answers.next().map(|answer| (answer, ticks))
+        })
+        .unwrap();
     assert!(matches!(Payload::parse_from_board(&answer).unwrap(), Payload::Hello(_)));
     // Five bytes a tick at 2 Mbaud and 40 kHz; the answer is framed in six bytes more.
     let bytes_ticks = (request.len().div_ceil(5) + (answer.len() + 6).div_ceil(5)) as u64;
@@ -91,10 +62,8 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
         let reach_n = contact.electric_friction_n(150.0);
         for part in [0.1, 0.5, 0.95] {
             let wanted_n = contact.natural_friction_n() + part * reach_n;
-            let mut memory = BoardMemory::new();
-            let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
-            play(&mut rig, &constant(&header, (part * reach_n) as f32));
-            let records: Vec<TickRecord> = (0..39_000).map(|_| rig.step()).collect();
+            let mut script = playing(&header, (part * reach_n) as f32, 1);
+            let records: Vec<TickRecord> = (0..39_000).map(|_| script.step()).collect();
             // A sine's pressure swings about its mean, and friction grows a little faster than pressure.
             let bound = if waveform == Waveform::Square { 0.01 } else { 0.03 };
             for felt_n in felt_means_n(&records) {
@@ -108,9 +77,7 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
 #[test]
 fn a_cut_cable_ends_at_zero_within_the_host_timeout() {
     let header = Header { autonomous: false, host_timeout_s: 0.1, ..HEADER };
-    let mut memory = BoardMemory::new();
-    let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), 1).unwrap();
-    play(&mut rig, &constant(&header, 0.01));
+    let mut rig = playing(&header, 0.01, 1).rig;
     let cut_at_tick = rig.tick();
     let sent = rig.line_to_board_mut().bytes().sent;
     rig.line_to_board_mut().schedule_fault(sent, LineFault::Cut);
@@ -123,10 +90,8 @@ fn a_cut_cable_ends_at_zero_within_the_host_timeout() {
 #[test]
 fn the_same_seed_gives_the_same_run_and_another_does_not() {
     let run = |seed| {
-        let mut memory = BoardMemory::new();
-        let mut rig = Rig::new(&mut memory, &RigConfig::default(), slide(), seed).unwrap();
-        play(&mut rig, &constant(&HEADER, 0.01));
-        (0..8000).map(|_| rig.step().felt.friction_n.to_bits()).collect::<Vec<u64>>()
+        let mut script = playing(&HEADER, 0.01, seed);
+        (0..8000).map(|_| script.step().felt.friction_n.to_bits()).collect::<Vec<u64>>()
     };
     assert_eq!(run(1), run(1));
     assert_ne!(run(1), run(2));

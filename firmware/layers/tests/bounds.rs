@@ -1,16 +1,13 @@
 //! The largest electric friction that a scene can ask for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use crate::support;
-
 use frixel_layers::{
-    Blend, Button, Click, Constant, Edge, Grating, Layer, Point, Record, Region, Speed, Stream, Wave,
-    electric_friction_max_n,
+    Blend, Button, Click, Edge, Grating, Layer, Point, Record, Region, Speed, Stream, Wave, electric_friction_max_n,
 };
-use support::header;
+use frixel_testkit::{HEADER, constant, record};
 
 fn largest_n(records: &[Record], points: &[Point]) -> f32 {
-    electric_friction_max_n(&header(), records, points).unwrap()
+    electric_friction_max_n(&HEADER, records, points).unwrap()
 }
 
 /// What a header stores: at most 1 % more than the bound, and never less.
@@ -18,14 +15,6 @@ fn largest_n(records: &[Record], points: &[Point]) -> f32 {
 fn assert_largest(records: &[Record], expected_n: f32) {
     let found_n = largest_n(records, &[]);
     assert!(found_n >= expected_n && found_n <= 1.01 * expected_n, "{found_n} for {expected_n}");
-}
-
-const fn record(layer: Layer) -> Record {
-    Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }
-}
-
-const fn constant(electric_friction_n: f32) -> Record {
-    record(Layer::Constant(Constant { electric_friction_n }))
 }
 
 #[test]
@@ -64,7 +53,7 @@ fn layers_side_by_side_do_not_add_up() {
 #[test]
 fn an_ellipse_leaves_the_corners_of_its_rectangle() {
     let region =
-        Region::Ellipse { x_m: 0.0, y_m: 0.0, width_m: header().screen_width_m, height_m: header().screen_height_m };
+        Region::Ellipse { x_m: 0.0, y_m: 0.0, width_m: HEADER.screen_width_m, height_m: HEADER.screen_height_m };
     assert_largest(&[constant(0.01), Record { region, ..constant(0.002) }], 0.01);
 }
 
@@ -105,7 +94,7 @@ fn unbounded_parameters_give_no_bound() {
         crest_n: f32::INFINITY,
     };
     let endless = record(Layer::Grating(grating));
-    assert_eq!(electric_friction_max_n(&header(), &[endless], &[]), None);
+    assert_eq!(electric_friction_max_n(&HEADER, &[endless], &[]), None);
     let huge = constant(f32::MAX);
-    assert_eq!(electric_friction_max_n(&header(), &[huge, Record { blend: Blend::Add, ..huge }], &[]), None);
+    assert_eq!(electric_friction_max_n(&HEADER, &[huge, Record { blend: Blend::Add, ..huge }], &[]), None);
 }

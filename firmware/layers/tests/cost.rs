@@ -1,18 +1,11 @@
 //! What a scene is estimated to cost.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use crate::support;
-
 use frixel_layers::cost::{of_empty_scene, of_record, worst_of_scene};
-use frixel_layers::{Blend, Constant, Layer, Noise, Point, Record, Region, Stream};
-use support::header;
+use frixel_layers::{Blend, Layer, Noise, Point, Record, Region, Stream};
+use frixel_testkit::{HEADER, constant};
 
-const CONSTANT: Record = Record {
-    region: Region::Screen,
-    blend: Blend::Add,
-    gain: 1.0,
-    layer: Layer::Constant(Constant { electric_friction_n: 0.001 }),
-};
+const CONSTANT: Record = Record { blend: Blend::Add, ..constant(0.001) };
 
 /// The stream goes on wherever the finger is, and once for all layers that play it.
 #[test]
@@ -33,8 +26,8 @@ fn a_stream_costs_at_every_place() {
         }),
         ..CONSTANT
     };
-    let of = |records: &[Record]| worst_of_scene(&header(), records, &[]).core_cycles;
-    let empty = of_empty_scene(&header());
+    let of = |records: &[Record]| worst_of_scene(&HEADER, records, &[]).core_cycles;
+    let empty = of_empty_scene(&HEADER);
     assert_eq!(of(&[noise]), empty + of_record(&noise, &[]));
     let with_stream = of(&[noise, stream(0.0)]);
     assert!(with_stream > of(&[noise]) && with_stream > of(&[stream(0.0)]), "{with_stream}");

@@ -2,16 +2,12 @@
 //! To see it refused: `cargo test -p frixel-layers --no-default-features --test disabled`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use frixel_layers::{Blend, Constant, FEATURES, KIND_FEATURES, KindFeature, Layer, Record, Region, disabled_record};
+use frixel_layers::{FEATURES, KIND_FEATURES, KindFeature, Record, Region, disabled_record};
+use frixel_testkit::constant;
 use frixel_wire::hello::feature;
 use frixel_wire::scene::SceneError;
 
-const RECORD: Record = Record {
-    region: Region::Screen,
-    blend: Blend::Replace,
-    gain: 1.0,
-    layer: Layer::Constant(Constant { electric_friction_n: 0.01 }),
-};
+const RECORD: Record = constant(0.01);
 
 #[test]
 fn a_kind_is_read_or_known_to_be_disabled() {

@@ -5,4 +5,3 @@ mod cost;
 mod grid;
 mod manifests;
 mod protocol;
-mod support;

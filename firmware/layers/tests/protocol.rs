@@ -1,11 +1,9 @@
 //! The tables in `PROTOCOL.md` of kinds, features and ranges are those of the code.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use crate::support;
-
 use frixel_layers::{Header, Range, feature_names, kind_names, range};
+use frixel_testkit::HEADER;
 use frixel_wire::hello::{BoardLimits, feature};
-use support::header;
 
 const PROTOCOL: &str = include_str!("../../wire/PROTOCOL.md");
 const TICK_HZ: u32 = 40_000;
@@ -91,7 +89,7 @@ fn numbers_of_the_header() {
         ("largest electric friction", |header| header.electric_friction_max_n = Some(f32::NAN)),
     ];
     for (name, set) in fields {
-        let mut header = header();
+        let mut header = HEADER;
         set(&mut header);
         let refused = header.check(&LIMITS, TICK_HZ).unwrap_err();
         check(&format!("header: {name}"), &(refused.min, refused.max, format!("{:?}", refused.field)));

@@ -8,7 +8,7 @@ use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::{Command, FromBoard};
-use support::{TestBoard, constant, request};
+use support::{TestBoard, constant_scene, request};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
@@ -30,7 +30,7 @@ fn window_of(command: Command) -> Vec<u8> {
 /// A playing board with no bytes under way, and a client that stops reading.
 fn playing() -> TestBoard {
     let mut board = TestBoard::new();
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     board.slide(2000);
     board.messages.clear();
     board.reads = false;

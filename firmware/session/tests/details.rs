@@ -8,7 +8,7 @@ use frixel_control::Board;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
-use support::{TestBoard, constant};
+use support::{TestBoard, constant_scene};
 
 /// Ticks of the host timeout of these scenes, and a margin.
 const TIMEOUT_TICKS: u32 = 11_000;
@@ -32,7 +32,7 @@ fn answers(board: &mut TestBoard) -> Vec<(u16, Result<Accepted, Refusal>)> {
 /// The state of a playing board after its host timeout, with this payload every eighth of it.
 fn state_with_only(payload: &[u8]) -> State {
     let mut board = TestBoard::new();
-    board.play(&constant(0.01));
+    board.play(&constant_scene(0.01));
     for _ in 0..8 {
         board.ticks(TIMEOUT_TICKS / 8);
         send(&mut board, payload);
@@ -75,7 +75,7 @@ fn only_what_is_understood_is_a_sign_of_life() {
 #[test]
 fn the_first_refusal_of_several() {
     let mut board = TestBoard::connected();
-    let crc = crc32(&constant(0.01));
+    let crc = crc32(&constant_scene(0.01));
     assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
     assert_eq!(board.command(Command::Stop), Err(Refusal::WrongState(State::Disarmed)));
     assert_eq!(board.command(Command::Disarm), Ok(Accepted::Done));
@@ -84,13 +84,13 @@ fn the_first_refusal_of_several() {
     assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
     board.command(Command::Disarm).unwrap();
     board.press_switch();
-    board.upload_scene(&constant(0.01)).unwrap();
+    board.upload_scene(&constant_scene(0.01)).unwrap();
     let mismatch = Refusal::CrcMismatch { expected: crc, found: !crc };
     let refused = board.command(Command::Commit { crc32: !crc }).unwrap_err();
     assert_eq!(std::mem::discriminant(&refused), std::mem::discriminant(&mismatch));
     board.command(Command::UploadScene { len: 10, crc32: 1 }).unwrap();
     assert_eq!(board.command(Command::Commit { crc32: crc }), Err(Refusal::UploadIncomplete { next_chunk: 0 }));
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     assert_eq!(board.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
     board.command(Command::Arm).unwrap();
     board.sense.amplifier_fault = true;
@@ -121,9 +121,9 @@ fn an_upload_of_nothing_ends_at_once_and_is_no_scene() {
 #[test]
 fn a_scene_is_committed_as_often_as_a_client_likes() {
     let mut board = TestBoard::new();
-    board.play(&constant(0.01));
+    board.play(&constant_scene(0.01));
     for _ in 0..2 {
-        assert_eq!(board.command(Command::Commit { crc32: crc32(&constant(0.01)) }), Ok(Accepted::Done));
+        assert_eq!(board.command(Command::Commit { crc32: crc32(&constant_scene(0.01)) }), Ok(Accepted::Done));
         board.ticks(400);
     }
     assert_eq!(board.status().telemetry.state, State::Active);

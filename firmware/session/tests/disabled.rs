@@ -2,11 +2,11 @@
 
 use crate::support;
 
-use frixel_layers::{BITMAP_POOL_LEN, Constant, FEATURES, Header, KIND_FEATURES, Layer, Record, Region, Waveform};
+use frixel_layers::{BITMAP_POOL_LEN, FEATURES, Header, KIND_FEATURES, Record, Region, Waveform};
 use frixel_testkit::samples::{POINTS, sample_records};
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
-use support::{HEADER, TestBoard, constant, record, scene, scene_with_points};
+use support::{HEADER, TestBoard, constant, constant_scene, scene, scene_with_points};
 
 #[test]
 fn the_hello_tells_what_there_is() {
@@ -31,7 +31,7 @@ fn a_layer_plays_or_is_refused_by_its_number() {
     for sample in sample_records() {
         let Record { layer, region, .. } = sample.record;
         let needed = layer.feature() | if matches!(region, Region::Polygon { .. }) { feature::POLYGON } else { 0 };
-        let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })), sample.record];
+        let records = [constant(0.01), sample.record];
         let found = board.load(&scene_with_points(&HEADER, &records, &POINTS)).err();
         let missing = layer.bitmap_crc32().map(|crc32| Refusal::BitmapMissing { crc32 });
         let is_there = FEATURES & needed == needed;
@@ -43,10 +43,10 @@ fn a_layer_plays_or_is_refused_by_its_number() {
 fn a_carrier_plays_or_is_refused() {
     let mut board = TestBoard::connected();
     let header = Header { waveform: Waveform::Sine, ..HEADER };
-    let found = board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))])).err();
+    let found = board.load(&scene(&header, &[constant(0.01)])).err();
     let refused = Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE };
     assert_eq!(found, (!cfg!(feature = "sine-carrier")).then_some(refused));
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     assert!(board.slide(2000)[1000..].iter().all(|drive| drive.dac_code.bits() != 0));
 }
 

@@ -4,10 +4,10 @@
 use crate::support;
 
 use frixel_control::{Board, Drive};
-use frixel_layers::{Blend, Constant, Header, Layer, Leader, Record};
+use frixel_layers::{Blend, Header, Leader, Record};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
-use support::{HEADER, TestBoard, constant, record, scene};
+use support::{HEADER, TestBoard, constant, constant_scene, scene};
 
 const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
 
@@ -15,7 +15,7 @@ const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
 fn a_layer_is_changed_only_while_it_plays() {
     let mut board = TestBoard::connected();
     assert_eq!(board.command(HALF), Err(Refusal::WrongState(State::Disarmed)));
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     board.command(Command::Arm).unwrap();
     assert_eq!(board.command(HALF), Err(Refusal::WrongState(State::Armed)));
     board.command(Command::Play).unwrap();
@@ -28,7 +28,7 @@ fn a_layer_is_changed_only_while_it_plays() {
 #[test]
 fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number() {
     let mut board = TestBoard::new();
-    let layer = record(Layer::Constant(Constant { electric_friction_n: 0.01 }));
+    let layer = constant(0.01);
     board.play(&scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]));
     board.slide(1_000);
     for layer in [2, 63, 64, 255] {
@@ -55,8 +55,8 @@ fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number()
 #[test]
 fn a_layers_number_is_of_the_scene_that_was_committed_last() {
     let mut board = TestBoard::new();
-    board.play(&constant(0.01));
-    let layer = record(Layer::Constant(Constant { electric_friction_n: 0.002 }));
+    board.play(&constant_scene(0.01));
+    let layer = constant(0.002);
     board.upload_scene(&scene(&HEADER, &[layer, layer, layer])).unwrap();
     let last = Command::SetLayer { layer: 2, on: true, gain: 1.0 };
     assert_eq!(board.command(last), Err(Refusal::NoSuchLayer { layer: 2, layers: 1 }), "uploaded, not committed");
@@ -77,7 +77,7 @@ mod streams {
     fn a_board_without_a_buffer_takes_no_stream_and_says_so() {
         let mut board = TestBoard::without_stream(Board::SIMULATOR);
         assert_eq!(board.hello().features & feature::STREAM, 0);
-        board.play(&constant(0.01));
+        board.play(&constant_scene(0.01));
         for command in [Command::StartStream { sample_hz: 1_000, start_level: 1 }, Command::EndStream] {
             assert_eq!(board.command(command), Err(Refusal::UnknownCommand));
         }
@@ -89,7 +89,7 @@ mod streams {
         assert_ne!(board.hello().features & feature::STREAM, 0);
         let start = Command::StartStream { sample_hz: 1_000, start_level: 1 };
         assert_eq!(board.command(start), Err(Refusal::WrongState(State::Disarmed)));
-        board.play(&constant(0.01));
+        board.play(&constant_scene(0.01));
         assert_eq!(board.command(start), Err(Refusal::NoStreamLayer));
         assert_eq!(board.command(Command::EndStream), Ok(Accepted::Done), "there is none to end");
     }
@@ -101,10 +101,7 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
     for (leader, second_leads) in [(Leader::First, false), (Leader::Latest, true)] {
         let board = Board { touch_from_host: true, ..Board::SIMULATOR };
         let mut board = TestBoard::of(board);
-        board.play(&scene(
-            &Header { leader, ..HEADER },
-            &[record(Layer::Constant(Constant { electric_friction_n: 0.01 }))],
-        ));
+        board.play(&scene(&Header { leader, ..HEADER }, &[constant(0.01)]));
         let mut seen = Vec::new();
         for report in 0..60_u8 {
             let x_m = 0.001 * f32::from(report);

@@ -3,13 +3,13 @@
 mod support;
 
 use frixel_control::{AmplifierSpec, Board, Drive, ReadyWhileDisabled, SwitchingTime};
-use frixel_layers::{Constant, Header, Layer};
+use frixel_layers::Header;
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::hello::BoardKind;
 use frixel_wire::message::{Command, FromBoard, Refusal};
-use support::{HEADER, TestBoard, constant, record, scene};
+use support::{HEADER, TestBoard, constant, constant_scene, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 /// Host timeout of the scenes here, in ticks.
@@ -17,7 +17,7 @@ const HOST_TIMEOUT_TICKS: u32 = 10_000;
 
 fn playing() -> TestBoard {
     let mut board = TestBoard::new();
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     let driven = board.slide(2000);
     assert!(driven[1000..].iter().all(|drive| drive.dac_code.bits() != 0 && drive.amplifier_enable));
     board
@@ -45,7 +45,7 @@ fn nothing_is_driven_before_a_host_has_armed_and_played() {
     assert!(board.slide(400).iter().all(|drive| *drive == OFF));
     board.hello();
     assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
-    board.load(&constant(0.02)).unwrap();
+    board.load(&constant_scene(0.02)).unwrap();
     assert_eq!(board.command(Command::Play), Err(Refusal::WrongState(State::Disarmed)));
     board.command(Command::Arm).unwrap();
     assert!(board.slide(400).iter().all(|drive| *drive == OFF));
@@ -95,7 +95,7 @@ fn a_silent_host_disarms_within_its_timeout() {
         matches!(message, FromBoard::StateChanged { state: State::Disarmed, fault: None, flags: Flags::HOST_SILENT })
     });
     assert!(reported, "{:?}", board.messages);
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     assert!(!board.status().telemetry.flags.contains(Flags::HOST_SILENT));
 }
 
@@ -120,7 +120,7 @@ fn the_hello_of_a_new_client_disarms_the_board() {
 
 fn autonomous() -> Vec<u8> {
     let header = Header { autonomous: true, ..HEADER };
-    scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))])
+    scene(&header, &[constant(0.02)])
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn a_missed_deadline_faults() {
 fn friction_out_of_reach_is_clamped_flagged_and_counted() {
     for electric_friction_n in [0.5, -0.01] {
         let mut board = TestBoard::new();
-        board.play(&constant(electric_friction_n));
+        board.play(&constant_scene(electric_friction_n));
         let driven = board.slide(1200);
         let status = board.status();
         assert!(status.telemetry.flags.contains(Flags::SATURATED));
@@ -222,7 +222,7 @@ fn friction_out_of_reach_is_clamped_flagged_and_counted() {
 fn the_envelope_keeps_its_slew_limit() {
     let mut board = TestBoard::new();
     let header = Header { slew_v_per_s: 2e5, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     board.command(Command::Ping).unwrap();
     let mut last_v_rms = 0.0;
     for i in 0..200 {
@@ -264,7 +264,7 @@ fn a_new_scenes_voltage_limit_holds_from_its_first_tick() {
     let mut board = playing();
     assert!(board.status().telemetry.voltage_v_rms > 100.0);
     let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 10.0, ..HEADER };
-    board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
+    board.load(&scene(&header, &[constant(1e-5)])).unwrap();
     board.tick();
     assert!(board.status().telemetry.voltage_v_rms <= 20.0);
 }
@@ -294,7 +294,7 @@ fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
         (0..ticks).for_each(|tick| slide_and_rest(&mut board, tick));
         assert!(board.status().telemetry.voltage_v_rms > 100.0, "{ticks}");
         let header = Header { voltage_max_v_rms: 20.0, slew_v_per_s: 1e9, ..HEADER };
-        board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1e-5 }))])).unwrap();
+        board.load(&scene(&header, &[constant(1e-5)])).unwrap();
         for tick in ticks..ticks + 40 {
             slide_and_rest(&mut board, tick);
             assert!(board.status().telemetry.voltage_v_rms <= 20.0, "{ticks}, {tick}");
@@ -331,7 +331,7 @@ fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
 fn a_dead_amplifier_and_a_live_electrode_are_seen_at_50_volts() {
     let mut board = TestBoard::new();
     let header = Header { voltage_max_v_rms: 45.0, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    board.play(&scene(&header, &[constant(1.0)]));
     board.slide(400);
     board.amplifier_dead = true;
     assert_faults(&mut board, Fault::Monitor, 40);
@@ -405,7 +405,7 @@ fn ticks_to_fault(board: &mut TestBoard, monitor_v: impl Fn(u32) -> f32) -> Opti
 fn an_output_that_is_at_zero_within_the_turn_off_time_is_no_fault() {
     for amplifier_v in [10.0, 49.0, 150.0] {
         let mut board = TestBoard::of(REAL_BOARD);
-        board.play(&constant(0.02));
+        board.play(&constant_scene(0.02));
         board.slide(2000);
         board.touch = Some(Touch::Up);
         board.tick();
@@ -419,7 +419,7 @@ fn an_output_that_is_at_zero_within_the_turn_off_time_is_no_fault() {
 fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
     for command in [Command::Stop, Command::Disarm] {
         let mut board = TestBoard::of(REAL_BOARD);
-        board.play(&constant(0.02));
+        board.play(&constant_scene(0.02));
         board.slide(2000);
         board.command(command).unwrap();
         board.tick();
@@ -431,7 +431,7 @@ fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
 #[test]
 fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
     let mut board = TestBoard::of(REAL_BOARD);
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     board.slide(2000);
     board.touch = Some(Touch::Up);
     board.tick();
@@ -442,7 +442,7 @@ fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
 fn an_output_above_the_last_voltage_is_a_fault_at_once_when_the_enable_has_fallen() {
     let mut board = TestBoard::of(REAL_BOARD);
     let header = Header { voltage_max_v_rms: 20.0, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 1.0 }))]));
+    board.play(&scene(&header, &[constant(1.0)]));
     board.slide(2000);
     board.touch = Some(Touch::Up);
     board.tick();
@@ -454,7 +454,7 @@ fn an_output_above_the_last_voltage_is_a_fault_at_once_when_the_enable_has_falle
 fn a_finger_that_comes_back_before_the_amplifier_is_off_is_no_fault_unless_the_rest_stays() {
     for (off_ticks, is_stuck) in [1, 5, 20, 39].into_iter().flat_map(|ticks| [(ticks, false), (ticks, true)]) {
         let mut board = TestBoard::of(REAL_BOARD);
-        board.play(&constant(0.02));
+        board.play(&constant_scene(0.02));
         board.slide(2000);
         board.touch = Some(Touch::Up);
         board.tick();
@@ -474,7 +474,7 @@ fn a_finger_that_comes_back_before_the_amplifier_is_off_is_no_fault_unless_the_r
 #[test]
 fn a_dead_amplifier_is_a_fault_half_a_millisecond_after_its_turn_on_time() {
     let mut board = TestBoard::of(REAL_BOARD);
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     board.amplifier_dead = true;
     let ticks = (1..400).find(|_| {
         board.slide(1);
@@ -497,7 +497,7 @@ fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it
             board.command(Command::ClearFault).unwrap();
             board.press_switch();
         }
-        board.play(&constant(0.02));
+        board.play(&constant_scene(0.02));
         for tick in 0..4_000 {
             let drive = if tick < 3_000 { board.slide(1)[0] } else { board.tick() };
             // Ready a millisecond after the enable rises, and until it falls.
@@ -518,7 +518,7 @@ fn an_autonomous_scene_needs_a_switch_that_must_be_held_and_a_touch_source_on_th
         let mut board = TestBoard::of(Board { hold_to_run, touch_from_host, ..REAL_BOARD });
         board.hello();
         assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous), "{hold_to_run}, {touch_from_host}");
-        board.load(&constant(0.02)).unwrap();
+        board.load(&constant_scene(0.02)).unwrap();
     }
 }
 
@@ -544,7 +544,7 @@ fn an_autonomous_scene_plays_only_if_the_boards_touch_source_has_reported_lately
 #[test]
 fn a_playing_scene_is_not_replaced_by_an_autonomous_one_without_a_report_of_the_touch_source() {
     let mut board = TestBoard::of(REAL_BOARD);
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous));
     touched(&mut board);
     board.load(&autonomous()).unwrap();
@@ -572,7 +572,7 @@ fn a_switch_that_never_opens_in_ten_minutes_of_play_is_a_fault() {
     let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..REAL_BOARD });
     let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
     board.hello();
-    board.load(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))])).unwrap();
+    board.load(&scene(&header, &[constant(0.02)])).unwrap();
     let play = |board: &mut TestBoard| {
         touched(board);
         board.command(Command::Play).unwrap();
@@ -602,7 +602,7 @@ fn a_simulated_board_plays_an_autonomous_scene_for_longer_than_ten_minutes() {
     const TICK_HZ: u32 = 5_000;
     let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..Board::SIMULATOR });
     let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     board.ticks(11 * 60 * TICK_HZ);
     assert_eq!(board.status().telemetry.state, State::Active);
 }

@@ -20,14 +20,14 @@ use frixel_wire::scene::{RECORDS_MAX, SceneError};
 use proptest::prelude::*;
 #[cfg(feature = "bitmap")]
 use support::bitmap;
-use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, record, request, scene};
+use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, record, request, scene};
 
 #[test]
 fn a_board_says_who_it_is_and_what_it_holds() {
     let mut board = TestBoard::new();
     let hello = board.hello();
     assert_eq!((hello.tick_hz, hello.state, hello.scene_crc32), (40_000, State::Disarmed, 0));
-    let scene = constant(0.01);
+    let scene = constant_scene(0.01);
     board.load(&scene).unwrap();
     assert_eq!(board.hello().scene_crc32, crc32(&scene));
 }
@@ -35,10 +35,10 @@ fn a_board_says_who_it_is_and_what_it_holds() {
 #[test]
 fn a_scene_is_used_whole_or_not_at_all() {
     let mut board = TestBoard::connected();
-    let first = constant(0.01);
+    let first = constant_scene(0.01);
     board.load(&first).unwrap();
 
-    let mut second = constant(0.02);
+    let mut second = constant_scene(0.02);
     second.resize(second.len() * 4, 0);
     board.command(Command::UploadScene { len: second.len() as u32, crc32: crc32(&second) }).unwrap();
     board.chunk(0, &second[..CHUNK_LEN]);
@@ -161,7 +161,7 @@ fn a_largest_friction_without_fixed_layers_is_taken() {
 #[test]
 fn bytes_that_are_not_a_scene_are_refused() {
     let mut board = TestBoard::connected();
-    let mut unknown = constant(0.01);
+    let mut unknown = constant_scene(0.01);
     unknown[56] = 99;
     assert_eq!(board.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
     assert!(matches!(
@@ -184,7 +184,7 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
     let of = |count: usize| {
         let beside = |number| {
             let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
-            Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
+            Record { region, ..constant(0.01) }
         };
         scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
     };
@@ -196,7 +196,7 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
 #[test]
 fn a_scene_is_refused_for_any_malformed_record() {
     let mut board = TestBoard::connected();
-    let records = [record(Layer::Constant(Constant { electric_friction_n: 0.01 })); RECORDS_MAX];
+    let records = [constant(0.01); RECORDS_MAX];
     for record in [0, 15, 16, 40, RECORDS_MAX - 1] {
         let mut bytes = scene(&HEADER, &records);
         bytes[HEADER_LEN + (record + 1) * RECORD_LEN - 1] = 1;
@@ -219,8 +219,8 @@ fn answered(board: &mut TestBoard) -> Vec<u16> {
 #[test]
 fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
     let mut board = TestBoard::new();
-    board.play(&constant(0.01));
-    let next = constant(0.015);
+    board.play(&constant_scene(0.01));
+    let next = constant_scene(0.015);
     board.upload_scene(&next).unwrap();
     board.messages.clear();
     let bytes = [
@@ -257,7 +257,7 @@ fn with_uploaded_scene(scene: &[u8]) -> TestBoard {
 
 #[test]
 fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
-    let scene = constant(0.01);
+    let scene = constant_scene(0.01);
     let mut board = with_uploaded_scene(&scene);
     let bytes = [
         request(901, Command::Commit { crc32: crc32(&scene) }),
@@ -279,7 +279,7 @@ fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
 #[test]
 fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
     for last in [Command::Stop, Command::Disarm] {
-        let scene = constant(0.01);
+        let scene = constant_scene(0.01);
         let mut board = with_uploaded_scene(&scene);
         board.command(Command::Arm).unwrap();
         let bytes = [
@@ -302,7 +302,7 @@ fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
 
 #[test]
 fn a_board_that_stops_by_itself_refuses_the_requests_that_wait_for_a_commit() {
-    let scene = constant(0.01);
+    let scene = constant_scene(0.01);
     let mut board = with_uploaded_scene(&scene);
     board.command(Command::Arm).unwrap();
     let bytes = [request(901, Command::Commit { crc32: crc32(&scene) }), request(902, Command::Play)];
@@ -318,7 +318,7 @@ fn a_board_that_stops_by_itself_refuses_the_requests_that_wait_for_a_commit() {
 
 #[test]
 fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
-    let scene = constant(0.01);
+    let scene = constant_scene(0.01);
     let mut board = with_uploaded_scene(&scene);
     board.session.receive(&request(901, Command::Commit { crc32: crc32(&scene) }), &board.status());
     for sequence in 902..912 {
@@ -335,7 +335,7 @@ fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
 
 #[test]
 fn a_hello_drops_a_commit_and_what_waits_for_it() {
-    let scene = constant(0.01);
+    let scene = constant_scene(0.01);
     let mut board = with_uploaded_scene(&scene);
     let commit = request(901, Command::Commit { crc32: crc32(&scene) });
     let bytes = [commit.clone(), request(902, Command::Arm)].concat();
@@ -382,22 +382,22 @@ fn answers_give_credit_for_every_byte_since_the_hello() {
 #[test]
 fn a_scene_is_replaced_while_it_plays() {
     let mut board = TestBoard::new();
-    board.play(&constant(0.005));
+    board.play(&constant_scene(0.005));
     board.slide(2000);
     let before = board.status().telemetry;
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     board.slide(400);
     let after = board.status().telemetry;
     assert_eq!((before.state, after.state), (State::Active, State::Active));
     assert!((before.asked_electric_friction_n - 0.005).abs() < 1e-6);
     assert!((after.asked_electric_friction_n - 0.01).abs() < 1e-6);
-    board.load(&constant(0.015)).unwrap();
+    board.load(&constant_scene(0.015)).unwrap();
 }
 
 #[test]
 fn orders_that_zero_the_output_always_have_room() {
     let mut board = TestBoard::connected();
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     // All in one piece, before the ticker has looked.
     let mut bytes = Vec::new();
     let commands = [Command::Arm, Command::Play, Command::Stop, Command::Play, Command::Stop, Command::Play];

@@ -13,7 +13,7 @@ use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
 use support::flash::{PAGE_LEN, SimulatedFlash};
-use support::{HEADER, TestBoard, constant, record, scene};
+use support::{HEADER, TestBoard, constant_scene, record, scene};
 
 const SLOT: Slot = Slot { first_page: 1, pages: 3 };
 const PAGES: usize = 8;
@@ -309,7 +309,7 @@ fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
     let (_, mut flash, _) = with_stored_texture();
     let (mut board, mut store) = start_after_faults(&flash, 3);
     board.hello();
-    let fine = constant(0.02);
+    let fine = constant_scene(0.02);
     board.load(&fine).unwrap();
     let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
@@ -338,7 +338,7 @@ fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     let begun = u32::MAX - 1000; // the tick count may wrap
     for after in [0, 1, STORE_AFTER_TICKS - 1] {
         store.step(&mut flash, &board.session, begun.wrapping_add(after));
@@ -347,7 +347,7 @@ fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     finish_writing(&mut store, &mut flash, &board, begun.wrapping_add(STORE_AFTER_TICKS));
     let done = flash.done;
     assert!(done > 0);
-    board.load(&constant(0.01)).unwrap();
+    board.load(&constant_scene(0.01)).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
     assert_eq!(flash.done, done, "the same scene is not written again");
 }
@@ -373,15 +373,15 @@ fn two_writes_of_a_slot_are_45_minutes_apart_and_the_last_scene_wins() {
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
     let mut begun = 100;
-    load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), begun);
+    load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), begun);
     begun += STORE_AFTER_TICKS;
     finish_writing_at(&mut store, &mut flash, &board, begun);
-    assert_eq!(store.stored_crc32(), Some(crc32(&constant(0.01))), "the first does not wait");
+    assert_eq!(store.stored_crc32(), Some(crc32(&constant_scene(0.01))), "the first does not wait");
 
     // Over the wrap of the tick count, too: 2^32 ticks are some 40 intervals.
     let mut erased = flash.done;
     for number in 0..50 {
-        let scenes = [0.02, 0.03, 0.04].map(|newtons| constant(newtons + 1e-4 * number as f32));
+        let scenes = [0.02, 0.03, 0.04].map(|newtons| constant_scene(newtons + 1e-4 * number as f32));
         for (scene, tenth) in scenes.iter().zip([2, 5, 8]) {
             let tick = begun.wrapping_add(INTERVAL_TICKS / 10 * tenth);
             load_and_wait(&mut board, &mut store, &mut flash, scene, tick);
@@ -404,7 +404,7 @@ fn a_board_that_resets_again_and_again_does_not_write() {
         let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR });
         let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
         board.hello();
-        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01 * f32::from(number)), 0);
+        load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01 * f32::from(number)), 0);
         finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
         assert_eq!(flash.done, 0, "{reset_cause:?}");
     }
@@ -413,7 +413,7 @@ fn a_board_that_resets_again_and_again_does_not_write() {
         let mut board = TestBoard::of(Board { reset_cause, ..Board::SIMULATOR });
         let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
         board.hello();
-        load_and_wait(&mut board, &mut store, &mut flash, &constant(0.01), 0);
+        load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), 0);
         finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
         assert!(flash.done > 0, "{reset_cause:?}: a person's scene is stored at once");
     }
@@ -461,11 +461,11 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
     let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    let kept = constant(0.01);
+    let kept = constant_scene(0.01);
     board.load(&kept).unwrap();
     finish_writing(&mut store, &mut flash, &board, 0);
 
-    board.load(&constant(0.02)).unwrap();
+    board.load(&constant_scene(0.02)).unwrap();
     board.command(Command::Arm).unwrap();
     let done = flash.done;
     finish_writing(&mut store, &mut flash, &board, 0);
@@ -531,7 +531,7 @@ fn a_flash_that_fails_is_tried_once_for_each_scene() {
     let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    for (scene, failures) in [(constant(0.01), 1), (constant(0.01), 1), (constant(0.02), 2)] {
+    for (scene, failures) in [(constant_scene(0.01), 1), (constant_scene(0.01), 1), (constant_scene(0.02), 2)] {
         board.load(&scene).unwrap();
         finish_writing(&mut store, &mut flash, &board, 0);
         assert_eq!(store.failures(), failures);

@@ -5,7 +5,7 @@
 use crate::support;
 
 use frixel_control::Board;
-use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Scene, electric_friction_max_n};
+use frixel_layers::{Header, Scene, electric_friction_max_n};
 use frixel_session::{TableRows, table_rows};
 use frixel_testkit::{Pace, RandomFinger, RandomScene};
 use frixel_wire::fault::Flags;
@@ -14,7 +14,7 @@ use frixel_wire::message::{Command, ConfigField, Refusal};
 use frixel_wire::payload::samples_frame;
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::{HEADER, TestBoard, scene, scene_with_points};
+use support::{HEADER, TestBoard, constant, scene, scene_with_points};
 
 const SAMPLES: [u8; 6] = [0, 255, 100, 150, 200, 250];
 const TICKS: u32 = 3_000;
@@ -105,15 +105,6 @@ fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
     let driven = driven.count();
     println!("{} of {} cut, {driven} of them drive", cut.len(), scenes.len());
     assert!(driven > 40);
-}
-
-const fn constant(electric_friction_n: f32) -> Record {
-    Record {
-        region: Region::Screen,
-        blend: Blend::Replace,
-        gain: 1.0,
-        layer: Layer::Constant(Constant { electric_friction_n }),
-    }
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use crate::support;
 
 use frixel_control::{Board, Drive, Order, Track};
-use frixel_layers::{Constant, Header, Layer, Record, Region};
+use frixel_layers::{Header, Record, Region};
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Flags, State};
@@ -12,7 +12,7 @@ use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
 use frixel_wire::message::{Answer, Command};
 use frixel_wire::payload::chunk_frame;
 use frixel_wire::scene::RECORDS_MAX;
-use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, record, request, scene};
+use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, request, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 const REPORT_TICKS: u32 = 400;
@@ -29,7 +29,7 @@ fn report(tick: u32) -> Touch {
 /// A board that plays a constant under a finger, `ticks` after the first report; the next report is due then.
 fn playing() -> TestBoard {
     let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR });
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     for tick in 0..4 * REPORT_TICKS {
         slide(&mut board, tick);
     }
@@ -49,7 +49,7 @@ fn slide(board: &mut TestBoard, tick: u32) -> Drive {
 fn largest_scene() -> Vec<u8> {
     let beside = |number: usize| {
         let region = Region::Rectangle { x_m: 0.0015 * number as f32, y_m: 0.0, width_m: 0.0015, height_m: 0.1 };
-        Record { region, ..record(Layer::Constant(Constant { electric_friction_n: 0.01 })) }
+        Record { region, ..constant(0.01) }
     };
     scene(&HEADER, &(0..RECORDS_MAX).map(beside).collect::<Vec<_>>())
 }
@@ -159,7 +159,7 @@ fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
 fn another_contact_is_a_lift_first() {
     let header = Header { slew_v_per_s: 1e5, ..HEADER };
     let mut board = TestBoard::new();
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     for tick in 0..1_600 {
         slide(&mut board, tick);
     }
@@ -226,7 +226,7 @@ fn a_track_of_late_end_expires_after_three_report_periods() {
 fn a_track_that_ended_long_ago_never_comes_back() {
     let mut board = TestBoard::new();
     let header = Header { autonomous: true, ..HEADER };
-    board.play(&scene(&header, &[record(Layer::Constant(Constant { electric_friction_n: 0.02 }))]));
+    board.play(&scene(&header, &[constant(0.02)]));
     let first_tick = board.status().telemetry.tick;
     for tick in 0..400 {
         slide(&mut board, tick);
@@ -243,7 +243,7 @@ fn a_track_that_ended_long_ago_never_comes_back() {
 fn playing_until_wrap(ticks: u32) -> TestBoard {
     let mut board = TestBoard::new();
     board.ticker.set_tick(0_u32.wrapping_sub(ticks));
-    board.play(&constant(0.02));
+    board.play(&constant_scene(0.02));
     board
 }
 

@@ -25,17 +25,17 @@ pub mod corpus;
 #[cfg(feature = "std")]
 pub mod golden;
 
-#[cfg(feature = "scenes")]
+#[cfg(feature = "samples")]
 mod finger;
-#[cfg(feature = "scenes")]
+#[cfg(feature = "samples")]
 mod layers;
 #[cfg(feature = "monitor")]
 mod monitor;
-#[cfg(feature = "scenes")]
+#[cfg(feature = "samples")]
 mod random;
-#[cfg(feature = "scenes")]
+#[cfg(feature = "samples")]
 mod random_scene;
-#[cfg(feature = "scenes")]
+#[cfg(feature = "samples")]
 pub mod samples;
 #[cfg(feature = "scenes")]
 mod scenes;
@@ -43,9 +43,10 @@ mod scenes;
 #[cfg(feature = "monitor")]
 pub use self::monitor::IdealMonitor;
 #[cfg(feature = "scenes")]
+pub use self::scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points};
+#[cfg(feature = "samples")]
 pub use self::{
     finger::{Pace, RandomFinger},
     random::Random,
     random_scene::RandomScene,
-    scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points},
 };

@@ -8,10 +8,10 @@
 )]
 
 use frixel_control::Status;
-use frixel_hil_sim::{Rig, TickRecord};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord};
 use frixel_layers::Header;
 use frixel_testkit::Random;
-pub use frixel_testkit::{record, scene, scene_with_points};
+pub use frixel_testkit::{constant, record, scene, scene_with_points};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload::{self, CHUNK_LEN};
@@ -24,14 +24,16 @@ const PING_TICKS: u64 = 2_000;
 const COMMIT_TICKS_MAX: u32 = 128;
 
 /// A host that says what it wants and trusts the board.
-pub struct Script<'a> {
-    pub rig: Rig<'a>,
+pub struct Script {
+    pub rig: Rig<'static>,
     sequence: u16,
     status: Option<Status>,
 }
 
-impl<'a> Script<'a> {
-    pub fn new(rig: Rig<'a>) -> Self {
+impl Script {
+    /// A host of a rig whose memory lives as long as the program.
+    pub fn new(config: &RigConfig, stroke: Stroke, seed: u64) -> Self {
+        let rig = Rig::new(Box::leak(BoardMemory::new()), config, stroke, seed).unwrap();
         Self { rig, sequence: 0, status: None }
     }
 

@@ -60,9 +60,12 @@ impl Running {
         let mut request = url.into_client_request().unwrap();
         request.headers_mut().insert("Origin", origin.parse().unwrap());
         let stream = TcpStream::connect(&self.host).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
         match client(request, stream) {
-            Ok((socket, _)) => Ok(socket),
+            Ok((socket, _)) => {
+                // Only now: a signal of another test ends a read that has a timeout, which the handshake reports as an error.
+                socket.get_ref().set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+                Ok(socket)
+            }
             Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
             Err(error) => panic!("{error}"),
         }

@@ -19,7 +19,7 @@ use frixel_control::{Active, Board, Drive, Sense, Status, Ticker};
 use frixel_layers::{Bitmap, BitmapPool, Layer};
 use frixel_session::{Session, Touch};
 use frixel_testkit::IdealMonitor;
-pub use frixel_testkit::{HEADER, record, scene, scene_with_points};
+pub use frixel_testkit::{HEADER, constant, record, scene, scene_with_points};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal, Request};
@@ -278,6 +278,6 @@ pub fn bitmap(crc32: u32) -> Layer {
 }
 
 /// A scene of a friction that is the same everywhere.
-pub fn constant(electric_friction_n: f32) -> Vec<u8> {
-    scene(&HEADER, &[frixel_testkit::constant(electric_friction_n)])
+pub fn constant_scene(electric_friction_n: f32) -> Vec<u8> {
+    scene(&HEADER, &[constant(electric_friction_n)])
 }

@@ -12,7 +12,7 @@ use frixel_wire::scene::SceneError;
 
 pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, State::Faulted];
 
-/// All named faults, and one unknown number.
+/// All named faults.
 pub fn faults() -> impl Iterator<Item = Fault> {
     (1..=10).map(|number| Fault::try_from(number).unwrap())
 }
@@ -214,9 +214,7 @@ pub fn refusals() -> Vec<Refusal> {
         Refusal::BitmapMissing { crc32: 0xcbf4_3926 },
     ]);
     refusals.extend(scene_errors().map(Refusal::Scene));
-    refusals.extend(
-        config_fields().into_iter().zip(0..).map(|(field, layer)| Refusal::Config(config_refusal(field, layer))),
-    );
+    refusals.extend(config_fields().zip(0..).map(|(field, layer)| Refusal::Config(config_refusal(field, layer))));
     refusals.extend([
         Refusal::Config(config_refusal(ConfigField::VoltagePeak, ConfigRefusal::WHOLE_SCENE)),
         Refusal::Busy,
@@ -255,47 +253,7 @@ pub fn scene_errors() -> [SceneError; 12] {
     ]
 }
 
-pub fn config_fields() -> Vec<ConfigField> {
-    use ConfigField::{
-        Angle, BitmapPlacement, CarrierFrequency, ClickLayers, CurrentPeak, CurrentRms, CurveSpeed, Duration, Duty,
-        EffectiveGap, FingerRadius, Friction, FrictionCoefficient, Gain, HostTimeout, NoiseLayers, NormalLoad, Phase,
-        Region, SampleRate, ScreenHeight, ScreenWidth, Shape, Slew, StartLevel, Stiffness, TableRange, TouchPlace,
-        Vertex, VibrationFrequency, VoltagePeak, VoltageRms, WaveVector, Wavelength,
-    };
-    vec![
-        ScreenWidth,
-        ScreenHeight,
-        FingerRadius,
-        Stiffness,
-        FrictionCoefficient,
-        NormalLoad,
-        EffectiveGap,
-        VoltageRms,
-        VoltagePeak,
-        Slew,
-        CarrierFrequency,
-        HostTimeout,
-        CurrentRms,
-        CurrentPeak,
-        Region,
-        Gain,
-        Friction,
-        WaveVector,
-        Phase,
-        BitmapPlacement,
-        TableRange,
-        TouchPlace,
-        SampleRate,
-        StartLevel,
-        Duty,
-        Angle,
-        Wavelength,
-        Shape,
-        VibrationFrequency,
-        Duration,
-        Vertex,
-        CurveSpeed,
-        NoiseLayers,
-        ClickLayers,
-    ]
+/// The quantities of protocol 1.2, in the order of their numbers; those since then follow in samples of their own.
+fn config_fields() -> impl Iterator<Item = ConfigField> {
+    (0..34).map(|number: u8| postcard::from_bytes(&[number]).unwrap())
 }

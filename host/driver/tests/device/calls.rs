@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, Event, Link, Upload};
+use frixel_driver::{Device, DeviceError, Event, Link, PollingLink, Upload};
 use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
 use frixel_testkit::HEADER;
 use frixel_wire::fault::State;
@@ -10,14 +10,19 @@ use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, Refusal, TickTimes};
 
 use crate::fake_board::FakeBoard;
-use crate::virtual_link::{Fate, VirtualLink};
+use crate::virtual_link::{Fate, VirtualLine, VirtualLink, line_of};
 
-pub(crate) fn connected(link: VirtualLink) -> Device<VirtualLink> {
-    Device::connect(link).unwrap()
+pub(crate) fn connected(line: VirtualLine) -> Device<VirtualLink> {
+    Device::connect(PollingLink::new(line)).unwrap()
+}
+
+/// The next host on the line of a device.
+pub(crate) fn reconnected(device: Device<VirtualLink>) -> Device<VirtualLink> {
+    Device::connect(device.into_link()).unwrap()
 }
 
 fn virtual_board() -> Device<VirtualLink> {
-    connected(VirtualLink::new(FakeBoard::new()))
+    connected(VirtualLine::new(FakeBoard::new()))
 }
 
 /// A scene without layers.
@@ -39,7 +44,7 @@ fn a_scene_goes_from_upload_to_play_and_back() {
     device.stop().unwrap();
     device.disarm().unwrap();
 
-    let board = device.into_link().board;
+    let board = &line_of(&mut device).board;
     assert_eq!(board.scene.as_deref(), Some(scene.as_slice()));
     assert_eq!(board.state, State::Disarmed);
     let crc32 = upload.scene_crc32();
@@ -72,12 +77,12 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
         let mut board = FakeBoard::new();
         board.hello.features = features;
         board.hello.protocol = (1, 2);
-        let mut device = connected(VirtualLink::new(board));
+        let mut device = connected(VirtualLine::new(board));
         let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).err();
         let said = error.map(|error| error.to_string());
         assert_eq!(said.is_some(), refused, "{said:?}");
         assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.2")));
-        assert_eq!(device.into_link().board.commands.is_empty(), refused);
+        assert_eq!(line_of(&mut device).board.commands.is_empty(), refused);
     }
 }
 
@@ -101,13 +106,12 @@ fn wait_lets_its_time_pass_and_hands_over_telemetry() {
     assert!(ticks.windows(2).all(|pair| pair[1] - pair[0] == 400));
 
     device.subscribe(0).unwrap();
-    let before = device.into_link();
-    let started = before.now();
-    let mut device = connected(before);
+    let started = device.now();
+    let mut device = reconnected(device);
     let mut late = 0;
     device.wait(Duration::from_secs(1), &mut |_| late += 1).unwrap();
     assert_eq!(late, 0, "telemetry was ended");
-    assert!(device.into_link().now() >= started + Duration::from_secs(1));
+    assert!(device.now() >= started + Duration::from_secs(1));
 }
 
 #[test]
@@ -119,7 +123,7 @@ fn events_during_a_call_are_delivered_later() {
         busy -= i32::from(*command == Command::Arm);
         (busy >= 0 && *command == Command::Arm).then_some(Refusal::Busy)
     }));
-    let mut device = connected(VirtualLink::new(board));
+    let mut device = connected(VirtualLine::new(board));
     device.arm().unwrap();
     let mut changes = Vec::new();
     device
@@ -136,19 +140,19 @@ fn events_during_a_call_are_delivered_later() {
 fn pings_keep_the_board_company() {
     let mut device = virtual_board();
     device.wait(Duration::from_secs(10), &mut nothing).unwrap();
-    let silence = device.into_link().board.longest_silence;
+    let silence = line_of(&mut device).board.longest_silence;
     assert!(silence <= Duration::from_millis(61), "{silence:?} of silence, a host timeout is 250 ms");
 }
 
 /// Longest time without a frame over the next second.
-fn silence_on(link: &mut VirtualLink) -> Duration {
-    link.board.longest_silence = Duration::ZERO;
+fn silence_of(device: &mut Device<VirtualLink>) -> Duration {
+    line_of(device).board.longest_silence = Duration::ZERO;
     let mut buffer = Vec::new();
-    let end = link.now() + Duration::from_secs(1);
-    while link.now() < end {
-        link.read(&mut buffer, Duration::from_millis(100)).unwrap();
+    let end = device.now() + Duration::from_secs(1);
+    while device.now() < end {
+        device.link_mut().read(&mut buffer, Duration::from_millis(100)).unwrap();
     }
-    link.board.longest_silence
+    line_of(device).board.longest_silence
 }
 
 #[test]
@@ -160,7 +164,7 @@ fn pings_follow_the_committed_scenes_host_timeout() {
         device.upload(&upload, &mut |_| {}).unwrap();
         device.commit(upload.scene_crc32()).unwrap();
         device.arm().unwrap();
-        let silence = silence_on(&mut device.into_link());
+        let silence = silence_of(&mut device);
         assert!(silence <= Duration::from_millis(longest_ms), "{silence:?} with a timeout of {host_timeout_s} s");
         assert!(silence > Duration::from_millis(longest_ms / 2), "{silence:?} with a timeout of {host_timeout_s} s");
     }
@@ -180,12 +184,11 @@ fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
             device.arm().unwrap();
             device.play().unwrap();
             let played_at = device.counters().frames_sent;
-            let link = device.link_mut();
-            link.to_board_weather = Box::new(move |number, _| {
+            line_of(&mut device).to_board_weather = Box::new(move |number, _| {
                 let of_round = (number - played_at) % (2 + good);
                 if of_round < 2 { fate } else { Fate::Arrives }
             });
-            let silence = silence_on(link);
+            let silence = silence_of(&mut device);
             assert!(silence < Duration::from_millis(host_timeout_ms), "{fate:?}, {good} good: {silence:?}");
         }
     }
@@ -199,7 +202,7 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
     let mut found = FakeBoard::new();
     (found.state, found.autonomous) = (State::Active, true);
-    let found = connected(VirtualLink::new(found));
+    let found = connected(VirtualLine::new(found));
     let mut armed = virtual_board();
     armed.arm().unwrap();
     let mut uploaded = virtual_board();
@@ -209,8 +212,8 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     refused.upload(&upload, &mut |_| {}).unwrap();
     refused.commit(upload.scene_crc32() + 1).unwrap_err();
     refused.arm().unwrap();
-    for device in [found, armed, uploaded, refused] {
-        let silence = silence_on(&mut device.into_link());
+    for mut device in [found, armed, uploaded, refused] {
+        let silence = silence_of(&mut device);
         assert!(silence <= Duration::from_millis(6), "{silence:?}");
     }
 }
@@ -220,7 +223,7 @@ fn a_disarmed_board_is_pinged_at_leisure() {
     let mut device = virtual_board();
     device.arm().unwrap();
     device.disarm().unwrap();
-    let silence = silence_on(&mut device.into_link());
+    let silence = silence_of(&mut device);
     assert!(silence > Duration::from_millis(50), "{silence:?}");
 }
 
@@ -242,48 +245,48 @@ fn busy_is_tried_again_until_the_board_is_not() {
         left -= i32::from(matches!(command, Command::Arm));
         (left > 0 && *command == Command::Arm).then_some(Refusal::Busy)
     }));
-    let mut device = connected(VirtualLink::new(board));
+    let mut device = connected(VirtualLine::new(board));
     device.arm().unwrap();
-    assert_eq!(device.into_link().board.state, State::Armed);
+    assert_eq!(line_of(&mut device).board.state, State::Armed);
 }
 
 #[test]
 fn a_board_that_stays_busy_is_given_up_within_a_second() {
     let mut board = FakeBoard::new();
     board.refuse = Some(Box::new(|command| (*command == Command::Arm).then_some(Refusal::Busy)));
-    let mut device = connected(VirtualLink::new(board));
+    let mut device = connected(VirtualLine::new(board));
     let error = device.arm().unwrap_err();
     assert!(matches!(error, DeviceError::Refused { refusal: Refusal::Busy, .. }), "{error}");
-    assert!(device.into_link().now() < Duration::from_secs(1));
+    assert!(device.now() < Duration::from_secs(1));
 }
 
 /// The board armed at the first command; the second one is refused, and that is as good.
 #[test]
 fn a_lost_answer_does_not_fail_a_command() {
-    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut line = VirtualLine::new(FakeBoard::new());
     // After the hello and the answer to the first ping.
-    link.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Lost } else { Fate::Arrives });
-    let mut device = connected(link);
+    line.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Lost } else { Fate::Arrives });
+    let mut device = connected(line);
     device.arm().unwrap();
-    let board = device.into_link().board;
+    let board = &line_of(&mut device).board;
     assert_eq!(board.state, State::Armed);
     assert_eq!(board.commands, [Command::Arm, Command::Arm]);
 }
 
 #[test]
 fn a_lost_command_is_sent_again() {
-    let mut link = VirtualLink::new(FakeBoard::new());
-    link.to_board_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(5) } else { Fate::Arrives });
-    let mut device = connected(link);
+    let mut line = VirtualLine::new(FakeBoard::new());
+    line.to_board_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(5) } else { Fate::Arrives });
+    let mut device = connected(line);
     device.arm().unwrap();
-    assert_eq!(device.into_link().board.commands, [Command::Arm]);
+    assert_eq!(line_of(&mut device).board.commands, [Command::Arm]);
 }
 
 #[test]
 fn damaged_frames_of_the_board_are_counted() {
-    let mut link = VirtualLink::new(FakeBoard::new());
-    link.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(3) } else { Fate::Arrives });
-    let mut device = connected(link);
+    let mut line = VirtualLine::new(FakeBoard::new());
+    line.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(3) } else { Fate::Arrives });
+    let mut device = connected(line);
     assert_eq!(device.counters().frames_rejected, 0);
     device.ping().unwrap();
     assert_eq!(device.counters().frames_rejected, 1);
@@ -300,8 +303,8 @@ fn tick_times_are_read_only_from_a_board_that_knows_them() {
     ] {
         let mut board = FakeBoard::new();
         (board.hello.protocol, board.hello.features, board.tick_times) = (protocol, features, board_says);
-        let mut device = connected(VirtualLink::new(board));
+        let mut device = connected(VirtualLine::new(board));
         assert_eq!(device.tick_times().unwrap(), found, "{protocol:?}");
-        assert_eq!(!device.into_link().board.commands.is_empty(), is_asked, "{protocol:?}");
+        assert_eq!(!line_of(&mut device).board.commands.is_empty(), is_asked, "{protocol:?}");
     }
 }

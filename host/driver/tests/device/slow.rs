@@ -9,14 +9,14 @@ use frixel_wire::frame::crc32;
 
 use crate::calls::{connected, scene};
 use crate::fake_board::FakeBoard;
-use crate::virtual_link::VirtualLink;
+use crate::virtual_link::{VirtualLine, VirtualLink, line_of};
 
 const SECOND: Duration = Duration::from_secs(1);
 
 /// A board that takes this long for every frame, one after the other, once it has answered the hello.
 fn slow(time_per_frame: Duration) -> Device<VirtualLink> {
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
-    device.link_mut().board_time_per_frame = time_per_frame;
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
+    line_of(&mut device).board_time_per_frame = time_per_frame;
     device
 }
 
@@ -32,7 +32,7 @@ fn uploaded(time_per_frame: Duration) -> (Result<(), DeviceError>, u64, u32, Dur
     let result = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![picture(&samples)] }, &mut |_| {});
     let (frames, took) = (device.counters().frames_sent - frames, device.now().saturating_sub(started));
     println!("{time_per_frame:?} a frame: {frames} frames in {took:?}, {result:?}");
-    (result, frames, device.into_link().board.pings, took)
+    (result, frames, line_of(&mut device).board.pings, took)
 }
 
 /// Its pings would otherwise take the time of almost all frames: 735 of 762 in 150 s.
@@ -56,7 +56,7 @@ fn a_picture_arrives_on_a_board_that_takes_a_tenth_of_a_second_a_frame() {
     device.upload(&upload, &mut |_| {}).unwrap();
     let counters = device.counters();
     assert!(counters.wire_bytes < 30_000, "{counters:?}");
-    assert_eq!(device.into_link().board.bitmaps.get(&crc32(&samples)), Some(&samples));
+    assert_eq!(line_of(&mut device).board.bitmaps.get(&crc32(&samples)), Some(&samples));
 }
 
 #[test]
@@ -88,11 +88,11 @@ fn one_request_takes_10_s_at_most() {
 #[test]
 fn an_upload_ends_10_s_after_the_last_acknowledged_byte() {
     let scene = vec![7; 2_000_000];
-    let mut link = VirtualLink::new(FakeBoard::new());
-    link.bytes_per_s = 60_000;
-    let mut device = connected(link);
+    let mut line = VirtualLine::new(FakeBoard::new());
+    line.bytes_per_s = 60_000;
+    let mut device = connected(line);
     let started = device.now();
-    device.link_mut().board.chunks_per_progress = None;
+    line_of(&mut device).board.chunks_per_progress = None;
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
     let error = device.upload(&upload, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::UploadTooSlow { arrived_bytes: 0, .. }), "{error}");

@@ -5,29 +5,29 @@ use frixel_wire::message::{Command, Refusal};
 
 use crate::calls::connected;
 use crate::fake_board::FakeBoard;
-use crate::virtual_link::VirtualLink;
+use crate::virtual_link::{VirtualLine, VirtualLink, line_of};
 
 /// A stream of 8,000 samples a second to a board that plays so many at every ping.
 fn streaming(plays_per_ping: usize) -> Device<VirtualLink> {
     let mut board = FakeBoard::new();
     board.plays_per_ping = plays_per_ping;
-    let mut device = connected(VirtualLink::new(board));
+    let mut device = connected(VirtualLine::new(board));
     device.start_stream(StreamSettings::new(8_000)).unwrap();
     device
 }
 
 #[test]
 fn a_layer_is_set_by_number_and_a_refusal_is_told_in_words() {
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
     device.set_layer(3, false, 0.25).unwrap();
     let mut board = FakeBoard::new();
     board.refuse = Some(Box::new(|command| {
         matches!(command, Command::SetLayer { .. }).then_some(Refusal::NoSuchLayer { layer: 3, layers: 1 })
     }));
-    let refused = connected(VirtualLink::new(board)).set_layer(3, true, 1.0).unwrap_err();
+    let refused = connected(VirtualLine::new(board)).set_layer(3, true, 1.0).unwrap_err();
     assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::NoSuchLayer { layer: 3, layers: 1 }, .. }));
     assert!(refused.to_string().contains("change of a layer"), "{refused}");
-    assert_eq!(device.into_link().board.commands, [Command::SetLayer { layer: 3, on: false, gain: 0.25 }]);
+    assert_eq!(line_of(&mut device).board.commands, [Command::SetLayer { layer: 3, on: false, gain: 0.25 }]);
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn no_more_is_sent_than_the_board_has_room_for() {
     device.ping().unwrap();
     assert_eq!(device.send_samples(&samples[1_024..]).unwrap(), 0);
     assert_eq!(device.stream_status(), Some(StreamStatus { sent: 1_024, underruns: 0, gaps: 0 }));
-    assert_eq!(device.into_link().board.samples, samples[..1_024]);
+    assert_eq!(line_of(&mut device).board.samples, samples[..1_024]);
 }
 
 /// The fake board asserts that samples come in order, and never more than it has room for.
@@ -69,14 +69,14 @@ fn a_stream_of_any_length_goes_over_as_it_is_played() {
         assert!(rounds < 200, "{sent} of {} samples", samples.len());
     }
     device.end_stream().unwrap();
-    let board = device.into_link().board;
+    let board = &line_of(&mut device).board;
     assert_eq!(board.samples, samples);
     assert_eq!(board.commands, [Command::StartStream { sample_hz: 8_000, start_level: 400 }, Command::EndStream]);
 }
 
 #[test]
 fn without_a_stream_nothing_is_sent() {
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
     assert_eq!(device.send_samples(&[1, 2, 3]).unwrap(), 0);
     assert_eq!(device.stream_status(), None);
 }

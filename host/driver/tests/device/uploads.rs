@@ -10,9 +10,9 @@ use frixel_testkit::Random;
 use frixel_wire::frame::crc32;
 use frixel_wire::message::{Command, Refusal};
 
-use crate::calls::{connected, scene};
+use crate::calls::{connected, reconnected, scene};
 use crate::fake_board::{FakeBoard, WINDOW};
-use crate::virtual_link::{Fate, VirtualLink, Weather};
+use crate::virtual_link::{Fate, VirtualLine, VirtualLink, Weather, line_of};
 
 const WIDTH: u16 = 250;
 
@@ -31,23 +31,23 @@ fn is_chunk(frame: &[u8]) -> bool {
 }
 
 /// Uploads a bitmap of 62,500 samples and a scene, and checks that both have arrived.
-fn upload_over(link: VirtualLink) -> Device<VirtualLink> {
+fn upload_over(line: VirtualLine) -> Device<VirtualLink> {
     let (samples, scene) = (samples(62_500), scene(0.25));
-    let mut device = connected(link);
+    let mut device = connected(line);
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
     device.upload(&upload, &mut |_| {}).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
-    let link = device.into_link();
-    assert_eq!(link.board.bitmaps.get(&crc32(&samples)), Some(&samples));
-    assert_eq!(link.board.scene.as_ref(), Some(&scene));
-    connected(link)
+    let board = &line_of(&mut device).board;
+    assert_eq!(board.bitmaps.get(&crc32(&samples)), Some(&samples));
+    assert_eq!(board.scene.as_ref(), Some(&scene));
+    reconnected(device)
 }
 
 #[test]
 fn at_least_95_percent_of_the_line_is_payload() {
     let samples = samples(62_500);
     let scene = scene(0.25);
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let before = device.counters();
     device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
     let after = device.counters();
@@ -64,28 +64,28 @@ fn at_least_95_percent_of_the_line_is_payload() {
 fn an_upload_takes_the_time_of_its_bytes() {
     let samples = samples(62_500);
     let scene = scene(0.25);
-    let mut link = VirtualLink::new(FakeBoard::new());
-    link.board_delay = Duration::from_millis(2);
-    let mut device = connected(link);
+    let mut line = VirtualLine::new(FakeBoard::new());
+    line.board_delay = Duration::from_millis(2);
+    let mut device = connected(line);
     let bytes_before = device.counters().wire_bytes;
-    let link = device.into_link();
-    let started = link.now();
-    device = connected(link);
+    let started = device.now();
+    device = reconnected(device);
     device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
     let line_time_s = (device.counters().wire_bytes - bytes_before) as f64 / 200_000.0;
-    let link = device.into_link();
-    let took_s = link.now().as_secs_f64() - started.as_secs_f64();
-    println!("{took_s:.3} s for {line_time_s:.3} s of bytes, at most {} under way", link.most_under_way);
+    let took_s = device.now().as_secs_f64() - started.as_secs_f64();
+    let line = line_of(&mut device);
+    println!("{took_s:.3} s for {line_time_s:.3} s of bytes, at most {} under way", line.most_under_way);
     assert!(took_s < 1.1 * line_time_s, "{took_s} s for {line_time_s} s of bytes");
 }
 
 /// Else a line that refuses bytes beyond the credit would prove nothing.
 #[test]
 fn a_slow_board_fills_the_window() {
-    let mut link = VirtualLink::new(FakeBoard::new());
-    link.board_delay = Duration::from_millis(40);
-    let link = upload_over(link).into_link();
-    assert!(link.most_under_way > usize::from(WINDOW) * 9 / 10, "{} bytes", link.most_under_way);
+    let mut line = VirtualLine::new(FakeBoard::new());
+    line.board_delay = Duration::from_millis(40);
+    let mut device = upload_over(line);
+    let line = line_of(&mut device);
+    assert!(line.most_under_way > usize::from(WINDOW) * 9 / 10, "{} bytes", line.most_under_way);
 }
 
 /// Pings go out while an upload waits for credit, and the line refuses them too when they go beyond it: two while the
@@ -93,19 +93,18 @@ fn a_slow_board_fills_the_window() {
 #[test]
 fn pings_have_credit_of_their_own() {
     for armed in [false, true] {
-        let mut link = VirtualLink::new(FakeBoard::new());
-        link.board_pause = Duration::from_millis(100)..Duration::from_millis(650);
+        let mut line = VirtualLine::new(FakeBoard::new());
+        line.board_pause = Duration::from_millis(100)..Duration::from_millis(650);
         let (samples, scene) = (samples(62_500), scene(0.25));
-        let mut device = connected(link);
+        let mut device = connected(line);
         if armed {
             device.arm().unwrap();
         }
         let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
-        let pings_before = device.link_mut().board.pings;
+        let pings_before = line_of(&mut device).board.pings;
         device.upload(&upload, &mut |_| {}).unwrap();
-        let link = device.into_link();
-        assert!(link.now() > Duration::from_millis(800), "the board paused in the upload");
-        let pings = link.board.pings - pings_before;
+        assert!(device.now() > Duration::from_millis(800), "the board paused in the upload");
+        let pings = line_of(&mut device).board.pings - pings_before;
         assert!(pings >= 2, "{pings} pings");
     }
 }
@@ -114,21 +113,22 @@ fn pings_have_credit_of_their_own() {
 fn a_board_with_room_for_one_frame_takes_an_upload() {
     let mut board = FakeBoard::new();
     board.hello.limits.receive_window_bytes = 192;
-    let link = upload_over(VirtualLink::new(board)).into_link();
-    assert!(link.most_under_way <= 192, "{} bytes", link.most_under_way);
+    let mut device = upload_over(VirtualLine::new(board));
+    let line = line_of(&mut device);
+    assert!(line.most_under_way <= 192, "{} bytes", line.most_under_way);
 }
 
 #[test]
 fn an_upload_alone_commits_no_scene() {
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let scene = scene(0.25);
     device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).unwrap();
-    assert_eq!(device.into_link().board.scene, None);
+    assert_eq!(line_of(&mut device).board.scene, None);
 }
 
 #[test]
 fn a_bitmap_that_the_board_holds_is_not_sent_again() {
-    let mut device = upload_over(VirtualLink::new(FakeBoard::new()));
+    let mut device = upload_over(VirtualLine::new(FakeBoard::new()));
     let payload_before = device.counters().payload_bytes;
     let (samples, scene) = (samples(62_500), scene(0.25));
     device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
@@ -138,7 +138,7 @@ fn a_bitmap_that_the_board_holds_is_not_sent_again() {
 #[test]
 fn progress_only_grows_and_ends_with_all() {
     let (samples, scene) = (samples(62_500), scene(0.25));
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let mut steps = Vec::new();
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
     device.upload(&upload, &mut |progress| steps.push(progress)).unwrap();
@@ -151,10 +151,10 @@ fn progress_only_grows_and_ends_with_all() {
 #[test]
 fn one_lost_or_damaged_chunk_costs_no_more_than_a_window() {
     for fate in [Fate::Lost, Fate::Tail(50), Fate::Damaged(70), Fate::Damaged(191)] {
-        let mut link = VirtualLink::new(FakeBoard::new());
-        link.to_board_weather = Box::new(move |number, _| if number == 100 { fate } else { Fate::Arrives });
-        let clean = upload_over(VirtualLink::new(FakeBoard::new())).counters();
-        let stormy = upload_over(link).counters();
+        let mut line = VirtualLine::new(FakeBoard::new());
+        line.to_board_weather = Box::new(move |number, _| if number == 100 { fate } else { Fate::Arrives });
+        let clean = upload_over(VirtualLine::new(FakeBoard::new())).counters();
+        let stormy = upload_over(line).counters();
         let extra = stormy.wire_bytes - clean.wire_bytes;
         assert!((192..=u64::from(WINDOW) + 192).contains(&extra), "{fate:?} cost {extra} bytes");
     }
@@ -163,38 +163,38 @@ fn one_lost_or_damaged_chunk_costs_no_more_than_a_window() {
 /// Far more than a window is lost in all: credit comes back, or the upload would stop for good.
 #[test]
 fn lost_bytes_do_not_use_up_the_credit() {
-    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut line = VirtualLine::new(FakeBoard::new());
     let mut seen = BTreeSet::new();
-    link.to_board_weather = Box::new(move |_, frame| {
+    line.to_board_weather = Box::new(move |_, frame| {
         let first = is_chunk(frame) && seen.insert(frame.to_vec());
         if first && seen.len().is_multiple_of(10) { Fate::Lost } else { Fate::Arrives }
     });
-    let link = upload_over(link).into_link();
-    assert!(link.written().bytes > 62_500 + 4 * u64::from(WINDOW));
+    let mut device = upload_over(line);
+    assert!(device.link_mut().written().bytes > 62_500 + 4 * u64::from(WINDOW));
 }
 
 /// The last chunk has no later one behind it that would show the gap.
 #[test]
 fn a_lost_last_chunk_is_sent_again() {
-    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut line = VirtualLine::new(FakeBoard::new());
     let mut lost = false;
-    link.to_board_weather = Box::new(move |_, frame| {
+    line.to_board_weather = Box::new(move |_, frame| {
         let last = frame.len() == 62_500 % 184 + 8;
         let fate = if last && !lost { Fate::Lost } else { Fate::Arrives };
         lost |= last;
         fate
     });
-    upload_over(link);
+    upload_over(line);
 }
 
 #[test]
 fn any_weather_in_which_no_frame_is_hit_twice_lets_an_upload_through() {
     for seed in 1..=60 {
-        let mut link = VirtualLink::new(FakeBoard::new());
-        link.board_delay = Duration::from_micros(seed * 50);
-        link.to_board_weather = storm(seed);
-        link.to_host_weather = storm(seed + 1000);
-        upload_over(link);
+        let mut line = VirtualLine::new(FakeBoard::new());
+        line.board_delay = Duration::from_micros(seed * 50);
+        line.to_board_weather = storm(seed);
+        line.to_host_weather = storm(seed + 1000);
+        upload_over(line);
     }
 }
 
@@ -217,13 +217,13 @@ fn storm(seed: u64) -> Weather {
 
 #[test]
 fn an_upload_that_does_not_get_on_ends_within_a_second() {
-    let mut link = VirtualLink::new(FakeBoard::new());
+    let mut line = VirtualLine::new(FakeBoard::new());
     let mut chunks = 0;
-    link.to_board_weather = Box::new(move |_, frame| {
+    line.to_board_weather = Box::new(move |_, frame| {
         chunks += u32::from(is_chunk(frame));
         if is_chunk(frame) && chunks > 50 { Fate::Lost } else { Fate::Arrives }
     });
-    let mut device = connected(link);
+    let mut device = connected(line);
     let (samples, scene) = (samples(62_500), scene(0.25));
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
     let error = device.upload(&upload, &mut |_| {}).unwrap_err();
@@ -233,9 +233,8 @@ fn an_upload_that_does_not_get_on_ends_within_a_second() {
         total_bytes: samples.len(),
     };
     assert_eq!(error, expected);
-    let link = device.into_link();
-    assert!(link.now() < Duration::from_secs(1), "{:?}", link.now());
-    assert_eq!(link.board.scene, None);
+    assert!(device.now() < Duration::from_secs(1), "{:?}", device.now());
+    assert_eq!(line_of(&mut device).board.scene, None);
 }
 
 #[test]
@@ -243,7 +242,7 @@ fn a_refused_upload_is_not_sent() {
     let mut board = FakeBoard::new();
     let full = Refusal::BitmapPoolFull { len: 62_500, free: 1000 };
     board.refuse = Some(Box::new(move |command| matches!(command, Command::UploadBitmap { .. }).then_some(full)));
-    let mut device = connected(VirtualLink::new(board));
+    let mut device = connected(VirtualLine::new(board));
     let (samples, scene) = (samples(62_500), scene(0.25));
     let error = device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::Refused { refusal, .. } if refusal == full), "{error}");
@@ -254,7 +253,7 @@ fn a_refused_upload_is_not_sent() {
 fn a_bitmap_of_another_size_is_refused_before_anything_is_sent() {
     let samples = samples(62_500);
     let scene = scene(0.25);
-    let mut device = connected(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let before = device.counters();
     let wrong = Bitmap { height: 249, ..bitmap(&samples) };
     let error = device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut |_| {}).unwrap_err();
@@ -271,12 +270,12 @@ fn a_board_that_forgets_every_upload_is_given_up() {
         (*command == Command::UploadEnd).then_some(forgotten)
     };
     board.refuse = Some(Box::new(forgets));
-    let mut device = connected(VirtualLink::new(board));
+    let mut device = connected(VirtualLine::new(board));
     let (samples, scene) = (samples(6_250), scene(0.25));
     let error = device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::UploadForgotten { total_bytes: 6_250, times: 4, .. }), "{error}");
     assert!(error.to_string().contains("reset the board"), "{error}");
-    assert!(device.into_link().now() < Duration::from_secs(1));
+    assert!(device.now() < Duration::from_secs(1));
 }
 
 /// 57,600 baud and less: a full window ahead of a request takes most of a second, or several.
@@ -284,17 +283,17 @@ fn a_board_that_forgets_every_upload_is_given_up() {
 fn a_slow_line_uploads_in_the_end() {
     let (samples, scene) = (samples(25_000), scene(0.25));
     for bytes_per_s in [11_520, 5_760, 2_880, 1_500] {
-        let mut link = VirtualLink::new(FakeBoard::new());
-        link.bytes_per_s = bytes_per_s;
-        let mut device = connected(link);
+        let mut line = VirtualLine::new(FakeBoard::new());
+        line.bytes_per_s = bytes_per_s;
+        let mut device = connected(line);
         let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
         device.upload(&upload, &mut |_| {}).unwrap();
         device.commit(upload.scene_crc32()).unwrap();
         let written = device.counters().wire_bytes;
-        let link = device.into_link();
-        assert_eq!(link.board.bitmaps.get(&crc32(&samples)), Some(&samples));
+        let line = line_of(&mut device);
+        assert_eq!(line.board.bitmaps.get(&crc32(&samples)), Some(&samples));
         let line_s = written as f64 / f64::from(bytes_per_s);
-        println!("{bytes_per_s} bytes a second: {:.1} s for {line_s:.1} s of bytes", link.now().as_secs_f64());
+        println!("{bytes_per_s} bytes a second: {:.1} s for {line_s:.1} s of bytes", device.now().as_secs_f64());
         assert!(written < 40_000, "{written} bytes at {bytes_per_s} a second: nothing is sent twice");
     }
 }
@@ -303,20 +302,17 @@ fn a_slow_line_uploads_in_the_end() {
 fn an_upload_ends_when_its_caller_breaks_it_off() {
     let (samples, scene) = (samples(62_500), scene(0.25));
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
-    let break_off = |link| {
-        let mut device = connected(link);
-        let started = device.now();
-        let deadline = started + Duration::from_millis(100);
-        let mut calls = 0;
-        let error = device.upload_while(&upload, &mut |progress| {
-            calls += 1;
-            let enough = progress.done_bytes > 10_000 || calls > 1_000;
-            if enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        assert!(matches!(error, Err(DeviceError::Interrupted { .. })), "{error:?}");
-        assert!(device.now() <= deadline + Duration::from_secs(1));
-        let link = device.into_link();
-        assert_eq!((link.board.bitmaps.len(), &link.board.scene), (0, &None));
-    };
-    break_off(VirtualLink::new(FakeBoard::new()));
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
+    let started = device.now();
+    let deadline = started + Duration::from_millis(100);
+    let mut calls = 0;
+    let error = device.upload_while(&upload, &mut |progress| {
+        calls += 1;
+        let enough = progress.done_bytes > 10_000 || calls > 1_000;
+        if enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(matches!(error, Err(DeviceError::Interrupted { .. })), "{error:?}");
+    assert!(device.now() <= deadline + Duration::from_secs(1));
+    let line = line_of(&mut device);
+    assert_eq!((line.board.bitmaps.len(), &line.board.scene), (0, &None));
 }

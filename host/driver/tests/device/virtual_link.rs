@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::time::Duration;
 
-use frixel_driver::{KeepAlive, Link, LinkClosed, Written};
+use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 
 use crate::fake_board::{FakeBoard, WINDOW};
 
@@ -26,7 +26,15 @@ pub(crate) enum Fate {
 /// Says what becomes of a frame, by its number from zero and its bytes.
 pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate>;
 
-pub(crate) struct VirtualLink {
+/// A link over the line, which pings as every link without a thread does.
+pub(crate) type VirtualLink = PollingLink<VirtualLine>;
+
+/// The line of a device.
+pub(crate) fn line_of(device: &mut Device<VirtualLink>) -> &mut VirtualLine {
+    device.link_mut().stream_mut()
+}
+
+pub(crate) struct VirtualLine {
     pub(crate) board: FakeBoard,
     pub(crate) to_board_weather: Weather,
     pub(crate) to_host_weather: Weather,
@@ -46,9 +54,8 @@ pub(crate) struct VirtualLink {
     now: Duration,
     to_board: Line,
     to_host: Line,
-    written: Written,
+    frames_to_board: u64,
     frames_to_host: u64,
-    pings: KeepAlive,
 }
 
 /// One direction.
@@ -76,7 +83,7 @@ impl Line {
     }
 }
 
-impl VirtualLink {
+impl VirtualLine {
     pub(crate) fn new(board: FakeBoard) -> Self {
         Self {
             board,
@@ -92,9 +99,8 @@ impl VirtualLink {
             now: Duration::ZERO,
             to_board: Line::default(),
             to_host: Line::default(),
-            written: Written::default(),
+            frames_to_board: 0,
             frames_to_host: 0,
-            pings: KeepAlive::default(),
         }
     }
 
@@ -116,19 +122,11 @@ impl VirtualLink {
         }
         let unasked = self.board.poll(self.now);
         self.send_to_host(&unasked);
-        if self.ping_due_at().is_some_and(|due| due <= self.now) {
-            let ping = self.pings.next_ping(self.now);
-            self.write(&ping).unwrap();
-        }
-    }
-
-    fn ping_due_at(&self) -> Option<Duration> {
-        self.pings.due_at(self.now)
     }
 
     fn next_event_at(&self) -> Option<Duration> {
-        let board = [self.to_board.next_arrival(), self.to_host.next_arrival(), self.board.next_poll()];
-        board.into_iter().chain([self.ping_due_at(), self.pulled_at]).flatten().min()
+        let arrivals = [self.to_board.next_arrival(), self.to_host.next_arrival()];
+        arrivals.into_iter().chain([self.board.next_poll(), self.pulled_at]).flatten().min()
     }
 
     fn check_plugged(&self) -> Result<(), LinkClosed> {
@@ -139,21 +137,20 @@ impl VirtualLink {
     }
 }
 
-impl Link for VirtualLink {
-    fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
+impl ByteStream for VirtualLine {
+    fn write(&mut self, frame: &[u8]) -> Result<(), LinkClosed> {
         self.check_plugged()?;
-        let fate = (self.to_board_weather)(self.written.frames, frame);
+        let fate = (self.to_board_weather)(self.frames_to_board, frame);
         let bytes = weathered(frame, fate);
         let arrives = self.to_board.time_to_send(&bytes, self.now, self.bytes_per_s) + self.board_delay;
         let seen = if self.board_pause.contains(&arrives) { self.board_pause.end } else { arrives };
         self.board_free_at = self.board_free_at.max(seen) + self.board_time_per_frame;
         self.to_board.under_way.push_back((self.board_free_at, bytes));
-        self.written.add(frame);
-        self.pings.wrote(self.now);
+        self.frames_to_board += 1;
         let under_way: usize = self.to_board.under_way.iter().map(|(_, bytes)| bytes.len()).sum();
         self.most_under_way = self.most_under_way.max(under_way);
         assert!(under_way <= usize::from(WINDOW), "the host sent {under_way} bytes beyond what the board acknowledged");
-        Ok(self.written.bytes)
+        Ok(())
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
@@ -163,7 +160,6 @@ impl Link for VirtualLink {
             self.check_plugged()?;
             self.step();
             while let Some(bytes) = self.to_host.arrived(self.now) {
-                self.pings.hear(&bytes, self.now);
                 buffer.extend(bytes);
             }
             if buffer.len() > len_before {
@@ -181,14 +177,6 @@ impl Link for VirtualLink {
 
     fn now(&self) -> Duration {
         self.now
-    }
-
-    fn keep_alive(&mut self, period: Duration) {
-        self.pings.set_period(period);
-    }
-
-    fn written(&self) -> Written {
-        self.written
     }
 
     fn name(&self) -> &'static str {
