@@ -1,7 +1,8 @@
 //! `felt.svg`: friction and voltage over time.
 
 use super::off_strip;
-use super::trace::{Extremes, Span, Trace, TracedLayer};
+use super::span::{Extremes, Span, TracedLayer};
+use super::trace::Trace;
 use super::{DrawingError, Subject, svg};
 use frixel_chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
 use frixel_scene::Reach;
