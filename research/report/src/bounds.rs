@@ -1,8 +1,8 @@
 //! Upper and lower bound of the model, and a finger of finite size.
 use std::error::Error;
 
-use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
 use frixel::report::{Data, Figure, example};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
 use frixel_model::ContactModel;
 
 use super::geometric;

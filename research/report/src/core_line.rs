@@ -1,8 +1,8 @@
 //! Fig. 3 of the paper: contact radius and friction over voltage without a load, on one core line.
 use std::error::Error;
 
-use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use frixel::report::{Data, Figure, example};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use frixel_model::{Contact, ContactModel, Finger};
 
 use super::{even, geometric};

@@ -2,8 +2,8 @@
 use core::f64::consts::PI;
 use std::error::Error;
 
-use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
 use frixel::report::{Data, Figure, example};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
 use frixel_model::{Contact, ContactModel, ContactState};
 
 use super::even;

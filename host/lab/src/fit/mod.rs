@@ -161,9 +161,10 @@ fn fit_without(faults: &mut Faults, rows: Vec<Row>, settings: &Settings) -> Resu
     let levels = Levels::of(&recording);
     let voltage_range_v_rms = rules::check_levels(&levels)?;
     rules::check_carrier(&recording, &levels)?;
-    let bandwidth_hz = sensor::check_bandwidth(&recording, &levels)?;
     let mut strokes = stroke_means(&recording, &levels);
     rules::check_natural(&mut strokes, faults)?;
+    rules::check_forces(&recording)?;
+    let bandwidth_hz = sensor::check_bandwidth(&recording, &levels)?;
     rules::check_stated(settings, voltage_range_v_rms, load_range_n)?;
     let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
 
