@@ -226,7 +226,7 @@ fn outcome(person: u64, fit: &Fit) -> Outcome {
 }
 
 #[test]
-#[ignore = "most of an hour: cargo xtask soak fit"]
+#[ignore = "an hour or more: cargo xtask soak fit"]
 fn intervals_of_200_people_and_20_seeds_contain_the_truth() {
     let tally = Tally::of(0..MANY.0, 1..1 + MANY.1, "");
     tally.print();
