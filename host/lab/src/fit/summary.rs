@@ -59,7 +59,7 @@ pub struct Summary {
     pub strokes: usize,
     /// Number of rows that were used.
     pub rows: usize,
-    /// How rows were divided into strokes: `column`, `motion` or `blocks`.
+    /// How rows were divided into strokes: `column`, `motion` or `blocks`; `means` if the rows are means.
     pub division: &'static str,
     /// Bandwidth with which friction follows a switch of the drive, Hz: that of force sensor and finger together;
     /// `null` where the data cannot tell.
@@ -99,6 +99,7 @@ impl From<&Fit> for Summary {
                 Division::Column => "column",
                 Division::Motion => "motion",
                 Division::Blocks => "blocks",
+                Division::Means => "means",
             },
             bandwidth_hz: fit.bandwidth_hz,
         }
@@ -125,10 +126,8 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     let Estimate { value, low, high } = fit.friction_coefficient;
-    line(
-        "friction coefficient",
-        format!("{value:.3} (95 % interval {low:.3} to {high:.3}), the mean of this recording"),
-    );
+    let of = if fit.division == Division::Means { "of all means" } else { "the mean of this recording" };
+    line("friction coefficient", format!("{value:.3} (95 % interval {low:.3} to {high:.3}), {of}"));
     let Estimate { value, low, high } = fit.electric_friction_n;
     let (voltage, load_n) = (fit.stated_voltage_v_rms, fit.normal_load_n);
     let [value_mn, low_mn, high_mn] = [value, low, high].map(|newtons| 1e3 * newtons);
@@ -140,7 +139,13 @@ pub fn words(fit: &Fit, screen: &str) -> String {
     );
     line("exponent of the voltage", exponent_words(&fit.voltage_exponent, NO_VERDICT_OF_VOLTAGE));
     line("exponent of the load", exponent_words(&fit.load_exponent, NO_VERDICT_OF_LOAD));
-    line("data", format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows));
+    line(
+        "data",
+        match fit.division {
+            Division::Means => format!("{} means with their errors", fit.rows),
+            _ => format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows),
+        },
+    );
     if let Some(bandwidth_hz) = fit.bandwidth_hz {
         let rise_ms = 1e3 * BANDWIDTH_TIMES_RISE / bandwidth_hz;
         line("force sensor", format!("follows a switch of the drive in {rise_ms:.1} ms, as with {bandwidth_hz:.0} Hz"));
@@ -177,6 +182,17 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
          stiffness are a convention, and the profile holds for the screen it was measured on",
         "the friction coefficient is that of this recording: skin gets moist within minutes, and friction with it",
     ];
+    if fit.division == Division::Means {
+        notes.push(
+            "means cannot tell how strokes or people differ, nor what they have in common: intervals come from the stated \
+             errors, as if the means were independent, and are those of the mean finger",
+        );
+        notes.push("in means, nobody checked that fingers slid steadily, nor that they did not change while they were measured");
+        if fit.load_range_n.0 >= fit.load_range_n.1 {
+            notes.push("all loads are equal, so the means say nothing about other loads");
+        }
+        return notes;
+    }
     if fit.division == Division::Motion {
         notes.push("without a column stroke, strokes were divided where the direction, the speed or the clock says so");
     }
