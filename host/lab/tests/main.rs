@@ -5,6 +5,7 @@ mod coverage;
 mod person;
 mod refusals;
 mod simulated;
+mod slow_sensors;
 
 use frixel_lab::fit::Settings;
 

@@ -138,6 +138,28 @@ fn speeds_and_slip() {
 }
 
 #[test]
+fn all_strokes_with_faults_are_named_at_once() {
+    let change = |row: &mut Row| match row.stroke.as_deref() {
+        Some("3") => row.speed_mm_s = row.speed_mm_s.map(|speed| 4.0 * speed),
+        Some("7") => {
+            row.normal_force_n *= 1.25;
+            row.friction_n *= 1.25;
+        }
+        Some("11") => row.friction_n *= 0.4,
+        Some("20") => row.friction_n = 0.5 * row.normal_force_n,
+        _ => (),
+    };
+    let words = ["stroke 3: its speed", "stroke 7: its load", "stroke 11 did not slip", "stroke 20 did not slip"];
+    refused(change, &[&words[..], &["--without 3,7,11,20"]].concat());
+    let mut rows = example();
+    rows.iter_mut().for_each(change);
+    let settings = Settings { without: ["3", "7", "11", "20"].map(str::to_owned).to_vec(), ..settings() };
+    assert_eq!(fit::fit(rows, &settings).unwrap().strokes.len(), 32);
+    let fast = |row: &mut Row| row.speed_mm_s = row.speed_mm_s.map(|speed| 4.0 * speed);
+    refused(fast, &["and 30 more", "--without 1,2,3,", "35,36"]);
+}
+
+#[test]
 fn voltages() {
     refused(|row| row.voltage_v_rms = 0.0, &["the voltage is zero throughout"]);
     refused(|row| row.voltage_v_rms = 150.0, &["one voltage only"]);

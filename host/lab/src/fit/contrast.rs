@@ -107,24 +107,37 @@ struct Segment {
 }
 
 /// Consecutive rows of a stroke at one level, with their places in it.
-struct Run<'r> {
-    level: Option<usize>,
-    rows: Vec<(usize, &'r Row)>,
+pub(super) struct Run<'r> {
+    pub(super) level: Option<usize>,
+    pub(super) rows: Vec<(usize, &'r Row)>,
     /// When the voltage changes after the last row; `None` at the end of the stroke and without times.
     change_s: Option<f64>,
 }
 
 impl<'r> Run<'r> {
+    /// Time of the first row; `None` without times.
+    pub(super) fn starts_s(&self) -> Option<f64> {
+        self.rows.first()?.1.time_s
+    }
+
+    /// Time from the first to the last row; 0 without times.
+    pub(super) fn lasts_s(&self) -> f64 {
+        let last_s = self.rows.last().and_then(|(_, row)| row.time_s);
+        last_s.zip(self.starts_s()).map_or(0.0, |(last_s, first_s)| last_s - first_s)
+    }
+
     /// The rows without those near a change of the voltage; all of them without times.
     fn settled(&self) -> Vec<(usize, &'r Row)> {
-        let start_s = self.rows.first().and_then(|(_, row)| row.time_s);
+        let start_s = self.starts_s();
         let has_settled = |row: &Row| {
             row.time_s.is_none_or(|time_s| {
                 start_s.is_none_or(|start_s| time_s >= start_s + SETTLING_S)
                     && self.change_s.is_none_or(|change_s| time_s < change_s - EDGE_S)
             })
         };
-        self.rows.iter().filter(|(_, row)| has_settled(row)).copied().collect()
+        // The voltage changes after the last row and before the next one, wherever that is.
+        let count = self.rows.len() - usize::from(self.change_s.is_some());
+        self.rows.iter().take(count).filter(|(_, row)| has_settled(row)).copied().collect()
     }
 }
 
@@ -157,7 +170,8 @@ fn means_of(name: &str, segments: &[Segment]) -> StrokeMeans {
     }
 }
 
-fn runs<'r>(stroke: &'r Stroke, levels: &Levels) -> Vec<Run<'r>> {
+/// Divides a stroke into runs of one level.
+pub(super) fn runs<'r>(stroke: &'r Stroke, levels: &Levels) -> Vec<Run<'r>> {
     let mut runs: Vec<Run> = Vec::new();
     for (index, row) in stroke.rows.iter().enumerate() {
         let level = levels.level(row.voltage_v_rms);

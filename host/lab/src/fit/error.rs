@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::faults::{FaultyStroke, sentence};
 use crate::table::TableError;
 
 /// Why data cannot be fitted.
@@ -170,52 +171,9 @@ pub enum FitError {
         /// Least number of rows.
         needed: usize,
     },
-    /// A stroke is too short.
-    #[error("stroke {stroke} is too short, {found}: make each stroke last at least 0.4 s and at least 5 rows")]
-    StrokeTooShort {
-        /// The stroke.
-        stroke: String,
-        /// How short it is.
-        found: String,
-    },
-    /// A stroke's load is not that of the others.
-    #[error(
-        "stroke {stroke}: its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, more \
-         than \
-         15 %: record it again, or leave it out with --without {stroke}"
-    )]
-    LoadOff {
-        /// The stroke.
-        stroke: String,
-        /// Its median load.
-        load_n: f64,
-        /// How far it is off, in percent.
-        percent: f64,
-        /// Median load of the recording.
-        median_n: f64,
-    },
-    /// A stroke is too slow or too fast.
-    #[error(
-        "stroke {stroke}: its speed of {speed_mm_s:.3} mm/s is outside 20 to 100 mm/s, where the lag of friction was \
-         measured: record it again, or leave it out with --without {stroke}"
-    )]
-    Speed {
-        /// The stroke.
-        stroke: String,
-        /// Its median speed.
-        speed_mm_s: f64,
-    },
-    /// A stroke did not slip.
-    #[error(
-        "stroke {stroke} did not slip: {found}; record it again with a finger that slides all the way, or leave it \
-         out with --without {stroke}"
-    )]
-    NoSlip {
-        /// The stroke.
-        stroke: String,
-        /// How it shows.
-        found: String,
-    },
+    /// Strokes that cannot be used: all that were found.
+    #[error("{}", sentence(.0))]
+    FaultyStrokes(Vec<FaultyStroke>),
     /// A stroke that is to be left out does not exist.
     #[error("--without {stroke}: there is no such stroke; the column stroke has {first} to {last}")]
     NoSuchStroke {
@@ -291,6 +249,18 @@ pub enum FitError {
         high: f64,
         /// Estimate.
         value: f64,
+    },
+    /// The force sensor is too slow.
+    #[error(
+        "the force sensor is too slow: friction takes {rise_ms:.1} ms from 10 to 90 % of its way after a switch of the \
+         drive, as with a bandwidth of {bandwidth_hz:.0} Hz, so that electric friction would come out too small; use \
+         a sensor, and a filter behind it, of at least 200 Hz, with at least 500 rows a second"
+    )]
+    SlowSensor {
+        /// Rise time in milliseconds.
+        rise_ms: f64,
+        /// Bandwidth with this rise time, in Hz.
+        bandwidth_hz: f64,
     },
     /// The finger changed during the recording.
     #[error(

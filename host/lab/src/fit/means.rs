@@ -14,6 +14,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use super::bootstrap::Draws;
 use super::contrast::StrokeMeans;
 use super::error::FitError;
+use super::faults::Faults;
 use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
@@ -120,8 +121,10 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<Fit, FitError
     let normal_load_n = settings.normal_load_n.unwrap_or_else(|| median(loads()));
 
     let observations: Vec<Observation> = rows.iter().map(observation).collect();
-    let strokes: Vec<StrokeMeans> = rows.iter().zip(&observations).map(|(row, one)| stroke(row, *one)).collect();
-    rules::check_natural(&strokes)?;
+    let mut strokes: Vec<StrokeMeans> = rows.iter().zip(&observations).map(|(row, one)| stroke(row, *one)).collect();
+    let mut faults = Faults::default();
+    rules::check_natural(&mut strokes, &mut faults)?;
+    faults.check()?;
     let begin = start(&strokes, &observations)?;
     let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &begin };
     let best = search.run(&observations, &begin).ok_or(FitError::NotConverged)?;
@@ -154,6 +157,7 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<Fit, FitError
         division: Division::Means,
         has_time: false,
         has_speed: false,
+        bandwidth_hz: None,
         strokes: results(&strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
     verdict::check_fit(&fit, settings)?;

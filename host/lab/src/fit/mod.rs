@@ -22,6 +22,7 @@
 mod bootstrap;
 mod contrast;
 mod error;
+mod faults;
 mod intervals;
 mod law;
 mod least_squares;
@@ -31,6 +32,7 @@ pub mod recipe;
 mod recording;
 mod rules;
 mod search;
+mod sensor;
 mod statistics;
 mod summary;
 mod table;
@@ -39,6 +41,8 @@ mod verdict;
 pub use bootstrap::Estimate;
 use contrast::{Levels, StrokeMeans, stroke_means};
 pub use error::FitError;
+use faults::Faults;
+pub use faults::{Fault, FaultyStroke};
 use intervals::{Fitted, wandering};
 use law::{Attraction, Coupling};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
@@ -103,6 +107,9 @@ pub struct Fit {
     pub has_time: bool,
     /// Whether the data have speeds.
     pub has_speed: bool,
+    /// Bandwidth with which friction follows a switch of the drive, in Hz: that of the force sensor, and of the finger;
+    /// `None` if the data cannot tell.
+    pub bandwidth_hz: Option<f64>,
     /// What was measured in each stroke, and what the fit says.
     pub strokes: Vec<StrokeResult>,
 }
@@ -149,16 +156,26 @@ pub fn fit_data(data: Data, settings: &Settings) -> Result<Fit, FitError> {
 
 /// Fits a finger to the rows of a recording.
 pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
+    let mut faults = Faults::default();
+    let fit = fit_without(&mut faults, rows, settings);
+    // A faulty stroke may be the cause of what else is wrong.
+    faults.check()?;
+    fit
+}
+
+/// Fits a finger to the strokes without faults; the others are added to `faults`.
+fn fit_without(faults: &mut Faults, rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
     rules::check_units(&rows)?;
-    let recording = Recording::new(rows, &settings.without)?;
+    let mut recording = Recording::new(rows, &settings.without, faults)?;
+    let (load_median_n, load_range_n) = rules::check_loads(&mut recording, faults);
     rules::check_strokes(&recording)?;
     let levels = Levels::of(&recording);
     let voltage_range_v_rms = rules::check_levels(&levels)?;
     rules::check_carrier(&recording, &levels)?;
-    let strokes = stroke_means(&recording, &levels);
-    let (load_median_n, load_range_n) = rules::check_loads(&recording)?;
-    rules::check_natural(&strokes)?;
+    let mut strokes = stroke_means(&recording, &levels);
+    rules::check_natural(&mut strokes, faults)?;
     rules::check_forces(&recording)?;
+    let bandwidth_hz = sensor::check_bandwidth(&recording, &levels)?;
     rules::check_stated(settings, voltage_range_v_rms, load_range_n)?;
     let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
 
@@ -166,7 +183,9 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
     let start = start(&strokes, &observations)?;
     let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
     let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
-    rules::check_slip(&strokes, &best.contact)?;
+    rules::check_slip(&strokes, &best.contact, faults);
+    // The search for intervals takes longest.
+    faults.check()?;
     let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
     let judge = verdict::Judge { fitted: &fitted, observations: &observations };
     let voltage_exponent = judge.voltage(normal_load_n, voltage_range_v_rms.1)?;
@@ -192,6 +211,7 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
         division: recording.division,
         has_time: recording.has_time,
         has_speed: recording.has_speed,
+        bandwidth_hz,
         strokes: results(&strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
     verdict::check_fit(&fit, settings)?;

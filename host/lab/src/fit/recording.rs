@@ -1,6 +1,7 @@
 //! Divides rows into strokes, and drops what is no steady sliding.
 
 use super::error::FitError;
+use super::faults::{Fault, Faults};
 use super::statistics::median;
 use super::table::Row;
 
@@ -67,18 +68,21 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Divides rows into strokes, leaves out those that are named in `without`, and drops starts and turns.
-    pub(super) fn new(rows: Vec<Row>, without: &[String]) -> Result<Self, FitError> {
+    /// Divides rows into strokes, leaves out those that are named in `without` and those with faults, and drops starts
+    /// and turns.
+    pub(super) fn new(rows: Vec<Row>, without: &[String], faults: &mut Faults) -> Result<Self, FitError> {
         let has_time = rows.iter().all(|row| row.time_s.is_some());
         let has_speed = rows.iter().all(|row| row.speed_mm_s.is_some());
         check_time(&rows)?;
         let (division, strokes) = divided(rows, has_time)?;
         let strokes = left(strokes, without)?;
-        let strokes = strokes.into_iter().map(|stroke| trimmed(stroke, division)).collect::<Result<_, _>>()?;
+        let trimmed = strokes.into_iter().map(|stroke| (stroke.name.clone(), trimmed(stroke, division)));
+        let strokes =
+            trimmed.filter_map(|(name, stroke)| stroke.map_err(|fault| faults.push(&name, fault)).ok()).collect();
         Ok(Self { strokes, division, has_time, has_speed })
     }
 
-    pub(super) fn rows(&self) -> impl Iterator<Item = &Row> {
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Row> + Clone {
         self.strokes.iter().flat_map(|stroke| &stroke.rows)
     }
 }
@@ -88,7 +92,7 @@ fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), Fi
     if rows.first().is_some_and(|row| row.stroke.is_some()) {
         return Ok((Division::Column, by(rows, |before, row| before.stroke != row.stroke)));
     }
-    let gap_s = if has_time { GAP_S.max(GAP_INTERVALS * usual_interval_s(&rows)) } else { f64::INFINITY };
+    let gap_s = if has_time { GAP_S.max(GAP_INTERVALS * usual_interval_s(rows.iter())) } else { f64::INFINITY };
     let is_still = |row: &Row| row.speed_mm_s.is_some_and(|speed| speed.abs() < STILL_MM_S);
     let is_next = |before: &Row, row: &Row| {
         let turned = before.friction_n * row.friction_n < 0.0
@@ -128,8 +132,9 @@ fn by(rows: Vec<Row>, is_next: impl Fn(&Row, &Row) -> bool) -> Vec<Stroke> {
     strokes
 }
 
-fn usual_interval_s(rows: &[Row]) -> f64 {
-    let times = rows.iter().filter_map(|row| row.time_s);
+/// Median time from one row to the next; not-a-number without times.
+pub(super) fn usual_interval_s<'r>(rows: impl Iterator<Item = &'r Row> + Clone) -> f64 {
+    let times = rows.filter_map(|row| row.time_s);
     median(times.clone().zip(times.skip(1)).map(|(one, other)| (other - one).abs()))
 }
 
@@ -156,30 +161,28 @@ fn left(strokes: Vec<Stroke>, without: &[String]) -> Result<Vec<Stroke>, FitErro
 }
 
 /// Drops start, turn, and rows of a wrong speed; gives friction a positive sign.
-fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, FitError> {
-    let too_short = |stroke: &Stroke, found| FitError::StrokeTooShort { stroke: stroke.name.clone(), found };
+fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, Fault> {
     // A block of rows neither begins nor ends with a turn.
     if division != Division::Blocks
         && let (Some(first_s), Some(duration_s)) = (stroke.rows.first().and_then(|row| row.time_s), stroke.duration_s())
     {
         if duration_s < SHORTEST_S {
-            return Err(too_short(&stroke, format!("{duration_s:.3} s")));
+            return Err(Fault::Short { found: format!("{duration_s:.3} s") });
         }
         let kept_s = first_s + START_S..=first_s + duration_s - END_S;
         stroke.rows.retain(|row| row.time_s.is_some_and(|time_s| kept_s.contains(&time_s)));
     }
     let count = stroke.rows.len();
     if count < KEPT_ROWS {
-        return Err(too_short(&stroke, format!("{count} rows of steady sliding")));
+        return Err(Fault::Short { found: format!("{count} rows of steady sliding") });
     }
     if stroke.rows.iter().all(|row| row.speed_mm_s.is_some()) {
         let speed_mm_s = stroke.median(|row| row.speed_mm_s.unwrap_or_default().abs());
         if speed_mm_s < STILL_MM_S {
-            let found = format!("its speed is {speed_mm_s:.1} mm/s");
-            return Err(FitError::NoSlip { stroke: stroke.name, found });
+            return Err(Fault::NoSlip { found: format!("its speed is {speed_mm_s:.1} mm/s") });
         }
         if !SPEEDS_MM_S.contains(&speed_mm_s) {
-            return Err(FitError::Speed { stroke: stroke.name, speed_mm_s });
+            return Err(Fault::Speed { speed_mm_s });
         }
         stroke.rows.retain(|row| row.speed_mm_s.is_some_and(|speed| SPEEDS_MM_S.contains(&speed.abs())));
     }

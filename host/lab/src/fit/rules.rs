@@ -3,8 +3,9 @@
 use super::Settings;
 use super::contrast::{Levels, StrokeMeans};
 use super::error::FitError;
+use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
-use super::recording::Recording;
+use super::recording::{Recording, Stroke};
 use super::statistics::{mean, median};
 use super::table::Row;
 
@@ -85,26 +86,27 @@ pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<()
     if is_carrier { Err(FitError::RawCarrier { rest_rows }) } else { Ok(()) }
 }
 
-/// Whether the strokes have like loads; returns their median, and the smallest and the largest.
-pub(super) fn check_loads(recording: &Recording) -> Result<(f64, (f64, f64)), FitError> {
-    let loads: Vec<f64> = recording.strokes.iter().map(|stroke| stroke.median(|row| row.normal_force_n)).collect();
+/// Leaves out the strokes whose loads are not like those of the others; returns the median load, and the smallest and
+/// the largest of a stroke.
+pub(super) fn check_loads(recording: &mut Recording, faults: &mut Faults) -> (f64, (f64, f64)) {
+    let of_stroke = |stroke: &Stroke| stroke.median(|row| row.normal_force_n);
     let median_n = median(recording.rows().map(|row| row.normal_force_n));
-    for (stroke, load_n) in recording.strokes.iter().zip(&loads) {
+    recording.strokes.retain(|stroke| {
+        let load_n = of_stroke(stroke);
         let off = (load_n / median_n - 1.0).abs();
         if off > LOAD_TOLERANCE {
-            let (stroke, percent) = (stroke.name.clone(), 100.0 * off);
-            return Err(FitError::LoadOff { stroke, load_n: *load_n, percent, median_n });
+            faults.push(&stroke.name, Fault::Load { load_n, percent: 100.0 * off, median_n });
         }
-    }
-    let low = loads.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = loads.iter().copied().fold(0.0, f64::max);
-    Ok((median_n, (low, high)))
+        off <= LOAD_TOLERANCE
+    });
+    let loads = || recording.strokes.iter().map(of_stroke);
+    (median_n, (loads().fold(f64::INFINITY, f64::min), loads().fold(0.0, f64::max)))
 }
 
-/// Whether natural friction is known, is that of skin, and was that of a sliding finger in every stroke.
-pub(super) fn check_natural(strokes: &[StrokeMeans]) -> Result<(), FitError> {
-    let coefficients = || strokes.iter().filter_map(|stroke| stroke.natural_coefficient);
-    let ratio = median(coefficients());
+/// Whether natural friction is known and is that of skin; leaves out the strokes in which it was not that of a sliding
+/// finger.
+pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults) -> Result<(), FitError> {
+    let ratio = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
     if ratio.is_nan() {
         return Err(FitError::NoNaturalFriction);
     }
@@ -116,14 +118,15 @@ pub(super) fn check_natural(strokes: &[StrokeMeans]) -> Result<(), FitError> {
         };
         return Err(FitError::FrictionUnit { ratio, guess });
     }
-    for stroke in strokes {
-        if let Some(coefficient) = stroke.natural_coefficient
-            && coefficient < SLIP_SHARE * ratio
-        {
+    strokes.retain(|stroke| {
+        let Some(coefficient) = stroke.natural_coefficient else { return true };
+        let slips = coefficient >= SLIP_SHARE * ratio;
+        if !slips {
             let found = format!("friction over load is {coefficient:.3} with the drive off, and {ratio:.3} in others");
-            return Err(FitError::NoSlip { stroke: stroke.name.clone(), found });
+            faults.push(&stroke.name, Fault::NoSlip { found });
         }
-    }
+        slips
+    });
     Ok(())
 }
 
@@ -139,10 +142,9 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
     Ok(())
 }
 
-/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction at a
-/// voltage
+/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction at a voltage
 /// is far below that of the fit did not.
-pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution) -> Result<(), FitError> {
+pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mut Faults) {
     let ratios: Vec<(&StrokeMeans, f64)> = strokes
         .iter()
         .filter_map(|stroke| {
@@ -156,12 +158,9 @@ pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution) -> Result<(
     let spread = 1.4826 * median(ratios.iter().map(|(_, ratio)| (ratio - 1.0).abs()));
     // A stroke of little electric friction only says something where strokes agree with each other.
     let least = RESPONSE_SHARE.min(1.0 - 6.0 * spread);
-    match ratios.iter().find(|(_, ratio)| *ratio < least) {
-        Some((stroke, ratio)) => {
-            let found = format!("the drive added {:.0} % of the friction that it added in others", 100.0 * ratio);
-            Err(FitError::NoSlip { stroke: stroke.name.clone(), found })
-        }
-        None => Ok(()),
+    for (stroke, ratio) in ratios.iter().filter(|(_, ratio)| *ratio < least) {
+        let found = format!("the drive added {:.0} % of the friction that it added in others", 100.0 * ratio);
+        faults.push(&stroke.name, Fault::NoSlip { found });
     }
 }
 

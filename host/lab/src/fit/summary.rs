@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use super::sensor::BANDWIDTH_TIMES_RISE;
 use super::{Division, Estimate, Exponent, Fit, Verdict};
 
 /// Voltage of the keys that name it, in volts rms.
@@ -60,6 +61,9 @@ pub struct Summary {
     pub rows: usize,
     /// How rows were divided into strokes: `column`, `motion` or `blocks`; `means` if the rows are means.
     pub division: &'static str,
+    /// Bandwidth with which friction follows a switch of the drive, Hz: that of force sensor and finger together;
+    /// `null` where the data cannot tell.
+    pub bandwidth_hz: Option<f64>,
 }
 
 impl From<&Fit> for Summary {
@@ -97,6 +101,7 @@ impl From<&Fit> for Summary {
                 Division::Blocks => "blocks",
                 Division::Means => "means",
             },
+            bandwidth_hz: fit.bandwidth_hz,
         }
     }
 }
@@ -141,6 +146,10 @@ pub fn words(fit: &Fit, screen: &str) -> String {
             _ => format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows),
         },
     );
+    if let Some(bandwidth_hz) = fit.bandwidth_hz {
+        let rise_ms = 1e3 * BANDWIDTH_TIMES_RISE / bandwidth_hz;
+        line("force sensor", format!("follows a switch of the drive in {rise_ms:.1} ms, as with {bandwidth_hz:.0} Hz"));
+    }
     let skin_um = 1e6 * fit.skin_gap_m;
     line(
         "convention",
@@ -195,6 +204,12 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
     }
     if !fit.has_time {
         notes.push("without a column time_s, starts, turns and the lag of friction could not be left out");
+    }
+    if fit.bandwidth_hz.is_none() {
+        notes.push(
+            "too few switches, too much noise or too few rows a second to tell whether the force sensor was fast enough: \
+             below 80 Hz electric friction comes out too small",
+        );
     }
     if !fit.has_speed {
         notes.push("without a column speed_mm_s, nobody checked that the finger slid at 20 to 100 mm/s");

@@ -32,6 +32,9 @@ use crate::rigs::SimStream;
 /// People and seeds of the test of every change, and of the soak.
 const FEW: (u64, u64) = (8, 1);
 const MANY: (u64, u64) = (200, 20);
+/// Strokes of the recordings from which the error over the length of a recording is measured, and how many people.
+const STROKES: [u64; 6] = [8, 12, 18, 36, 72, 144];
+const PEOPLE_PER_LENGTH: u64 = 24;
 /// Steady sliding: its length, and the part at the end that is measured, in seconds.
 const STEADY_S: f64 = 0.4;
 const MEASURED_S: f64 = 0.2;
@@ -223,7 +226,7 @@ fn outcome(person: u64, fit: &Fit) -> Outcome {
 }
 
 #[test]
-#[ignore = "most of an hour: cargo xtask soak fit"]
+#[ignore = "an hour or more: cargo xtask soak fit"]
 fn intervals_of_200_people_and_20_seeds_contain_the_truth() {
     let tally = Tally::of(0..MANY.0, 1..1 + MANY.1, "");
     tally.print();
@@ -235,6 +238,20 @@ fn intervals_of_200_people_and_20_seeds_contain_the_truth() {
     let (share, _) = tally.coverage();
     assert!((0.93..=0.97).contains(&share), "coverage {share}");
     assert!(tally.refused() <= 0.02, "{:#?}", tally.refusals);
+}
+
+/// The table of `docs/truth.md`: error of a fit over the number of strokes.
+#[test]
+#[ignore = "minutes: cargo xtask soak fit"]
+fn errors_fall_with_the_root_of_the_number_of_strokes() {
+    let tallies = STROKES.map(|strokes| {
+        let tally = Tally::of(0..PEOPLE_PER_LENGTH, 1..2, &format!(" --strokes {strokes}"));
+        println!("{strokes} strokes, {:.0} s:", 1.8 * strokes as f64);
+        tally.print();
+        tally
+    });
+    let [short, .., long] = &tallies;
+    assert!(long.median_half_width() < 0.4 * short.median_half_width());
 }
 
 /// Friction that is 3 % low, as it is with the rows in which the drive is switched off, is caught: of eight intervals of

@@ -1,0 +1,57 @@
+//! A force sensor that is too slow is seen, and one that is fast enough is not refused.
+
+use std::f64::consts::TAU;
+
+use frixel_hil_sim::Person;
+use frixel_lab::fit::{Fit, FitError, Row, fit};
+
+use super::person::Protocol;
+use super::{settings, simulated};
+
+/// People who are measured with each sensor.
+const PEOPLE: u64 = 8;
+
+/// What a sensor of one pole measures, with every `step`th row of what the finger does.
+fn through_sensor(rows: &[Row], cutoff_hz: f64, step: usize) -> Vec<Row> {
+    let left = (-TAU * cutoff_hz / 1e3).exp();
+    let Some(first) = rows.first() else { return Vec::new() };
+    let (mut friction_n, mut normal_force_n) = (first.friction_n, first.normal_force_n);
+    let measured = rows.iter().map(|row| {
+        friction_n = row.friction_n + left * (friction_n - row.friction_n);
+        normal_force_n = row.normal_force_n + left * (normal_force_n - row.normal_force_n);
+        Row { friction_n, normal_force_n, ..row.clone() }
+    });
+    measured.step_by(step).collect()
+}
+
+/// The fits of people with this sensor.
+fn fits(cutoff_hz: f64, step: usize) -> Vec<Result<Fit, FitError>> {
+    let protocol = Protocol { strokes: 24, ..Protocol::default() };
+    let of = |seed| {
+        let rows = simulated::record(&Person::drawn(seed), &protocol, seed);
+        fit(through_sensor(&rows, cutoff_hz, step), &settings())
+    };
+    (0..PEOPLE).map(of).collect()
+}
+
+fn refused(fits: &[Result<Fit, FitError>]) -> usize {
+    fits.iter().filter(|fit| matches!(fit, Err(FitError::SlowSensor { .. }))).count()
+}
+
+#[test]
+fn below_80_hz_sensors_are_refused() {
+    for (cutoff_hz, step) in [(80.0, 1), (80.0, 2), (80.0, 4), (30.0, 1), (15.0, 2)] {
+        let fits = fits(cutoff_hz, step);
+        assert_eq!(refused(&fits), PEOPLE as usize, "{cutoff_hz} Hz, every {step}: {fits:#?}");
+    }
+    let message = fits(40.0, 1).remove(0).unwrap_err().to_string();
+    assert!(message.contains("the force sensor is too slow") && message.contains("at least 200 Hz"), "{message}");
+}
+
+#[test]
+fn from_200_hz_on_sensors_are_not_refused() {
+    for (cutoff_hz, step) in [(200.0, 1), (200.0, 2), (200.0, 4), (1000.0, 1), (1000.0, 4)] {
+        let fits = fits(cutoff_hz, step);
+        assert_eq!(refused(&fits), 0, "{cutoff_hz} Hz, every {step}: {fits:#?}");
+    }
+}
