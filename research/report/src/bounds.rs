@@ -2,7 +2,9 @@
 use std::error::Error;
 
 use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
+
+use crate::example;
 use frixel_model::ContactModel;
 
 use super::geometric;

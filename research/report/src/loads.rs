@@ -3,7 +3,9 @@ use core::f64::consts::PI;
 use std::error::Error;
 
 use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
+
+use crate::example;
 use frixel_model::{Contact, ContactModel, ContactState};
 
 use super::even;

@@ -7,6 +7,7 @@
 
 mod bounds;
 mod core_line;
+mod example;
 mod loads;
 mod soft;
 #[cfg(test)]
@@ -30,6 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let page = Page {
         title: "The contact model's paper, and choices of the design",
         maker: "frixel-research",
+        answers: &[],
         figures: &figures()?,
     };
     for file in page.write(&folder, &Inputs::default())? {

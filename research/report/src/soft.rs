@@ -3,7 +3,9 @@ use core::f64::consts::PI;
 use std::error::Error;
 
 use frixel::chart::{Axis, Chart, Line, Look, PALETTE, Panel, graded};
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
+
+use crate::example;
 use frixel_model::{ContactModel, ParameterError, SoftContact, SoftFinger, contact_exponent};
 
 use super::geometric;

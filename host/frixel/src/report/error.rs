@@ -8,6 +8,7 @@ use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 use crate::output_file::OutputFileError;
+use crate::rehearsal::RehearsalError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.
@@ -61,6 +62,9 @@ pub enum ReportError {
     /// A scene could not be encoded into frames.
     #[error("a scene on the wire: {0}")]
     Wire(#[from] WriteError),
+    /// The simulated board did not take the scene.
+    #[error(transparent)]
+    Rehearsal(#[from] RehearsalError),
     /// A scene could not be compiled.
     #[error(transparent)]
     Texture(#[from] CompileError),
