@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 8] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -31,6 +31,12 @@ const PARTS: [Part; 7] = [
     },
     Part { name: "strokes", what: "textures under many strokes of people", needs: &[], run: strokes },
     Part { name: "people", what: "fits of 200 simulated people, and what they cover", needs: &[], run: people },
+    Part {
+        name: "fit",
+        what: "`frixel calibrate` and `frixel fit` of 200 people with 20 seeds each, against steady friction",
+        needs: &[],
+        run: fit,
+    },
     Part {
         name: "thresholds",
         what: "thresholds of 1,000 simulated observers, and of 1,000 who guess",
@@ -94,6 +100,10 @@ fn strokes() -> Result<(), String> {
 
 fn people() -> Result<(), String> {
     ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &[])
+}
+
+fn fit() -> Result<(), String> {
+    ignored("fits through the commands", &["--release", "--package", "frixel", "--lib"], &["calibrate::coverage"])
 }
 
 fn thresholds() -> Result<(), String> {

@@ -2,7 +2,6 @@
 //! reports.
 #![forbid(unsafe_code)]
 
-pub mod chart;
 mod commands;
 mod default_stroke;
 mod input;

@@ -7,7 +7,8 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use frixel_hil_sim::Person;
-use frixel_scene::{Evidence, FingerProfile};
+use frixel_lab::fit::{self, Settings, Summary};
+use frixel_scene::{Evidence, FingerProfile, Screen};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -49,6 +50,18 @@ fn a_calibrated_person_is_recovered() {
         assert!(ends[0] < ends[1], "{key}: {ends:?}");
         ends
     };
+
+    // What is measured of fits in one process (`commands/calibrate/coverage.rs`) is what the command prints.
+    let settings = Settings {
+        voltage_v_rms: 150.0,
+        normal_load_n: None,
+        coating_gap_m: 1e-6 * Screen::example().coating_gap_um(),
+        without: Vec::new(),
+        seed: 1,
+    };
+    let rows = fit::rows(fs::File::open(folder.path().join("data.csv")).unwrap()).unwrap();
+    let summary = serde_json::json!(Summary::from(&fit::fit(rows, &settings).unwrap()));
+    assert_eq!(json.trim_end(), summary.to_string());
 
     let person = Person::drawn(5);
     // Of what the amplifier's edges lose, the board makes up for a part: friction lies between that of a drive of 150

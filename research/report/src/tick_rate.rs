@@ -2,9 +2,9 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
 use frixel::player::{Simulation, simulate};
 use frixel::report::{Data, Figure};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 use frixel_scene::{Scene, compile};

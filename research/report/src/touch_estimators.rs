@@ -1,8 +1,8 @@
 //! Error of a felt texture against the run time of the estimator that follows the finger.
 use std::error::Error;
 
-use frixel::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use frixel::report::{Data, Figure};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 
 use super::touch::{Class, Recording, best_of_grid, methods};
 

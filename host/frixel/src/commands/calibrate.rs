@@ -1,5 +1,7 @@
 //! `frixel calibrate`: records the data that `frixel fit` needs.
 
+#[cfg(test)]
+mod coverage;
 mod forces;
 mod plan;
 mod recorded;

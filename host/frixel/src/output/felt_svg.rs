@@ -2,8 +2,8 @@
 
 use super::off_strip;
 use super::trace::{Extremes, Span, Trace, TracedLayer};
-use super::{DrawingError, Subject};
-use crate::chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
+use super::{DrawingError, Subject, svg};
+use frixel_chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
 use frixel_scene::Reach;
 
 const REFERENCE: RGBColor = RGBColor(0xf2, 0xb1, 0x34);
@@ -36,7 +36,7 @@ type Part = fn(&Span) -> Option<Extremes>;
 /// for a line are drawn as their envelope. The way of the finger, the layer under it, and the reasons for which the
 /// output is off stand below the time.
 pub(crate) fn draw_felt_svg(subject: &Subject, trace: &Trace, reach: &Reach) -> Result<String, DrawingError> {
-    chart(subject, trace, reach).svg().map_err(DrawingError::new)
+    svg(&chart(subject, trace, reach))
 }
 
 fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {

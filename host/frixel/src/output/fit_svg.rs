@@ -1,7 +1,7 @@
 //! The residual plots of a fit.
 
-use super::DrawingError;
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use super::{DrawingError, svg};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use frixel_lab::fit::Fit;
 
 /// Number of points of a fitted curve.
@@ -10,7 +10,7 @@ const CURVE_POINTS: u32 = 100;
 /// Draws what was measured beside the fit: electric friction over voltage with the fitted law and a square law, what is
 /// left over per stroke, and the friction coefficient per stroke.
 pub(crate) fn draw_fit_svg(title: &str, fit: &Fit) -> Result<String, DrawingError> {
-    chart(title, fit).svg().map_err(DrawingError::new)
+    svg(&chart(title, fit))
 }
 
 fn chart(title: &str, fit: &Fit) -> Chart {

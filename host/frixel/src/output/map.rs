@@ -1,6 +1,6 @@
 //! Maps of a screen: a colour for every pixel, rulers in millimetres, and a colour scale in millinewtons.
 
-use crate::chart::{Axis, Chart, Field, Margins, Panel, RGBColor, Raster, colour};
+use frixel_chart::{Axis, Chart, Field, Margins, Panel, RGBColor, Raster, colour};
 use frixel_felt::{FrictionMap, MapGrid, Preview, ReachSide};
 use frixel_scene::{Program, Reach};
 

@@ -27,6 +27,8 @@ mod score_svg;
 mod tests;
 mod trace;
 
+use frixel_chart::{Chart, DrawError};
+use frixel_scene::printable_lines;
 use thiserror::Error;
 
 pub(crate) use csv::{EventCsv, EventRow, FeltCsv, ForcesCsv};
@@ -58,15 +60,12 @@ impl Subject {
     }
 }
 
-/// Why a picture could not be drawn: the message of the drawing library.
+/// Why a picture could not be drawn.
 #[derive(Debug, Error)]
 #[error("a picture cannot be drawn ({0})")]
-pub struct DrawingError(String);
+pub struct DrawingError(#[from] DrawError);
 
-impl DrawingError {
-    /// Converts an error of the drawing library, for use in `map_err`.
-    #[allow(clippy::needless_pass_by_value, reason = "`map_err` passes values")]
-    pub(crate) fn new(error: impl ToString) -> Self {
-        Self(error.to_string())
-    }
+/// A chart as an SVG document; its texts may be names that a scene gives, which can have control characters.
+fn svg(chart: &Chart) -> Result<String, DrawingError> {
+    Ok(printable_lines(&chart.svg()?).into_owned())
 }

@@ -4,7 +4,7 @@ use frixel_felt::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
 use super::trace::Span;
-use crate::chart::{Line, Look, PALETTE, Panel, Strip, StripCell};
+use frixel_chart::{Line, Look, PALETTE, Panel, Strip, StripCell};
 
 /// Below this voltage the output counts as off, V rms: on the example finger it adds some micronewtons.
 const OFF_BELOW_V_RMS: f64 = 1.0;
@@ -56,6 +56,6 @@ pub(super) fn add_to(panel: &mut Panel, spans: &[Span]) {
     }
 }
 
-fn colour(reason: usize) -> crate::chart::RGBColor {
+fn colour(reason: usize) -> frixel_chart::RGBColor {
     PALETTE.get((reason + 2) % PALETTE.len()).copied().unwrap_or_default()
 }

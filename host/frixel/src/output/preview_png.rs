@@ -10,5 +10,5 @@ use frixel_scene::Program;
 /// so.
 pub fn draw_preview_png(name: &str, program: &Program, preview: &Preview) -> Result<Vec<u8>, DrawingError> {
     let subject = Subject { name: name.to_owned(), simulated: false, draft: program.is_draft() };
-    chart(&subject.title(), program, preview).png().map_err(DrawingError::new)
+    Ok(chart(&subject.title(), program, preview).png()?)
 }

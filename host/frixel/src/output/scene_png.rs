@@ -3,7 +3,7 @@
 use super::map::chart;
 use super::trace::Trace;
 use super::{DrawingError, Subject};
-use crate::chart::{Line, Look, Mark, RGBColor};
+use frixel_chart::{Line, Look, Mark, RGBColor};
 use frixel_felt::Preview;
 use frixel_layers::Layer;
 use frixel_scene::Program;
@@ -42,5 +42,5 @@ pub(crate) fn draw_scene_png(subject: &Subject, program: &Program, trace: &Trace
             panel.add("stroke, from its dot", Look { line: Line::Solid, ..Look::mark(STROKE, Mark::Disc) }, Vec::new());
         }
     }
-    chart.png().map_err(DrawingError::new)
+    Ok(chart.png()?)
 }

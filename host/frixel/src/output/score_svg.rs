@@ -2,8 +2,8 @@
 
 use frixel_lab::score::{Human, MetricScore, Score};
 
-use super::DrawingError;
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use super::{DrawingError, svg};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 
 /// Draws a picture of the numbers that a person notices, each over the value from which it is noticed.
 pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, DrawingError> {
@@ -33,5 +33,5 @@ pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, Drawi
     panel.add("mean over the plays, simulated", mean, means);
     let mut chart = Chart::new(vec![panel], 1);
     title.clone_into(&mut chart.title);
-    chart.svg().map_err(DrawingError::new)
+    svg(&chart)
 }

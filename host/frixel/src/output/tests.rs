@@ -9,9 +9,9 @@ use proptest::prelude::*;
 
 use super::trace::Extremes;
 use super::*;
-use crate::chart::{RGBColor, colour};
 use crate::output_file::{Inputs, OutputFile};
 use crate::scene_file;
+use frixel_chart::{RGBColor, colour};
 use frixel_control::Board;
 use frixel_driver::Counters;
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};

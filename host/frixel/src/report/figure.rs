@@ -1,6 +1,6 @@
 //! A figure: a picture, its caption, and the numbers behind it.
 
-use crate::chart::Chart;
+use frixel_chart::Chart;
 
 /// A picture with its caption and the numbers behind it.
 #[derive(Clone, Debug)]

@@ -31,3 +31,10 @@ pub fn simulated_finger(
     let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
     Ok((contact?, FingertipConfig::REALISTIC))
 }
+
+/// The seed of what is random in the simulation of a person: two people with one `--seed` do not share their noise and
+/// the wander of their load.
+pub fn simulation_seed(seed: u64, finger_seed: Option<u64>) -> u64 {
+    // The odd factor (2^64 over the golden ratio) keeps people apart from neighbouring seeds.
+    finger_seed.map_or(seed, |finger| seed ^ finger.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(32))
+}

@@ -73,11 +73,16 @@ impl Draws {
     /// interval (Hesterberg 2015, doi:10.1080/00031305.2015.1089789), which corrects for the small number of strokes.
     pub(super) fn interval(&self, values: &mut [f64], z: f64) -> (f64, f64) {
         values.sort_by(f64::total_cmp);
+        let part = normal_probability(-self.expanded(z));
+        (quantile(values, part), quantile(values, 1.0 - part))
+    }
+
+    /// How many standard deviations of the draws make an interval as wide as that of the Gaussian quantile `z` for many
+    /// strokes: Student's quantile, and the variance that draws from few strokes lack.
+    pub(super) fn expanded(&self, z: f64) -> f64 {
         let strokes = self.groups.iter().map(Vec::len).sum::<usize>() as f64;
         let groups = self.groups.len() as f64;
         let per_group = strokes / groups;
-        let expanded = (per_group / (per_group - 1.0)).sqrt() * student_quantile(z, strokes - groups);
-        let part = normal_probability(-expanded);
-        (quantile(values, part), quantile(values, 1.0 - part))
+        (per_group / (per_group - 1.0)).sqrt() * student_quantile(z, strokes - groups)
     }
 }

@@ -17,7 +17,11 @@ const REST_SHARE: f64 = 0.2;
 /// Rows are dropped for this long after the voltage changed, in seconds: friction follows with a relaxation length of
 /// 11.5 um (arXiv 2505.11162), 0.6 ms at 20 mm/s, and clocks may differ by 1 ms.
 const SETTLING_S: f64 = 5e-3;
-/// Least number of rows that are left after settling; with fewer, the rows are too far apart to tell, and all are used.
+/// Rows are dropped for this long before the voltage changes, in seconds: a row may be the mean of a time that ends
+/// after the change, and clocks may differ by 1 ms. Such a row has the friction of both voltages, and the voltage of one.
+const EDGE_S: f64 = 2e-3;
+/// Least number of rows that are left of a segment without its edges. Where most segments of a recording have fewer, the
+/// rows are too far apart to tell, and all are used.
 const SETTLED_ROWS_MIN: usize = 2;
 
 /// The voltages of a recording, as levels that differ by more than 5 %.
@@ -102,26 +106,48 @@ struct Segment {
     rows: f64,
 }
 
-/// Rows of a stroke with their places in it.
-type Placed<'r> = Vec<(usize, &'r Row)>;
+/// Consecutive rows of a stroke at one level, with their places in it.
+struct Run<'r> {
+    level: Option<usize>,
+    rows: Vec<(usize, &'r Row)>,
+    /// When the voltage changes after the last row; `None` at the end of the stroke and without times.
+    change_s: Option<f64>,
+}
+
+impl<'r> Run<'r> {
+    /// The rows without those near a change of the voltage; all of them without times.
+    fn settled(&self) -> Vec<(usize, &'r Row)> {
+        let start_s = self.rows.first().and_then(|(_, row)| row.time_s);
+        let has_settled = |row: &Row| {
+            row.time_s.is_none_or(|time_s| {
+                start_s.is_none_or(|start_s| time_s >= start_s + SETTLING_S)
+                    && self.change_s.is_none_or(|change_s| time_s < change_s - EDGE_S)
+            })
+        };
+        self.rows.iter().filter(|(_, row)| has_settled(row)).copied().collect()
+    }
+}
 
 /// The means of each stroke.
 pub(super) fn stroke_means(recording: &Recording, levels: &Levels) -> Vec<StrokeMeans> {
-    recording.strokes.iter().map(|stroke| means_of(stroke, levels)).collect()
+    let runs: Vec<Vec<Run>> = recording.strokes.iter().map(|stroke| runs(stroke, levels)).collect();
+    let settled = runs.iter().flatten().filter(|run| run.settled().len() >= SETTLED_ROWS_MIN).count();
+    let has_edges = 2 * settled > runs.iter().map(Vec::len).sum::<usize>();
+    let strokes = recording.strokes.iter().zip(&runs);
+    strokes.map(|(stroke, runs)| means_of(&stroke.name, &segments(runs, has_edges))).collect()
 }
 
-fn means_of(stroke: &Stroke, levels: &Levels) -> StrokeMeans {
-    let segments = segments(stroke, levels);
-    let natural = natural_friction(&segments);
+fn means_of(name: &str, segments: &[Segment]) -> StrokeMeans {
+    let natural = natural_friction(segments);
     let mut observations: Vec<Observation> = natural.into_iter().collect();
     let mut present: Vec<usize> = segments.iter().filter_map(|segment| segment.level).collect();
     present.sort_unstable();
     present.dedup();
     for level in &present {
-        observations.extend(at_level(&segments, *level, natural.is_some()));
+        observations.extend(at_level(segments, *level, natural.is_some()));
     }
     StrokeMeans {
-        name: stroke.name.clone(),
+        name: name.to_owned(),
         observations,
         natural_coefficient: natural.and_then(|natural| match natural.measured {
             Measured::Friction(friction_n) => Some(friction_n / natural.normal_load_n),
@@ -131,24 +157,31 @@ fn means_of(stroke: &Stroke, levels: &Levels) -> StrokeMeans {
     }
 }
 
-fn segments(stroke: &Stroke, levels: &Levels) -> Vec<Segment> {
-    let mut runs: Vec<(Option<usize>, Placed)> = Vec::new();
+fn runs<'r>(stroke: &'r Stroke, levels: &Levels) -> Vec<Run<'r>> {
+    let mut runs: Vec<Run> = Vec::new();
     for (index, row) in stroke.rows.iter().enumerate() {
         let level = levels.level(row.voltage_v_rms);
         match runs.last_mut() {
-            Some((last, rows)) if *last == level => rows.push((index, row)),
-            _ => runs.push((level, vec![(index, row)])),
+            Some(run) if run.level == level => run.rows.push((index, row)),
+            before => {
+                if let Some(before) = before {
+                    before.change_s = row.time_s;
+                }
+                runs.push(Run { level, rows: vec![(index, row)], change_s: None });
+            }
         }
     }
-    runs.into_iter().map(|(level, rows)| segment(level, &rows)).collect()
+    runs
 }
 
-fn segment(level: Option<usize>, rows: &[(usize, &Row)]) -> Segment {
-    let start_s = rows.first().and_then(|(_, row)| row.time_s);
-    let has_settled =
-        |row: &Row| row.time_s.zip(start_s).is_none_or(|(time_s, start_s)| time_s >= start_s + SETTLING_S);
-    let settled: Vec<_> = rows.iter().filter(|(_, row)| has_settled(row)).copied().collect();
-    let used = if settled.len() >= SETTLED_ROWS_MIN { &settled } else { rows };
+/// The means of runs, without their edges if there are rows enough; a run that is nothing but edges is left out.
+fn segments(runs: &[Run], has_edges: bool) -> Vec<Segment> {
+    let used = runs.iter().map(|run| (run.level, if has_edges { run.settled() } else { run.rows.clone() }));
+    let least = if has_edges { SETTLED_ROWS_MIN } else { 1 };
+    used.filter(|(_, rows)| rows.len() >= least).map(|(level, rows)| segment(level, &rows)).collect()
+}
+
+fn segment(level: Option<usize>, used: &[(usize, &Row)]) -> Segment {
     let over = |value: &dyn Fn(usize, &Row) -> f64| mean(used.iter().map(|(index, row)| value(*index, row)));
     Segment {
         level,

@@ -239,9 +239,10 @@ pub enum FitError {
     },
     /// The exponent of voltage or load contradicts the model.
     #[error(
-        "electric friction grows as {quantity} to the power {value:.2} ({low:.2} to {high:.2}), and the model says \
-         {model:.2}: the contact model does not hold for these data, so no profile is fitted; check for volts peak in \
-         place of rms, and see docs/truth.md"
+        "electric friction grows as {quantity} to the power {value:.2} (99.9 % interval {low:.2} to {high:.2}), and the \
+         model says {model:.2}: the contact model does not hold for these data, so no profile is fitted; check {}, and \
+         see docs/truth.md",
+        what_bends(.quantity)
     )]
     LawBroken {
         /// `voltage` or `load`.
@@ -258,7 +259,7 @@ pub enum FitError {
     /// The gap of the fit is smaller than the screen's coating.
     #[error(
         "the measured attraction needs an effective gap of {gap_um:.3} um, and the coating alone has {coating_um:.3} \
-         um: check the coating, and that voltages are rms and not peak"
+         um: check the coating, and that the voltages are those at the electrode, not ahead of the amplifier"
     )]
     GapInsideCoating {
         /// Gap of the fit, in micrometres.
@@ -272,4 +273,13 @@ pub enum FitError {
          rows"
     )]
     NotConverged,
+}
+
+/// What bends the measured exponent of a quantity. A factor on volts or newtons does not.
+fn what_bends(quantity: &str) -> &'static str {
+    if quantity == "load" {
+        "that friction does not leak into the sensor's normal force, nor the load into its friction"
+    } else {
+        "that the amplifier reaches the highest voltage with the electrode connected, and that the force sensor is linear"
+    }
 }

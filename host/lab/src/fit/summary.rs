@@ -120,13 +120,18 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     let Estimate { value, low, high } = fit.friction_coefficient;
-    line("friction coefficient", format!("{value:.3} ({low:.3} to {high:.3}), the mean of this recording"));
+    line(
+        "friction coefficient",
+        format!("{value:.3} (95 % interval {low:.3} to {high:.3}), the mean of this recording"),
+    );
     let Estimate { value, low, high } = fit.electric_friction_n;
     let (voltage, load_n) = (fit.stated_voltage_v_rms, fit.normal_load_n);
     let [value_mn, low_mn, high_mn] = [value, low, high].map(|newtons| 1e3 * newtons);
     line(
         "electric friction",
-        format!("{value_mn:.1} mN ({low_mn:.1} to {high_mn:.1}) at {voltage:.0} V rms under {load_n:.2} N"),
+        format!(
+            "{value_mn:.1} mN (95 % interval {low_mn:.1} to {high_mn:.1}) at {voltage:.0} V rms under {load_n:.2} N"
+        ),
     );
     line("exponent of the voltage", exponent_words(&fit.voltage_exponent, NO_VERDICT_OF_VOLTAGE));
     line("exponent of the load", exponent_words(&fit.load_exponent, NO_VERDICT_OF_LOAD));
@@ -148,13 +153,12 @@ const NO_VERDICT_OF_LOAD: &str = "no verdict on the model: the loads were too al
 fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
     let Estimate { value, low, high } = exponent.measured;
     let model = exponent.model;
-    match exponent.verdict {
-        Verdict::None => no_verdict.to_owned(),
-        Verdict::Kept => {
-            format!("{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is not contradicted")
-        }
-        Verdict::Doubted => format!("{value:.2} ({low:.2} to {high:.2}); the model says {model:.2} and is in doubt"),
-    }
+    let outcome = match exponent.verdict {
+        Verdict::None => return no_verdict.to_owned(),
+        Verdict::Kept => "is not contradicted",
+        Verdict::Doubted => "is in doubt",
+    };
+    format!("{value:.2} (95 % interval {low:.2} to {high:.2}); the model says {model:.2} and {outcome}")
 }
 
 /// What the data cannot tell, in sentences.

@@ -14,8 +14,12 @@ const VERDICT_V_RMS: f64 = 100.0;
 /// Difference of exponents that does not contradict the model: charge that leaks through the skin lets the voltage sag
 /// within a half-period of the carrier, which bends the exponent by up to this much (simulator, leakage to 1 kHz).
 const ALLOWANCE: f64 = 0.05;
-/// Least width of the half-interval of the load's exponent beyond which loads were too alike to tell.
+/// Widest half-interval of the load's exponent with which it is judged.
 const LOAD_EXPONENT_WIDTH: f64 = 0.5;
+/// Least standard deviation of the loads of the strokes with which the load's exponent is judged, as a part of their
+/// mean: that of strokes at 94, 100 and 106 % of a load. A person who holds one load wanders by 2 to 4 %, and over so
+/// short a range one unlucky stroke decides.
+const LOAD_SPREAD_MIN: f64 = 0.05;
 /// Widest half-interval, as a part of the value.
 const INTERVAL_SHARE: f64 = 0.2;
 /// Largest change from the first to the last third, as a part of the mean.
@@ -88,7 +92,7 @@ impl Judge<'_> {
             Exponent { measured, model: f64::NAN, verdict: Verdict::None }
         };
         match self.exponent(form, &of, &load_exponent) {
-            Some((exponent, _)) if exponent.measured.high - exponent.measured.low > 2.0 * LOAD_EXPONENT_WIDTH => {
+            Some((exponent, _)) if !self.loads_can_tell() || !is_narrow(&exponent.measured) => {
                 Ok(Exponent { verdict: Verdict::None, ..exponent })
             }
             Some(exponent) => refused("load", exponent),
@@ -96,7 +100,15 @@ impl Judge<'_> {
         }
     }
 
-    /// An exponent of the data, that of the model, and the standard deviation of their difference.
+    /// Whether the loads of the strokes differ enough for their exponent.
+    fn loads_can_tell(&self) -> bool {
+        let loads = || self.observations.iter().filter(|one| one.voltage_v_rms > 0.0).map(|one| one.normal_load_n);
+        let mean_n = mean(loads());
+        let variance = mean(loads().map(|load_n| (load_n - mean_n) * (load_n - mean_n)));
+        variance.sqrt() >= LOAD_SPREAD_MIN * mean_n
+    }
+
+    /// An exponent of the data, that of the model, and half the width of the 99.9 % interval of their difference.
     fn exponent(
         &self,
         form: Form,
@@ -130,15 +142,21 @@ impl Judge<'_> {
         let spread = mean(differences.iter().map(|one| (one - centre) * (one - centre))).sqrt();
         let (low, high) = self.fitted.draws.interval(&mut values, Z_95);
         let measured = Estimate { value, low: low.min(value), high: high.max(value) };
-        let verdict = if (value - model).abs() <= Z_95 * spread { Verdict::Kept } else { Verdict::Doubted };
-        spread.is_finite().then_some((Exponent { measured, model, verdict }, spread))
+        let is_within = |z| (value - model).abs() <= self.fitted.draws.expanded(z) * spread;
+        let verdict = if is_within(Z_95) { Verdict::Kept } else { Verdict::Doubted };
+        let half_width = self.fitted.draws.expanded(Z_999) * spread;
+        spread.is_finite().then_some((Exponent { measured, model, verdict }, half_width))
     }
 }
 
+fn is_narrow(measured: &Estimate) -> bool {
+    measured.high - measured.low <= 2.0 * LOAD_EXPONENT_WIDTH
+}
+
 /// Fails if the model's exponent lies outside of the 99.9 % interval by more than [`ALLOWANCE`].
-fn refused(quantity: &'static str, (exponent, spread): (Exponent, f64)) -> Result<Exponent, FitError> {
+fn refused(quantity: &'static str, (exponent, half_width): (Exponent, f64)) -> Result<Exponent, FitError> {
     let (value, model) = (exponent.measured.value, exponent.model);
-    let room = Z_999 * spread + ALLOWANCE;
+    let room = half_width + ALLOWANCE;
     if (value - model).abs() > room {
         return Err(FitError::LawBroken { quantity, value, low: value - room, high: value + room, model });
     }

@@ -31,20 +31,18 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn new(
-        args: &CalibrateArgs,
-        recording: &Recording,
-        limits: &BoardLimits,
-        tick_hz: u32,
-    ) -> Result<Self, CommandError> {
+    pub(super) fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self, CommandError> {
         let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits)?;
         let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
-        for line in protocol.words().lines() {
-            say(recording.output(), format_args!("  {:<16} {line}", "plan"))?;
-        }
         let scene = protocol.scene().map_err(CommandError::Finger)?;
         let scene = Scene::parse(&scene, "calibration", &std::collections::BTreeMap::new())?;
         Ok(Self { program: compile(&scene, limits, tick_hz)?, protocol, limits: *limits, tick_hz })
+    }
+
+    /// Says what will be played.
+    pub(super) fn say(&self, recording: &Recording) -> Result<(), CommandError> {
+        let words = self.protocol.words();
+        words.lines().try_for_each(|line| say(recording.output(), format_args!("  {:<16} {line}", "plan")))
     }
 
     /// Starts to play the protocol.

@@ -6,7 +6,8 @@ use std::time::Duration;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
-use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger};
+use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger, simulation_seed};
+use frixel_model::LoadedContact;
 
 use super::plan::{Plan, ROW_HZ};
 use super::{CalibrateArgs, CommandError, experiment, forces};
@@ -26,28 +27,49 @@ pub(super) fn on_simulator(
     recording: &Recording,
     interrupt: &Interrupt,
 ) -> Result<Recorded, CommandError> {
-    let coating_gap_m = 1e-6 * screen(None)?.1.coating_gap_um();
-    let finger = simulated_finger(args.finger_seed, coating_gap_m);
-    let (contact, fingertip) = finger.map_err(CommandError::Finger)?;
-    let rig = RigConfig::default();
-    let mut config = RigConfig { world: rig.world.realistic(), ..rig };
-    config.world.fingertip = fingertip;
-    let plan = Plan::new(args, recording, &config.board.limits, config.board.tick_hz)?;
-    let stroke = plan.protocol.stroke().map_err(CommandError::GeneratedStroke)?;
-    let mut memory = BoardMemory::new();
-    let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
-    rig.world_mut().set_own_finger(contact);
-    let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
-    let line = SimStream::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
-    let mut player = plan.start(Device::connect(PollingLink::new(line))?, 0)?;
-    // What is simulated needs no file until it is whole.
-    let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
-    drop(player);
+    let simulated = Simulated::new(args)?;
+    simulated.plan.say(recording)?;
+    let (board, forces) = simulated.record(interrupt)?;
     let forces = match &args.forces {
         Some(path) => forces::read(path)?,
-        None => sensor.rows().to_vec(),
+        None => forces,
     };
     Ok((board, forces))
+}
+
+/// A calibration of a simulated person.
+pub(super) struct Simulated {
+    plan: Plan,
+    config: RigConfig,
+    contact: LoadedContact<f64>,
+    seed: u64,
+}
+
+impl Simulated {
+    pub(super) fn new(args: &CalibrateArgs) -> Result<Self, CommandError> {
+        let coating_gap_m = 1e-6 * screen(None)?.1.coating_gap_um();
+        let (contact, fingertip) = simulated_finger(args.finger_seed, coating_gap_m).map_err(CommandError::Finger)?;
+        let rig = RigConfig::default();
+        let mut config = RigConfig { world: rig.world.realistic(), ..rig };
+        config.world.fingertip = fingertip;
+        let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
+        Ok(Self { plan, config, contact, seed: simulation_seed(args.seed, args.finger_seed) })
+    }
+
+    /// Plays the calibration, and returns what the board reported and what the sensor under the screen measured.
+    pub(super) fn record(&self, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
+        let stroke = self.plan.protocol.stroke().map_err(CommandError::GeneratedStroke)?;
+        let mut memory = BoardMemory::new();
+        let mut rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
+        rig.world_mut().set_own_finger(self.contact);
+        let mut sensor = ForceSensor::new(ROW_HZ, self.config.board.tick_hz);
+        let line = SimStream::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
+        let mut player = self.plan.start(Device::connect(PollingLink::new(line))?, 0)?;
+        // What is simulated needs no file until it is whole.
+        let board = self.plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
+        drop(player);
+        Ok((board, sensor.take_rows()))
+    }
 }
 
 pub(super) fn on_port(
@@ -62,7 +84,8 @@ pub(super) fn on_port(
     }
     let device = experiment::connect(&args.port, args.arm)?;
     let hello = *device.hello();
-    let plan = Plan::new(args, recording, &hello.limits, hello.tick_hz)?;
+    let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
+    plan.say(recording)?;
     let from_stdin = if forces == Path::new("-") {
         // What goes to a stream has no copies.
         let copy = partial.is_some().then(|| forces::copy(args)?.start()).transpose()?;

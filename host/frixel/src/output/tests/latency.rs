@@ -4,9 +4,9 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::player::{Simulation, simulate};
 use crate::scene_file;
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::{Program, compile};
 use frixel_testkit::golden;

@@ -6,11 +6,11 @@ use frixel_model::ContactModel;
 
 use super::boards::BoardCostFigure;
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::figure::{Data, Value};
 use crate::report::finger::DrawnFinger;
 use crate::report::methods::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 
 /// Kinds of methods in the order of the legends, with their names and styles.
 const KINDS: [(Kind, &str, Look); 12] = [

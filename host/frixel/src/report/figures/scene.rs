@@ -5,10 +5,10 @@ use frixel_hil_sim::RigConfig;
 use frixel_model::ContactModel;
 
 use super::{Figure, ReportError, Subject};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::rehearsal::board_costs;
 use crate::report::counts::Counts;
 use crate::report::figure::{Data, Value};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 
 /// Points of the curve of friction over voltage.
 const POINTS: u32 = 200;

@@ -10,10 +10,10 @@ use frixel_model::{Finger, InverseTable};
 use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::figure::Data;
 use crate::report::finger::DrawnFinger;
 use crate::report::wire::OnTheWire;
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use frixel_scene::{CompileError, Program, Scene, compile};
 
 /// The beginning of every scene.

@@ -3,9 +3,9 @@
 use frixel_model::{Contact, Finger, Real};
 
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 use crate::report::figure::Data;
 use crate::report::reference::{CELLS_PER_DECADE, PlaneRow, Q_DECADES, plane};
+use frixel_chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 
 /// The parameters are powers of two, and so exact in f32: the error is the model's rounding, not that of its
 /// parameters.

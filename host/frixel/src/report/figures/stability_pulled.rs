@@ -4,9 +4,9 @@ use frixel_model::Contact;
 
 use super::stability::{FINGER, GAP_M};
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 use crate::report::figure::Data;
 use crate::report::reference::{PULLED_CELLS_PER_DECADE, PulledRow, pulled};
+use frixel_chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 
 /// Range of the colours.
 const COLOURS: (f64, f64) = (1e-17, 1e-8);

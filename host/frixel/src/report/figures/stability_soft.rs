@@ -3,9 +3,9 @@
 use frixel_model::{Real, SoftFinger, contact_exponent};
 
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use crate::report::figure::Data;
 use crate::report::reference::{SoftRow, soft};
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 
 /// The parameters are exact in f32.
 const RADIUS_M: f64 = 1.0 / 128.0;

@@ -1,9 +1,9 @@
 //! The cost of a tick against the number of layers in the scene.
 
 use super::{Figure, ReportError};
-use crate::chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use crate::report::counts::Counts;
 use crate::report::figure::Data;
+use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 
 const CORE: &str = "m4f";
 /// Numbers of layers in the scene.

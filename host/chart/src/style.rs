@@ -22,7 +22,7 @@ pub(super) const NOTE: u32 = 13;
 /// Font family named in drawings: an SVG viewer uses its own font of this family, and PNG files use [`FONT`].
 pub(super) const FAMILY: &str = "sans-serif";
 /// A subset of `DejaVu` Sans; its licence is in the same folder.
-static FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+static FONT: &[u8] = include_bytes!("../font/DejaVuSans-subset.ttf");
 
 /// Half the size of a mark, in pixels.
 const MARK: f64 = 4.2;

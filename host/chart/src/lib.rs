@@ -3,6 +3,7 @@
 //! A [`Chart`] is a value made of panels with axes, series, coloured fields and legends. [`Chart::svg`] and
 //! [`Chart::png`] draw it. Legends are beside or below the plots, never over them. Equal charts give byte-identical
 //! files.
+#![forbid(unsafe_code)]
 
 mod axis;
 mod clip;
@@ -13,7 +14,6 @@ mod png;
 mod strip;
 mod style;
 
-use frixel_scene::printable_lines;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 pub use plotters::style::RGBColor;
@@ -162,7 +162,7 @@ impl Chart {
         Self { shared_legend: true, ..self }
     }
 
-    /// Draws the chart as an SVG document.
+    /// Draws the chart as an SVG document. XML has no form for control characters: texts must have none.
     pub fn svg(&self) -> Result<String, DrawError> {
         let layout = Layout::of(self)?;
         let fine = |pixels| SVG_SCALE.px(pixels);
@@ -173,8 +173,6 @@ impl Chart {
         }
         let size = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
         let drawn = size(fine(self.width), fine(layout.height));
-        // A title may be a name from a scene, and XML has no form for control characters.
-        let text = printable_lines(&text);
         Ok(text.replacen(&drawn, &size(self.width, layout.height), 1))
     }
 
