@@ -44,8 +44,9 @@ pub(super) fn all(subject: &Subject, counts: &Counts) -> Result<(Vec<Answer>, Ve
                 format!("In f64, attraction and load over 24 and 14 decades: {worst_f64}."),
                 format!("In f32: {worst_f32}."),
                 format!(
-                    "Under a negative load, in f64: forward {}, where the problem itself is ill-conditioned; inverse {}.",
-                    worst_pulled.forward, worst_pulled.inverse
+                    "Under a negative load, in f64: forward {}, and {}, where the problem itself is ill-conditioned; \
+                     inverse {}.",
+                    worst_pulled.forward, worst_pulled.alike, worst_pulled.inverse
                 ),
                 format!("Soft finger, in f64: {worst_soft}."),
             ],

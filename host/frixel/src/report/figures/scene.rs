@@ -80,7 +80,7 @@ pub(super) fn figure(subject: &Subject, counts: &Counts) -> Result<(Figure, Vec<
         left_out => left_out.join("; "),
     };
     let sentences = vec![
-        format!("{name}: {} layers are played; {cut}.", check.layers),
+        format!("Layers of {name} that are played: {}; {cut}.", check.layers),
         format!(
             "Table: {} of {} bytes are computed. Longest tick: estimated {} of {} cycles, worst at {:.1} mm, {:.1} mm.",
             check.ram.table_bytes, check.ram.table_whole_bytes, tick.cycles, tick.cycles_limit, tick.x_mm, tick.y_mm

@@ -9,7 +9,7 @@ use crate::report::reference::{PULLED_CELLS_PER_DECADE, PulledRow, pulled};
 use frixel_chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 
 /// Range of the colours.
-const COLOURS: (f64, f64) = (1e-17, 1e-8);
+const COLOURS: (f64, f64) = (1e-17, 1e-3);
 /// Half a unit in the last place of an f64.
 const HALF_UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -42,9 +42,11 @@ fn power(cells: i32, per_decade: i32) -> f64 {
     10_f64.powf(f64::from(cells) / f64::from(per_decade))
 }
 
-/// The largest errors of friction and of voltage, in words.
+/// Errors of friction, at the least place and where attraction and stiffness are alike, and the largest of voltage, in
+/// words.
 pub(super) struct Worst {
     pub(super) forward: String,
+    pub(super) alike: String,
     pub(super) inverse: String,
 }
 
@@ -83,7 +85,11 @@ pub(super) fn figure() -> Result<(Figure, Worst), ReportError> {
         let Errors { q, part, condition, forward, inverse, .. } = *errors;
         data.row([q.into(), part.into(), condition.into(), forward.into(), inverse.into()]);
     }
-    let worst = Worst { forward: sentence(&map, |one| one.forward), inverse: sentence(&map, |one| one.inverse) };
+    let alike = map.iter().filter(|one| one.cell.0 == 0).min_by(|one, other| one.part.total_cmp(&other.part));
+    let alike = alike.map_or_else(String::new, |one| {
+        format!("{:.1e} at q = {:.2}, {:.1e} of the load before pull-off", one.forward, one.q, one.part)
+    });
+    let worst = Worst { alike, forward: sentence(&map, |one| one.forward), inverse: sentence(&map, |one| one.inverse) };
     let condition = map.iter().map(|one| one.condition).fold(0.0, f64::max);
     // Well above the rounding of the answer itself, which has no condition.
     let grown = map.iter().filter(|one| one.condition > 100.0);
@@ -106,9 +112,9 @@ pub(super) fn figure() -> Result<(Figure, Worst), ReportError> {
                 condition * HALF_UNIT
             ),
             format!(
-                "Worst points: forward {}; inverse {}. The finger is that of the maps before. No profile has a negative \
+                "Worst points: forward {} (and {}); inverse {}. The finger is that of the maps before. No profile has a negative \
                  load, and no board plays one.",
-                worst.forward, worst.inverse
+                worst.forward, worst.alike, worst.inverse
             ),
         ],
         chart: Chart::new(
