@@ -18,7 +18,7 @@ struct Errors {
     q: f64,
     part: f64,
     cell: (i32, i32),
-    /// Relative change of friction over that of load: the factor by which rounding of the load grows.
+    /// The factor by which rounding of the inputs grows.
     condition: f64,
     forward: f64,
     inverse: f64,
@@ -30,12 +30,22 @@ fn errors(row: &PulledRow) -> Result<Errors, ReportError> {
     let (forward, inverse) = row.errors(&model)?;
     let q = (row.voltage_v / contact.voltage_scale_v_rms()).powi(2);
     let part = power(2 * row.part_cell + 1, 2 * PULLED_CELLS_PER_DECADE);
+    let condition = condition(q, part);
+    Ok(Errors { q, part, cell: (row.q_cell, row.part_cell), condition, forward, inverse })
+}
+
+/// The sum of the relative changes of friction over those of voltage, load, stiffness, gap and radius.
+fn condition(q: f64, part: f64) -> f64 {
     // The square root of Eq. (43) is that of what is missing to the load of pull-off, which the place says without
     // cancellation: the model's own numbers are what is in doubt.
     let fold = q * q + 2.0 * q / (1.0 + q);
     let root = (fold * part).sqrt();
-    let condition = fold * (1.0 - part) / (root * (q + root));
-    Ok(Errors { q, part, cell: (row.q_cell, row.part_cell), condition, forward, inverse })
+    let y = q + root;
+    let of_load = fold * (1.0 - part) / (root * y);
+    let of_q = 2.0 * q / y * (1.0 + (q + (1.0 + q).powi(-2)) / root);
+    let [voltage, stiffness] = [2.0 * of_q, 1.0 - of_q + of_load];
+    let [gap, radius] = [2.0 - 3.0 * of_q + 2.0 * of_load, 1.0 + of_load];
+    [voltage, of_load, stiffness, gap, radius].iter().map(|change| change.abs()).sum()
 }
 
 fn power(cells: i32, per_decade: i32) -> f64 {
@@ -91,7 +101,7 @@ pub(super) fn figure() -> Result<(Figure, Worst), ReportError> {
     });
     let worst = Worst { alike, forward: sentence(&map, |one| one.forward), inverse: sentence(&map, |one| one.inverse) };
     let condition = map.iter().map(|one| one.condition).fold(0.0, f64::max);
-    // Well above the rounding of the answer itself, which has no condition.
+    // Where the rounding of the answer itself does not count.
     let grown = map.iter().filter(|one| one.condition > 100.0);
     let units = grown.map(|one| one.forward / (one.condition * HALF_UNIT)).fold(0.0, f64::max);
     let figure = Figure {
@@ -105,10 +115,10 @@ pub(super) fn figure() -> Result<(Figure, Worst), ReportError> {
                  (mpmath, model/reference) for the same inputs, which are exact in f64."
             ),
             format!(
-                "Near pull-off the problem itself is ill-conditioned: friction changes by up to {condition:.1e} times the \
-                 relative change of the load, and without bound beyond the map, so that one rounding of a number in f64 is an \
-                 error of {:.1e}. The model's error stays below {units:.0} times what half a unit in the last place of \
-                 the load makes. The other direction is well-conditioned there.",
+                "Near pull-off the problem itself is ill-conditioned: relative changes of voltage, load, stiffness, gap and \
+                 radius change friction by up to {condition:.1e} times as much, and without bound beyond the map, so that \
+                 half a unit in the last place of each is an error of {:.1e}. The model's error is at most {units:.2} of \
+                 what such rounding makes of each answer. The other direction is well-conditioned there.",
                 condition * HALF_UNIT
             ),
             format!(
