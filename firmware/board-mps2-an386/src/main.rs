@@ -15,6 +15,7 @@ mod fault_injection;
 mod guard;
 mod lockstep;
 mod main_loop;
+#[path = "../../board-nucleo-g474re/src/owned.rs"]
 mod owned;
 mod shared;
 mod tick;

@@ -4,20 +4,13 @@
 use std::fmt::Arguments;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
+use crate::support::firmware::BOARD;
 use crate::support::person;
 use frixel_board::bring_up::{Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, run};
-use frixel_control::Board;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
 
-const LIMITS: BoardLimits = BoardLimits {
-    voltage_max_v_peak: 50.0,
-    full_scale_v_peak: 200.0,
-    edge_time_constant_s: 37.5e-6,
-    current_max_a_rms: 0.5e-3,
-    current_max_a_peak: 1.8e-3,
-    ..Board::SIMULATOR.limits
-};
+const LIMITS: BoardLimits = BOARD.limits;
 /// What the board may store.
 const MAY_STORE_V_PEAK: f32 = 120.0;
 /// All checks, in the order in which a start makes them.
@@ -373,11 +366,10 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
 /// A capacitance in another unit would make every current a thousandth.
 #[test]
 fn edges_and_electrode_that_stand_for_another_series_resistor_stop_before_anything_else() {
-    let Board { limits, .. } = crate::support::firmware::BOARD;
     for (electrode_nf, stops) in
         [(0.53e-3, true), (0.27, true), (0.28, false), (0.53, false), (1.1, false), (1.2, true)]
     {
-        let limits = BoardLimits { electrode_capacitance_max_f: 1e-9 * electrode_nf, ..limits };
+        let limits = BoardLimits { electrode_capacitance_max_f: 1e-9 * electrode_nf, ..LIMITS };
         let mut bench = TestBench { limits, ..TestBench::new() };
         let end = bench.bring_up().unwrap();
         assert_eq!(matches!(end, Err(Stop::Reading { .. })), stops, "{electrode_nf} nF: {end:?}");

@@ -1,10 +1,9 @@
 //! A voltage of bring-up, driven through the firmware's session, ticker and supervisor.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use crate::support::firmware::{BOARD, monitor};
+use crate::support::firmware::{BOARD, firmware, monitor};
 use frixel_board::bring_up::{Drive, DriveError, Reading};
-use frixel_control::{Active, Sense, Ticker};
-use frixel_layers::BitmapPool;
+use frixel_control::{Sense, Ticker};
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
@@ -14,22 +13,12 @@ const ROUND_TICKS: u32 = 4;
 /// More than a drive takes: ten seconds.
 const TICKS_MAX: u32 = 400_000;
 
-struct Memory {
-    pool: BitmapPool,
-    first: Active,
-    second: Active,
-}
-
-fn memory() -> Box<Memory> {
-    Box::new(Memory { pool: BitmapPool::new(), first: Active::new(), second: Active::new() })
-}
-
 /// What happens at a tick of a drive.
 type World<'w> = &'w dyn Fn(u32, &mut Sense);
 
-struct TestBoard<'a> {
-    session: Session<'a>,
-    ticker: Ticker<'a>,
+struct TestBoard {
+    session: Session<'static>,
+    ticker: Ticker<'static>,
     monitor: IdealMonitor,
     round_ticks: u32,
     /// Largest code that was driven, as a part of full scale.
@@ -38,17 +27,10 @@ struct TestBoard<'a> {
     last_driven_tick: Option<u32>,
 }
 
-impl<'a> TestBoard<'a> {
-    fn new(memory: &'a mut Memory) -> Self {
-        let Memory { pool, first, second } = memory;
-        Self {
-            session: Session::new(BOARD, pool, second),
-            ticker: Ticker::new(&BOARD, pool, first),
-            monitor: monitor(),
-            round_ticks: ROUND_TICKS,
-            code_max: 0,
-            last_driven_tick: None,
-        }
+impl TestBoard {
+    fn new() -> Self {
+        let (session, ticker) = firmware();
+        Self { session, ticker, monitor: monitor(), round_ticks: ROUND_TICKS, code_max: 0, last_driven_tick: None }
     }
 
     fn tick(&mut self, tick: u32, switch_held: bool, world: World) {
@@ -99,8 +81,7 @@ const GOOD: World<'static> = &|_, _| ();
 
 #[test]
 fn a_voltage_is_driven_through_the_firmware_and_read_on_the_monitor() {
-    let mut memory = memory();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     for peak_v in [10.0, 25.0, 50.0] {
         board.press();
         let reading = board.drive(peak_v, GOOD).unwrap();
@@ -123,8 +104,7 @@ fn a_voltage_is_driven_through_the_firmware_and_read_on_the_monitor() {
 #[test]
 fn a_main_loop_of_any_speed_reads_the_same() {
     for round_ticks in [1, 3, 7, 15, 24] {
-        let mut memory = memory();
-        let mut board = TestBoard { round_ticks, ..TestBoard::new(&mut memory) };
+        let mut board = TestBoard { round_ticks, ..TestBoard::new() };
         board.press();
         let reading = board.drive(50.0, GOOD).unwrap();
         assert!((reading.high_v - 50.0).abs() < 0.05 && (reading.low_v + 50.0).abs() < 0.05, "{reading:?}");
@@ -134,8 +114,7 @@ fn a_main_loop_of_any_speed_reads_the_same() {
 /// The host's credit, some 4,096 bytes, does not run out.
 #[test]
 fn one_drive_after_the_other_is_heard() {
-    let mut memory = memory();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     for _ in 0..12 {
         board.press();
         assert!(board.drive(10.0, GOOD).is_ok());
@@ -144,8 +123,7 @@ fn one_drive_after_the_other_is_heard() {
 
 #[test]
 fn nothing_is_driven_without_a_press_after_the_last_drive() {
-    let mut memory = memory();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.press();
     board.drive(10.0, GOOD).unwrap();
     // The switch is still held.
@@ -155,8 +133,7 @@ fn nothing_is_driven_without_a_press_after_the_last_drive() {
 
 #[test]
 fn a_voltage_beyond_the_limits_is_refused() {
-    let mut memory = memory();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.press();
     assert_eq!(board.drive(51.0, GOOD), Err(DriveError::Refused));
     assert_eq!(board.last_driven_tick, None);
@@ -174,8 +151,7 @@ fn nothing_resumes_after_a_fault() {
         }
     };
     for (world, fault) in [(amplifier, Fault::Amplifier), (switch, Fault::ArmSwitch), (monitor, Fault::Monitor)] {
-        let mut memory = memory();
-        let mut board = TestBoard::new(&mut memory);
+        let mut board = TestBoard::new();
         board.press();
         let result = board.drive(50.0, world);
         assert!(matches!(result, Err(DriveError::Fault(found, _)) if found == fault), "{result:?}");
@@ -192,8 +168,7 @@ fn nothing_resumes_after_a_fault() {
 /// A host that hangs takes the output with it: bring-up's host is one, too.
 #[test]
 fn a_main_loop_that_hangs_ends_the_drive() {
-    let mut memory = memory();
-    let mut board = TestBoard::new(&mut memory);
+    let mut board = TestBoard::new();
     board.press();
     let mut drive = Drive::new(10.0, &BOARD);
     for tick in 1..80_000 {

@@ -4,11 +4,10 @@
 
 use std::fmt::Arguments;
 
-use crate::support::firmware::{BOARD, monitor};
+use crate::support::firmware::{BOARD, firmware, monitor};
 use crate::support::person;
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, run};
-use frixel_control::{Active, Sense, Status, Ticker};
-use frixel_layers::BitmapPool;
+use frixel_control::{Sense, Status, Ticker};
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
@@ -40,9 +39,9 @@ impl Hand {
     }
 }
 
-struct WholeBench<'a> {
-    session: Session<'a>,
-    ticker: Ticker<'a>,
+struct WholeBench {
+    session: Session<'static>,
+    ticker: Ticker<'static>,
     /// The status of the round before.
     status: Status,
     monitor: IdealMonitor,
@@ -58,11 +57,11 @@ struct WholeBench<'a> {
     stored: Option<BoardLimits>,
 }
 
-impl<'a> WholeBench<'a> {
-    fn new(pool: &'a BitmapPool, [first, second]: [&'a mut Active; 2]) -> Self {
-        let ticker = Ticker::new(&BOARD, pool, first);
+impl WholeBench {
+    fn new(dips_at: Option<u32>) -> Self {
+        let (session, ticker) = firmware();
         Self {
-            session: Session::new(BOARD, pool, second),
+            session,
             status: ticker.status(),
             ticker,
             monitor: monitor(),
@@ -72,7 +71,7 @@ impl<'a> WholeBench<'a> {
             ticks: 0,
             driven_v: 0.0,
             enabled_ticks: 0,
-            dips_at: None,
+            dips_at,
             stored: None,
         }
     }
@@ -103,7 +102,7 @@ impl<'a> WholeBench<'a> {
     }
 }
 
-impl Bench for WholeBench<'_> {
+impl Bench for WholeBench {
     fn say(&mut self, text: Arguments<'_>) {
         self.said = text.to_string();
         self.inputs.amplifier_ready = person::ready_after(&self.said).unwrap_or(self.inputs.amplifier_ready);
@@ -163,38 +162,32 @@ impl Bench for WholeBench<'_> {
     }
 }
 
-fn bring_up(dips_at: Option<u32>, then: impl FnOnce(Result<BoardLimits, Stop>, &mut WholeBench)) {
-    let pool = Box::new(BitmapPool::new());
-    let (mut first, mut second) = (Box::new(Active::new()), Box::new(Active::new()));
-    let mut bench = WholeBench::new(&pool, [&mut first, &mut second]);
-    bench.dips_at = dips_at;
-    let end = run(&mut bench, &BOARD.limits);
-    then(end, &mut bench);
+fn bring_up(dips_at: Option<u32>) -> (Result<BoardLimits, Stop>, WholeBench) {
+    let mut bench = WholeBench::new(dips_at);
+    (run(&mut bench, &BOARD.limits), bench)
 }
 
 #[test]
 fn a_board_is_brought_up_through_the_firmware() {
-    bring_up(None, |end, bench| {
-        let limits = end.unwrap();
-        assert_eq!(bench.stored, Some(limits));
-        assert!((limits.full_scale_v_peak - 206.0).abs() < 0.1, "{limits:?}");
-        // Four voltages of three seconds.
-        assert!((470_000..490_000).contains(&bench.enabled_ticks), "{}", bench.enabled_ticks);
-    });
+    let (end, bench) = bring_up(None);
+    let limits = end.unwrap();
+    assert_eq!(bench.stored, Some(limits));
+    assert!((limits.full_scale_v_peak - 206.0).abs() < 0.1, "{limits:?}");
+    // Four voltages of three seconds.
+    assert!((470_000..490_000).contains(&bench.enabled_ticks), "{}", bench.enabled_ticks);
 }
 
 #[test]
 fn a_dip_of_the_amplifier_ends_bring_up_in_any_voltage() {
     for seconds in [0, 1, 4, 7, 10] {
         let dips_at = 40_000 * seconds + 1_000;
-        bring_up(Some(dips_at), |end, bench| {
-            assert!(matches!(end, Err(Stop::Drive(DriveError::Fault(Fault::Amplifier, _)))), "{end:?}");
-            assert_eq!(bench.ticker.state(), State::Faulted);
-            assert_eq!(bench.enabled_ticks, dips_at);
-            for _ in 0..LATE_TICKS {
-                bench.turn();
-            }
-            assert_eq!(bench.enabled_ticks, dips_at, "nothing resumes");
-        });
+        let (end, mut bench) = bring_up(Some(dips_at));
+        assert!(matches!(end, Err(Stop::Drive(DriveError::Fault(Fault::Amplifier, _)))), "{end:?}");
+        assert_eq!(bench.ticker.state(), State::Faulted);
+        assert_eq!(bench.enabled_ticks, dips_at);
+        for _ in 0..LATE_TICKS {
+            bench.turn();
+        }
+        assert_eq!(bench.enabled_ticks, dips_at, "nothing resumes");
     }
 }

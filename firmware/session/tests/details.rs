@@ -4,7 +4,6 @@
 
 use crate::support;
 
-use frixel_control::Board;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
 use frixel_wire::message::{Accepted, Answer, Command, FromBoard, Refusal};
@@ -98,15 +97,6 @@ fn the_first_refusal_of_several() {
     for command in [Command::Arm, Command::Play, Command::Stop, Command::Disarm] {
         assert_eq!(board.command(command), Err(Refusal::Faulted(Fault::Amplifier)), "{command:?}");
     }
-}
-
-#[test]
-fn a_switch_that_is_not_held_is_said_before_a_wrong_state() {
-    let mut board = TestBoard::of(Board::SIMULATOR);
-    board.hello();
-    board.sense.arm_switch = false;
-    board.ticks(2);
-    assert_eq!(board.command(Command::Arm), Err(Refusal::ArmSwitch));
 }
 
 #[test]

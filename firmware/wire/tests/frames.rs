@@ -184,14 +184,6 @@ fn a_wrong_bit_in_zeros_makes_no_frame_of_an_empty_payload() {
 }
 
 proptest! {
-    #[test]
-    fn payloads_go_there_and_back(payloads in prop::collection::vec(payload(), 0..8)) {
-        let line: Vec<u8> = payloads.iter().flat_map(|payload| frame(payload)).collect();
-        let (found, decoder) = decode(&line);
-        prop_assert_eq!(decoder.frames() as usize, payloads.len());
-        prop_assert_eq!(decoder.rejected(), 0);
-        prop_assert_eq!(found, payloads);
-    }
 
     #[test]
     fn frames_are_what_the_references_say(payload in payload()) {

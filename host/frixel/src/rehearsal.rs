@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
-use frixel_layers::Scene as WireScene;
 use thiserror::Error;
 
 use crate::rigs::SimStream;
@@ -29,14 +28,7 @@ pub enum RehearsalError {
 
 /// What the simulated board of `rig` needs for a program that was compiled for it. Uploads the program once.
 pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, RehearsalError> {
-    let wire_total_bytes = wire_bytes(program, rig)?;
-    let scene = program.scene_bytes();
-    // This parse does not fail: the board has just parsed the same bytes.
-    let taken = WireScene::parse(&scene).ok();
-    let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
-    let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
-    let (table_rows, table_rows_whole) = table.map_or((0, 0), |rows| (rows.filled, rows.whole));
-    Ok(BoardCosts { wire_total_bytes, active_bytes, table_rows, table_rows_whole })
+    Ok(BoardCosts::of(program, rig, wire_bytes(program, rig)?))
 }
 
 /// Bytes that the host sends, without the hello, until an empty board has accepted a scene.

@@ -4,19 +4,16 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::processes::run;
 
 const OUT_OF_REACH: &str = "version = 2\n[[layer]]\nname = \"hot\"\nkind = \"constant\"\nfriction_n = 0.9\n";
 const IN_REACH: &str = "version = 2\n[[layer]]\nname = \"warm\"\nkind = \"constant\"\nfriction_n = 0.3\n";
 const REFUSAL: &str =
     "5:14: layer 1 \"hot\" asks for up to 0.9 N in total, and at 150 V rms this finger feels at most 0.3799 N";
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder).output().unwrap()
-}
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()

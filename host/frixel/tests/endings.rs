@@ -7,13 +7,13 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use crate::processes::{frixel, until};
+use crate::processes::{frixel, run, said, until};
 use frixel::studio::Studio;
 use frixel_hil_sim::PseudoTerminal;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
@@ -32,15 +32,6 @@ fn folder() -> TempDir {
 
 fn pipe(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0).unwrap();
-}
-
-/// Runs a command in a folder, without any input.
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    frixel().args(arguments).current_dir(folder).stdin(Stdio::null()).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// A process that does not outlive the test.

@@ -59,7 +59,7 @@ fn a_calibrated_person_is_recovered() {
         without: Vec::new(),
         seed: 1,
     };
-    let rows = fit::rows(fs::File::open(folder.path().join("data.csv")).unwrap()).unwrap();
+    let rows = fit::rows(fs::File::open(folder.path().join("data.csv")).unwrap()).unwrap().value;
     let summary = serde_json::json!(Summary::from(&fit::fit(rows, &settings).unwrap()));
     assert_eq!(json.trim_end(), summary.to_string());
 

@@ -20,6 +20,8 @@ use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};
 use frixel_testkit::golden;
 use frixel_wire::fault::Flags;
 
+use crate::processes::repository;
+
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
 /// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
 const FELT_PART_MIN: f64 = 0.1;
@@ -29,10 +31,6 @@ struct Entry {
     text: String,
     scene: Scene,
     program: Program,
-}
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 fn gallery() -> Vec<Entry> {

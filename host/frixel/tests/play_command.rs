@@ -1,31 +1,20 @@
-//! `frixel play` as a person uses it: what it writes, and what it says to wrong input.
+//! `frixel play` as a person uses it: what it writes, and what it refuses of a scene. Other wrong input
+//! stands in `corpus`.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
 use tempfile::TempDir;
 
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use crate::processes::{frixel, repository, run, succeed};
 
 fn brick() -> String {
     repository().join("scenes/brick.toml").display().to_string()
-}
-
-fn frixel(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = frixel(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
 }
 
 #[test]
@@ -65,15 +54,15 @@ fn a_persons_stroke_stays_on_the_screen_and_every_seed_is_a_person() {
 #[test]
 fn json_has_every_number_and_the_same_seed_the_same_bytes() {
     let folder = TempDir::new().unwrap();
-    let run = |out: &str, seed: &str| {
+    let play = |out: &str, seed: &str| {
         let arguments =
             ["play", &brick(), "--json", "--seconds", "0.5", "--csv-hz", "4000", "--out", out, "--seed", seed];
         let json = succeed(folder.path(), &arguments);
         (json, fs::read_to_string(folder.path().join(out).join("felt.csv")).unwrap())
     };
-    let (json, first) = run("a", "7");
-    let (_, second) = run("b", "7");
-    let (_, third) = run("c", "8");
+    let (json, first) = play("a", "7");
+    let (_, second) = play("b", "7");
+    let (_, third) = play("c", "8");
     assert!(first == second, "two runs of one seed differ");
     assert!(first != third, "the seed changes nothing");
     assert_eq!(first.lines().count(), 2001);
@@ -219,15 +208,29 @@ fn a_person_cannot_be_drawn_where_the_finger_is_fixed() {
     fs::write(folder.path().join("old.toml"), scene).unwrap();
     succeed(folder.path(), &["play", "old.toml", "--seconds", "0.1"]);
     refuse(folder.path(), &["play", "old.toml", "--finger-seed", "1"], &["version 1", "frixel scene migrate"]);
-    for option in [&["--ideal"][..], &["--finger-seed", "1"]] {
-        let play = ["play", &brick(), "--port", "/dev/frixel-none"];
-        refuse(folder.path(), &[&play[..], option].concat(), &["/dev/frixel-none", "has its own: leave them out"]);
-    }
+}
+
+#[test]
+fn the_shortest_play_is_one_tick() {
+    let folder = TempDir::new().unwrap();
+    let said = succeed(folder.path(), &["play", &brick(), "--seconds", "2.5e-5", "--json"]);
+    assert!(said.contains(r#""ticks":1,"#), "{said}");
+}
+
+/// A command without its subcommand shows its help, as an error.
+#[test]
+fn help_is_printed_as_a_result_or_as_an_error() {
+    let folder = TempDir::new().unwrap();
+    let output = run(folder.path(), &["scene"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("Usage: frixel scene"));
+    assert!(succeed(folder.path(), &["play", "--help"]).contains("--csv-hz <N>"));
+    assert!(succeed(folder.path(), &["--version"]).starts_with("frixel "));
 }
 
 /// One sentence on standard error, with what is wrong, and an exit of one.
 fn refuse(folder: &Path, arguments: &[&str], parts: &[&str]) {
-    let output = frixel(folder, arguments);
+    let output = run(folder, arguments);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
     let sentence = said.lines().last().unwrap_or_default();
@@ -257,7 +260,7 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
             continue;
         }
         // What can be read plays as a draft, with the same sentence.
-        let draft = frixel(folder.path(), &["play", "wrong.toml", "--seconds", "0.1", "--out", "draft"]);
+        let draft = run(folder.path(), &["play", "wrong.toml", "--seconds", "0.1", "--out", "draft"]);
         let said = String::from_utf8(draft.stderr).unwrap();
         assert!(draft.status.success() && said.starts_with("draft: a board refuses wrong.toml:"), "{said}");
         assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}: {said}");
@@ -265,110 +268,11 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
     refuse(folder.path(), &["play", "nowhere.toml"], &["nowhere.toml", "cannot be read", "check the path"]);
 }
 
-#[test]
-fn a_wrong_stroke_is_refused_with_row_and_column() {
-    let folder = TempDir::new().unwrap();
-    for (text, parts) in [
-        ("t_s,x_mm,y_mm\n", ["stroke.csv", "no rows"]),
-        ("t_s,x_mm,y_mm\n0,1,1\n1,50,50\n0.5,60,60\n", ["row 4, column t_s", "rise"]),
-        ("t_s,x_mm\n0,1\n1,2\n", ["stroke.csv", "no column y_mm"]),
-        ("t_s,x_mm,y_mm\n0,1,1\n1,fifty,50\n", ["row 3, column x_mm", "fifty"]),
-        ("t_s,x_mm,y_mm\n0,1,1\n86401,50,50\n", ["stroke.csv lasts 86401 s", "a day"]),
-        ("t_s,x_mm,y_mm\n0,-50,1\n1,-1,50\n", ["stroke.csv is nowhere on the screen", "120 by 110 mm"]),
-        ("t_s,x_mm,y_mm\n0,1,1\n1e-6,1,1\n", ["shorter than one tick", "0.000025 s"]),
-    ] {
-        fs::write(folder.path().join("stroke.csv"), text).unwrap();
-        refuse(folder.path(), &["play", &brick(), "--stroke", "stroke.csv"], &parts);
-    }
-    refuse(folder.path(), &["play", &brick(), "--stroke", "none.csv"], &["none.csv", "cannot be read"]);
-    fs::write(folder.path().join("latin.csv"), b"t_s,x_mm,y_mm\n0,1,1\xb5\n").unwrap();
-    refuse(folder.path(), &["play", &brick(), "--stroke", "latin.csv"], &["latin.csv is not UTF-8 text"]);
-    assert!(!folder.path().join("frixel-out").exists(), "nothing was played");
-}
-
-#[test]
-fn a_stroke_partly_off_the_screen_is_noted() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("stroke.csv"), "t_s,x_mm,y_mm\n0,-30,50\n0.4,90,50\n").unwrap();
-    let output = frixel(folder.path(), &["play", &brick(), "--stroke", "stroke.csv"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("off the screen (120 by 110 mm) for 25.") || said.contains("for 24."), "{said}");
-}
-
-#[test]
-fn times_that_do_not_fit_the_ticks_are_refused() {
-    let folder = TempDir::new().unwrap();
-    for (option, value, parts) in [
-        ("--csv-hz", "3000", ["--csv-hz 3000 does not divide", "2500 or 4000"]),
-        ("--csv-hz", "39999", ["40000 ticks", "20000 or 40000"]),
-        ("--seconds", "2e-5", ["shorter than one tick", "0.000025 s"]),
-    ] {
-        refuse(folder.path(), &["play", &brick(), option, value], &parts);
-    }
-    let said = succeed(folder.path(), &["play", &brick(), "--seconds", "2.5e-5", "--json"]);
-    assert!(said.contains(r#""ticks":1,"#), "{said}");
-}
-
-/// What was found, what was expected and where help is, and an exit of two.
-#[test]
-fn a_command_line_that_cannot_be_understood_is_explained() {
-    let folder = TempDir::new().unwrap();
-    for (arguments, parts) in [
-        (&["play"][..], ["required", "<SCENE>", "'--help'"]),
-        (&["play", "a.toml", "--prot", "sim"], ["'--prot'", "'--port'", "'--help'"]),
-        (&["paly"], ["'paly'", "'play'", "'--help'"]),
-        (&["play", "a.toml", "--seconds", "0"], ["'0'", "seconds above 0", "'--help'"]),
-        (&["play", "a.toml", "--csv-hz", "50000"], ["50000", "1..=40000", "'--help'"]),
-        (&["info"], ["required", "--port <PORT>", "'--help'"]),
-    ] {
-        let output = frixel(folder.path(), arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.starts_with("error: ") && !said.contains('\u{1b}'), "{arguments:?}: {said}");
-        for part in parts {
-            assert!(said.contains(part), "{arguments:?}: {part:?} is not in: {said}");
-        }
-    }
-    // A command without its subcommand shows the help, as an error.
-    let output = frixel(folder.path(), &["scene"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("Usage: frixel scene"));
-    assert!(succeed(folder.path(), &["play", "--help"]).contains("--csv-hz <N>"));
-    assert!(succeed(folder.path(), &["--version"]).starts_with("frixel "));
-}
-
-#[test]
-fn a_wrong_port_is_refused_by_its_name() {
-    let folder = TempDir::new().unwrap();
-    refuse(folder.path(), &["play", &brick(), "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
-    refuse(folder.path(), &["info", "--port", "/dev/frixel-none"], &["/dev/frixel-none", "no port"]);
-    let stroke = ["play", &brick(), "--port", "/dev/frixel-none", "--stroke", "stroke.csv"];
-    refuse(
-        folder.path(),
-        &stroke,
-        &["/dev/frixel-none", "a stroke moves the finger of --port sim and --port qemu only"],
-    );
-    let rows = ["play", &brick(), "--port", "/dev/frixel-none", "--csv-hz", "4000"];
-    refuse(folder.path(), &rows, &["/dev/frixel-none", "1000"]);
-}
-
-#[test]
-fn a_folder_that_cannot_be_written_is_reported() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("taken"), "").unwrap();
-    refuse(
-        folder.path(),
-        &["play", &brick(), "--seconds", "0.1", "--out", "taken/out"],
-        &["taken", "cannot be written"],
-    );
-}
-
 #[cfg(unix)]
 #[test]
 fn an_interrupted_play_leaves_what_was_played() {
     let folder = TempDir::new().unwrap();
-    let mut process = Command::new(env!("CARGO_BIN_EXE_frixel"))
+    let mut process = frixel()
         .args(["play", &brick(), "--seconds", "86400", "--json"])
         .current_dir(folder.path())
         .stdout(Stdio::piped())
@@ -404,7 +308,7 @@ fn a_play_never_overwrites_a_file_of_its_scene() {
     fs::copy(repository().join("scenes/textures/brick.png"), path("out/scene.png")).unwrap();
     let before = fs::read(path("out/scene.png")).unwrap();
     succeed(folder.path(), &["new", "out/own", "--picture", "out/scene.png"]);
-    let output = frixel(folder.path(), &["play", "out/own.toml", "--seconds", "0.1", "--out", "./out"]);
+    let output = run(folder.path(), &["play", "out/own.toml", "--seconds", "0.1", "--out", "./out"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("scene.png is an input as well, and would be overwritten: give another folder to --out"));
@@ -412,7 +316,7 @@ fn a_play_never_overwrites_a_file_of_its_scene() {
     assert!(fs::read(path("out/scene.png")).unwrap() == before);
 
     fs::write(path("constant.toml"), CONSTANT).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    let mut command = frixel();
     command.args(["play", "constant.toml", "--control", "--seconds", "0.1", "--out", "out/.."]);
     command.current_dir(folder.path()).stdin(Stdio::piped()).stderr(Stdio::piped()).stdout(Stdio::null());
     fs::rename(path("out/scene.png"), path("scene.png")).unwrap();

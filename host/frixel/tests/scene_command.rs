@@ -2,43 +2,16 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// All that a scene needs but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78 mN more.
-const HEAD: &str = "\
-version = 1
-
-[screen]
-width_mm = 120
-height_mm = 80
-
-[coating]
-thickness_um = 10
-permittivity = 1
-
-[finger]
-radius_mm = 8
-stiffness_pa_per_m = 1.8e7
-friction_coefficient = 0.5
-normal_load_n = 0.5
-";
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use crate::processes::{HEAD, repository, run, succeed};
 
 fn frixel(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(repository()).output().unwrap()
-}
-
-fn said(arguments: &[&str]) -> String {
-    let output = frixel(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    run(&repository(), arguments)
 }
 
 /// What a command that fails with status 1 says on standard error.
@@ -71,7 +44,8 @@ impl Files {
     }
 
     fn check(&self, rest: &str) -> Value {
-        serde_json::from_str(&said(&["scene", "check", &self.scene(rest), "--json", "--board"])).unwrap()
+        serde_json::from_str(&succeed(&repository(), &["scene", "check", &self.scene(rest), "--json", "--board"]))
+            .unwrap()
     }
 }
 
@@ -83,7 +57,7 @@ fn targets_in_reach_are_printed_in_reach() {
         let text = format!(
             "version = 2\n[drive]\nvoltage_max_v_rms = {voltage_v_rms}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n"
         );
-        let summary = said(&["scene", "check", &files.write("whole.toml", &text)]);
+        let summary = succeed(&repository(), &["scene", "check", &files.write("whole.toml", &text)]);
         let most = |name: &str| -> f64 {
             let line = summary.lines().find(|line| line.trim_start().starts_with(name)).unwrap();
             line.split(" N in total").next().unwrap().split(' ').next_back().unwrap().parse().unwrap()
@@ -140,11 +114,14 @@ fn constant(rest: &str) -> String {
 #[test]
 fn bytes_are_those_that_a_play_sends() {
     let files = Files::new();
-    let check: Value = serde_json::from_str(&said(&["scene", "check", "scenes/brick.toml", "--json"])).unwrap();
+    let check: Value =
+        serde_json::from_str(&succeed(&repository(), &["scene", "check", "scenes/brick.toml", "--json"])).unwrap();
     let out = files.path("out");
-    let played: Value =
-        serde_json::from_str(&said(&["play", "scenes/brick.toml", "--json", "--seconds", "0.01", "--out", &out]))
-            .unwrap();
+    let played: Value = serde_json::from_str(&succeed(
+        &repository(),
+        &["play", "scenes/brick.toml", "--json", "--seconds", "0.01", "--out", &out],
+    ))
+    .unwrap();
     let (wire, ram) = (&check["wire"], &check["ram"]);
     let number = |value: &Value| value.as_u64().unwrap();
     assert_eq!(number(&wire["bitmap_bytes"]), 250 * 250);
@@ -190,10 +167,10 @@ fn the_table_ends_where_the_scene_does_unless_a_layer_may_change() {
     assert_eq!(table("friction_fraction = 0.499\nlive = true"), [whole, whole, room]);
 
     let path = files.path("scene.toml");
-    let said = said(&["scene", "check", &path]);
+    let said = succeed(&repository(), &["scene", "check", &path]);
     assert!(said.contains("nothing is cut"), "{said}");
     files.check(&constant("friction_fraction = 0.495"));
-    let said = self::said(&["scene", "check", &path]);
+    let said = succeed(&repository(), &["scene", "check", &path]);
     assert!(said.contains(&format!("{} of {whole} bytes computed, 4 rows are cut", whole - 64)), "{said}");
 }
 
@@ -224,7 +201,7 @@ fn friction_out_of_reach_is_measured_and_its_layer_named() {
     near(&check["reach"]["natural_n"], 0.25);
     near(&check["reach"]["total_max_n"], 0.277_781_2);
 
-    let text = said(&["scene", "check", &files.path("scene.toml")]);
+    let text = succeed(&repository(), &["scene", "check", &files.path("scene.toml")]);
     assert!(text.contains("25.0 % of the screen above, by layer 1 \"too rough\"; 25.0 %"), "{text}");
     let inside = files.check(&constant("friction_n = 0.26"));
     near(&inside["asked"]["most_n"], 0.26);
@@ -243,7 +220,8 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
     let stream = "[carrier]\nshape = \"sine\"\n[[layer]]\nkind = \"stream\"\nlow_n = 0\nhigh_n = 0.01\n";
     let mut found: Vec<String> = Vec::new();
     for scene in every.chain([files.scene(stream)]) {
-        let check: Value = serde_json::from_str(&said(&["scene", "check", &scene, "--json", "--board"])).unwrap();
+        let check: Value =
+            serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json", "--board"])).unwrap();
         let names: Vec<String> = serde_json::from_value(check["board"]["features"].clone()).unwrap();
         let command = check["board"]["command"].as_str().unwrap();
         assert!(command.contains("--no-default-features") && command.ends_with(&names.join(",")), "{command}");
@@ -297,7 +275,7 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
     let files = Files::new();
     let short = files.write("short.toml", "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
     let natural_n = |options: &[&str]| {
-        let json = said(&[&["scene", "check", &short, "--json"], options].concat());
+        let json = succeed(&repository(), &[&["scene", "check", &short, "--json"], options].concat());
         let check: Value = serde_json::from_str(&json).unwrap();
         assert_eq!(check["finger"]["origin"], "assumed");
         (1e6 * check["reach"]["natural_n"].as_f64().unwrap()).round()
@@ -306,7 +284,7 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
     let anna = "friction_coefficient = 0.42\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 4\n";
     let anna = files.write("anna.toml", anna);
     assert_eq!(natural_n(&["--finger", &anna, "--screen", "example"]) as u64, 210_000);
-    let summary = said(&["scene", "check", &short, "--finger", &anna]);
+    let summary = succeed(&repository(), &["scene", "check", &short, "--finger", &anna]);
     assert!(summary.contains(&format!("finger           finger \"{anna}\", assumed\n")), "{summary}");
     assert!(summary.contains(" V rms), assumed\n"), "{summary}");
     let message = refused(&["scene", "check", &short, "--finger", "moost"]);
@@ -324,12 +302,12 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
 fn a_scene_of_version_one_is_migrated_to_the_same_friction() {
     let files = Files::new();
     let old = files.scene(&constant("friction_n = 0.26"));
-    let new = files.write("new.toml", said(&["scene", "migrate", &old]));
+    let new = files.write("new.toml", succeed(&repository(), &["scene", "migrate", &old]));
     let written = files.path("written.toml");
-    said(&["scene", "migrate", &old, "-o", &written]);
+    succeed(&repository(), &["scene", "migrate", &old, "-o", &written]);
     assert_eq!(fs::read(&written).unwrap(), fs::read(&new).unwrap());
     let reach = |scene: &str| {
-        let check: Value = serde_json::from_str(&said(&["scene", "check", scene, "--json"])).unwrap();
+        let check: Value = serde_json::from_str(&succeed(&repository(), &["scene", "check", scene, "--json"])).unwrap();
         check["reach"].clone()
     };
     assert_eq!(reach(&old), reach(&new));
@@ -366,14 +344,17 @@ fn a_preview_never_replaces_a_picture_of_the_scene() {
 fn a_preview_is_a_png_of_the_asked_size() {
     let files = Files::new();
     let path = files.path("map.png");
-    let message = said(&["scene", "preview", "scenes/ribs.toml", "-o", &path, "--map-width", "300"]);
+    let message = succeed(&repository(), &["scene", "preview", "scenes/ribs.toml", "-o", &path, "--map-width", "300"]);
     assert!(message.contains(&path), "{message}");
     let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).unwrap()));
     let reader = decoder.read_info().unwrap();
     // The least width: 300 + 84 + 150 would leave too little room for the caption.
     assert_eq!(reader.info().width, 600);
     let slow = files.path("slow.png");
-    said(&["scene", "preview", "scenes/ribs.toml", "-o", &slow, "--map-width", "300", "--speed-mm-per-s", "15"]);
+    succeed(
+        &repository(),
+        &["scene", "preview", "scenes/ribs.toml", "-o", &slow, "--map-width", "300", "--speed-mm-per-s", "15"],
+    );
     assert!(map(&slow) != map(&path), "the speed changes nothing");
     let message = refused(&["scene", "preview", "scenes/ribs.toml", "-o", &files.path("map.jpg")]);
     assert!(message.contains("map.jpg is no PNG file by its name"), "{message}");
@@ -386,12 +367,12 @@ fn check_and_preview_say_what_a_person_feels() {
     let files = Files::new();
     let grating = "[[layer]]\nname = \"ridges\"\nkind = \"grating\"\nwavelength_mm = 1\nlow_n = 0.25\nhigh_n = 0.27\n";
     let scene = files.scene(&format!("{grating}above = \"zero\"\n"));
-    let text = said(&["scene", "check", &scene]);
+    let text = succeed(&repository(), &["scene", "check", &scene]);
     let feel = text.lines().find(|line| line.trim_start().starts_with("feel ")).unwrap();
     assert!(feel.contains("layer 1 \"ridges\": 250.0 to 269.7 mN, 0.7 Weber steps (not felt)"), "{feel}");
     assert!(feel.contains("at 100 mm/s 9.97 mN at 100 Hz, threshold 0.82 mN (felt)"), "{feel}");
-    assert!(said(&["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
-    let json: Value = serde_json::from_str(&said(&["scene", "check", &scene, "--json"])).unwrap();
+    assert!(succeed(&repository(), &["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
+    let json: Value = serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json"])).unwrap();
     let textures = &json["perception"]["layers"][0]["textures"];
     assert_eq!(textures.as_array().unwrap().len(), 3);
     assert_eq!(textures[2]["verdict"], "felt");

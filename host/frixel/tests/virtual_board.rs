@@ -4,8 +4,6 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use crate::processes;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::ops::ControlFlow;
@@ -20,9 +18,10 @@ use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, SerialLink};
 use frixel_scene::compile;
 use frixel_testkit::Random;
 use hound::{SampleFormat, WavSpec, WavWriter};
-use processes::{frixel, rows_so_far, until};
 use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
+
+use crate::processes::{frixel, rows_so_far, said, until};
 
 /// Host timeout of the scene here, s: the longest that there is, for on a busy machine pings are late.
 const HOST_TIMEOUT_S: f64 = 1.0;
@@ -72,10 +71,6 @@ fn tries(what: &str, mut done: impl FnMut() -> bool) {
 /// Whether a client has ended because an answer took too long. A client may try again then; anything else is a failure.
 fn was_too_late(output: &Output) -> bool {
     output.status.code() == Some(1) && said(output).contains("was not answered by the board")
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// Ends a process as a person would.

@@ -1,15 +1,17 @@
 //! Strokes as CSV text, as a person's finger or a program makes them.
 
+use std::io::Read;
+
 use frixel_hil_sim::{Point, Stroke, StrokeError, StrokeRow};
 use thiserror::Error;
 
-use crate::table::{Column, Place, Row, Table, TableError};
+use crate::table::{Column, Place, Row, Table, TableError, Unit};
 
-const TIME: Column = Column::new("t_s", "seconds");
-const X: Column = Column::new("x_mm", "mm from the left edge of the screen");
-const Y: Column = Column::new("y_mm", "mm from the top edge of the screen");
+const TIME: Column = Column::new("t_s", "seconds").converted(Unit::Seconds);
+const X: Column = Column::new("x_mm", "mm from the left edge of the screen").converted(Unit::Millimetres);
+const Y: Column = Column::new("y_mm", "mm from the top edge of the screen").converted(Unit::Millimetres);
 /// The normal load, which may be left out.
-const LOAD: Column = Column::new("force_n", "newtons");
+const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::Newtons);
 /// Columns of `felt.csv` that a stroke does not need.
 const OF_A_PLAY: [&str; 7] = ["speed_mm_s", "wanted_n", "asked_n", "felt_n", "voltage_v_rms", "dac_code", "flags"];
 /// A load above it is one in another unit.
@@ -29,7 +31,9 @@ pub enum StrokeFileError {
         found: usize,
     },
     /// A normal load that no finger has.
-    #[error("row {row}, column force_n: {found_n} is no load of a finger: give newtons, above 0 and at most 50")]
+    #[error(
+        "row {row}, column force_n: {found_n} is no load of a finger: give newtons, above 0 and at most 50, or name the column force_mn if it is in millinewtons"
+    )]
     NoLoad {
         /// Number of the row.
         row: u64,
@@ -66,24 +70,25 @@ pub struct StrokeFile {
     pub stroke: Stroke,
     /// Names of columns that say nothing about a stroke, and that no play writes either.
     pub ignored_columns: Vec<String>,
+    /// How the file was understood, as [`Table::understood`] says it.
+    pub understood: Option<String>,
 }
 
 impl StrokeFile {
-    /// Reads a stroke from CSV text with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
+    /// Reads a stroke from CSV with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
     /// known, in N and above 0. The finger is off the screen in a row whose cells `x_mm` and `y_mm` are empty, as in
     /// `felt.csv`.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
     /// be as close as the motion needs: every 10 ms or less for a hand.
-    pub fn parse(text: &str) -> Result<Self, StrokeFileError> {
-        let mut table = Table::new(text.as_bytes())?;
+    pub fn read(input: impl Read) -> Result<Self, StrokeFileError> {
+        let mut table = Table::new(input)?;
         let places = [table.need(TIME)?, table.need(X)?, table.need(Y)?];
         let load = table.find(LOAD)?;
-        let is_ignored = |name: &&String| {
-            ![TIME, X, Y, LOAD].iter().any(|column| column.name == *name) && !OF_A_PLAY.contains(&name.as_str())
-        };
-        let ignored_columns = table.names().iter().filter(is_ignored).cloned().collect();
+        let mut ignored_columns = table.ignored();
+        ignored_columns.retain(|name| !OF_A_PLAY.contains(&name.as_str()));
+        let understood = table.understood();
         let mut rows: Vec<StrokeRow> = Vec::new();
         while let Some(row) = table.next_row()? {
             let read = stroke_row(&row, places, load)?;
@@ -99,7 +104,7 @@ impl StrokeFile {
         if rows.len() < 2 {
             return Err(StrokeFileError::TooFewRows { found: rows.len() });
         }
-        Ok(Self { stroke: Stroke::through_rows(&rows)?, ignored_columns })
+        Ok(Self { stroke: Stroke::through_rows(&rows)?, ignored_columns, understood })
     }
 }
 
@@ -123,9 +128,9 @@ mod tests {
 
     #[test]
     fn columns_may_stand_in_any_order_among_others_with_quotes_spaces_and_windows_line_ends() {
-        let plain = StrokeFile::parse("t_s,x_mm,y_mm\n0,10,20\n1,30,40\n").unwrap();
+        let plain = StrokeFile::read("t_s,x_mm,y_mm\n0,10,20\n1,30,40\n".as_bytes()).unwrap();
         let text = "\u{feff}note, y_mm ,t_s,x_mm\r\n\"a, b\",20,\"0\",10\r\n\r\n,40, 1 ,3e1";
-        let other = StrokeFile::parse(text).unwrap();
+        let other = StrokeFile::read(text.as_bytes()).unwrap();
         for t_s in [0.0, 0.3, 1.0] {
             assert_eq!(plain.stroke.at(t_s), other.stroke.at(t_s));
             assert!(plain.stroke.at(t_s).is_some());
@@ -136,7 +141,7 @@ mod tests {
     #[test]
     fn a_stroke_says_with_which_force_the_finger_presses_and_where_it_is_lifted() {
         let text = "t_s,x_mm,y_mm,force_n\n0,,,\n1,10,30,0.5\n1.5,60,30,0.9\n2,,,\n";
-        let stroke = StrokeFile::parse(text).unwrap().stroke;
+        let stroke = StrokeFile::read(text.as_bytes()).unwrap().stroke;
         assert!((stroke.normal_load_n(1.25).unwrap() - 0.7).abs() < 1e-12);
         assert!((stroke.at(1.25).unwrap().x_m - 0.035).abs() < 1e-12);
         assert!(stroke.at(0.5).is_none() && stroke.at(1.75).is_none());
@@ -189,10 +194,11 @@ mod tests {
             ),
             (
                 "t_s,x_mm,y_mm,force_n\n0,10,30,500\n0.5,60,30,510\n",
-                "row 2, column force_n: 500 is no load of a finger: give newtons, above 0 and at most 50",
+                "row 2, column force_n: 500 is no load of a finger: give newtons, above 0 and at most 50, or name the \
+                 column force_mn if it is in millinewtons",
             ),
         ] {
-            assert_eq!(StrokeFile::parse(text).unwrap_err().to_string(), message, "{text:?}");
+            assert_eq!(StrokeFile::read(text.as_bytes()).unwrap_err().to_string(), message, "{text:?}");
         }
     }
 }

@@ -1,72 +1,126 @@
 //! The one reader of tables: CSV text with a header row that names the columns, in any order.
 //!
 //! A caller names the [`Column`]s that it needs, and gets the place of each; columns that it does not name are ignored.
+//! A header may state another unit than the caller's (`friction_mn`, `friction [mN]`); numbers are converted.
+//!
+//! Spreadsheets write tables in other ways than programs do: with semicolons or tabs between columns, with decimal
+//! commas, in UTF-16. What a file has is found from its first [`HEAD_BYTES`] bytes, and what can be read in two ways is
+//! refused. [`Table::understood`] says in a sentence what was found.
+//!
 //! Cells may have blanks around them. Blank lines, and lines that start with `#`, are skipped. Rows are numbered as the
 //! lines of the file, so that an editor or a spreadsheet shows the row that a message names.
 
+mod dialect;
 mod error;
 mod lines;
+mod unit;
+mod utf16;
 
 use std::borrow::Cow;
-use std::io::Read;
+use std::io::{Chain, Cursor, Read};
 
 use csv::{ByteRecord, Reader, ReaderBuilder};
 
+pub(crate) use dialect::Dialect;
+use dialect::Digits;
 pub use error::TableError;
 pub(crate) use error::system_error;
 use lines::Lines;
+use unit::Named;
+pub use unit::Unit;
+use utf16::Utf8;
 
 /// Similarity from which one name is suggested for another, as a part of their length.
 const LIKENESS: f64 = 0.6;
 /// Number of characters of a cell that a message quotes.
 const QUOTED_CHARS: usize = 40;
-/// What stands between columns where the decimal sign is a comma, with its name.
-const OTHER_SEPARATORS: [(char, &str); 2] = [(';', "semicolons"), ('\t', "tabs")];
+/// Bytes from which it is found how a table is written.
+const HEAD_BYTES: u64 = 64 << 10;
 
 /// A column that a caller reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Its name in the header.
     pub name: &'static str,
-    /// The unit of its cells, for a message, such as `newtons`; empty for words and plain numbers.
+    /// What its cells have, for a message, such as `newtons`; empty for words and plain numbers.
     pub unit: &'static str,
+    /// The unit to which its numbers are converted if a header may state another.
+    pub converted: Option<Unit>,
 }
 
 impl Column {
     /// A column of this name, whose cells are in this unit.
     pub const fn new(name: &'static str, unit: &'static str) -> Self {
-        Self { name, unit }
+        Self { name, unit, converted: None }
+    }
+
+    /// The same column, which may also have another unit of the quantity. Its name has the symbol of `unit`, as in
+    /// `friction_n`.
+    #[must_use]
+    pub const fn converted(self, unit: Unit) -> Self {
+        Self { converted: Some(unit), ..self }
     }
 }
 
-/// Where a column stands in a table.
+/// Where a column stands in a table, and what its numbers are multiplied by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    column: &'static str,
     index: usize,
+    power_of_ten: i32,
 }
+
+/// What was read of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading<T> {
+    /// What it says.
+    pub value: T,
+    /// How it was understood, as [`Table::understood`] says it.
+    pub understood: Option<String>,
+}
+
+type Input<R> = Lines<Chain<Cursor<Vec<u8>>, Utf8<R>>>;
 
 /// A table that is read row by row.
 pub struct Table<R> {
-    reader: Reader<Lines<R>>,
+    reader: Reader<Input<R>>,
+    dialect: Dialect,
     names: Vec<String>,
     /// Whether a caller has asked for the column of each name.
     asked: Vec<bool>,
+    /// The columns whose header states a unit otherwise than by the name that the caller gave.
+    stated: Vec<String>,
     cells: ByteRecord,
 }
 
 impl<R: Read> Table<R> {
-    /// Reads the header. Fails if there are other separators than commas.
+    /// Reads the header. Fails if it cannot be told what separates the columns.
     pub fn new(input: R) -> Result<Self, TableError> {
-        let mut reader = ReaderBuilder::new().flexible(true).comment(Some(b'#')).from_reader(Lines::new(input));
+        let mut input = Utf8::new(input).map_err(TableError::Read)?;
+        let mut head = Vec::new();
+        input.by_ref().take(HEAD_BYTES).read_to_end(&mut head).map_err(TableError::Read)?;
+        let is_whole = (head.len() as u64) < HEAD_BYTES;
+        let dialect = Dialect::of(&mut head, is_whole, input.order())?;
+        let input = Lines::new(Cursor::new(head).chain(input));
+        let builder = &mut ReaderBuilder::new();
+        let mut reader = builder.flexible(true).comment(Some(b'#')).delimiter(dialect.separator()).from_reader(input);
         let header = reader.byte_headers().map_err(TableError::read)?;
-        let names: Vec<String> = header.iter().map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
-        if let [only] = &names[..]
-            && let Some((_, found)) = OTHER_SEPARATORS.into_iter().find(|(separator, _)| only.contains(*separator))
-        {
-            return Err(TableError::Separator { found });
-        }
-        Ok(Self { reader, asked: vec![false; names.len()], names, cells: ByteRecord::new() })
+        let names: Vec<String> = header.iter().map(name).collect();
+        let asked = vec![false; names.len()];
+        Ok(Self { reader, dialect, asked, names, stated: Vec::new(), cells: ByteRecord::new() })
+    }
+
+    /// How the table is written.
+    pub(crate) fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    /// What was understood of the table beyond the documented names, commas between columns and points in numbers, in
+    /// one sentence; `None` if there is nothing. Asked for after the columns.
+    pub fn understood(&self) -> Option<String> {
+        let stated = self.stated.iter().map(String::as_str).collect::<Vec<_>>().join(" and ");
+        let stated = (!stated.is_empty()).then(|| format!("read {stated}"));
+        let words: Vec<String> = stated.into_iter().chain(self.dialect.words()).collect();
+        (!words.is_empty()).then(|| words.join("; "))
     }
 
     /// The names of all columns, in the order of the file.
@@ -79,17 +133,57 @@ impl<R: Read> Table<R> {
         self.reader.byte_headers().map_err(TableError::read)
     }
 
-    /// The place of a column that may be missing. Fails if the header has it twice.
+    /// The names of the columns that no caller has asked for.
+    pub(crate) fn ignored(&self) -> Vec<String> {
+        let unasked = self.names.iter().zip(&self.asked).filter(|(_, asked)| !**asked);
+        unasked.map(|(name, _)| name.clone()).collect()
+    }
+
+    /// The place of a column that may be missing. Fails if the header has it twice, or in a unit that can be read in
+    /// two ways.
     pub fn find(&mut self, column: Column) -> Result<Option<Place>, TableError> {
-        let mut places = (0..).zip(&self.names).filter(|(_, name)| *name == column.name);
-        let place = places.next().map(|(index, _)| Place { column: column.name, index });
-        if places.next().is_some() {
-            return Err(TableError::ColumnTwice { column: column.name });
+        let exact = (0..).zip(&self.names).filter(|(_, name)| *name == column.name);
+        let mut places: Vec<Place> = exact.map(|(index, _)| Place { index, power_of_ten: 0 }).collect();
+        if places.is_empty()
+            && let Some(unit) = column.converted
+        {
+            places = self.find_converted(column.name, unit)?;
         }
-        if let Some(asked) = place.and_then(|place| self.asked.get_mut(place.index)) {
-            *asked = true;
+        match places[..] {
+            [] => Ok(None),
+            [place] => {
+                if let Some(asked) = self.asked.get_mut(place.index) {
+                    *asked = true;
+                }
+                Ok(Some(place))
+            }
+            _ => {
+                let names = places.iter().filter_map(|place| self.names.get(place.index)).cloned();
+                Err(TableError::ColumnTwice { names: names.collect() })
+            }
         }
-        Ok(place)
+    }
+
+    /// The places of the columns that state the quantity in a unit of their own.
+    fn find_converted(&mut self, name: &str, unit: Unit) -> Result<Vec<Place>, TableError> {
+        let mut places = Vec::new();
+        for (index, header) in self.names.iter().enumerate() {
+            match unit::named(header, name, unit) {
+                Named::Other => {}
+                Named::In(scale) => {
+                    places.push(Place { index, power_of_ten: unit.power_from(scale) });
+                    let stated = format!("`{header}` in {}", unit::words(name, unit, scale));
+                    if !self.stated.contains(&stated) {
+                        self.stated.push(stated);
+                    }
+                }
+                Named::Doubtful { readings, advice } => {
+                    let readings = readings.join(" or in ");
+                    return Err(TableError::UnitDoubtful { header: header.clone(), readings, advice });
+                }
+            }
+        }
+        Ok(places)
     }
 
     /// The place of a column that is needed.
@@ -130,7 +224,7 @@ impl<R: Read> Table<R> {
             }
         }
         let number = self.number();
-        Ok(Some(Row { number, expected: self.names.len(), cells: &self.cells }))
+        Ok(Some(Row { number, names: &self.names, dialect: self.dialect, cells: &self.cells }))
     }
 
     /// The line in which the row that was just read begins. The CSV reader itself knows only the first of the lines
@@ -142,11 +236,18 @@ impl<R: Read> Table<R> {
     }
 }
 
+/// A cell of the header. What is not UTF-8 is Latin-1, in which older programs write the `µ` of a unit.
+fn name(cell: &[u8]) -> String {
+    let text = str::from_utf8(cell).map_or_else(|_| cell.iter().copied().map(char::from).collect(), str::to_owned);
+    text.trim().to_owned()
+}
+
 /// A row of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'t> {
     number: u64,
-    expected: usize,
+    names: &'t [String],
+    dialect: Dialect,
     cells: &'t ByteRecord,
 }
 
@@ -159,12 +260,12 @@ impl<'t> Row<'t> {
     /// The cells as they stand in the file, as many as the header has: cells that are missing are empty.
     pub fn cells(&self) -> impl Iterator<Item = &'t [u8]> {
         let cells = self.cells;
-        (0..self.expected).map(move |index| cells.get(index).unwrap_or_default())
+        (0..self.names.len()).map(move |index| cells.get(index).unwrap_or_default())
     }
 
     /// Fails if the row has more or fewer cells than the header.
     pub fn check_length(&self) -> Result<(), TableError> {
-        let (row, expected, found) = (self.number, self.expected, self.cells.len());
+        let (row, expected, found) = (self.number, self.names.len(), self.cells.len());
         if found == expected { Ok(()) } else { Err(TableError::Length { row, expected, found }) }
     }
 
@@ -183,15 +284,41 @@ impl<'t> Row<'t> {
         quoted
     }
 
-    /// The number in a cell, which is finite.
+    /// The number in a cell, which is finite, in the unit of the caller.
     pub fn real(&self, place: Place) -> Result<f64, TableError> {
-        let (row, column) = (self.number, place.column);
+        let number = self.digits(place)?.parse().ok().filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| {
+            let (row, column) = (self.number, self.column(place));
+            TableError::NotANumber { row, column, found: self.quoted(place) }
+        })
+    }
+
+    /// The digits of the number in a cell, in the unit of the caller and with a decimal point. They need not be a number.
+    pub(crate) fn digits(&self, place: Place) -> Result<Cow<'t, str>, TableError> {
+        let (row, column) = (self.number, self.column(place));
         let text = self.text(place);
         if text.is_empty() {
             return Err(TableError::CellEmpty { row, column });
         }
-        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| TableError::NotANumber { row, column, found: self.quoted(place) })
+        let digits = match self.dialect.digits(&text) {
+            Digits::Number(digits) => digits.into_owned(),
+            Digits::Doubtful(readings) => {
+                let readings = readings.join(" or as ");
+                return Err(TableError::CellDoubtful { row, column, found: self.quoted(place), readings });
+            }
+        };
+        if place.power_of_ten == 0 {
+            return Ok(digits.into());
+        }
+        // The exponent is moved, so that the number is rounded once.
+        let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((&digits, "0"));
+        let exponent = exponent.parse::<i32>().ok().and_then(|exponent| exponent.checked_add(place.power_of_ten));
+        Ok(exponent.map_or(digits.clone(), |exponent| format!("{mantissa}e{exponent}")).into())
+    }
+
+    /// The name that a column has in the file.
+    pub(crate) fn column(&self, place: Place) -> String {
+        self.names.get(place.index).cloned().unwrap_or_default()
     }
 
     /// The number in a cell; `None` if the cell is empty.
@@ -201,13 +328,13 @@ impl<'t> Row<'t> {
 }
 
 /// The whole rows of a file that its writer may still be writing: without a last line that has no line feed.
-pub fn whole_rows(text: &str) -> &str {
-    text.rsplit_once('\n').map_or("", |(whole, _)| whole)
+pub fn whole_rows(bytes: &[u8]) -> &[u8] {
+    bytes.get(..utf16::end_of_lines(bytes)).unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Column, Table};
+    use super::{Column, Table, TableError, Unit, whole_rows};
 
     fn numbers(text: &str) -> Vec<u64> {
         let mut table = Table::new(text.as_bytes()).unwrap();
@@ -224,6 +351,108 @@ mod tests {
         assert_eq!(numbers("a,b\n\"1\n\",2\n3,\"\n\n4\"\n5,6\n"), [2, 4, 7]);
         assert_eq!(numbers("a,b\n"), Vec::<u64>::new());
         assert_eq!(numbers(""), Vec::<u64>::new());
+    }
+
+    fn read(bytes: &[u8]) -> Result<(Vec<f64>, Option<String>), TableError> {
+        let mut table = Table::new(bytes)?;
+        let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts))?;
+        let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::Newtons))?;
+        let mut numbers = Vec::new();
+        while let Some(row) = table.next_row()? {
+            row.check_length()?;
+            numbers.extend([row.real(voltage)?, row.real(friction)?]);
+        }
+        Ok((numbers, table.understood()))
+    }
+
+    #[test]
+    fn a_table_is_read_as_spreadsheets_of_other_countries_write_it() {
+        let numbers = vec![150.5, 0.25, 0.0, 1.25];
+        let plain = "voltage_v_rms,friction_n\n150.5,0.25\n0,1.25\n";
+        assert_eq!(read(plain.as_bytes()).unwrap(), (numbers.clone(), None));
+        let german = "voltage_kv_rms;Friction [mN]\r\n0,1505;250,0\r\n0;1,25e3\r\n";
+        let said = "read `voltage_kv_rms` in kilovolts rms and `Friction [mN]` in millinewtons; columns are separated by \
+                    semicolons, with decimal commas";
+        assert_eq!(read(german.as_bytes()).unwrap(), (numbers.clone(), Some(said.to_owned())));
+        let tabs = "\u{feff}voltage_v_rms\tfriction_n\n150.5\t0.25\n0\t1.25\n";
+        let bytes: Vec<u8> = tabs.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let said = "columns are separated by tabs; the text is UTF-16, little-endian";
+        assert_eq!(read(&bytes).unwrap(), (numbers.clone(), Some(said.to_owned())));
+        let latin = read(b"voltage_v_rms\tfriction (\xb5N)\n150\t250000\n").unwrap();
+        assert_eq!(latin.0, [150.0, 0.25]);
+        let quoted = "voltage_v_rms,friction_n\n\"150,5\",\"0,25\"\n0,\"1,25\"\n";
+        let said = "numbers have decimal commas";
+        assert_eq!(read(quoted.as_bytes()).unwrap(), (numbers, Some(said.to_owned())));
+    }
+
+    #[test]
+    fn a_line_that_tells_the_separator_is_not_the_header() {
+        for start in ["", "\u{feff}"] {
+            let text = format!("{start}sep=;\r\nvoltage_v_rms;friction_n\r\n1;0,5\r\n");
+            assert_eq!(read(text.as_bytes()).unwrap().0, [1.0, 0.5]);
+            let wrong = format!("{start}sep=;\nvoltage_v_rms;friction_n\n1;x\n");
+            assert!(read(wrong.as_bytes()).unwrap_err().to_string().starts_with("row 3, column friction_n"));
+        }
+    }
+
+    #[test]
+    fn what_can_be_read_in_two_ways_is_refused_with_both() {
+        for (text, said) in [
+            (
+                "voltage_v_rms;friction_n\n150;1,234\n75;2,345\n",
+                "row 2, column friction_n: \"1,234\" can be read as 1.234 or as 1234: save the file without separators of \
+                 thousands, and with points in numbers",
+            ),
+            (
+                "voltage_v_rms;friction_n\n150;0,2\n75;1.234\n",
+                "row 3, column friction_n: \"1.234\" can be read as 1.234 or as 1234: save the file without separators of \
+                 thousands, and with points in numbers",
+            ),
+            (
+                "voltage_v_rms,friction_n\n150,0,25\n75,0,5\n",
+                "row 2: expected 2 cells as in the header, found 3: correct or delete the row; if commas are decimal signs, \
+                 save the file with semicolons between columns",
+            ),
+            (
+                "voltage_v_rms,friction_n;note\n150,0.2;5\n",
+                "the header can be read as 2 columns that commas separate, or as 2 that semicolons do: leave one of them out",
+            ),
+            (
+                "voltage_v_rms,friction_n (mN)\n",
+                "the column `friction_n (mN)` can be read in newtons or in millinewtons: name it friction_n or friction_mn",
+            ),
+            (
+                "voltage_v_rms,friction_mn,friction [N]\n",
+                "the header has one quantity twice, friction_mn and friction [N]: leave one of them out",
+            ),
+        ] {
+            assert_eq!(read(text.as_bytes()).unwrap_err().to_string(), said, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_number_is_rounded_once_when_its_unit_is_converted() {
+        for (text, number) in
+            [("150", 0.15), ("0.3", 0.3e-3), ("1e2", 0.1), ("-7.5e-1", -0.75e-3), ("1e2147483647", f64::NAN)]
+        {
+            let table = format!("voltage_v_rms,friction_mn\n1,{text}\n");
+            match read(table.as_bytes()) {
+                Ok((numbers, _)) => assert_eq!(numbers.get(1), Some(&number), "{text}"),
+                Err(error) => assert!(number.is_nan() && error.to_string().contains("expected a number"), "{error}"),
+            }
+        }
+    }
+
+    #[test]
+    fn the_last_line_of_a_file_that_grows_is_left_out_in_each_encoding() {
+        let text = "\u{feff}a;b\n1;2\n\u{a0a}3;";
+        let whole = "\u{feff}a;b\n1;2\n";
+        assert_eq!(whole_rows(text.as_bytes()), whole.as_bytes());
+        let little = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+        let big = |text: &str| text.encode_utf16().flat_map(u16::to_be_bytes).collect::<Vec<u8>>();
+        assert_eq!(whole_rows(&little(text)), little(whole));
+        assert_eq!(whole_rows(&big(text)), big(whole));
+        assert_eq!(whole_rows(b"a;b"), b"");
     }
 
     #[test]

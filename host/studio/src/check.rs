@@ -5,7 +5,6 @@ use std::ops::ControlFlow;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_layers::Scene as WireScene;
 use frixel_play::load;
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
@@ -60,20 +59,13 @@ fn screen(scene: &Scene) -> Value {
 
 /// What a simulated board needs for a program: uploads it once, without playing it.
 fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
-    let mut memory = BoardMemory::new();
-    let wire_total_bytes = wire_bytes(program, &mut memory, config)?;
-    let scene = program.scene_bytes();
-    // This parse does not fail: the board has just parsed the same bytes.
-    let taken = WireScene::parse(&scene).ok();
-    let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
-    let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &config.board).ok());
-    let (table_rows, table_rows_whole) = table.map_or((0, 0), |rows| (rows.filled, rows.whole));
-    Ok(BoardCosts { wire_total_bytes, active_bytes, table_rows, table_rows_whole })
+    Ok(BoardCosts::of(program, config, wire_bytes(program, config)?))
 }
 
 /// Bytes that the host sends, without the hello, until an empty board has accepted a scene.
-fn wire_bytes(program: &Program, memory: &mut BoardMemory, config: &RigConfig) -> Result<usize, HostError> {
-    let stream = RigStream::new(memory, config, 1)?;
+fn wire_bytes(program: &Program, config: &RigConfig) -> Result<usize, HostError> {
+    let mut memory = BoardMemory::new();
+    let stream = RigStream::new(&mut memory, config, 1)?;
     let mut device = Device::connect(PollingLink::new(stream))?;
     let before = device.counters().wire_bytes;
     let loaded = load(&mut device, program, &mut |_| ControlFlow::Continue(()));

@@ -1,6 +1,8 @@
 //! The board whose firmware runs in virtual time.
 
-use frixel_control::Board;
+use frixel_control::{Active, Board, Ticker};
+use frixel_layers::BitmapPool;
+use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
@@ -18,6 +20,13 @@ pub(crate) const BOARD: Board = Board {
     touch_from_host: true,
     ..Board::SIMULATOR
 };
+
+/// Its session and its ticker, whose memory lives as long as the program.
+pub(crate) fn firmware() -> (Session<'static>, Ticker<'static>) {
+    let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
+    let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
+    (Session::new(BOARD, pool, second), Ticker::new(&BOARD, pool, first))
+}
 
 /// Its monitor.
 pub(crate) fn monitor() -> IdealMonitor {

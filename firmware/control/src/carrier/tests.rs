@@ -19,16 +19,6 @@ fn a_steady_square_alternates_without_early_edges() {
     }
 }
 
-#[cfg(feature = "sine-carrier")]
-#[test]
-fn a_sine_has_the_rms_of_its_envelope() {
-    let timing = timing(Waveform::Sine, 20);
-    let mut carrier = Carrier::new(&timing);
-    let sum: f64 = (0..4000).map(|_| f64::from(carrier.next(100.0, &timing, 0).bits()).powi(2)).sum();
-    let rms = (sum / 4000.0).sqrt();
-    assert!((rms * 2.0_f64.sqrt() - 10_000.0).abs() < 1.0, "{rms}");
-}
-
 proptest! {
     /// Amplitudes that move with the carrier are the worst: every half wave of one sign large, of the other small.
     #[test]

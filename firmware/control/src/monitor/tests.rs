@@ -242,16 +242,39 @@ fn an_amplifier_that_switches_as_its_board_says_never_faults() {
     }
 }
 
+/// The tick at which a check faults that reads `monitor_v` while `driven_v` is driven, of the next thousand.
+fn ticks_to_fault(check: &mut MonitorCheck, driven_v: f32, monitor_v: f32) -> Option<u32> {
+    (1..=1_000).find(|_| {
+        let (comparison, must_count) = check.advance(code_of(driven_v), monitor_v);
+        must_count && check.count(comparison)
+    })
+}
+
 #[test]
 fn the_time_of_wrong_ticks_is_the_same_at_every_tick_rate() {
     for (tick_hz, wrong_ticks) in [(10_000, 5), (20_000, 10), (40_000, 20), (80_000, 40)] {
         let mut check = MonitorCheck::new(&Board { tick_hz, ..BOARD });
-        let ticks = (1..1_000).find(|_| {
-            let (comparison, must_count) = check.advance(0, 60.0);
-            must_count && check.count(comparison)
-        });
-        assert_eq!(ticks, Some(wrong_ticks), "{tick_hz} Hz");
+        assert_eq!(ticks_to_fault(&mut check, 0.0, 60.0), Some(wrong_ticks), "{tick_hz} Hz");
     }
+}
+
+/// An amplifier that turns on may lag, but not overshoot.
+#[test]
+fn a_voltage_above_what_is_driven_is_wrong_while_the_amplifier_turns_on() {
+    let mut check = MonitorCheck::new(&BOARD);
+    check.set_enabled(true, 0);
+    assert_eq!(ticks_to_fault(&mut check, 20.0, 60.0), Some(20));
+}
+
+#[test]
+fn the_voltage_of_an_earlier_turn_on_is_not_allowed_while_the_amplifier_turns_off() {
+    let mut check = MonitorCheck::new(&BOARD);
+    check.set_enabled(true, 0);
+    for driven_v in [150.0, 20.0] {
+        assert_eq!(ticks_to_fault(&mut check, driven_v, driven_v), None, "{driven_v} V");
+    }
+    check.set_enabled(false, code_of(20.0));
+    assert_eq!(ticks_to_fault(&mut check, 0.0, 60.0), Some(1));
 }
 
 #[test]

@@ -8,6 +8,8 @@ mod board;
 pub mod feel;
 mod text;
 
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
 use frixel_wire::hello::BoardLimits;
 use serde::Serialize;
@@ -17,7 +19,7 @@ pub use board::BoardImage;
 use crate::perception::Perception;
 use frixel_scene::{Program, TargetRange, middle_mm};
 
-/// What a board needs for a program. The caller measures it on a board, which may be simulated.
+/// What a board needs for a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoardCosts {
     /// Bytes that the host sends, without the hello, until a board that holds no picture has accepted the program.
@@ -28,6 +30,19 @@ pub struct BoardCosts {
     pub table_rows: usize,
     /// Rows that it would compute for a program that targets the whole reachable range.
     pub table_rows_whole: usize,
+}
+
+impl BoardCosts {
+    /// What the simulated board of `rig` needs for a program that it has accepted after so many bytes from the host.
+    pub fn of(program: &Program, rig: &RigConfig, wire_total_bytes: usize) -> Self {
+        let scene = program.scene_bytes();
+        // This parse does not fail: the board has parsed the same bytes.
+        let taken = WireScene::parse(&scene).ok();
+        let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
+        let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
+        let (table_rows, table_rows_whole) = table.map_or((0, 0), |rows| (rows.filled, rows.whole));
+        Self { wire_total_bytes, active_bytes, table_rows, table_rows_whole }
+    }
 }
 
 /// The costs and limits of a scene; the field names are the keys of `--json`.

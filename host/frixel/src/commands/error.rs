@@ -127,8 +127,6 @@ pub(crate) enum CommandError {
     Write { path: PathBuf, source: io::Error },
     #[error("{} is no picture that can be played: {reason}", path.display())]
     Picture { path: PathBuf, reason: String },
-    #[error("{} is not UTF-8 text: save it as UTF-8, a CSV file with the columns t_s,x_mm,y_mm", path.display())]
-    StrokeNotText { path: PathBuf },
     #[error(
         "{name} lasts {} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds", Shown(*.seconds)
     )]

@@ -8,17 +8,19 @@ use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
 use clap::Args;
 use frixel_lab::fit::{self, Fit, Settings, Summary};
+use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
 
 use super::argument::positive;
 use super::error::CommandError;
-use super::terminal::{print_line, say};
+use super::terminal::{note_understood, print_line, say};
 
 #[derive(Debug, Args)]
 pub(super) struct FitArgs {
     /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and, if there are,
-    /// `time_s,stroke,speed_mm_s`, in any order; `-` for standard input.
+    /// `time_s,stroke,speed_mm_s`, in any order; `-` for standard input. A header may state another unit, as in
+    /// `friction_mn` (docs/outputs.md, "Tables").
     ///
     /// A row for each sample of a force sensor, while the finger slides in strokes and the drive is switched on and
     /// off. `stroke` is a number or name for each stroke; without it strokes are divided where direction, speed or
@@ -63,7 +65,9 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         seed: args.seed,
     };
     let refused = |source| CommandError::Fit { path: args.data.clone(), source };
-    let fit = fit::fit(fit::rows(open(&args.data)?).map_err(refused)?, &settings).map_err(refused)?;
+    let Reading { value: rows, understood } = fit::rows(open(&args.data)?).map_err(refused)?;
+    note_understood(&args.data, understood.as_deref());
+    let fit = fit::fit(rows, &settings).map_err(refused)?;
     if let Some(outputs) = &outputs {
         outputs.write(args, &fit, &screen_name)?;
     }

@@ -9,7 +9,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
 
 use super::error::CommandError;
-use super::terminal::note;
+use super::terminal::{note, note_understood};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum ModelCommand {
@@ -77,6 +77,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
     match transformed {
         Ok(summary) => {
             writer.commit()?;
+            note_understood(args.input.as_deref().unwrap_or(Path::new("-")), summary.understood.as_deref());
             return judge(&summary);
         }
         Err(CsvError::Write(error)) if output.is_file() => return Err(writer.error(error).into()),

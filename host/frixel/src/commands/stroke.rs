@@ -1,6 +1,5 @@
 //! The path of the simulated finger.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::input;
@@ -10,7 +9,7 @@ use frixel_lab::stroke_file::StrokeFile;
 
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
-use super::terminal::note;
+use super::terminal::{note, note_understood};
 
 /// Longest stroke: one day, in s.
 const STROKE_MAX_S: f64 = 86_400.0;
@@ -124,12 +123,11 @@ fn straight_error(source: StrokeError) -> CommandError {
 }
 
 pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
-    let text = input::read_text(path, input::CSV_MAX_BYTES).map_err(|error| match error.kind() {
-        ErrorKind::InvalidData => CommandError::StrokeNotText { path: path.into() },
-        _ => CommandError::reading(path)(error),
-    })?;
-    let file = StrokeFile::parse(&text).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
-    let StrokeFile { stroke, ignored_columns } = file;
+    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?;
+    let file =
+        StrokeFile::read(bytes.as_slice()).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
+    let StrokeFile { stroke, ignored_columns, understood } = file;
+    note_understood(path, understood.as_deref());
     let seconds = stroke.duration_s();
     if seconds > STROKE_MAX_S {
         return Err(CommandError::StrokeTooLong { name: path.display().to_string(), seconds });

@@ -36,6 +36,14 @@ pub(super) fn note(text: impl Display) {
     let _ = writeln!(stderr().lock(), "{}", printable_lines(&text.to_string()));
 }
 
+/// Says on standard error how a table was understood, if that is worth a sentence.
+pub(super) fn note_understood(table: &Path, understood: Option<&str>) {
+    if let Some(understood) = understood {
+        let name = if table == Path::new("-") { "standard input".into() } else { table.display().to_string() };
+        note(format_args!("{name}: {understood}"));
+    }
+}
+
 /// Says on standard error why a board refuses a draft. Says nothing of other programs.
 pub(super) fn note_refusals(scene: &Path, program: &Program) {
     if program.is_draft() {

@@ -34,8 +34,8 @@ impl FeltLog {
     /// Reads the file that `frixel sim` writes. A last row that is not complete is left out.
     pub(crate) fn read(path: &Path) -> Result<Self, FeltLogError> {
         let error = |reason: String| FeltLogError { path: path.to_owned(), reason };
-        let text = input::read_text(path, input::CSV_MAX_BYTES).map_err(|source| error(source.to_string()))?;
-        Ok(Self(rows(whole_rows(&text)).map_err(|source| error(source.found()))?))
+        let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(|source| error(source.to_string()))?;
+        Ok(Self(rows(whole_rows(&bytes)).map_err(|source| error(source.found()))?))
     }
 
     /// Time of the last row since the power-on of the board, s.
@@ -66,8 +66,8 @@ impl FeltLog {
 /// Longest time between a client's row and the row of the log that belongs to it, s. The log has a row a millisecond.
 const APART_MAX_S: f64 = 1e-3;
 
-fn rows(text: &str) -> Result<Vec<LogRow>, TableError> {
-    let mut table = Table::new(text.as_bytes())?;
+fn rows(bytes: &[u8]) -> Result<Vec<LogRow>, TableError> {
+    let mut table = Table::new(bytes)?;
     let t = table.need(Column::new("t_s", "seconds"))?;
     let (x, y) = (table.need(Column::new("x_mm", "mm"))?, table.need(Column::new("y_mm", "mm"))?);
     let speed = table.need(Column::new("speed_mm_s", "mm/s"))?;

@@ -67,13 +67,12 @@ impl Page<'_> {
     fn answers_html(&self) -> String {
         let mut table = String::new();
         for Answer { question, sentences, figure } in self.answers {
-            let sentences: String = sentences.iter().map(|sentence| format!("<p>{}</p>", escaped(sentence))).collect();
             // Writing to a string cannot fail.
-            let _ = writeln!(
-                table,
-                "<tr><th>{}</th><td>{sentences}</td><td><a href=\"#{figure}\">figure</a></td></tr>",
-                escaped(question)
-            );
+            let _ = write!(table, "<tr><th>{}</th><td>", escaped(question));
+            for sentence in sentences {
+                let _ = write!(table, "<p>{}</p>", escaped(sentence));
+            }
+            let _ = writeln!(table, "</td><td><a href=\"#{figure}\">figure</a></td></tr>");
         }
         if table.is_empty() { table } else { format!("<table>\n{table}</table>\n") }
     }

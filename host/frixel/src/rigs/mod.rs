@@ -35,6 +35,6 @@ use frixel_felt::recorder::Recorder;
 use frixel_play::Recorded;
 
 /// A link to a board that plays a scene, with the [`Recorder`] of that play. It is idle until a play has its own.
-pub trait RecordedLink: Link + Recorded<Recorder = Recorder> {}
+pub(crate) trait RecordedLink: Link + Recorded<Recorder = Recorder> {}
 
 impl<L: Link + Recorded<Recorder = Recorder>> RecordedLink for L {}

@@ -1,5 +1,6 @@
 //! An emulated board under a finger that slides for ever.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
@@ -10,7 +11,10 @@ use frixel_driver::{Device, Link};
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, LinkBoard, LinkRecord};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
+use frixel_play::start;
 use frixel_scene::{Program, compile};
+
+use crate::cable::Cable;
 
 /// Wall time between two checks of what is waited for.
 const NAP: Duration = Duration::from_millis(2);
@@ -45,6 +49,14 @@ impl Bench {
         let board = LinkBoard::start(image, world, move |record| seen.lock().unwrap().push(*record)).unwrap();
         board.start_stroke();
         Self { board, records, _turn: turn }
+    }
+
+    /// Plays one of the bundled scenes, and waits until the board drives.
+    pub(crate) fn play(&self, scene: &str) -> Device<Cable<'_>> {
+        let mut device = Device::connect(Cable::plug(&self.board)).unwrap();
+        start(&mut device, &program(scene), &mut |_| ControlFlow::Continue(())).unwrap();
+        self.until_driven(&mut device);
+        device
     }
 
     /// What happened so far, tick by tick.

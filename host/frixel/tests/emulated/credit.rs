@@ -2,16 +2,13 @@
 
 use std::fs::OpenOptions;
 use std::io::Write;
-use std::ops::ControlFlow;
 
 use frixel_control::Drive;
-use frixel_driver::Device;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request};
 use frixel_wire::payload;
 
-use crate::bench::{Bench, HOST_TIMEOUT_TICKS, program};
-use crate::cable::Cable;
+use crate::bench::{Bench, HOST_TIMEOUT_TICKS};
 use crate::emulator;
 
 /// Bytes that a client pours without credit: 64 windows.
@@ -22,9 +19,7 @@ const FLOOD_LEN: usize = 1 << 18;
 fn a_client_that_pours_pings_and_reads_nothing_keeps_nothing_playing() {
     let Some(image) = emulator::image() else { return };
     let bench = Bench::new(&image);
-    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
-    bench.until_driven(&mut device);
+    let device = bench.play("constant.toml");
     drop(device);
 
     let mut frame = [0; FRAME_MAX_LEN];

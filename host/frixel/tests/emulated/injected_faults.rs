@@ -16,9 +16,7 @@ use crate::emulator;
 fn suffer(fault: InjectedFault) -> Option<Hello> {
     let image = emulator::image()?;
     let bench = Bench::new(&image);
-    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
-    bench.until_driven(&mut device);
+    let device = bench.play("constant.toml");
     bench.board.inject(fault).unwrap();
     let starts = if fault == InjectedFault::Overrun { 1 } else { 2 };
     bench.until("the output is off", |board| {

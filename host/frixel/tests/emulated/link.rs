@@ -53,9 +53,7 @@ fn rubbish_between_frames_does_no_harm() {
 fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
     let Some(image) = emulator::image() else { return };
     let bench = Bench::new(&image);
-    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
-    bench.until_driven(&mut device);
+    let device = bench.play("constant.toml");
     drop(device);
     bench.until("the board falls silent", |board| {
         board.tick().unwrap().wrapping_sub(board.received_at_tick().unwrap()) > HOST_TIMEOUT_TICKS + 1_000
@@ -76,9 +74,7 @@ fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
 fn a_host_that_hangs_puts_the_output_to_zero_after_the_wait_for_it() {
     let Some(image) = emulator::image() else { return };
     let bench = Bench::new(&image);
-    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
-    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
-    bench.until_driven(&mut device);
+    let device = bench.play("constant.toml");
     bench.until("the clock stands still", |board| {
         let ticks = board.ticks().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(50));

@@ -21,20 +21,8 @@ use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
 use frixel_scene::{Program, Scene, compile};
 
-const HEAD: &str = "\
-version = 1
-[screen]
-width_mm = 120
-height_mm = 80
-[coating]
-thickness_um = 10
-permittivity = 1
-[finger]
-radius_mm = 8
-stiffness_pa_per_m = 1.8e7
-friction_coefficient = 0.5
-normal_load_n = 0.5
-";
+use crate::processes::HEAD;
+
 /// Ticks of a carrier period.
 const PERIOD_TICKS: usize = 40;
 const TICK_S: f64 = 25e-6;

@@ -13,12 +13,14 @@ mod table;
 
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use table::OUTPUTS;
 use tempfile::TempDir;
+
+use crate::processes::repository;
 
 const SCENE: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
                      high_fraction = 0.9\n";
@@ -116,10 +118,6 @@ fn answered(command: &mut Command) -> Ran {
 fn ran(output: &Output) -> Ran {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     Ran { code: output.status.code(), said, notes: String::from_utf8_lossy(&output.stderr).into_owned() }
-}
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// A scene of version 1.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::repository;
+use crate::processes::repository;
 
 /// Functions that create, change or remove a file.
 const WRITES: [&str; 13] = [

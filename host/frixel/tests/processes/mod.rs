@@ -1,9 +1,9 @@
 //! What tests of `frixel` as a process share.
-#![allow(clippy::panic, reason = "part of a test, which may fail")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "part of a test, which may fail")]
 
 use std::fs;
-use std::path::Path;
-use std::process::Command;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -11,8 +11,49 @@ const NAP: Duration = Duration::from_millis(5);
 /// A minute of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 12_000;
 
+/// All that a scene of version 1 needs but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78 mN
+/// more.
+pub(crate) const HEAD: &str = "\
+version = 1
+
+[screen]
+width_mm = 120
+height_mm = 80
+
+[coating]
+thickness_um = 10
+permittivity = 1
+
+[finger]
+radius_mm = 8
+stiffness_pa_per_m = 1.8e7
+friction_coefficient = 0.5
+normal_load_n = 0.5
+";
+
 pub(crate) fn frixel() -> Command {
     Command::new(env!("CARGO_BIN_EXE_frixel"))
+}
+
+/// Runs a command in a folder, without any input.
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
+    frixel().args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// What a command that succeeds prints.
+pub(crate) fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", said(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What a command says on standard error.
+pub(crate) fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+pub(crate) fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 pub(crate) fn until(what: &str, mut done: impl FnMut() -> bool) {

@@ -21,7 +21,7 @@ pub use protocol::Protocol;
 pub use simulated_finger::{simulated_finger, simulation_seed};
 
 use crate::fit::Row;
-use crate::table::{Column, Table, TableError, whole_rows};
+use crate::table::{Column, Reading, Table, TableError, Unit, whole_rows};
 
 /// A sample of a force sensor, on the sensor's own clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +48,19 @@ pub enum CalibrationError {
     Backwards {
         /// Number of the row; the header is row 1.
         row: u64,
+    },
+    /// A force is none of a finger.
+    #[error(
+        "row {row}, column {column}: {found_n} N is no force of a finger: give newtons, at most 50, or name the column \
+         normal_force_mn or friction_mn if it is in millinewtons"
+    )]
+    ForceTooHigh {
+        /// Number of the row.
+        row: u64,
+        /// The column.
+        column: String,
+        /// The force, in newtons.
+        found_n: f64,
     },
     /// The sensor is too slow.
     #[error("the forces have {found:.0} rows a second, fewer than 200: half-periods of 20 ms need at least 200")]
@@ -90,29 +103,40 @@ pub enum CalibrationError {
     Write(csv::Error),
 }
 
-const TIME: Column = Column::new("time_s", "seconds");
-const LOAD: Column = Column::new("normal_force_n", "newtons");
-const FRICTION: Column = Column::new("friction_n", "newtons");
+/// A force above it is one in another unit.
+const FORCE_MAX_N: f64 = 50.0;
+const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
+const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
+const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);
 const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms");
 const SPEED: Column = Column::new("speed_mm_s", "mm/s");
 
 /// Reads the forces of a sensor from CSV with the columns `time_s,normal_force_n,friction_n`, in any order.
 ///
 /// A last line without a line feed is left out: the sensor is still writing it.
-pub fn read_forces(mut input: impl Read) -> Result<Vec<ForceRow>, CalibrationError> {
-    let mut text = String::new();
-    input.read_to_string(&mut text).map_err(TableError::Read)?;
-    let mut table = Table::new(whole_rows(&text).as_bytes())?;
+/// Columns may state another unit ([`table`](crate::table)).
+pub fn read_forces(mut input: impl Read) -> Result<Reading<Vec<ForceRow>>, CalibrationError> {
+    let mut bytes = Vec::new();
+    input.read_to_end(&mut bytes).map_err(TableError::Read)?;
+    let mut table = Table::new(whole_rows(&bytes))?;
     let (time, load, friction) = (table.need(TIME)?, table.need(LOAD)?, table.need(FRICTION)?);
     let mut rows: Vec<ForceRow> = Vec::new();
     while let Some(row) = table.next_row()? {
+        row.check_length()?;
         let time_s = row.real(time)?;
         if rows.last().is_some_and(|last| time_s < last.time_s) {
             return Err(CalibrationError::Backwards { row: row.number() });
         }
-        rows.push(ForceRow { time_s, normal_force_n: row.real(load)?, friction_n: row.real(friction)? });
+        let (normal_force_n, friction_n) = (row.real(load)?, row.real(friction)?);
+        if let Some((place, found_n)) = [(load, normal_force_n), (friction, friction_n)]
+            .into_iter()
+            .find(|(_, force_n)| force_n.abs() > FORCE_MAX_N)
+        {
+            return Err(CalibrationError::ForceTooHigh { row: row.number(), column: row.column(place), found_n });
+        }
+        rows.push(ForceRow { time_s, normal_force_n, friction_n });
     }
-    Ok(rows)
+    Ok(Reading { value: rows, understood: table.understood() })
 }
 
 /// A row of the file that `frixel fit` reads.

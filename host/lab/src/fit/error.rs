@@ -32,7 +32,8 @@ pub enum FitError {
     },
     /// A voltage is above what any driver board has.
     #[error(
-        "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not millivolts and not DAC codes"
+        "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not DAC codes, or \
+         name the column voltage_mv_rms if it is in millivolts"
     )]
     VoltageTooHigh {
         /// Number of the row.
@@ -59,7 +60,7 @@ pub enum FitError {
     /// The load is not that of a finger on a touchscreen.
     #[error(
         "the median of normal_force_n is {median}, and a finger on a touchscreen presses with 0.03 to 3 N: the column \
-         {guess}; give newtons"
+         {guess}; give newtons, or name the column normal_force_mn if it is in millinewtons"
     )]
     LoadUnit {
         /// Median of the column.
@@ -71,13 +72,27 @@ pub enum FitError {
     #[error(
         "friction_n over normal_force_n has a median of {ratio:.3} at no voltage, and that of skin on glass is 0.05 \
          to 5: one of the \
-         columns {guess}; give newtons in both"
+         columns {guess}; give newtons in both, or name the column friction_mn or normal_force_mn if it is in \
+         millinewtons"
     )]
     FrictionUnit {
         /// Friction over load.
         ratio: f64,
         /// What the numbers probably are.
         guess: &'static str,
+    },
+    /// A force is none of a finger.
+    #[error(
+        "row {row}, column {column}: {found_n} N is no force of a finger: correct the cell, or name the column \
+         friction_mn or normal_force_mn if it is in millinewtons"
+    )]
+    ForceTooHigh {
+        /// Number of the row.
+        row: u64,
+        /// The column.
+        column: &'static str,
+        /// The force, in newtons.
+        found_n: f64,
     },
     /// Too few strokes.
     #[error(

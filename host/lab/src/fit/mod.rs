@@ -147,6 +147,7 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
     let strokes = stroke_means(&recording, &levels);
     let (load_median_n, load_range_n) = rules::check_loads(&recording)?;
     rules::check_natural(&strokes)?;
+    rules::check_forces(&recording)?;
     rules::check_stated(settings, voltage_range_v_rms, load_range_n)?;
     let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
 

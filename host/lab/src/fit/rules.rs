@@ -18,6 +18,8 @@ const COEFFICIENTS: core::ops::RangeInclusive<f64> = 0.05..=5.0;
 const LOAD_TOLERANCE: f64 = 0.15;
 /// Least ratio of the highest to the lowest voltage from which an exponent can be told.
 const VOLTAGE_RATIO_MIN: f64 = 1.15;
+/// A force above it, in newtons, is none of a finger on a touchscreen.
+const FORCE_MAX_N: f64 = 50.0;
 /// Least mean time for which a voltage that was set rests: `frixel calibrate` switches every 20 to 30 ms, and the
 /// samples of a carrier of 60 Hz change by a fifth of the peak every 2 ms.
 const REST_MIN_S: f64 = 8e-3;
@@ -110,6 +112,18 @@ pub(super) fn check_natural(strokes: &[StrokeMeans]) -> Result<(), FitError> {
         {
             let found = format!("friction over load is {coefficient:.3} with the drive off, and {ratio:.3} in others");
             return Err(FitError::NoSlip { stroke: stroke.name.clone(), found });
+        }
+    }
+    Ok(())
+}
+
+/// Whether each force can be that of a finger. Asked after the medians, which show a wrong unit of a whole column.
+pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
+    for row in recording.rows() {
+        for (column, found_n) in [("normal_force_n", row.normal_force_n), ("friction_n", row.friction_n)] {
+            if found_n.abs() > FORCE_MAX_N {
+                return Err(FitError::ForceTooHigh { row: row.number, column, found_n });
+            }
         }
     }
     Ok(())

@@ -3,17 +3,17 @@
 use std::io::Read;
 
 use super::error::FitError;
-use crate::table::{Column, Table};
+use crate::table::{Column, Reading, Table, Unit};
 
 /// Highest voltage that is read, in volts rms: above what any amplifier for touchscreens has.
 const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
 
-const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms");
-const LOAD: Column = Column::new("normal_force_n", "newtons");
-const FRICTION: Column = Column::new("friction_n", "newtons");
-const TIME: Column = Column::new("time_s", "seconds");
+const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts);
+const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
+const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);
+const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
 const STROKE: Column = Column::new("stroke", "");
-const SPEED: Column = Column::new("speed_mm_s", "mm/s");
+const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MillimetresPerSecond);
 
 /// A row of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,13 +35,15 @@ pub struct Row {
 }
 
 /// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`
-/// and `speed_mm_s` are read if there are such columns; others are ignored. Columns stand in any order.
-pub fn rows(input: impl Read) -> Result<Vec<Row>, FitError> {
+/// and `speed_mm_s` are read if there are such columns; others are ignored. Columns stand in any order, and may state
+/// another unit ([`table`](crate::table)).
+pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
     let mut table = Table::new(input)?;
     let (voltage, load, friction) = (table.need(VOLTAGE)?, table.need(LOAD)?, table.need(FRICTION)?);
     let (time, stroke, speed) = (table.find(TIME)?, table.find(STROKE)?, table.find(SPEED)?);
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
+        row.check_length()?;
         let number = row.number();
         let voltage_v_rms = row.real(voltage)?;
         if voltage_v_rms < 0.0 {
@@ -60,5 +62,5 @@ pub fn rows(input: impl Read) -> Result<Vec<Row>, FitError> {
             speed_mm_s: speed.map(|speed| row.real(speed)).transpose()?,
         });
     }
-    Ok(rows)
+    Ok(Reading { value: rows, understood: table.understood() })
 }

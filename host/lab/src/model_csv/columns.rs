@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use crate::table::{Column, Place, Table, TableError};
+use crate::table::{Column, Place, Table, TableError, Unit};
 
 pub(super) const VARIANT: &str = "variant";
 pub(super) const RADIUS: &str = "radius_m";
@@ -22,16 +22,16 @@ pub(super) const FRICTIONS: [&str; 2] = ["friction_n", "electric_friction_n"];
 /// Columns that every row needs, independent of its variant.
 const COMMON: [Column; 5] = [
     Column::new(VARIANT, ""),
-    Column::new(RADIUS, "metres"),
-    Column::new(COATING, "metres"),
+    Column::new(RADIUS, "metres").converted(Unit::Metres),
+    Column::new(COATING, "metres").converted(Unit::Metres),
     Column::new(PERMITTIVITY, ""),
     Column::new(FRICTION_COEFFICIENT, ""),
 ];
 /// Columns that some variants need.
 const PARTICULAR: [Column; 6] = [
     Column::new(STIFFNESS, "pascals per metre"),
-    Column::new(NORMAL_FORCE, "newtons"),
-    Column::new(OUTER_RADIUS, "metres"),
+    Column::new(NORMAL_FORCE, "newtons").converted(Unit::Newtons),
+    Column::new(OUTER_RADIUS, "metres").converted(Unit::Metres),
     Column::new(MODULUS, "pascals"),
     Column::new(STRESS_EXPONENT, ""),
     Column::new(SHAPE_CONSTANT, ""),

@@ -24,7 +24,8 @@
 //! - [`invert`]: `voltage_v, status`.
 //!
 //! If the input already has a column of such a name, the output has two; the last one is the answer. Numbers have 17
-//! significant digits, or 9 in `f32`, so that they can be read back exactly.
+//! significant digits, or 9 in `f32`, so that they can be read back exactly. The output has the separators and the
+//! decimal sign of the input; answers are in the units of their names, whatever the input has.
 //!
 //! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (the friction is less than at zero
 //! voltage, possibly negative), `unstable`, or `invalid: REASON` with empty cells. An invalid row does not stop the
@@ -46,15 +47,15 @@ use frixel_model::{InverseError, StateError, contact_attraction_pa};
 pub use error::CsvError;
 pub use number::Precision;
 
-use crate::table::{Column, Table, system_error};
+use crate::table::{Column, Table, Unit, system_error};
 use columns::{Columns, FRICTIONS, VOLTAGE};
 use error::Refusal;
 use number::Number;
 use row::Row;
 use variant::Model;
 
-/// Counts of the rows that were processed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What was processed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
     /// Number of rows, without the header.
     pub rows: u64,
@@ -63,6 +64,8 @@ pub struct Summary {
     /// Number of rows whose contact radius exceeds the finger's radius of curvature, where the paraboloid no longer
     /// approximates it.
     pub beyond_finger_rows: u64,
+    /// How the input was understood, as [`Table::understood`] says it.
+    pub understood: Option<String>,
 }
 
 /// Evaluates the model row by row: voltage to friction.
@@ -100,11 +103,14 @@ struct Direction {
 }
 
 const EVAL: Direction = Direction {
-    given: &[Column::new(VOLTAGE, "volts rms")],
+    given: &[Column::new(VOLTAGE, "volts rms").converted(Unit::Volts)],
     answers: &["sigma0_pa", "contact_radius_m", "effective_stiffness_pa_per_m", "friction_n"],
 };
 const INVERT: Direction = Direction {
-    given: &[Column::new(FRICTIONS[0], "newtons"), Column::new(FRICTIONS[1], "newtons")],
+    given: &[
+        Column::new(FRICTIONS[0], "newtons").converted(Unit::Newtons),
+        Column::new(FRICTIONS[1], "newtons").converted(Unit::Newtons),
+    ],
     answers: &["voltage_v"],
 };
 
@@ -123,18 +129,19 @@ fn transform(
     output: impl Write,
 ) -> Result<Summary, CsvError> {
     let mut table = Table::new(input)?;
-    let mut writer = WriterBuilder::new().from_writer(output);
+    let dialect = table.dialect();
+    let mut writer = WriterBuilder::new().delimiter(dialect.separator()).from_writer(output);
     let columns = Columns::new(&mut table, direction.given)?;
     let names = direction.answers.iter().map(|name| name.as_bytes());
     write(&mut writer, table.header()?.iter().chain(names).chain([b"status".as_slice()]))?;
 
-    let mut summary = Summary::default();
+    let mut summary = Summary { understood: table.understood(), ..Summary::default() };
     while let Some(row) = table.next_row()? {
         summary.rows += 1;
         let (cells, status) = match answer(&Row::new(row, &columns)) {
             Ok(answer) => {
                 summary.beyond_finger_rows += u64::from(answer.beyond_finger);
-                (answer.cells, answer.status.to_owned())
+                (answer.cells.into_iter().map(|cell| dialect.number(cell)).collect(), answer.status.to_owned())
             }
             Err(refusal) => {
                 summary.invalid_rows += 1;

@@ -50,7 +50,7 @@ impl<'a> Row<'a> {
         let place: Place = self.columns.place(column).ok_or_else(missing)?;
         let wide = self.cells.real(place)?;
         // From the digits, not from `wide`, which is rounded already.
-        let number = self.cells.text(place).parse::<T>().ok();
+        let number = self.cells.digits(place)?.parse::<T>().ok();
         let fits = |number: &T| number.is_finite() && (*number != T::ZERO || !(wide.abs() > 0.0));
         number.filter(fits).ok_or_else(|| Refusal::OutOfF32 { row, column, found: self.cells.quoted(place) })
     }

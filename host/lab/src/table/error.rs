@@ -12,10 +12,19 @@ use std::io;
 pub enum TableError {
     /// The input cannot be read.
     Read(io::Error),
-    /// The header has other separators than commas.
-    Separator {
-        /// Name of the separator.
-        found: &'static str,
+    /// The header can be separated in two ways.
+    SeparatorDoubtful {
+        /// Names of the separators, with the number of columns that each gives.
+        readings: [(&'static str, usize); 2],
+    },
+    /// The header of a column states its unit in a way that can be read as two.
+    UnitDoubtful {
+        /// The column's header.
+        header: String,
+        /// The units, such as `newtons or in millinewtons`.
+        readings: String,
+        /// How to write it.
+        advice: String,
     },
     /// The header has no column that is needed.
     ColumnMissing {
@@ -28,8 +37,8 @@ pub enum TableError {
     },
     /// The header has a column twice.
     ColumnTwice {
-        /// The column.
-        column: &'static str,
+        /// The headers that are this column, one for each time.
+        names: Vec<String>,
     },
     /// A row has more or fewer cells than the header.
     Length {
@@ -45,16 +54,27 @@ pub enum TableError {
         /// Number of the row.
         row: u64,
         /// The column.
-        column: &'static str,
+        column: String,
     },
     /// A cell is not a finite number.
     NotANumber {
         /// Number of the row.
         row: u64,
         /// The column.
-        column: &'static str,
+        column: String,
         /// What the cell contains.
         found: String,
+    },
+    /// A number can be read in two ways.
+    CellDoubtful {
+        /// Number of the row.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What the cell contains.
+        found: String,
+        /// The numbers that it can be, such as `1.234 or as 1234`.
+        readings: String,
     },
 }
 
@@ -68,12 +88,22 @@ impl TableError {
     pub fn found(&self) -> String {
         match self {
             Self::Read(error) => format!("the table cannot be read ({error})"),
-            Self::Separator { found } => format!("{found} separate the columns of the header"),
+            Self::SeparatorDoubtful { readings: [(one, columns), (other, others)] } => {
+                format!(
+                    "the header can be read as {columns} columns that {one} separate, or as {others} that {other} do"
+                )
+            }
+            Self::UnitDoubtful { header, readings, .. } => {
+                format!("the column `{header}` can be read in {readings}")
+            }
             Self::ColumnMissing { column, nearest, .. } => {
                 let nearest = nearest.as_ref().map(|name| format!(" (it has {name})"));
                 format!("the header has no column {column}{}", nearest.unwrap_or_default())
             }
-            Self::ColumnTwice { column } => format!("the header has the column {column} twice"),
+            Self::ColumnTwice { names } => match &names[..] {
+                [one, other, ..] if one != other => format!("the header has one quantity twice, {one} and {other}"),
+                _ => format!("the header has the column {} twice", names.first().map_or("", String::as_str)),
+            },
             Self::Length { row, expected, found } => {
                 format!("row {row}: expected {expected} cells as in the header, found {found}")
             }
@@ -83,6 +113,9 @@ impl TableError {
             Self::NotANumber { row, column, found } => {
                 format!("row {row}, column {column}: expected a number, found {found:?}")
             }
+            Self::CellDoubtful { row, column, found, readings } => {
+                format!("row {row}, column {column}: {found:?} can be read as {readings}")
+            }
         }
     }
 
@@ -90,11 +123,18 @@ impl TableError {
     fn advice(&self) -> String {
         match self {
             Self::Read(_) => "give a CSV file with a header row".to_owned(),
-            Self::Separator { .. } => "save the file with commas between columns, and points in numbers".to_owned(),
+            Self::UnitDoubtful { advice, .. } => advice.clone(),
             Self::ColumnMissing { unit: "", .. } => "name the column so".to_owned(),
             Self::ColumnMissing { unit, .. } => format!("name the column so, in {unit}"),
-            Self::ColumnTwice { .. } => "leave one of them out".to_owned(),
+            Self::SeparatorDoubtful { .. } | Self::ColumnTwice { .. } => "leave one of them out".to_owned(),
+            Self::Length { expected, found, .. } if found > expected => {
+                "correct or delete the row; if commas are decimal signs, save the file with semicolons between columns"
+                    .to_owned()
+            }
             Self::Length { .. } => "correct or delete the row".to_owned(),
+            Self::CellDoubtful { .. } => {
+                "save the file without separators of thousands, and with points in numbers".to_owned()
+            }
             Self::CellEmpty { .. } | Self::NotANumber { .. } => "correct the cell or delete the row".to_owned(),
         }
     }

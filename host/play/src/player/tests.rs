@@ -11,8 +11,8 @@ use frixel_wire::hello::BoardLimits;
 use super::*;
 
 /// The line to a simulated board, and what the player has told of its play.
-struct Line<'a> {
-    rig: Rig<'a>,
+struct Line {
+    rig: Rig<'static>,
     told: Told,
 }
 
@@ -47,7 +47,7 @@ impl PlayListener for Told {
     }
 }
 
-impl ByteStream for Line<'_> {
+impl ByteStream for Line {
     fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
         self.rig.send(bytes);
         Ok(())
@@ -71,7 +71,7 @@ impl ByteStream for Line<'_> {
     }
 }
 
-impl Recorded for Line<'_> {
+impl Recorded for Line {
     type Recorder = Told;
 
     fn recorder_mut(&mut self) -> &mut Told {
@@ -79,7 +79,7 @@ impl Recorded for Line<'_> {
     }
 }
 
-type Playing<'a> = Player<PollingLink<Line<'a>>>;
+type Playing = Player<PollingLink<Line>>;
 
 fn program(layers: &str) -> Program {
     let scene = Scene::parse(&format!("version = 2\n{layers}"), "test.toml", &BTreeMap::new()).unwrap();
@@ -92,12 +92,14 @@ fn ping(live: bool) -> Program {
 }
 
 /// A board that plays a program.
-fn playing(memory: &mut BoardMemory, program: Program) -> Playing<'_> {
-    start(PollingLink::new(line(memory)), program)
+fn playing(program: Program) -> Playing {
+    start(PollingLink::new(line()), program)
 }
 
-fn line(memory: &mut BoardMemory) -> Line<'_> {
+/// A line to a board whose memory lives as long as the program.
+fn line() -> Line {
     let stroke = Stroke::sweep(0.12, 0.08, 1.0).unwrap();
+    let memory = Box::leak(BoardMemory::new());
     Line { rig: Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap(), told: Told::default() }
 }
 
@@ -116,8 +118,7 @@ const MS: Duration = Duration::from_millis(1);
 
 #[test]
 fn a_change_that_the_board_refuses_is_not_kept() {
-    let mut memory = BoardMemory::new();
-    let mut player = playing(&mut memory, ping(true));
+    let mut player = playing(ping(true));
     refuse_changes(&mut player);
     assert!(player.change_layer("ping", Some(false), None).unwrap_err().is_refusal());
     assert!(player.playing().unwrap().off().is_empty());
@@ -127,8 +128,7 @@ fn a_change_that_the_board_refuses_is_not_kept() {
 
 #[test]
 fn the_end_of_a_trigger_that_the_board_refuses_is_reported_once_with_its_layer() {
-    let mut memory = BoardMemory::new();
-    let mut player = playing(&mut memory, ping(true));
+    let mut player = playing(ping(true));
     player.change_layer("ping", Some(false), None).unwrap();
     player.trigger("ping", 0.05).unwrap();
     refuse_changes(&mut player);
@@ -139,8 +139,7 @@ fn the_end_of_a_trigger_that_the_board_refuses_is_reported_once_with_its_layer()
 
 #[test]
 fn a_trigger_ends_at_its_time_on_the_clock_of_the_link() {
-    let mut memory = BoardMemory::new();
-    let mut player = playing(&mut memory, ping(true));
+    let mut player = playing(ping(true));
     player.change_layer("ping", Some(false), None).unwrap();
     player.trigger("ping", 0.05).unwrap();
     let triggered = player.device().now();
@@ -154,8 +153,7 @@ fn a_trigger_ends_at_its_time_on_the_clock_of_the_link() {
 #[test]
 fn the_recorder_is_told_what_plays() {
     let stream = "[[layer]]\nkind = \"stream\"\nlow_n = 0.002\nhigh_n = 0.018\nlive = true\n";
-    let mut memory = BoardMemory::new();
-    let mut player = playing(&mut memory, ping(true));
+    let mut player = playing(ping(true));
     assert_eq!(player.replace(program(stream)).unwrap(), Replaced::AtOnce);
     player.change_layer("1", None, Some(0.5)).unwrap();
     player.stream(Feed::of(vec![0; 100], 4_000)).unwrap();
@@ -169,8 +167,7 @@ fn the_recorder_is_told_what_plays() {
 /// Disarmed by its host timeout, the board refuses to stop, and its output is zero all the same.
 #[test]
 fn a_board_that_has_left_the_play_by_itself_is_stopped_without_an_error() {
-    let mut memory = BoardMemory::new();
-    let mut player = playing(&mut memory, ping(true));
+    let mut player = playing(ping(true));
     let line = player.device_mut().link_mut().stream_mut();
     for _ in 0..20_000 {
         line.rig.step();

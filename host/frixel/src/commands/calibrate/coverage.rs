@@ -63,7 +63,7 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
         without: Vec::new(),
         seed: 1,
     };
-    fit::fit(fit::rows(csv)?, &settings)
+    fit::fit(fit::rows(csv)?.value, &settings)
 }
 
 /// What a board that drives 150 V rms adds to the friction of a person in steady sliding under a load, in newtons.

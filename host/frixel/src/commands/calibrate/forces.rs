@@ -9,7 +9,9 @@ use std::time::{Duration, Instant};
 use crate::input::{self, Bounded};
 use crate::output_file::{FileWriter, Inputs, OutputFileError, Recording};
 use frixel_lab::calibration::{ForceRow, read_forces};
+use frixel_lab::table::Reading;
 
+use super::super::terminal::note_understood;
 use super::{CUT_OFF, CalibrateArgs, CommandError};
 
 /// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
@@ -67,6 +69,12 @@ impl StandardInput {
     }
 }
 
+/// The rows of a reading, after a note of how they were understood.
+pub(super) fn understood(path: &Path, forces: Reading<Vec<ForceRow>>) -> Vec<ForceRow> {
+    note_understood(path, forces.understood.as_deref());
+    forces.value
+}
+
 /// The forces in a file; `-` is standard input.
 pub(super) fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
     let rows = if path == Path::new("-") {
@@ -74,7 +82,8 @@ pub(super) fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
     } else {
         read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?))
     };
-    rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })
+    let forces = rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })?;
+    Ok(understood(path, forces))
 }
 
 #[cfg(test)]

@@ -101,7 +101,10 @@ pub(super) fn on_port(
     };
     drop(partial);
     let forces = match from_stdin {
-        Some(input) => read_forces(input.after(FORCES_LATE).map_err(CommandError::reading(forces))?.as_slice())?,
+        Some(input) => {
+            let bytes = input.after(FORCES_LATE).map_err(CommandError::reading(forces))?;
+            forces::understood(forces, read_forces(bytes.as_slice())?)
+        }
         None => forces::read(forces)?,
     };
     Ok((board, forces))

@@ -5,15 +5,15 @@ use frixel_driver::{KEEP_ALIVE_TIMEOUT, KeepAlive, Written};
 use super::*;
 
 /// The line to a simulated board, pinged in every tick that needs it, whatever the program does.
-struct Threaded<'a> {
-    line: Line<'a>,
+struct Threaded {
+    line: Line,
     pings: KeepAlive,
     written: Written,
     received: Vec<u8>,
 }
 
-impl<'a> Threaded<'a> {
-    fn new(line: Line<'a>) -> Self {
+impl Threaded {
+    fn new(line: Line) -> Self {
         let mut pings = KeepAlive::default();
         pings.leave_call(Duration::ZERO);
         Self { line, pings, written: Written::default(), received: Vec::new() }
@@ -45,7 +45,7 @@ impl<'a> Threaded<'a> {
     }
 }
 
-impl Link for Threaded<'_> {
+impl Link for Threaded {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
         self.send(frame);
         self.pings.wrote(self.line.now());
@@ -81,7 +81,7 @@ impl Link for Threaded<'_> {
     }
 }
 
-impl Recorded for Threaded<'_> {
+impl Recorded for Threaded {
     type Recorder = Told;
 
     fn recorder_mut(&mut self) -> &mut Told {
@@ -91,8 +91,7 @@ impl Recorded for Threaded<'_> {
 
 #[test]
 fn a_program_that_calls_keeps_its_board_and_one_that_hangs_for_a_second_loses_it() {
-    let mut memory = BoardMemory::new();
-    let mut player = start(Threaded::new(line(&mut memory)), ping(true));
+    let mut player = start(Threaded::new(line()), ping(true));
     for _ in 0..5 {
         player.device_mut().link_mut().hang(KEEP_ALIVE_TIMEOUT.saturating_sub(10 * MS));
         player.step(MS).unwrap();

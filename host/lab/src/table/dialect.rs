@@ -1,0 +1,196 @@
+//! How a table is written: what separates its columns, and the decimal sign of its numbers.
+
+use std::borrow::Cow;
+
+use csv::ReaderBuilder;
+
+use super::TableError;
+use super::utf16::ByteOrder;
+
+/// What may stand between columns, with its name.
+const SEPARATORS: [(u8, &str); 3] = [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs")];
+/// How a spreadsheet is told the separator, in a line above the header.
+const TOLD: &[u8] = b"sep=";
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// The decimal sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decimal {
+    Point,
+    Comma,
+    /// Each number with a comma can be one of thousands.
+    CommaOrThousands,
+    /// The beginning of the table has whole numbers only.
+    Unseen,
+}
+
+/// How a table is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Dialect {
+    separator: u8,
+    decimal: Decimal,
+    order: Option<ByteOrder>,
+}
+
+/// The text of a number as Rust reads it.
+pub(super) enum Digits<'t> {
+    Number(Cow<'t, str>),
+    /// It can be read in two ways.
+    Doubtful([String; 2]),
+}
+
+impl Dialect {
+    /// Finds the dialect from the beginning of a table, which may end in the midst of a row unless it `is_whole`. Fails
+    /// if it can be separated in two ways.
+    pub(super) fn of(head: &mut [u8], is_whole: bool, order: Option<ByteOrder>) -> Result<Self, TableError> {
+        let separator = match told_separator(head) {
+            Some(separator) => separator,
+            None => separator(head, is_whole)?,
+        };
+        Ok(Self { separator, decimal: decimal(&records(head, separator, is_whole)), order })
+    }
+
+    pub(crate) fn separator(self) -> u8 {
+        self.separator
+    }
+
+    /// A number with this dialect's decimal sign.
+    pub(crate) fn number(self, digits: String) -> String {
+        match self.decimal {
+            Decimal::Comma => digits.replace('.', ","),
+            Decimal::Point | Decimal::CommaOrThousands | Decimal::Unseen => digits,
+        }
+    }
+
+    /// The digits of a number with a decimal point.
+    pub(super) fn digits(self, text: &str) -> Digits<'_> {
+        match (self.decimal, comma_number(text)) {
+            (Decimal::CommaOrThousands, Some(_)) | (Decimal::Unseen, Some(Comma::Doubtful)) => {
+                Digits::Doubtful([text.replace(',', "."), text.replace(',', "")])
+            }
+            (Decimal::Comma | Decimal::Unseen, Some(_)) => Digits::Number(text.replace(',', ".").into()),
+            (Decimal::Comma, None) if is_point_number(text) => {
+                Digits::Doubtful([text.to_owned(), text.replace('.', "")])
+            }
+            _ => Digits::Number(text.into()),
+        }
+    }
+
+    /// What differs from commas between columns and points in numbers, in words.
+    pub(super) fn words(self) -> Vec<String> {
+        let has_commas = self.decimal == Decimal::Comma;
+        let mut words = Vec::new();
+        if self.separator != b',' {
+            let decimal = if has_commas { ", with decimal commas" } else { "" };
+            words.push(format!("columns are separated by {}{decimal}", name(self.separator)));
+        } else if has_commas {
+            words.push("numbers have decimal commas".to_owned());
+        }
+        words.extend(self.order.map(|order| {
+            let order = match order {
+                ByteOrder::LittleEndian => "little-endian",
+                ByteOrder::BigEndian => "big-endian",
+            };
+            format!("the text is UTF-16, {order}")
+        }));
+        words
+    }
+}
+
+fn name(separator: u8) -> &'static str {
+    SEPARATORS.iter().find(|(byte, _)| *byte == separator).map_or("", |(_, name)| name)
+}
+
+/// The separator that a first line such as `sep=;` tells. The line becomes a comment.
+fn told_separator(head: &mut [u8]) -> Option<u8> {
+    let start = if head.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+    let line = head.get_mut(start..)?;
+    let (separator, end) = (*line.get(TOLD.len())?, *line.get(TOLD.len() + 1)?);
+    let is_told = line.get(..TOLD.len())?.eq_ignore_ascii_case(TOLD);
+    let separator =
+        SEPARATORS.iter().find(|(byte, _)| *byte == separator).filter(|_| is_told && matches!(end, b'\r' | b'\n'))?;
+    // The byte order mark would otherwise hide the comment from the reader.
+    line.get_mut(..1)?.fill(b'#');
+    head.get_mut(..start)?.fill(b'#');
+    Some(separator.0)
+}
+
+type Records = Vec<Vec<String>>;
+
+/// The header and the whole rows of the beginning of a table.
+fn records(head: &[u8], separator: u8, is_whole: bool) -> Records {
+    let builder = &mut ReaderBuilder::new();
+    let mut reader =
+        builder.flexible(true).has_headers(false).comment(Some(b'#')).delimiter(separator).from_reader(head);
+    let cells =
+        |record: csv::ByteRecord| record.iter().map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
+    let mut records: Records = reader.byte_records().map_while(Result::ok).map(cells).collect();
+    records.retain(|record| record.iter().any(|cell| !cell.is_empty()));
+    if !is_whole && records.len() > 1 {
+        records.pop();
+    }
+    records
+}
+
+/// The one separator that gives the header columns, and each row as many. Fails if there are more.
+fn separator(head: &[u8], is_whole: bool) -> Result<u8, TableError> {
+    let mut found = Vec::new();
+    for (separator, _) in SEPARATORS {
+        let records = records(head, separator, is_whole);
+        let columns = records.first().map_or(0, Vec::len);
+        let is_even = records.iter().all(|record| record.len() == columns);
+        if columns > 1 {
+            found.push((separator, columns, is_even));
+        }
+    }
+    let even: Vec<_> = found.iter().filter(|(_, _, is_even)| *is_even).collect();
+    match (&found[..], &even[..]) {
+        ([], _) => Ok(b','),
+        ([(separator, ..)], _) | (_, [(separator, ..)]) => Ok(*separator),
+        ([(one, columns, _), (other, others, _), ..], _) => Err(TableError::SeparatorDoubtful {
+            readings: [(*one, *columns), (*other, *others)].map(|(separator, columns)| (name(separator), columns)),
+        }),
+    }
+}
+
+fn decimal(records: &[Vec<String>]) -> Decimal {
+    let cells = || records.iter().skip(1).flatten();
+    let (mut sure, mut doubtful) = (false, false);
+    for comma in cells().filter_map(|cell| comma_number(cell)) {
+        sure |= comma == Comma::Sure;
+        doubtful |= comma == Comma::Doubtful;
+    }
+    if sure {
+        Decimal::Comma
+    } else if cells().any(|cell| is_point_number(cell)) {
+        Decimal::Point
+    } else if doubtful {
+        Decimal::CommaOrThousands
+    } else {
+        Decimal::Unseen
+    }
+}
+
+/// What the comma of a number says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Comma {
+    /// It is a decimal comma.
+    Sure,
+    /// It can divide thousands: `1,234`.
+    Doubtful,
+}
+
+/// Whether a text is a number with one comma.
+fn comma_number(text: &str) -> Option<Comma> {
+    let (whole, part) = text.split_once(',')?;
+    let whole = whole.strip_prefix(['-', '+']).unwrap_or(whole);
+    let digits = part.split(['e', 'E']).next().unwrap_or_default();
+    let are_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_number = are_digits(whole) && are_digits(digits) && text.replacen(',', ".", 1).parse::<f64>().is_ok();
+    let is_doubtful = (1..=3).contains(&whole.len()) && !whole.starts_with('0') && part.len() == 3 && are_digits(part);
+    is_number.then_some(if is_doubtful { Comma::Doubtful } else { Comma::Sure })
+}
+
+fn is_point_number(text: &str) -> bool {
+    text.contains('.') && text.parse::<f64>().is_ok()
+}
