@@ -18,6 +18,7 @@ use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
+use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::threshold::Guessed;
@@ -78,6 +79,10 @@ pub(crate) enum CommandError {
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]
     Fit { path: PathBuf, source: FitError },
+    #[error("{}: {source}", path.display())]
+    Recipe { path: PathBuf, source: RecipeError },
+    #[error("--recipe: {0}")]
+    NoRecipe(RecipeError),
     #[error(transparent)]
     Calibration(CalibrationError),
     #[error("{}: {source}", path.display())]

@@ -7,6 +7,7 @@ use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
 use clap::Args;
+use frixel_lab::fit::recipe::{self, Recipe};
 use frixel_lab::fit::{self, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, Screen};
@@ -25,8 +26,15 @@ pub(super) struct FitArgs {
     /// A row for each sample of a force sensor, while the finger slides in strokes and the drive is switched on and
     /// off. `stroke` is a number or name for each stroke; without it strokes are divided where direction, speed or
     /// clock say so, and otherwise rows are taken in 24 blocks.
-    #[arg(value_name = "DATA.csv")]
-    data: PathBuf,
+    ///
+    /// A paper's table is data as well: `friction_n` is then a mean, beside its standard error `friction_se_n`, or its
+    /// standard deviation `friction_sd_n` and the number `n` of what was averaged.
+    #[arg(value_name = "DATA.csv", required_unless_present = "recipe")]
+    data: Option<PathBuf>,
+    /// Read a file of a published data set as its recipe says (docs/recipes.md); without DATA.csv, print the recipe, and
+    /// without NAME, the list of them.
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+    recipe: Option<String>,
     /// The finger profile to write. Residual plots stand beside it, in a file of the same name that ends in .svg.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
@@ -55,8 +63,11 @@ pub(super) struct FitArgs {
 }
 
 pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
+    let (Some(path), false) = (&args.data, args.recipe.as_deref() == Some("")) else {
+        return print_recipes(args.recipe.as_deref().unwrap_or_default());
+    };
     let (screen_name, screen) = screen(args.screen.as_deref())?;
-    let outputs = args.output.as_deref().map(|path| Outputs::new(args, path)).transpose()?;
+    let outputs = args.output.as_deref().map(|output| Outputs::new(args, path, output)).transpose()?;
     let settings = Settings {
         voltage_v_rms: args.voltage,
         normal_load_n: args.load,
@@ -64,12 +75,20 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         without: args.without.clone(),
         seed: args.seed,
     };
-    let refused = |source| CommandError::Fit { path: args.data.clone(), source };
-    let Reading { value: rows, understood } = fit::rows(open(&args.data)?).map_err(refused)?;
-    note_understood(&args.data, understood.as_deref());
-    let fit = fit::fit(rows, &settings).map_err(refused)?;
+    let refused = |source| CommandError::Fit { path: path.clone(), source };
+    let Reading { value: data, understood } = match args.recipe.as_deref() {
+        None => fit::data(open(path)?).map_err(refused)?,
+        Some(name) => {
+            let recipe = Recipe::named(name).map_err(CommandError::NoRecipe)?;
+            let table = recipe.table(open(path)?);
+            let table = table.map_err(|source| CommandError::Recipe { path: path.clone(), source })?;
+            Reading { value: fit::data(table.value.as_bytes()).map_err(refused)?.value, understood: table.understood }
+        }
+    };
+    note_understood(path, understood.as_deref());
+    let fit = fit::fit_data(data, &settings).map_err(refused)?;
     if let Some(outputs) = &outputs {
-        outputs.write(args, &fit, &screen_name)?;
+        outputs.write(args, path, &fit, &screen_name)?;
     }
     let text =
         if args.json { serde_json::json!(Summary::from(&fit)).to_string() } else { fit::words(&fit, &screen_name) };
@@ -81,6 +100,16 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     }
 }
 
+/// Prints a recipe; the list of all without a name.
+fn print_recipes(name: &str) -> Result<(), CommandError> {
+    if name.is_empty() {
+        return print_line(recipe::list());
+    }
+    let lines = Recipe::named(name).map_err(CommandError::NoRecipe)?.lines();
+    let lines: Vec<String> = lines.into_iter().map(|(key, value)| format!("  {key:<22} {value}")).collect();
+    print_line(lines.join("\n"))
+}
+
 /// The profile, and the residual plots beside it if it is a file.
 struct Outputs {
     profile: OutputFile,
@@ -88,8 +117,8 @@ struct Outputs {
 }
 
 impl Outputs {
-    fn new(args: &FitArgs, path: &Path) -> Result<Self, CommandError> {
-        let inputs = Inputs::new([&args.data].into_iter().chain(args.screen.as_ref().map(PathBuf::from).as_ref()));
+    fn new(args: &FitArgs, data: &PathBuf, path: &Path) -> Result<Self, CommandError> {
+        let inputs = Inputs::new([data].into_iter().chain(args.screen.as_ref().map(PathBuf::from).as_ref()));
         let profile = OutputFile::new(path, "-o", &inputs)?;
         if !profile.is_file() {
             return Ok(Self { profile, plots: None });
@@ -99,12 +128,12 @@ impl Outputs {
         Ok(Self { profile, plots: Some(plots) })
     }
 
-    fn write(&self, args: &FitArgs, fit: &Fit, screen: &str) -> Result<(), CommandError> {
+    fn write(&self, args: &FitArgs, data: &Path, fit: &Fit, screen: &str) -> Result<(), CommandError> {
         let date = OffsetDateTime::now_utc().date().to_string();
         let experiment = Experiment { date, method: args.method.clone(), screen: screen.to_owned() };
         let mut written = vec![self.profile.filled(fit::profile(fit, experiment).to_toml().as_bytes())?];
         if let Some(plots) = &self.plots {
-            let drawn = draw_fit_svg(&format!("{}, fitted", args.data.display()), fit)?;
+            let drawn = draw_fit_svg(&format!("{}, fitted", data.display()), fit)?;
             written.push(plots.filled(drawn.as_bytes())?);
         }
         Ok(commit_all(written, &[])?)

@@ -37,6 +37,15 @@ impl Estimate {
 pub(super) struct Draws {
     groups: Vec<Vec<usize>>,
     random: Pcg64,
+    expansion: Expansion,
+}
+
+/// By what intervals are wider than the spread of the draws.
+enum Expansion {
+    /// The draws are of strokes: few of them vary less than they should.
+    Strokes,
+    /// The draws are of means with stated errors, which have this many degrees of freedom; `None` if they are exact.
+    Errors(Option<f64>),
 }
 
 impl Draws {
@@ -54,12 +63,17 @@ impl Draws {
         if groups.iter().any(|group| group.len() < 3) {
             groups = vec![(0..strokes.len()).collect()];
         }
-        Self { groups, random: Pcg64::seed_from_u64(seed) }
+        Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Strokes }
+    }
+
+    /// For values that were drawn from stated errors with this many degrees of freedom.
+    pub(super) fn of_errors(freedom: Option<f64>) -> Self {
+        Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0), expansion: Expansion::Errors(freedom) }
     }
 
     /// Draws strokes, with replacement.
     pub(super) fn draw(&mut self) -> Vec<usize> {
-        let Self { groups, random } = self;
+        let Self { groups, random, .. } = self;
         let mut drawn = Vec::new();
         for group in groups {
             // The product with a random number of 32 bits keeps its upper half, evenly spread to 1 in 2^32.
@@ -80,6 +94,11 @@ impl Draws {
     /// How many standard deviations of the draws make an interval as wide as that of the Gaussian quantile `z` for many
     /// strokes: Student's quantile, and the variance that draws from few strokes lack.
     pub(super) fn expanded(&self, z: f64) -> f64 {
+        match self.expansion {
+            Expansion::Strokes => {}
+            Expansion::Errors(None) => return z,
+            Expansion::Errors(Some(freedom)) => return student_quantile(z, freedom),
+        }
         let strokes = self.groups.iter().map(Vec::len).sum::<usize>() as f64;
         let groups = self.groups.len() as f64;
         let per_group = strokes / groups;

@@ -94,6 +94,59 @@ pub enum FitError {
         /// The force, in newtons.
         found_n: f64,
     },
+    /// A table of means has two kinds of errors.
+    #[error("the header has both friction_se_n and friction_sd_n: leave one of them out")]
+    TwoErrors,
+    /// A standard deviation alone says nothing about the error of a mean.
+    #[error(
+        "the header has friction_sd_n and no column n: say how many were averaged in a column n, or give the standard \
+         error of the mean in friction_se_n"
+    )]
+    DeviationWithoutNumber,
+    /// A mean of fewer than two has no error.
+    #[error("row {row}, column n: expected a whole number of at least 2, found {found}: give how many were averaged")]
+    MeanOfTooFew {
+        /// Number of the row.
+        row: u64,
+        /// What was found.
+        found: f64,
+    },
+    /// An error is not above zero.
+    #[error(
+        "row {row}: the standard error of {found_n} N is not above zero: give the error of the mean, or leave the row out"
+    )]
+    ErrorNotPositive {
+        /// Number of the row.
+        row: u64,
+        /// The standard error, in newtons.
+        found_n: f64,
+    },
+    /// A mean has no load.
+    #[error("row {row}, column normal_force_n: {found_n} N is no load: give the mean normal force of that row")]
+    MeanWithoutLoad {
+        /// Number of the row.
+        row: u64,
+        /// The load, in newtons.
+        found_n: f64,
+    },
+    /// Too few means.
+    #[error("{found} means are too few: give one at no voltage and at least two at others, {needed} or more")]
+    TooFewMeans {
+        /// Number of means.
+        found: usize,
+        /// Least number of means.
+        needed: usize,
+    },
+    /// The means scatter more than their errors.
+    #[error(
+        "the means lie {times:.1} times their stated errors from the closest power law, and chance does that \
+         in fewer than 1 of 1,000 tables: check that errors are standard errors, that voltages are rms, and that all \
+         rows are of the same fingers"
+    )]
+    MeansScatter {
+        /// Root of the mean square of deviations over errors.
+        times: f64,
+    },
     /// Too few strokes.
     #[error(
         "{found} strokes are too few for an interval: record at least {needed}, 60 s of strokes back and forth are \

@@ -8,7 +8,7 @@ use super::search::{Replicate, Search};
 use super::statistics::{mean, student_quantile};
 
 /// Number of draws of the bootstrap.
-const DRAWS: usize = 499;
+pub(super) const DRAWS: usize = 499;
 /// Least share of the draws that must converge.
 const CONVERGED_SHARE: f64 = 0.98;
 /// Parts of a recording whose natural friction is compared.
@@ -36,6 +36,11 @@ impl Fitted {
             search.run(&drawn, &best.contact)
         });
         let replicates: Vec<Replicate> = fitted.collect();
+        Self::of_draws(best, replicates, draws)
+    }
+
+    /// The fits to [`DRAWS`] draws. Fails if too many of them did not converge.
+    pub(super) fn of_draws(best: Replicate, replicates: Vec<Replicate>, draws: Draws) -> Result<Self, FitError> {
         if (replicates.len() as f64) < CONVERGED_SHARE * DRAWS as f64 {
             return Err(FitError::NotConverged);
         }

@@ -25,7 +25,9 @@ mod error;
 mod intervals;
 mod law;
 mod least_squares;
+mod means;
 mod profile;
+pub mod recipe;
 mod recording;
 mod rules;
 mod search;
@@ -41,12 +43,13 @@ use intervals::{Fitted, wandering};
 use law::{Attraction, Coupling};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
 use least_squares::{Observation, Solution, residuals_n};
+pub use means::MeanRow;
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
 use search::{Search, attraction_of, coupling_of, start};
 pub use summary::{Summary, words};
-pub use table::{Row, rows};
+pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
 
 /// What to fit for.
@@ -133,6 +136,14 @@ impl Fit {
     pub fn electric_friction_at_n(&self, voltage_v_rms: f64) -> Option<f64> {
         let attraction = Attraction::Contact(Coupling(self.coupling_sqrt_n_per_v2.value));
         Some(self.friction_coefficient.value * attraction.attraction_n(voltage_v_rms, self.normal_load_n)?)
+    }
+}
+
+/// Fits a finger to a recording or to means.
+pub fn fit_data(data: Data, settings: &Settings) -> Result<Fit, FitError> {
+    match data {
+        Data::Recording(rows) => fit(rows, settings),
+        Data::Means(rows) => means::fit(&rows, settings),
     }
 }
 

@@ -34,6 +34,8 @@ pub enum Division {
     Motion,
     /// Into blocks of consecutive rows, because neither strokes nor motion are known.
     Blocks,
+    /// Not at all: the rows are means.
+    Means,
 }
 
 /// One stroke: rows of steady sliding in one direction.

@@ -33,15 +33,20 @@ const SLIP_SHARE: f64 = 0.5;
 /// (Sirin, arXiv 2104.01090).
 const RESPONSE_SHARE: f64 = 0.25;
 
-/// Whether loads are newtons.
+/// Whether there are rows, and their loads are newtons.
 pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
     if rows.is_empty() {
         return Err(FitError::TooFewStrokes { found: 0, needed: STROKES_MIN });
     }
-    if rows.iter().all(|row| row.normal_force_n.abs() < 1e-9) {
+    check_load_unit(rows.iter().map(|row| row.normal_force_n))
+}
+
+/// Whether loads are newtons.
+pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Result<(), FitError> {
+    if loads_n.clone().all(|load_n| load_n.abs() < 1e-9) {
         return Err(FitError::NoLoads);
     }
-    let median = median(rows.iter().map(|row| row.normal_force_n));
+    let median = median(loads_n);
     if !LOADS_N.contains(&median) {
         let guess = match median {
             median if median < 0.0 => "has the wrong sign: count the force of the finger on the screen as positive",
@@ -65,6 +70,11 @@ pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
 /// Whether there are voltages to compare; returns the lowest and the highest.
 pub(super) fn check_levels(levels: &Levels) -> Result<(f64, f64), FitError> {
     let Some((low, high)) = levels.range_v_rms() else { return Err(FitError::NoVoltage) };
+    check_voltages(low, high)
+}
+
+/// Whether the lowest and the highest voltage are far enough apart; returns them.
+pub(super) fn check_voltages(low: f64, high: f64) -> Result<(f64, f64), FitError> {
     if high < VOLTAGE_RATIO_MIN * low { Err(FitError::OneVoltage { found: high }) } else { Ok((low, high)) }
 }
 

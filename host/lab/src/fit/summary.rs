@@ -58,7 +58,7 @@ pub struct Summary {
     pub strokes: usize,
     /// Number of rows that were used.
     pub rows: usize,
-    /// How rows were divided into strokes: `column`, `motion` or `blocks`.
+    /// How rows were divided into strokes: `column`, `motion` or `blocks`; `means` if the rows are means.
     pub division: &'static str,
 }
 
@@ -95,6 +95,7 @@ impl From<&Fit> for Summary {
                 Division::Column => "column",
                 Division::Motion => "motion",
                 Division::Blocks => "blocks",
+                Division::Means => "means",
             },
         }
     }
@@ -135,7 +136,13 @@ pub fn words(fit: &Fit, screen: &str) -> String {
     );
     line("exponent of the voltage", exponent_words(&fit.voltage_exponent, NO_VERDICT_OF_VOLTAGE));
     line("exponent of the load", exponent_words(&fit.load_exponent, NO_VERDICT_OF_LOAD));
-    line("data", format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows));
+    line(
+        "data",
+        match fit.division {
+            Division::Means => format!("{} means with their errors", fit.rows),
+            _ => format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows),
+        },
+    );
     let skin_um = 1e6 * fit.skin_gap_m;
     line(
         "convention",
@@ -168,6 +175,17 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
          stiffness are a convention, and the profile holds for the screen it was measured on",
         "the friction coefficient is that of this recording: skin gets moist within minutes, and friction with it",
     ];
+    if fit.division == Division::Means {
+        notes.push(
+            "means cannot tell how strokes or people differ, nor what they have in common: intervals come from the stated \
+             errors, as if the means were independent, and are those of the mean finger",
+        );
+        notes.push("in means, nobody checked that fingers slid steadily, nor that they did not change while they were measured");
+        if fit.load_range_n.0 >= fit.load_range_n.1 {
+            notes.push("all loads are equal, so the means say nothing about other loads");
+        }
+        return notes;
+    }
     if fit.division == Division::Motion {
         notes.push("without a column stroke, strokes were divided where the direction, the speed or the clock says so");
     }

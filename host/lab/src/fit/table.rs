@@ -3,17 +3,18 @@
 use std::io::Read;
 
 use super::error::FitError;
-use crate::table::{Column, Reading, Table, Unit};
+use super::means::{self, MeanRow};
+use crate::table::{Column, Place, Reading, Table, Unit};
 
 /// Highest voltage that is read, in volts rms: above what any amplifier for touchscreens has.
 const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
 
-const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts);
-const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
-const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);
-const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
-const STROKE: Column = Column::new("stroke", "");
-const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MillimetresPerSecond);
+pub(super) const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts);
+pub(super) const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
+pub(super) const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);
+pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
+pub(super) const STROKE: Column = Column::new("stroke", "");
+pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MillimetresPerSecond);
 
 /// A row of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,27 +35,44 @@ pub struct Row {
     pub speed_mm_s: Option<f64>,
 }
 
+/// What a table for a fit has.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Data {
+    /// Samples of a force sensor.
+    Recording(Vec<Row>),
+    /// Means with their errors.
+    Means(Vec<MeanRow>),
+}
+
+/// Reads the data of a fit. A table with a column `friction_se_n` (standard errors) or `friction_sd_n` (standard
+/// deviations, with `n`) has means in `friction_n`; others are recordings, as [`rows`] reads them.
+pub fn data(input: impl Read) -> Result<Reading<Data>, FitError> {
+    let mut table = Table::new(input)?;
+    if let Some(errors) = means::Errors::find(&mut table)? {
+        let Reading { value, understood } = means::read(table, &errors)?;
+        return Ok(Reading { value: Data::Means(value), understood });
+    }
+    let Reading { value, understood } = recording(table)?;
+    Ok(Reading { value: Data::Recording(value), understood })
+}
+
 /// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`
 /// and `speed_mm_s` are read if there are such columns; others are ignored. Columns stand in any order, and may state
 /// another unit ([`table`](crate::table)).
 pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
-    let mut table = Table::new(input)?;
+    recording(Table::new(input)?)
+}
+
+fn recording<R: Read>(mut table: Table<R>) -> Result<Reading<Vec<Row>>, FitError> {
     let (voltage, load, friction) = (table.need(VOLTAGE)?, table.need(LOAD)?, table.need(FRICTION)?);
     let (time, stroke, speed) = (table.find(TIME)?, table.find(STROKE)?, table.find(SPEED)?);
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         row.check_length()?;
         let number = row.number();
-        let voltage_v_rms = row.real(voltage)?;
-        if voltage_v_rms < 0.0 {
-            return Err(FitError::NegativeVoltage { row: number, found: voltage_v_rms });
-        }
-        if voltage_v_rms > VOLTAGE_MAX_V_RMS {
-            return Err(FitError::VoltageTooHigh { row: number, found: voltage_v_rms });
-        }
         rows.push(Row {
             number,
-            voltage_v_rms,
+            voltage_v_rms: voltage_v_rms(&row, voltage)?,
             normal_force_n: row.real(load)?,
             friction_n: row.real(friction)?,
             time_s: time.map(|time| row.real(time)).transpose()?,
@@ -63,4 +81,14 @@ pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
         });
     }
     Ok(Reading { value: rows, understood: table.understood() })
+}
+
+/// The voltage of a row. Fails if no driver has it.
+pub(super) fn voltage_v_rms(row: &crate::table::Row, voltage: Place) -> Result<f64, FitError> {
+    let (number, found) = (row.number(), row.real(voltage)?);
+    match found {
+        found if found < 0.0 => Err(FitError::NegativeVoltage { row: number, found }),
+        found if found > VOLTAGE_MAX_V_RMS => Err(FitError::VoltageTooHigh { row: number, found }),
+        found => Ok(found),
+    }
 }

@@ -7,7 +7,7 @@ use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
 use super::least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
 use super::search::{Replicate, coupling_of};
 use super::statistics::mean;
-use super::{Fit, Settings, StrokeResult};
+use super::{Division, Fit, Settings, StrokeResult};
 
 /// Highest voltage of the data below which its exponent says nothing about the model, in volts rms.
 const VERDICT_V_RMS: f64 = 100.0;
@@ -190,9 +190,12 @@ pub(super) fn check_fit(fit: &Fit, settings: &Settings) -> Result<(), FitError> 
         (squares > 0.0).then(|| (sum(&|measured, fitted| measured * fitted) / squares, squares))
     };
     let natural = [weighted_mean(first, natural), weighted_mean(last, natural)];
-    check_drift("friction coefficient", natural, 1.0)?;
     let electric = [weighted_mean(first, electric), weighted_mean(last, electric)];
-    check_drift("electric friction in newtons", electric, fit.electric_friction_n.value)?;
+    // Rows of means do not stand in the order of time.
+    if fit.division != Division::Means {
+        check_drift("friction coefficient", natural, 1.0)?;
+        check_drift("electric friction in newtons", electric, fit.electric_friction_n.value)?;
+    }
     for (quantity, estimate) in
         [("friction coefficient", fit.friction_coefficient), ("electric friction in newtons", fit.electric_friction_n)]
     {

@@ -176,9 +176,11 @@ pub(super) fn named(header: &str, name: &str, unit: Unit) -> Named {
     if label.says_rest || bracket_says_rest {
         return Named::In(scale);
     }
-    // What is missing is `_rms`.
-    let readings = [parts.words(scale), format!("{} peak", scale.words)];
-    let advice = format!("name it {} if it is rms, and convert it otherwise", parts.name(scale));
+    // What is missing is `_rms` or `_peak`.
+    let said = parts.rest.trim_start_matches('_');
+    let other = if said == "rms" { "peak" } else { "rms" };
+    let readings = [parts.words(scale), format!("{} {other}", scale.words)];
+    let advice = format!("name it {} if it is {said}, and convert it otherwise", parts.name(scale));
     Named::Doubtful { readings, advice }
 }
 
