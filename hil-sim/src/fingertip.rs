@@ -10,7 +10,7 @@ mod load;
 mod noise;
 mod sliding;
 
-use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
+use frixel_model::{Contact, Finger, FrictionLaw, LoadedContact, ParameterError};
 
 use crate::amplifier::Output;
 use crate::error::OutOfRange;
@@ -61,14 +61,14 @@ struct LoadMismatch {
 #[derive(Clone, Debug)]
 pub(crate) struct Fingertip {
     config: FingertipConfig,
-    /// The contact under the load of the profile.
-    profile: LoadedContact<f64>,
+    /// The finger under the load of the profile.
+    profile: FrictionLaw,
     /// The load of the profile, in N.
     profile_load_n: f64,
     /// The load of the finger that the scene is compiled for, in N.
     scene_load_n: f64,
-    /// The contact under the load of this tick.
-    contact: LoadedContact<f64>,
+    /// The finger under the load of this tick.
+    law: FrictionLaw,
     /// The load of this tick, in N.
     load_n: f64,
     /// Friction coefficient at the load of this tick over that of the profile.
@@ -85,20 +85,15 @@ pub(crate) struct Fingertip {
 }
 
 impl Fingertip {
-    pub(crate) fn new(
-        config: FingertipConfig,
-        contact: LoadedContact<f64>,
-        tick_hz: u32,
-        seed: u64,
-    ) -> Result<Self, OutOfRange> {
+    pub(crate) fn new(config: FingertipConfig, law: FrictionLaw, tick_hz: u32, seed: u64) -> Result<Self, OutOfRange> {
         config.validate()?;
         Ok(Self {
             config,
-            profile: contact,
-            profile_load_n: load_n(&contact),
-            scene_load_n: load_n(&contact),
-            contact,
-            load_n: load_n(&contact),
+            profile: law,
+            profile_load_n: law.normal_load_n(),
+            scene_load_n: law.normal_load_n(),
+            law,
+            load_n: law.normal_load_n(),
             coefficient_gain: 1.0,
             electric_gain: 1.0,
             load_mismatch: LoadMismatch::default(),
@@ -113,17 +108,17 @@ impl Fingertip {
     }
 
     /// Changes finger, profile or load; the friction follows with the lag.
-    pub(crate) fn set_contact(&mut self, contact: LoadedContact<f64>) {
-        self.profile = contact;
-        self.profile_load_n = load_n(&contact);
-        self.contact = contact;
+    pub(crate) fn set_law(&mut self, law: FrictionLaw) {
+        self.profile = law;
+        self.profile_load_n = law.normal_load_n();
+        self.law = law;
         self.load_n = self.profile_load_n;
         (self.coefficient_gain, self.electric_gain) = (1.0, 1.0);
     }
 
     /// Sets the load of the finger that the scene is compiled for.
-    pub(crate) fn set_scene_load(&mut self, contact: &LoadedContact<f64>) {
-        self.scene_load_n = load_n(contact);
+    pub(crate) fn set_scene_load(&mut self, law: &FrictionLaw) {
+        self.scene_load_n = law.normal_load_n();
     }
 
     /// Returns the friction at the end of a tick, in which the finger slid to `finger` over an electrode with the
@@ -137,7 +132,7 @@ impl Fingertip {
         }
         let (share, direction) = self.sliding.to([finger.x_m, finger.y_m], finger.speed_m_per_s);
         let slip = SlipStep { share, direction, electric_gain: self.electric_gain };
-        let steady_electric_n = self.coefficient_gain * self.contact.electric_friction_n(voltage_v_rms);
+        let steady_electric_n = self.coefficient_gain * self.law.electric_friction_n(voltage_v_rms);
         let electric_friction_n = slip.advance(&mut self.electric_n, steady_electric_n);
         let LoadMismatch { natural_n, electric_share } = self.load_mismatch;
         Friction {
@@ -164,7 +159,7 @@ impl Fingertip {
     }
 
     fn natural_friction_n(&mut self, slip: &SlipStep, speed_m_per_s: f64) -> f64 {
-        let mut steady_n = self.coefficient_gain * self.contact.natural_friction_n();
+        let mut steady_n = self.coefficient_gain * self.law.natural_friction_n();
         if self.config.noise_rms_n > 0.0 {
             steady_n = (steady_n + self.noise.slide(speed_m_per_s * self.tick_period_s)).max(0.0);
         }
@@ -176,14 +171,13 @@ impl Fingertip {
         let load_n = measured_load_n.unwrap_or_else(|| self.wander.load_n(self.profile_load_n));
         let compared_v_rms = voltage_v_rms.max(COMPARED_V_RMS);
         // A load that the model rejects leaves the one before.
-        let Ok(contact) = self.profile.contact().under_load(load_n) else { return };
-        if contact != self.contact {
-            self.contact = contact;
+        let Ok(law) = self.profile.under_load(load_n) else { return };
+        if law != self.law {
+            self.law = law;
             self.load_n = load_n;
             self.coefficient_gain = self.coefficient_gain_at(load_n);
             let in_profile_n = self.profile.electric_friction_n(compared_v_rms);
-            self.electric_gain =
-                self.coefficient_gain * self.contact.electric_friction_n(compared_v_rms) / in_profile_n;
+            self.electric_gain = self.coefficient_gain * self.law.electric_friction_n(compared_v_rms) / in_profile_n;
         }
         self.load_mismatch = self.load_mismatch(compared_v_rms).unwrap_or_default();
     }
@@ -203,21 +197,15 @@ impl Fingertip {
         if (self.load_n - self.scene_load_n).abs() <= f64::EPSILON * self.scene_load_n {
             return None;
         }
-        let in_scene = self.profile.contact().under_load(self.scene_load_n).ok()?;
+        let in_scene = self.profile.under_load(self.scene_load_n).ok()?;
         let scene_gain = self.coefficient_gain_at(self.scene_load_n);
-        let natural_n = self.coefficient_gain * self.contact.natural_friction_n();
-        let electric_n = self.coefficient_gain * self.contact.electric_friction_n(compared_v_rms);
+        let natural_n = self.coefficient_gain * self.law.natural_friction_n();
+        let electric_n = self.coefficient_gain * self.law.electric_friction_n(compared_v_rms);
         Some(LoadMismatch {
             natural_n: natural_n - scene_gain * in_scene.natural_friction_n(),
             electric_share: 1.0 - scene_gain * in_scene.electric_friction_n(compared_v_rms) / electric_n,
         })
     }
-}
-
-/// The load that a contact is under, in N.
-fn load_n(contact: &LoadedContact<f64>) -> f64 {
-    let friction_coefficient = contact.contact().friction_scale_n() / contact.contact().load_scale_n();
-    contact.natural_friction_n() / friction_coefficient
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ pub use line::{Line, LineCounts, LineFault};
 pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
-pub use rig::{BoardMemory, Rig, RigConfig, TickRecord, contact_of};
+pub use rig::{BoardMemory, Rig, RigConfig, TickRecord};
 pub use stroke::{FingerState, Point, Stroke, StrokeError, StrokeRow};
 pub use touch::{TouchConfig, TouchReport};
 pub use world::{Felt, ReferenceFriction, World, WorldConfig};

@@ -4,7 +4,6 @@ use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
-use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 use frixel_session::{Session, TableRows, active_bytes_filled, table_rows};
 use frixel_wire::message::Refusal;
 
@@ -227,8 +226,8 @@ impl<'a> Rig<'a> {
     /// Sets the world's finger to the scene's, unless a scenario has set another.
     fn put_scenes_finger_on(&mut self) {
         self.scene = self.session.scene_header().copied();
-        if let Some(Ok(contact)) = self.scene.as_ref().map(contact_of) {
-            self.world.set_scenes_finger(contact);
+        if let Some(Ok(law)) = self.scene.as_ref().map(Header::friction_law) {
+            self.world.set_scenes_finger(law);
         }
     }
 
@@ -249,14 +248,4 @@ impl<'a> Rig<'a> {
         self.at_host.extend_from_slice(self.to_host.tick());
         sent
     }
-}
-
-/// The contact model of a scene's finger, in the precision of the full model.
-pub fn contact_of(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
-    let finger = Finger {
-        radius_m: f64::from(header.finger_radius_m),
-        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
-        friction_coefficient: f64::from(header.friction_coefficient),
-    };
-    Contact::new(&finger, f64::from(header.effective_gap_m))?.under_load(f64::from(header.normal_load_n))
 }

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use frixel_control::{Drive, Sense};
-use frixel_model::LoadedContact;
+use frixel_model::FrictionLaw;
 use frixel_session::Touch;
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
@@ -162,7 +162,7 @@ impl World {
             full_scale_v_peak,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
             amplifier_faults: Vec::new(),
-            fingertip: Fingertip::new(fingertip, example_finger().map_err(WorldError::Finger)?, tick_hz, seed)?,
+            fingertip: Fingertip::new(fingertip, example_finger().map_err(WorldError::Finger)?.into(), tick_hz, seed)?,
             owns_finger: false,
             touch_source,
             stroke,
@@ -170,24 +170,25 @@ impl World {
         })
     }
 
-    /// Replaces the finger from now on by the contact of a profile under its load.
-    pub fn set_finger(&mut self, contact: LoadedContact<f64>) {
-        self.fingertip.set_contact(contact);
-        self.fingertip.set_scene_load(&contact);
+    /// Replaces the finger from now on by that of a profile under its load.
+    pub fn set_finger(&mut self, law: impl Into<FrictionLaw>) {
+        let law = law.into();
+        self.fingertip.set_law(law);
+        self.fingertip.set_scene_load(&law);
     }
 
     /// Replaces the finger from now on by one of its own, whatever profile a scene is meant for. The board does not
     /// know this finger.
-    pub fn set_own_finger(&mut self, contact: LoadedContact<f64>) {
+    pub fn set_own_finger(&mut self, law: impl Into<FrictionLaw>) {
         self.owns_finger = true;
-        self.fingertip.set_contact(contact);
+        self.fingertip.set_law(law.into());
     }
 
     /// Replaces the finger by that of the scene's profile, unless this world has a finger of its own.
-    pub(crate) fn set_scenes_finger(&mut self, contact: LoadedContact<f64>) {
-        self.fingertip.set_scene_load(&contact);
+    pub(crate) fn set_scenes_finger(&mut self, law: FrictionLaw) {
+        self.fingertip.set_scene_load(&law);
         if !self.owns_finger {
-            self.fingertip.set_contact(contact);
+            self.fingertip.set_law(law);
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::script;
 
-use frixel_hil_sim::{AmplifierConfig, Point, RigConfig, Stroke, TickRecord, TouchConfig, contact_of};
+use frixel_hil_sim::{AmplifierConfig, Point, RigConfig, Stroke, TickRecord, TouchConfig};
 use frixel_layers::{Blend, Grating, Header, Layer, Record, Wave, Waveform};
 use frixel_testkit::Random;
 use frixel_wire::fault::Flags;
@@ -122,7 +122,7 @@ fn a_layer_goes_off_and_comes_back_as_its_record_has_it_with_the_next_commit() {
 fn a_gain_out_of_reach_is_clamped_flagged_and_counted() {
     let mut script = play(&scene(&HEADER, &[constant(0.01)]));
     assert_eq!(script.status().counters.saturated_ticks, 0);
-    let reach_n = contact_of(&HEADER).unwrap().electric_friction_n(150.0);
+    let reach_n = HEADER.friction_law().unwrap().electric_friction_n(150.0);
     script.command(Command::SetLayer { layer: 0, on: true, gain: 100.0 });
     let counted = script.status().counters.saturated_ticks;
     for ticks in 1..=100 {
@@ -146,7 +146,7 @@ fn the_electrode_has_the_voltage_asked_for_from_the_third_period_after_any_chang
             Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.03 }, Point { x_m: 0.11, y_m: 0.05 }, 0.01).unwrap();
         let mut script = Script::new(&config, slow, 1);
         let header = Header { waveform, ..HEADER };
-        let reach_n = contact_of(&header).unwrap().electric_friction_n(f64::from(header.voltage_max_v_rms));
+        let reach_n = header.friction_law().unwrap().electric_friction_n(f64::from(header.voltage_max_v_rms));
         script.play(&scene(&header, &[constant(0.999 * reach_n as f32)]));
         let mut random = Random::new(1);
         let (mut voltage_v_rms, mut constant_ticks, mut checked_phases) = (0.0, 0, 0);

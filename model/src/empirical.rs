@@ -5,6 +5,7 @@ use core::error::Error;
 use core::fmt::{Display, Formatter, Result as FmtResult};
 
 use crate::Real;
+use crate::double_single::DoubleSingle;
 use crate::table::{Curve, LAW_DENSITY, LAW_ROWS, Point, RowGrid, round_down};
 
 /// A point of an empirical law.
@@ -14,24 +15,6 @@ pub struct LawPoint {
     pub voltage_v_rms: f32,
     /// Electric friction at this voltage, in newtons.
     pub electric_friction_n: f32,
-}
-
-/// A point and the segment below it, in which `V ~ x^power`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Segment<T> {
-    voltage_v_rms: T,
-    electric_friction_n: T,
-    power: T,
-}
-
-impl<T: Real> Segment<T> {
-    fn voltage_v_rms(&self, electric_friction_n: T) -> T {
-        self.voltage_v_rms * (electric_friction_n / self.electric_friction_n).pow(self.power)
-    }
-
-    fn electric_friction_n(&self, voltage_v_rms: T) -> T {
-        self.electric_friction_n * (voltage_v_rms / self.voltage_v_rms).pow(T::ONE / self.power)
-    }
 }
 
 /// Electric friction `x` as a function of the rms voltage `V`, under one normal load.
@@ -50,14 +33,16 @@ impl<T: Real> Segment<T> {
 /// ```
 /// use frixel_model::{EmpiricalLaw, LawPoint};
 /// let point = LawPoint { voltage_v_rms: 150.0, electric_friction_n: 0.09 };
-/// let law = EmpiricalLaw::<f64>::new(2.0, &[point], 100.0)?;
+/// let law = EmpiricalLaw::new(2.0, &[point], 100.0)?;
 /// assert!((law.electric_friction_n(50.0) / 0.01 - 1.0).abs() < 1e-6);
 /// assert!((law.voltage_v_rms(0.01) / 50.0 - 1.0).abs() < 1e-6);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EmpiricalLaw<T> {
-    segments: [Segment<T>; POINTS_MAX],
+pub struct EmpiricalLaw {
+    exponent: f32,
+    count: u8,
+    points: [LawPoint; POINTS_MAX],
     grid: RowGrid,
 }
 
@@ -129,95 +114,83 @@ const EXPONENTS: [f32; 2] = [0.5, 12.0];
 /// Powers that are outside of [`EXPONENTS`] by less than this, relative to them, count as rounding errors of `f32`.
 const EXPONENT_ROUNDING: f32 = 1e-5;
 
-impl<T> EmpiricalLaw<T> {
+impl EmpiricalLaw {
     /// Most points of a law.
     pub const POINTS_MAX: usize = POINTS_MAX;
     /// Least and greatest power of the voltage with which friction may grow: [`crate::InverseTable::RELATIVE_ERROR`]
     /// holds between them.
     pub const EXPONENTS: [f32; 2] = EXPONENTS;
-}
 
-impl<T: Real> EmpiricalLaw<T> {
     /// The law of these points, with this exponent below the first, up to a largest voltage, which is at most that of
     /// the last point: a law is never extrapolated.
     pub fn new(exponent: f32, points: &[LawPoint], voltage_max_v_rms: f32) -> Result<Self, LawError> {
-        let Some((last, 1..=POINTS_MAX)) = points.last().map(|last| (*last, points.len())) else {
-            return Err(LawError::PointCount { found: points.len() });
+        let count = points.len();
+        let (Some(last), 1..=POINTS_MAX) = (points.last().copied(), count) else {
+            return Err(LawError::PointCount { found: count });
         };
         let [least, most] = EXPONENTS;
         if !(least..=most).contains(&exponent) {
             return Err(LawError::Exponent { found: exponent });
         }
-        let of = |point: &LawPoint, power| Segment {
-            voltage_v_rms: T::from(point.voltage_v_rms),
-            electric_friction_n: T::from(point.electric_friction_n),
-            power,
-        };
-        let mut segments = [of(&last, T::ONE / T::from(exponent)); POINTS_MAX];
         let mut before: Option<LawPoint> = None;
-        for (number, (segment, point)) in segments.iter_mut().zip(points).enumerate() {
+        for (number, point) in points.iter().enumerate() {
             let LawPoint { voltage_v_rms, electric_friction_n } = before.unwrap_or(LawPoint::ZERO);
             let is_above = point.voltage_v_rms > voltage_v_rms && point.electric_friction_n > electric_friction_n;
             if !(is_above && point.voltage_v_rms.is_finite() && point.electric_friction_n.is_finite()) {
                 return Err(LawError::Order { point: number });
             }
-            *segment = of(point, segment.power);
             if let Some(before) = before {
-                segment.power = power(of(&before, T::ONE).at(), segment.at());
-                let found = (T::ONE / segment.power).to_f32();
+                let found = (DoubleSingle::ONE / power(before.at(), point.at::<DoubleSingle>())).to_f32();
                 if !(found >= least * (1.0 - EXPONENT_ROUNDING) && found <= most * (1.0 + EXPONENT_ROUNDING)) {
                     return Err(LawError::Slope { point: number, found });
                 }
             }
             before = Some(*point);
         }
-        // The segments behind the last point repeat that one.
-        let count = points.len();
-        if let Some((last, rest)) =
-            segments.split_at_mut_checked(count).and_then(|(own, rest)| Some((*own.last()?, rest)))
-        {
-            rest.fill(last);
-        }
         if !(voltage_max_v_rms > 0.0 && voltage_max_v_rms <= last.voltage_v_rms) {
             return Err(LawError::Voltage { found: voltage_max_v_rms, max: last.voltage_v_rms });
         }
-        let voltage = T::from(voltage_max_v_rms);
-        let top_n =
-            round_down(segment_for(&segments, |segment| segment.voltage_v_rms >= voltage).electric_friction_n(voltage));
+        // What follows the last point repeats it.
+        let mut law = Self { exponent, count: count as u8, points: [last; POINTS_MAX], grid: RowGrid::EMPTY };
+        for (to, from) in law.points.iter_mut().zip(points) {
+            *to = *from;
+        }
+        let voltage = DoubleSingle::from(voltage_max_v_rms);
+        let (point, power) = law.segment(|point| DoubleSingle::from(point.voltage_v_rms) >= voltage);
+        let top_n = round_down(point.0 * (voltage / point.1).pow(DoubleSingle::ONE / power));
         if !(top_n < f32::MAX) {
             return Err(LawError::Unrepresentable);
         }
-        let grid = RowGrid::new(LAW_ROWS, LAW_DENSITY, top_n, voltage_max_v_rms)
+        law.grid = RowGrid::new(LAW_ROWS, LAW_DENSITY, top_n, voltage_max_v_rms)
             .ok()
             .filter(|grid| grid.start_n(0) >= f32::MIN_POSITIVE)
             .ok_or(LawError::Unrepresentable)?;
-        Ok(Self { segments, grid })
+        Ok(law)
     }
 
-    /// Electric friction in newtons at an rms voltage of zero or more; above the voltage of the last point, that of the
+    /// Electric friction in newtons at an rms voltage of zero or more. Above the last point the last power law continues:
+    /// within a carrier period the voltage on an electrode is above its rms value, which no board drives above that of the
     /// last point.
-    pub fn electric_friction_n(&self, voltage_v_rms: T) -> T {
-        if !(voltage_v_rms > T::ZERO) {
-            return T::ZERO;
+    pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
+        if !(voltage_v_rms > 0.0) {
+            return 0.0;
         }
-        let last = self.last();
-        let voltage_v_rms = voltage_v_rms.min(last.voltage_v_rms);
-        let by_points = segment_for(&self.segments, |segment| segment.voltage_v_rms >= voltage_v_rms)
-            .electric_friction_n(voltage_v_rms);
+        let (point, power_below) = self.segment::<f64>(|point| f64::from(point.voltage_v_rms) >= voltage_v_rms);
+        let by_points = point.0 * (voltage_v_rms / point.1).pow(1.0 / power_below);
         // Both laws agree at the knots, and rise, so that a friction is between the same knots by both.
         match self.knots(by_points) {
-            Some((start, end)) => start.0 * (voltage_v_rms / start.1).pow(T::ONE / power(start, end)),
+            Some((start, end)) => start.0 * (voltage_v_rms / start.1).pow(1.0 / power(start, end)),
             None => by_points,
         }
     }
 
     /// The rms voltage in volts for an electric friction in newtons; zero for a friction of zero or less and for
     /// not-a-number, and the voltage of the last point for more than its friction.
-    pub fn voltage_v_rms(&self, electric_friction_n: T) -> T {
-        if !(electric_friction_n > T::ZERO) {
-            return T::ZERO;
+    pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
+        if !(electric_friction_n > 0.0) {
+            return 0.0;
         }
-        let electric_friction_n = electric_friction_n.min(self.last().electric_friction_n);
+        let electric_friction_n = electric_friction_n.min(f64::from(self.last().electric_friction_n));
         match self.knots(electric_friction_n) {
             Some((start, end)) => between(start, end, electric_friction_n),
             None => Curve::voltage_v_rms(self, electric_friction_n),
@@ -229,27 +202,42 @@ impl<T: Real> EmpiricalLaw<T> {
         self.grid
     }
 
-    fn last(&self) -> &Segment<T> {
-        let [.., last] = &self.segments;
+    fn last(&self) -> LawPoint {
+        let [.., last] = self.points;
         last
     }
 
+    /// The first point that reaches as far as asked for, or the last, and the power of the friction with which the
+    /// voltage grows up to it.
+    fn segment<T: Real>(&self, reaches: impl Fn(&LawPoint) -> bool) -> (Point<T>, T) {
+        let mut before: Option<&LawPoint> = None;
+        for point in self.points.iter().take(usize::from(self.count)) {
+            if reaches(point) || point == &self.last() {
+                let power_below =
+                    before.map_or(T::ONE / T::from(self.exponent), |before| power(before.at(), point.at()));
+                return (point.at(), power_below);
+            }
+            before = Some(point);
+        }
+        (self.last().at(), T::ONE)
+    }
+
     /// The knots around a friction; `None` below the lowest and above the highest.
-    fn knots(&self, electric_friction_n: T) -> Option<(Point<T>, Point<T>)> {
-        let row = self.grid.row(electric_friction_n.to_f32());
+    fn knots(&self, electric_friction_n: f64) -> Option<(Point<f64>, Point<f64>)> {
+        let row = self.grid.row(electric_friction_n as f32);
         let knot = |row| {
-            let friction_n = T::from(self.grid.start_n(row));
+            let friction_n = f64::from(self.grid.start_n(row));
             (friction_n, Curve::voltage_v_rms(self, friction_n))
         };
         (row < LAW_ROWS).then(|| (knot(row), knot(row + 1)))
     }
 }
 
-impl<T: Real> Curve<T> for EmpiricalLaw<T> {
+impl<T: Real> Curve<T> for EmpiricalLaw {
     /// The law through the points.
     fn voltage_v_rms(&self, electric_friction_n: T) -> T {
-        segment_for(&self.segments, |segment| segment.electric_friction_n >= electric_friction_n)
-            .voltage_v_rms(electric_friction_n)
+        let (point, power) = self.segment(|point| T::from(point.electric_friction_n) >= electric_friction_n);
+        point.1 * (electric_friction_n / point.0).pow(power)
     }
 
     fn voltage_between(&self, start: Point<T>, end: Point<T>, electric_friction_n: T) -> T {
@@ -259,18 +247,10 @@ impl<T: Real> Curve<T> for EmpiricalLaw<T> {
 
 impl LawPoint {
     const ZERO: Self = Self { voltage_v_rms: 0.0, electric_friction_n: 0.0 };
-}
 
-impl<T: Real> Segment<T> {
-    fn at(&self) -> Point<T> {
-        (self.electric_friction_n, self.voltage_v_rms)
+    fn at<T: Real>(&self) -> Point<T> {
+        (T::from(self.electric_friction_n), T::from(self.voltage_v_rms))
     }
-}
-
-/// The first segment that reaches as far as asked for, or the last.
-fn segment_for<T>(segments: &[Segment<T>; POINTS_MAX], reaches: impl Fn(&Segment<T>) -> bool) -> &Segment<T> {
-    let [.., last] = segments;
-    segments.iter().find(|segment| reaches(segment)).unwrap_or(last)
 }
 
 /// The power of the friction with which the voltage grows from one point to another.

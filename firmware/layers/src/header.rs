@@ -1,11 +1,14 @@
 //! The header of a scene: the settings for all its layers.
 
-use frixel_model::Waveform;
+use frixel_model::{
+    Contact, EmpiricalLaw, Expected, Finger, FrictionLaw, LawError, MeasuredFriction, ParameterError, Waveform,
+};
 use frixel_wire::bytes::{first_difference, get_at, put_at};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{ConfigField, ConfigRefusal};
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
+use crate::finger_law::FingerLaw;
 use crate::parameters::{range, within};
 
 /// Version of the layout of scenes.
@@ -37,7 +40,13 @@ mod flag {
     pub(super) const LEADER_LATEST: u8 = 1 << 2;
     pub(super) const LAYERS_FIXED: u8 = 1 << 3;
     pub(super) const ELECTRIC_FRICTION_MAX: u8 = 1 << 4;
-    pub(super) const ALL: u8 = AUTONOMOUS | PREDICTION | LEADER_LATEST | LAYERS_FIXED | ELECTRIC_FRICTION_MAX;
+    pub(super) const EMPIRICAL: u8 = 1 << 5;
+    pub(super) const ALL: u8 = AUTONOMOUS
+        | PREDICTION
+        | LEADER_LATEST
+        | LAYERS_FIXED
+        | ELECTRIC_FRICTION_MAX
+        | if cfg!(feature = "empirical") { EMPIRICAL } else { 0 };
 }
 
 /// The settings of the whole scene.
@@ -47,7 +56,7 @@ pub struct Header {
     pub screen_width_m: f32,
     /// Height of the screen, m.
     pub screen_height_m: f32,
-    /// Finger radius `R`, m.
+    /// Finger radius `R`, m. It, stiffness and gap are zero when there is a `law`.
     pub finger_radius_m: f32,
     /// Winkler-Fuss stiffness `k`, Pa/m.
     pub stiffness_pa_per_m: f32,
@@ -82,6 +91,9 @@ pub struct Header {
     ///
     /// A scene stores the upper half of the number's bits, rounded up: up to 1 % more.
     pub electric_friction_max_n: Option<f32>,
+    /// The empirical law of the finger on the screen, under the normal load; `None` if radius, stiffness and gap
+    /// describe it. Since protocol 1.4.
+    pub law: Option<FingerLaw>,
 }
 
 /// Which of several fingers is followed, since one electrode gives one effect.
@@ -104,6 +116,7 @@ impl Header {
             (self.leader == Leader::Latest, flag::LEADER_LATEST),
             (self.layers_fixed, flag::LAYERS_FIXED),
             (self.electric_friction_max_n.is_some(), flag::ELECTRIC_FRICTION_MAX),
+            (self.law().is_some(), flag::EMPIRICAL),
         ];
         let flags = flags.into_iter().filter(|(is_set, _)| *is_set).fold(0, |flags, (_, flag)| flags | flag);
         let waveform = match self.waveform {
@@ -114,6 +127,12 @@ impl Header {
         put_at(&mut bytes, field::RECORDS, [records]);
         put_at(&mut bytes, field::FLAGS, [flags]);
         let mut header = *self;
+        if let Some(law) = self.law() {
+            // Their fields have the law's numbers.
+            header.finger_radius_m = law.exponent();
+            header.stiffness_pa_per_m = f32::from_bits(u32::from(law.point_count()));
+            header.effective_gap_m = 0.0;
+        }
         for (number, value) in header.numbers().into_iter().enumerate() {
             put_at(&mut bytes, field::NUMBERS + 4 * number, value.to_le_bytes());
         }
@@ -162,6 +181,16 @@ impl Header {
         for (number, value) in header.numbers().into_iter().enumerate() {
             *value = f32::from_le_bytes(get_at(bytes, field::NUMBERS + 4 * number));
         }
+        if cfg!(feature = "empirical") && is_set(flag::EMPIRICAL) {
+            let count = header.stiffness_pa_per_m.to_bits() as u8;
+            let law = FingerLaw::without_points(header.finger_radius_m, count).ok_or(SceneError::Points {
+                record: SceneError::HEADER,
+                first: 0,
+                count,
+            })?;
+            header.law = Some(law);
+            (header.finger_radius_m, header.stiffness_pa_per_m) = (0.0, 0.0);
+        }
         match first_difference(bytes, &header.write(records, points)) {
             None => Ok((header, records, points)),
             Some(offset) => Err(SceneError::NotZero { record: SceneError::HEADER, offset }),
@@ -187,7 +216,14 @@ impl Header {
         leader: Leader::First,
         layers_fixed: false,
         electric_friction_max_n: None,
+        law: None,
     };
+
+    /// The law; never one in a build without laws, so that the compiler omits what it would need.
+    #[inline]
+    pub(crate) fn law(&self) -> Option<&FingerLaw> {
+        self.law.as_ref().filter(|_| cfg!(feature = "empirical"))
+    }
 
     /// The numbers of type `f32`, in the order of the layout.
     fn numbers(&mut self) -> [&mut f32; 12] {
@@ -207,19 +243,59 @@ impl Header {
         ]
     }
 
+    /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers.
+    ///
+    /// # Errors
+    ///
+    /// A parameter of the contact model is out of range, or the `law` is none. Neither happens for a scene that a board
+    /// took.
+    pub fn friction_law(&self) -> Result<FrictionLaw, ParameterError> {
+        let (friction_coefficient, normal_load_n) =
+            (f64::from(self.friction_coefficient), f64::from(self.normal_load_n));
+        if let Some(law) = &self.law {
+            let found = self.voltage_max_v_rms;
+            let law = law.up_to(found).map_err(|_: LawError| ParameterError {
+                parameter: "law",
+                expected: Expected::Representable,
+                found: f64::from(found),
+            })?;
+            return Ok(FrictionLaw::Empirical(MeasuredFriction { law, friction_coefficient, normal_load_n }));
+        }
+        let finger = Finger {
+            radius_m: f64::from(self.finger_radius_m),
+            stiffness_pa_per_m: f64::from(self.stiffness_pa_per_m),
+            friction_coefficient,
+        };
+        Contact::new(&finger, f64::from(self.effective_gap_m))?.under_load(normal_load_n).map(FrictionLaw::Contact)
+    }
+
     /// Checks that every number is within the ranges of a board with these limits and `tick_hz` ticks a second.
     pub fn check(&self, limits: &BoardLimits, tick_hz: u32) -> Result<(), ConfigRefusal> {
         let carrier_max_hz = tick_hz as f32 / (2.0 * HALF_PERIOD_MIN_TICKS as f32);
         let voltage_max_v_peak = limits.voltage_max_v_peak;
+        // A law is not extrapolated.
+        let voltage_max_v_rms =
+            self.law().map_or(voltage_max_v_peak, |law| law.voltage_max_v_rms().min(voltage_max_v_peak));
+        let [radius, stiffness, gap] = match self.law() {
+            None => [
+                (ConfigField::FingerRadius, self.finger_radius_m, 1e-4, 1.0),
+                (ConfigField::Stiffness, self.stiffness_pa_per_m, 1e3, 1e14),
+                (ConfigField::EffectiveGap, self.effective_gap_m, 1e-12, 1e-2),
+            ],
+            Some(law) => {
+                let [least, most] = EmpiricalLaw::EXPONENTS;
+                [(ConfigField::LawExponent, law.exponent(), least, most); 3]
+            }
+        };
         for (field, found, min, max) in [
             (ConfigField::ScreenWidth, self.screen_width_m, 1e-3, range::LENGTH_MAX_M as f32),
             (ConfigField::ScreenHeight, self.screen_height_m, 1e-3, range::LENGTH_MAX_M as f32),
-            (ConfigField::FingerRadius, self.finger_radius_m, 1e-4, 1.0),
-            (ConfigField::Stiffness, self.stiffness_pa_per_m, 1e3, 1e14),
+            radius,
+            stiffness,
             (ConfigField::FrictionCoefficient, self.friction_coefficient, 1e-3, 100.0),
             (ConfigField::NormalLoad, self.normal_load_n, 0.0, 50.0),
-            (ConfigField::EffectiveGap, self.effective_gap_m, 1e-12, 1e-2),
-            (ConfigField::VoltageRms, self.voltage_max_v_rms, 1.0, voltage_max_v_peak),
+            gap,
+            (ConfigField::VoltageRms, self.voltage_max_v_rms, 1.0, voltage_max_v_rms),
             (ConfigField::VoltagePeak, self.voltage_max_v_peak, 1.0, voltage_max_v_peak),
             (ConfigField::Slew, self.slew_v_per_s, 1.0, 1e9),
             (ConfigField::CarrierFrequency, self.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),

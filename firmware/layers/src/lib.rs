@@ -63,6 +63,7 @@ mod clicks;
 mod context;
 mod cosine;
 pub mod cost;
+mod finger_law;
 mod grid;
 mod header;
 mod interval;
@@ -93,6 +94,8 @@ pub use click::Click;
 pub use clicks::{CLICKS_MAX, Clicks};
 pub use context::{Inputs, StreamSample};
 pub use cosine::cosine;
+pub use finger_law::{FingerLaw, LAW_POINTS_MAX};
+pub use frixel_model::LawPoint;
 pub use frixel_model::Waveform;
 pub use grid::{Cell, Grid, LayerSet, layer_numbers, layer_set};
 pub use header::{HALF_PERIOD_MIN_TICKS, HEADER_LEN, Header, Leader, SCENE_VERSION};
@@ -113,8 +116,10 @@ pub use wave::Wave;
 
 use frixel_wire::hello::feature;
 
-/// Bits of the hello's features of the kinds of layers and regions whose Cargo features are enabled.
-pub const FEATURES: u32 = kinds::KIND_FEATURES_ON | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 };
+/// Bits of the hello's features of the kinds of layers and regions, and of empirical laws, whose Cargo features are enabled.
+pub const FEATURES: u32 = kinds::KIND_FEATURES_ON
+    | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 }
+    | if cfg!(feature = "empirical") { feature::EMPIRICAL } else { 0 };
 
 /// Name of each feature of the hello, by its bit, in the order of the bits: that of the board's Cargo feature, where
 /// there is one.

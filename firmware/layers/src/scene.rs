@@ -5,6 +5,7 @@ use core::ops::Range;
 use frixel_wire::hello::feature;
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
+use crate::finger_law::LAW_POINTS_MAX;
 use crate::header::{HEADER_LEN, Header, SCENE_VERSION};
 use crate::layout::RECORD_LEN;
 use crate::point::{POINT_LEN, Point};
@@ -12,12 +13,13 @@ use crate::record::Record;
 use frixel_model::Waveform;
 
 /// Bytes of the largest scene.
-pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN + POINTS_MAX * POINT_LEN;
+pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN + (POINTS_MAX + LAW_POINTS_MAX) * POINT_LEN;
 
 /// Bits of [`feature`] that a board needs to play a scene.
 pub fn features_of(header: &Header, records: impl Iterator<Item = Record>) -> u32 {
     let carrier = if header.waveform == Waveform::Sine { feature::SINE_CARRIER } else { 0 };
-    records.fold(carrier, |features, record| features | record.layer.feature() | record.region.feature())
+    let law = if header.law.is_some() { feature::EMPIRICAL } else { 0 };
+    records.fold(carrier | law, |features, record| features | record.layer.feature() | record.region.feature())
 }
 
 /// A complete scene whose structure has been checked. The ranges of its numbers have not: a board checks them at the
@@ -53,18 +55,25 @@ impl<'a> Scene<'a> {
         let Some((header, rest)) = bytes.split_first_chunk::<HEADER_LEN>() else {
             return Err(SceneError::Length { found, expected: HEADER_LEN as u32 });
         };
-        let (header, record_count, point_count) = Header::parse(header)?;
+        let (mut header, record_count, point_count) = Header::parse(header)?;
+        let law_len = header.law().map_or(0, |law| usize::from(law.point_count()) * POINT_LEN);
         let records_len = usize::from(record_count) * RECORD_LEN;
         let points_len = usize::from(point_count) * POINT_LEN;
-        let expected = (HEADER_LEN + records_len + points_len) as u32;
+        let expected = (HEADER_LEN + records_len + points_len + law_len) as u32;
         let Some((records, points)) = rest.split_at_checked(records_len) else {
             return Err(SceneError::Length { found, expected });
         };
-        if points.len() != points_len {
+        if points.len() != points_len + law_len {
             return Err(SceneError::Length { found, expected });
         }
         let (records, _) = records.as_chunks::<RECORD_LEN>();
         let (points, _) = points.as_chunks::<POINT_LEN>();
+        let (points, law_points) = points.split_at_checked(usize::from(point_count)).unwrap_or((points, &[]));
+        if cfg!(feature = "empirical")
+            && let Some(law) = &mut header.law
+        {
+            law.read_points(law_points);
+        }
         Ok(Self { header, records, points })
     }
 

@@ -1,7 +1,7 @@
 //! The tables in `PROTOCOL.md` of kinds, features and ranges are those of the code.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use frixel_layers::{Header, Range, feature_names, kind_names, range};
+use frixel_layers::{FingerLaw, Header, LawPoint, Range, feature_names, kind_names, range};
 use frixel_testkit::HEADER;
 use frixel_wire::hello::{BoardLimits, feature};
 
@@ -94,6 +94,9 @@ fn numbers_of_the_header() {
         let refused = header.check(&LIMITS, TICK_HZ).unwrap_err();
         check(&format!("header: {name}"), &(refused.min, refused.max, format!("{:?}", refused.field)));
     }
+    let law = FingerLaw::new(f32::NAN, &[LawPoint { voltage_v_rms: 150.0, electric_friction_n: 0.1 }]);
+    let refused = Header { law, ..HEADER }.check(&LIMITS, TICK_HZ).unwrap_err();
+    check("header: exponent of a law", &(refused.min, refused.max, format!("{:?}", refused.field)));
 }
 
 #[test]
@@ -121,5 +124,5 @@ fn numbers_of_records_and_points() {
     for (name, range) in ranges {
         check(name, &(range.min as f32, range.max as f32, format!("{:?}", range.field)));
     }
-    assert_eq!(rows().len(), 13 + ranges.len(), "every row is checked");
+    assert_eq!(rows().len(), 14 + ranges.len(), "every row is checked");
 }

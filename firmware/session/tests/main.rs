@@ -4,6 +4,7 @@ mod arm_switch;
 mod credit;
 mod details;
 mod disabled;
+mod law;
 mod live;
 mod loader;
 mod queues;

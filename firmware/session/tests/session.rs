@@ -166,7 +166,7 @@ fn bytes_that_are_not_a_scene_are_refused() {
     assert_eq!(board.load(&unknown), Err(Refusal::Scene(SceneError::UnknownKind { record: 0, kind: 99 })));
     assert!(matches!(
         board.command(Command::UploadScene { len: 1 << 20, crc32: 0 }),
-        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 4664 })
+        Err(Refusal::SceneTooLarge { len: 1_048_576, max: 4792 })
     ));
     assert_eq!(
         board.command(Command::Commit { crc32: 1 }),

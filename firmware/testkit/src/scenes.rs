@@ -25,6 +25,7 @@ pub const HEADER: Header = Header {
     leader: Leader::First,
     layers_fixed: false,
     electric_friction_max_n: None,
+    law: None,
 };
 
 /// A layer on the whole screen that replaces those below.
@@ -59,9 +60,11 @@ pub fn scene(header: &Header, records: &[Record]) -> SceneBytes {
 /// If a scene cannot have this many records and points.
 #[must_use]
 pub fn scene_with_points(header: &Header, records: &[Record], points: &[Point]) -> SceneBytes {
-    let len = HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * points.len();
+    let law_points = header.law.map_or(0, |law| usize::from(law.point_count()));
+    let len = HEADER_LEN + RECORD_LEN * records.len() + POINT_LEN * (points.len() + law_points);
     assert!(len <= SCENE_MAX_LEN, "a scene of {} records and {} points", records.len(), points.len());
     let head = header.write(records.len() as u8, points.len() as u8);
     let body = records.iter().flat_map(Record::write);
-    head.into_iter().chain(body).chain(points.iter().flat_map(Point::write)).collect()
+    let law = header.law.into_iter().flat_map(|law| law.write_points());
+    head.into_iter().chain(body).chain(points.iter().flat_map(Point::write)).chain(law).collect()
 }

@@ -9,7 +9,7 @@ use crate::support;
 use std::fmt::Write;
 use std::path::Path;
 
-use frixel_layers::{Header, Point, Record};
+use frixel_layers::{Header, Point, Record, Scene};
 use frixel_testkit::golden;
 use hex::{from_hex, to_hex};
 
@@ -31,8 +31,14 @@ fn scenes_are_golden() {
     for point in support::points() {
         writeln!(text, "# {point:?}\npoint {}", to_hex(&point.write())).unwrap();
     }
+    writeln!(text, "# The scene of a finger with an empirical law\nscene {}", to_hex(&support::law_scene())).unwrap();
     golden::hold(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/scene.hex"), &text);
 
+    for golden in lines(&text, "scene") {
+        let scene = Scene::parse(&golden).unwrap();
+        assert_eq!(scene.header().law.map(|law| law.points().len()), Some(2));
+        assert_eq!(frixel_testkit::scene(scene.header(), &[]), golden);
+    }
     for (golden, header) in lines(&text, "header").zip(support::headers()) {
         assert_eq!(Header::parse(golden.as_slice().try_into().unwrap()), Ok((header, 4, 3)));
     }
@@ -42,4 +48,14 @@ fn scenes_are_golden() {
     for (golden, point) in lines(&text, "point").zip(support::points()) {
         assert_eq!(Point::parse(golden.as_slice().try_into().unwrap()), point);
     }
+}
+
+/// The example of the page is the scene of the golden bytes.
+#[test]
+fn the_law_of_the_protocol_is_golden() {
+    let page = include_str!("../../wire/PROTOCOL.md");
+    let (_, example) = page.split_once("1 mN at 50 V and 27 mN at 150 V.").unwrap();
+    let lines = example.lines().skip_while(|line| line.is_empty()).take_while(|line| line.starts_with("    "));
+    let bytes: Vec<u8> = lines.flat_map(|line| from_hex(line.trim())).collect();
+    assert_eq!(to_hex(&bytes), to_hex(&support::law_scene()));
 }

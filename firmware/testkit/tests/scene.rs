@@ -6,8 +6,8 @@ use crate::support;
 use std::collections::BTreeSet;
 
 use frixel_layers::{
-    Blend, Constant, HEADER_LEN, Header, Layer, POINT_LEN, Point, RECORD_LEN, Record, Region, SCENE_MAX_LEN, Scene,
-    Speed,
+    Blend, Constant, HEADER_LEN, Header, LAW_POINTS_MAX, Layer, POINT_LEN, Point, RECORD_LEN, Record, Region,
+    SCENE_MAX_LEN, Scene, Speed,
 };
 use frixel_testkit::samples::{SampleRecord, sample_records};
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
@@ -59,7 +59,7 @@ fn the_largest_scene_is_read_and_a_larger_one_refused() {
         bytes
     };
     let bytes = of(RECORDS_MAX, POINTS_MAX);
-    assert_eq!(bytes.len(), SCENE_MAX_LEN);
+    assert_eq!(bytes.len() + LAW_POINTS_MAX * POINT_LEN, SCENE_MAX_LEN);
     let scene = Scene::parse(&bytes).unwrap();
     assert_eq!((scene.records().count(), scene.points().count()), (RECORDS_MAX, POINTS_MAX));
 
@@ -131,7 +131,7 @@ fn a_scene_without_layers_is_read() {
 
 #[test]
 fn unknown_flags_and_carriers_are_refused() {
-    for flags in 32..=u8::MAX {
+    for flags in 64..=u8::MAX {
         assert_eq!(refused(&changed(3, flags)), SceneError::UnknownFlags(flags));
     }
     for shape in 2..=u8::MAX {

@@ -115,13 +115,16 @@ pub mod feature {
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
+    /// Empirical laws of fingers. Since protocol 1.4.
+    pub const EMPIRICAL: u32 = 1 << 13;
 
     /// The name of each feature that is no kind of layer: that of the board's Cargo feature, where there is one.
-    pub const NAMES: [(u32, &str); 4] = [
+    pub const NAMES: [(u32, &str); 5] = [
         (SINE_CARRIER, "sine-carrier"),
         (TELEMETRY, "telemetry"),
         (HOST_TOUCH, "touch from the host"),
         (POLYGON, "polygon"),
+        (EMPIRICAL, "empirical"),
     ];
 }
 

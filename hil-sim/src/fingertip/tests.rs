@@ -22,7 +22,7 @@ impl Slide {
     }
 
     fn at_rate(config: FingertipConfig, seed: u64, tick_hz: u32) -> Self {
-        let fingertip = Fingertip::new(config, example_finger().unwrap(), tick_hz, seed).unwrap();
+        let fingertip = Fingertip::new(config, example_finger().unwrap().into(), tick_hz, seed).unwrap();
         Self { fingertip, tick_hz, x_m: 0.01 }
     }
 
@@ -271,7 +271,8 @@ fn leaked_charge_costs_a_slow_carrier_its_force() {
 
 #[test]
 fn a_finger_that_makes_no_sense_is_refused_by_name() {
-    let refused = |config| Fingertip::new(config, example_finger().unwrap(), TICK_HZ, 1).unwrap_err().to_string();
+    let refused =
+        |config| Fingertip::new(config, example_finger().unwrap().into(), TICK_HZ, 1).unwrap_err().to_string();
     for (config, message) in [
         (with(|config| config.relaxation_length_m = -1.0), "finger relaxation_length_m must be from 0 to 10, found -1"),
         (with(|config| config.load_sd_n = f64::NAN), "finger load_sd_n must be from 0 to 10, found NaN"),

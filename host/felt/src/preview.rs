@@ -6,7 +6,7 @@
 use frixel_layers::{Button, Edge, Layer};
 
 use frixel_scene::reference::{Context, Reference};
-use frixel_scene::{Program, ROUNDING, Reach};
+use frixel_scene::{Origin, Program, ROUNDING, Reach};
 
 /// Settings of a preview.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,8 +122,13 @@ impl FrictionMap {
 
 fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<String> {
     let mut sentences = vec![finger(program)];
-    if !program.finger.newtons_suffix().is_empty() {
-        sentences.push("These newtons are assumed: nobody measured the finger.".to_owned());
+    match program.finger.origin {
+        Origin::Assumed | Origin::Perceptual => {
+            sentences.push("These newtons are assumed: nobody measured the finger.".to_owned());
+        }
+        Origin::Empirical => sentences
+            .push("These newtons are empirical: the finger was measured, and follows a law of its own.".to_owned()),
+        Origin::Measured => {}
     }
     let any = |wanted: fn(&Layer) -> bool| program.records.iter().any(|record| wanted(&record.layer));
     if any(|layer| matches!(layer, Layer::Speed(_))) {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
-use frixel_model::LoadedContact;
+use frixel_model::FrictionLaw;
 use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
 use thiserror::Error;
@@ -79,7 +79,7 @@ pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) 
 pub(crate) fn simulate_through_finger(
     program: &Program,
     simulation: &Simulation,
-    own_finger: Option<LoadedContact<f64>>,
+    own_finger: Option<FrictionLaw>,
 ) -> Result<Simulated, SimulationError> {
     run(program, simulation, recorder(program, simulation)?.through_finger(), own_finger, None)
 }
@@ -94,7 +94,7 @@ fn run(
     program: &Program,
     simulation: &Simulation,
     recorder: Recorder,
-    own_finger: Option<LoadedContact<f64>>,
+    own_finger: Option<FrictionLaw>,
     feed: Option<Feed>,
 ) -> Result<Simulated, SimulationError> {
     let mut memory = BoardMemory::new();

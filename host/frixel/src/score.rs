@@ -18,6 +18,6 @@ pub fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<
         ticks_per_row: (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32,
     };
     let own_finger = trial.finger.map(|finger| finger.contact);
-    let mut recorder = simulate_through_finger(program, &simulation, own_finger)?.recorder;
+    let mut recorder = simulate_through_finger(program, &simulation, own_finger.map(Into::into))?.recorder;
     Ok(recorder.take_rows().iter().map(FidelitySample::from).collect())
 }

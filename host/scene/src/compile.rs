@@ -7,6 +7,7 @@ use frixel_wire::scene::RECORDS_MAX;
 use super::compile_error::CompileError;
 use super::excess;
 use super::file::Scene;
+use super::finger::Elasticity;
 use super::layer::Layer;
 use super::layer_map::LayerMap;
 use super::log::Log;
@@ -111,6 +112,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let mut voltage = Voltage::of(scene, limits, &carrier, log);
     let mistakes = log.mistakes();
     voltage.limit_current(scene, limits, &carrier, if is_carrier_valid { &mut *log } else { &mut unreported });
+    voltage.end_with_law(scene, log);
     let effective_gap_um = effective_gap_um(scene, log);
     let contact = Springs::of(scene.finger(), effective_gap_um * 1e-6, voltage.max_v_rms);
     let springs = contact.map_err(|mistake| log.add(scene.profiles.place, mistake)).ok()?;
@@ -284,6 +286,10 @@ fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
 
 fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um: f64, half_period_s: f64) -> Header {
     let (screen, finger, drive) = (scene.screen(), scene.finger(), &scene.drive);
+    let law = match &finger.elasticity {
+        Elasticity::Empirical(law) => law.of_scene(),
+        Elasticity::WinklerFuss { .. } | Elasticity::Soft { .. } => None,
+    };
     Header {
         screen_width_m: (screen.width_mm * MM) as f32,
         screen_height_m: (screen.height_mm * MM) as f32,
@@ -291,7 +297,7 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um:
         stiffness_pa_per_m: springs.stiffness_pa_per_m as f32,
         friction_coefficient: finger.friction_coefficient as f32,
         normal_load_n: finger.normal_load_n as f32,
-        effective_gap_m: (effective_gap_um * 1e-6) as f32,
+        effective_gap_m: if law.is_some() { 0.0 } else { (effective_gap_um * 1e-6) as f32 },
         voltage_max_v_rms: voltage.max_v_rms as f32,
         voltage_max_v_peak: voltage.max_v_peak as f32,
         slew_v_per_s: (voltage.slew_v_per_us * 1e6) as f32,
@@ -303,5 +309,6 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um:
         leader: scene.touch.leader,
         layers_fixed: !scene.layers.iter().any(|layer| layer.live),
         electric_friction_max_n: None,
+        law,
     }
 }

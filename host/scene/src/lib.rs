@@ -84,7 +84,7 @@ pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Message};
 pub use file::Scene;
 pub use files::{FileUnavailable, Files};
-pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
+pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
 pub use kinds::{layer_kinds, without_place};
 pub use layer_map::{LayerError, LayerMap};
 pub use layer_tables::LayerTable;

@@ -37,19 +37,15 @@ impl PlayedFinger {
         (Self { title, origin: Origin::Assumed }, Some(note))
     }
 
-    /// `, assumed`, to be put behind newtons; empty for a measured finger. What a person said gives no newtons, so that
-    /// those of a perceptual profile are assumed too.
+    /// [`Origin::newtons_suffix`] of its origin.
     pub fn newtons_suffix(&self) -> &'static str {
-        match self.origin {
-            Origin::Assumed | Origin::Perceptual => ", assumed",
-            Origin::Measured => "",
-        }
+        self.origin.newtons_suffix()
     }
 }
 
 fn verb(evidence: &Evidence) -> &'static str {
     match evidence.origin() {
-        Origin::Measured => "measured",
+        Origin::Measured | Origin::Empirical => "measured",
         Origin::Assumed | Origin::Perceptual => "fitted",
     }
 }

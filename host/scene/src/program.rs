@@ -1,7 +1,6 @@
 //! The compiled scene.
 
-use frixel_layers::{Header, Point, Record, features_of};
-use frixel_model::{LoadedContact, ParameterError};
+use frixel_layers::{FingerLaw, Header, Point, Record, features_of};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
@@ -9,7 +8,7 @@ use super::diagnostic::{Diagnostic, DiagnosticKind, Message};
 use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
 use super::played_finger::PlayedFinger;
-use super::reach::{Reach, loaded_contact};
+use super::reach::Reach;
 use super::titles::LayerTitle;
 use super::warning::Warning;
 
@@ -107,6 +106,7 @@ impl Program {
         let mut bytes = header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
         bytes.extend(self.records.iter().flat_map(Record::write));
         bytes.extend(self.points.iter().flat_map(Point::write));
+        bytes.extend(header.law.iter().flat_map(FingerLaw::write_points));
         bytes
     }
 
@@ -118,12 +118,6 @@ impl Program {
     /// Whether the friction depends on more than place, speed and time: on earlier clicks, or on a stream.
     pub fn has_history(&self) -> bool {
         self.records.iter().any(|record| record.layer.click().is_some() || record.layer.is_streamed())
-    }
-
-    /// The contact that the program's finger makes with its coating under its load, in `f64`, from the board's `f32`
-    /// numbers. An error does not happen for a compiled program: its reach was computed from the contact.
-    pub fn loaded_contact(&self) -> Result<LoadedContact<f64>, ParameterError> {
-        loaded_contact(&self.header)
     }
 
     /// The bitmap that a record names.

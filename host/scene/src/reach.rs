@@ -2,7 +2,7 @@
 
 use frixel_layers::Header;
 use frixel_model::{
-    Carrier, Contact, ContactModel, Finger, InverseTable, LoadedContact, ParameterError, TableError, Waveform,
+    Carrier, ContactModel, Finger, FrictionLaw, InverseTable, LawError, ParameterError, TableError, Waveform,
 };
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
@@ -36,24 +36,18 @@ pub(super) enum ReachError {
 impl Reach {
     /// Computes the reach for the finger, coating and rms voltage of a header, from the board's `f32` numbers.
     pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
-        let loaded = loaded_contact(header).map_err(ReachError::Contact)?;
+        let law = header.friction_law().map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
-        let contact_m = loaded.state(voltage_max_v_rms).map_or(f64::INFINITY, |state| state.contact_radius_m);
-        if contact_m > f64::from(header.finger_radius_m) {
-            return Err(ReachError::TooWide { contact_m });
+        if let FrictionLaw::Contact(contact) = law {
+            let contact_m = contact.state(voltage_max_v_rms).map_or(f64::INFINITY, |state| state.contact_radius_m);
+            if contact_m > f64::from(header.finger_radius_m) {
+                return Err(ReachError::TooWide { contact_m });
+            }
         }
-        // The board computes the same table when the scene is committed.
-        let finger = Finger {
-            radius_m: header.finger_radius_m,
-            stiffness_pa_per_m: header.stiffness_pa_per_m,
-            friction_coefficient: header.friction_coefficient,
-        };
-        let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
-        InverseTable::of_finger(&finger, gap_m, normal_load_n, header.voltage_max_v_rms, f32::INFINITY)
-            .map_err(|_: TableError| ReachError::Table)?;
+        check_table(header)?;
         Ok(Self {
-            natural_friction_n: loaded.natural_friction_n(),
-            electric_friction_max_n: loaded.electric_friction_n(voltage_max_v_rms),
+            natural_friction_n: law.natural_friction_n(),
+            electric_friction_max_n: law.electric_friction_n(voltage_max_v_rms),
             voltage_max_v_rms,
         })
     }
@@ -69,14 +63,22 @@ impl Reach {
     }
 }
 
-/// The loaded contact of a header's finger and coating, in `f64`, from the board's `f32` numbers.
-pub(super) fn loaded_contact(header: &Header) -> Result<LoadedContact<f64>, ParameterError> {
+/// Computes the table that the board computes when the scene is committed.
+fn check_table(header: &Header) -> Result<(), ReachError> {
+    let voltage_max_v_rms = header.voltage_max_v_rms;
+    if let Some(law) = &header.law {
+        let table = InverseTable::of_law(law.exponent(), law.points(), voltage_max_v_rms, f32::INFINITY);
+        return table.map(|_| ()).map_err(|_: LawError| ReachError::Table);
+    }
     let finger = Finger {
-        radius_m: f64::from(header.finger_radius_m),
-        stiffness_pa_per_m: f64::from(header.stiffness_pa_per_m),
-        friction_coefficient: f64::from(header.friction_coefficient),
+        radius_m: header.finger_radius_m,
+        stiffness_pa_per_m: header.stiffness_pa_per_m,
+        friction_coefficient: header.friction_coefficient,
     };
-    Contact::new(&finger, f64::from(header.effective_gap_m))?.under_load(f64::from(header.normal_load_n))
+    let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
+    InverseTable::of_finger(&finger, gap_m, normal_load_n, voltage_max_v_rms, f32::INFINITY)
+        .map(|_| ())
+        .map_err(|_: TableError| ReachError::Table)
 }
 
 /// The carrier of a scene on a board, in the board's arithmetic.

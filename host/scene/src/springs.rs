@@ -33,6 +33,8 @@ impl Springs {
     /// The springs for a finger on an effective gap, at voltages up to the largest.
     pub(super) fn of(profile: &FingerProfile, gap_m: f64, voltage_max_v_rms: f64) -> Result<Self, FitMistake> {
         match profile.elasticity {
+            // A law takes their place.
+            Elasticity::Empirical(_) => Ok(Self { stiffness_pa_per_m: 0.0, deviation: 0.0 }),
             Elasticity::WinklerFuss { stiffness_pa_per_m } => Ok(Self { stiffness_pa_per_m, deviation: 0.0 }),
             Elasticity::Soft { modulus_pa, stress_exponent, shape_constant } => {
                 let finger = SoftFinger {

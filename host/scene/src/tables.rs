@@ -193,8 +193,27 @@ pub(super) mod finger {
     pub(crate) const ORIGIN: FieldSpec = word(
         "origin",
         Means("`\"assumed\"`"),
-        "what the numbers rest on: `\"assumed\"`; `\"perceptual\"`, a person said what they felt; or `\"measured\"`, with \
-         a force sensor",
+        "what the numbers rest on: `\"assumed\"`; `\"perceptual\"`, a person said what they felt; `\"measured\"`, with \
+         a force sensor; or `\"empirical\"`, with a force sensor, as a law of the voltage, see \
+         [empirical fingers](#empirical-fingers)",
+    );
+    pub(crate) const EXPONENT: FieldSpec = number(
+        "exponent",
+        Range::new(0.5, 12.0, ""),
+        Mistake,
+        "power of the voltage with which electric friction grows below the first point",
+    );
+    pub(crate) const POINTS: FieldSpec = FieldSpec::new(
+        "points",
+        Holds::Pairs(Range::new(0.0, 1_000.0, "")),
+        Mistake,
+        "1 to 16 points `[V rms, N]`: voltage and electric friction under `normal_load_n`; both rise",
+    );
+    pub(crate) const INTERVALS_N: FieldSpec = FieldSpec::new(
+        "intervals_n",
+        Holds::Pairs(Range::new(0.0, 1_000.0, " N")),
+        Mistake,
+        "95 % interval of the friction of each point, `[least, largest]`",
     );
     pub(crate) const DATE: FieldSpec =
         FieldSpec::new("date", Holds::Text, Mistake, "day of the experiment, `\"YYYY-MM-DD\"`");

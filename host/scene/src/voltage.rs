@@ -5,7 +5,7 @@ use frixel_model::Carrier;
 use frixel_wire::hello::BoardLimits;
 
 use super::file::Scene;
-use super::finger::Evidence;
+use super::finger::{Elasticity, Evidence};
 use super::log::Log;
 use super::mistake::FitMistake;
 use super::reach::Reach;
@@ -64,11 +64,26 @@ impl Voltage {
         let measured_v_rms = match scene.finger().evidence {
             // A board refuses a scene that needs more.
             Evidence::Measured { voltage_max_v_rms, .. } => voltage_max_v_rms,
-            _ => f64::INFINITY,
+            _ => match &scene.finger().elasticity {
+                Elasticity::Empirical(law) => law.voltage_max_v_rms(),
+                Elasticity::WinklerFuss { .. } | Elasticity::Soft { .. } => f64::INFINITY,
+            },
         };
         let screen_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY);
         let hard_max_v_rms = (hard_max_v_peak / peak_per_rms).min(screen_v_rms).min(measured_v_rms);
         Self { max_v_rms, max_v_peak, slew_v_per_us, peak_per_rms, hard_max_v_rms, hard_max_v_peak }
+    }
+
+    /// Refuses a largest voltage above that of an empirical law, which is never extrapolated, and lowers it.
+    pub(super) fn end_with_law(&mut self, scene: &Scene, log: &mut Log) {
+        let Elasticity::Empirical(law) = &scene.finger().elasticity else { return };
+        let measured_v_rms = law.voltage_max_v_rms();
+        if self.max_v_rms > measured_v_rms {
+            let found_v_rms = self.max_v_rms;
+            let mistake = FitMistake::BeyondLaw { found_v_rms, measured_v_rms };
+            log.add(scene.drive.places.field("voltage_max_v_rms"), mistake);
+            self.max_v_rms = measured_v_rms;
+        }
     }
 
     /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers

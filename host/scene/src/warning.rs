@@ -240,11 +240,11 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
     else {
         return warnings;
     };
-    // The contact is one: the reach was computed from it.
-    if let Ok(contact) = program.loaded_contact() {
-        let measured_n = (1.0 + ROUNDING) * contact.electric_friction_n(voltage_max_v_rms);
+    // The law is one: the reach was computed from it.
+    if let Ok(law) = program.header.friction_law() {
+        let measured_n = (1.0 + ROUNDING) * law.electric_friction_n(voltage_max_v_rms);
         if let Some(needed_n) = demand_above(program, measured_n) {
-            let voltage_v_rms = digits(contact.voltage_v_rms(needed_n), f64::round);
+            let voltage_v_rms = digits(law.voltage_v_rms(needed_n), f64::round);
             warnings.push(Warning::BeyondMeasuredVoltage { voltage_v_rms, measured_v_rms: voltage_max_v_rms });
         }
     }

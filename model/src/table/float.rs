@@ -20,6 +20,10 @@ pub(crate) struct RowGrid {
 }
 
 impl RowGrid {
+    /// A grid that is to be replaced.
+    pub(crate) const EMPTY: Self =
+        Self { first_bits: 0, density: NonZeroU32::MIN, friction_max_n: 0.0, voltage_max_v_rms: 0.0 };
+
     /// `rows` rows of about `2^32/density` patterns each, the last one up to and with `friction_max_n`.
     pub(crate) fn new(
         rows: usize,

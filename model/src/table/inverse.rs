@@ -120,7 +120,7 @@ impl InverseTable {
     /// use frixel_model::{EmpiricalLaw, InverseTable, LawPoint};
     /// let points = [(50.0, 0.01), (100.0, 0.06), (150.0, 0.09)]
     ///     .map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
-    /// let law = EmpiricalLaw::<f64>::new(2.0, &points, 150.0)?;
+    /// let law = EmpiricalLaw::new(2.0, &points, 150.0)?;
     /// let table = InverseTable::of_law(2.0, &points, 150.0, f32::INFINITY)?;
     /// let voltage_v_rms = table.voltage_v_rms(0.05);
     /// assert!((law.electric_friction_n(f64::from(voltage_v_rms)) / f64::from(0.05_f32) - 1.0).abs() < 1e-5);
@@ -230,7 +230,7 @@ impl InverseTableFilling {
 
 /// The remaining computation of the [`InverseTable`] of an empirical law; created by [`InverseTable::begin_law`].
 #[derive(Clone, Debug)]
-pub struct EmpiricalTableFilling(Filling<EmpiricalLaw<DoubleSingle>>);
+pub struct EmpiricalTableFilling(Filling<EmpiricalLaw>);
 
 impl EmpiricalTableFilling {
     /// Number of rows that are still to be computed.

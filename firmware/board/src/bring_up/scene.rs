@@ -37,6 +37,7 @@ pub(super) fn stored_scene(peak_v: f32) -> [u8; STORED_LEN] {
         leader: Leader::First,
         layers_fixed: true,
         electric_friction_max_n: None,
+        law: None,
     };
     let layer = Layer::Constant(Constant { electric_friction_n: ELECTRIC_FRICTION_N });
     let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };

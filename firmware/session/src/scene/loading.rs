@@ -1,9 +1,13 @@
 //! Checks a scene's configuration and computes the coefficients that the tick reads, in steps.
 
 use frixel_control::{Active, Board, CarrierTiming};
+#[cfg(feature = "empirical")]
+use frixel_layers::FingerLaw;
 use frixel_layers::cost::{LayerCosts, Worst};
 use frixel_layers::{Grid, Header, Point, Scene, active_bytes, within};
 use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
+#[cfg(feature = "empirical")]
+use frixel_model::{EmpiricalLaw, EmpiricalTableFilling, LawError};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
@@ -13,6 +17,9 @@ use super::bitmap_directory::Directory;
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table that a step of loading computes.
 const ROWS_PER_STEP: usize = 4;
+/// The same of an empirical law, whose powers a board computes without help of its FPU.
+#[cfg(feature = "empirical")]
+const LAW_ROWS_PER_STEP: usize = 2;
 
 /// The next step of loading a scene.
 #[derive(Clone, Debug)]
@@ -38,6 +45,9 @@ pub(crate) enum Loading {
     Table,
     /// Rows of the inverse table.
     Rows(InverseTableFilling),
+    /// Rows of the inverse table of an empirical law.
+    #[cfg(feature = "empirical")]
+    LawRows(EmpiricalTableFilling),
 }
 
 impl Loading {
@@ -90,6 +100,14 @@ impl Loading {
                     Self::Table
                 }
             }
+            #[cfg(feature = "empirical")]
+            Self::Table if header.law.is_some() => {
+                let Some(law) = &header.law else { return Ok(true) };
+                let (table, filling) =
+                    begin_law_table(header, law, active.voltage_max_v_rms).map_err(Refusal::Config)?;
+                active.table = Some(table);
+                Self::LawRows(filling)
+            }
             Self::Table => {
                 let (table, filling) = begin_table(header, active.voltage_max_v_rms).map_err(Refusal::Config)?;
                 active.table = Some(table);
@@ -100,6 +118,11 @@ impl Loading {
                 return filling
                     .fill(table, ROWS_PER_STEP)
                     .map_err(|error| Refusal::Config(no_table(&error, header, active.voltage_max_v_rms)));
+            }
+            #[cfg(feature = "empirical")]
+            Self::LawRows(filling) => {
+                let (Some(table), Some(law)) = (&mut active.table, &header.law) else { return Ok(true) };
+                return filling.fill(table, LAW_ROWS_PER_STEP).map_err(|error| Refusal::Config(no_law(&error, law)));
             }
         };
         Ok(false)
@@ -172,6 +195,35 @@ fn begin_table(header: &Header, voltage_max_v_rms: f32) -> Result<(InverseTable,
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 
+/// Begins the inverse table of a scene's empirical law.
+#[cfg(feature = "empirical")]
+fn begin_law_table(
+    header: &Header,
+    law: &FingerLaw,
+    voltage_max_v_rms: f32,
+) -> Result<(InverseTable, EmpiricalTableFilling), ConfigRefusal> {
+    let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
+    InverseTable::begin_law(law.exponent(), law.points(), voltage_max_v_rms, max_n).map_err(|error| no_law(&error, law))
+}
+
+#[cfg(feature = "empirical")]
+fn no_law(error: &LawError, law: &FingerLaw) -> ConfigRefusal {
+    let voltage_v_rms = |point: usize| law.points().get(point).map_or(0.0, |point| point.voltage_v_rms);
+    let [least, most] = EmpiricalLaw::EXPONENTS;
+    let (field, found, min, max) = match *error {
+        LawError::Exponent { found } | LawError::Slope { found, .. } => (ConfigField::LawExponent, found, least, most),
+        LawError::Order { point } => {
+            let before = point.checked_sub(1).map_or(0.0, voltage_v_rms);
+            (ConfigField::LawPoint, voltage_v_rms(point), before, f32::INFINITY)
+        }
+        LawError::Voltage { found, max } => (ConfigField::VoltageRms, found, 0.0, max),
+        LawError::PointCount { .. } | LawError::Unrepresentable => {
+            (ConfigField::LawPoint, law.voltage_max_v_rms(), 0.0, f32::INFINITY)
+        }
+    };
+    ConfigRefusal { field, found, min, max, layer: ConfigRefusal::WHOLE_SCENE }
+}
+
 fn no_table(error: &TableError, header: &Header, voltage_max_v_rms: f32) -> ConfigRefusal {
     let (field, found) = match error {
         TableError::Contact => (ConfigField::EffectiveGap, header.effective_gap_m),
@@ -201,6 +253,11 @@ pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
     let header = scene.header();
     let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
     let rows = |header: &Header| {
+        #[cfg(feature = "empirical")]
+        if let Some(law) = &header.law {
+            let begun = begin_law_table(header, law, voltage_max_v_rms);
+            return begun.map(|(_, filling)| filling.rows()).map_err(Refusal::Config);
+        }
         begin_table(header, voltage_max_v_rms).map(|(_, filling)| filling.rows()).map_err(Refusal::Config)
     };
     let whole = Header { electric_friction_max_n: None, ..*header };

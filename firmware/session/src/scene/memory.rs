@@ -1,7 +1,7 @@
 //! Handles uploads, and allocates memory for them.
 
 use frixel_control::{Board, Order};
-use frixel_layers::{HEADER_LEN, POINT_LEN, RECORD_LEN, SCENE_MAX_LEN, StoredBitmap as Bitmap};
+use frixel_layers::{HEADER_LEN, LAW_POINTS_MAX, POINT_LEN, RECORD_LEN, SCENE_MAX_LEN, StoredBitmap as Bitmap};
 use frixel_wire::message::{Accepted, Refusal};
 use frixel_wire::scene::POINTS_MAX;
 
@@ -23,7 +23,8 @@ pub(crate) enum Removal {
 impl<'a> Scenes<'a> {
     pub(crate) fn begin_scene(&mut self, len: u32, crc32: u32, board: &Board) -> Result<Accepted, Refusal> {
         let records = usize::from(board.limits.records_max);
-        let max = (HEADER_LEN + records * RECORD_LEN + POINTS_MAX * POINT_LEN).min(SCENE_MAX_LEN) as u32;
+        let max =
+            (HEADER_LEN + records * RECORD_LEN + (POINTS_MAX + LAW_POINTS_MAX) * POINT_LEN).min(SCENE_MAX_LEN) as u32;
         if len > max {
             return Err(Refusal::SceneTooLarge { len, max });
         }

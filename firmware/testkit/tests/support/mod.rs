@@ -1,7 +1,7 @@
 //! Headers, and a scene of all samples.
 #![allow(unreachable_pub)]
 
-use frixel_layers::{Header, Leader, Point, Record, Waveform};
+use frixel_layers::{FingerLaw, Header, LawPoint, Leader, Point, Record, Waveform};
 use frixel_testkit::samples::{POINTS, sample_records};
 
 pub fn header() -> Header {
@@ -24,6 +24,7 @@ pub fn header() -> Header {
         leader: Leader::First,
         layers_fixed: false,
         electric_friction_max_n: None,
+        law: None,
     }
 }
 
@@ -36,6 +37,15 @@ pub fn headers() -> Vec<Header> {
         Header { layers_fixed: true, ..header() },
         Header { layers_fixed: true, electric_friction_max_n: Some(0.025_024_414), ..header() },
     ]
+}
+
+/// The scene of a finger with an empirical law, without layers.
+pub fn law_scene() -> Vec<u8> {
+    let points = [(50.0, 1e-3), (150.0, 27e-3)]
+        .map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
+    let law = FingerLaw::new(2.0, &points);
+    let header = Header { finger_radius_m: 0.0, stiffness_pa_per_m: 0.0, effective_gap_m: 0.0, law, ..header() };
+    frixel_testkit::scene(&header, &[])
 }
 
 pub fn records() -> Vec<Record> {

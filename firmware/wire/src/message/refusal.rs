@@ -190,6 +190,11 @@ pub enum ConfigField {
     ClickLayers,
     /// The largest electric friction that the scene declares as its target, N. Since protocol 1.3.
     ElectricFrictionMax,
+    /// The power of the voltage with which the friction of an empirical law grows, below its first point or between
+    /// two. Since protocol 1.4.
+    LawExponent,
+    /// The voltage of a point of an empirical law, V rms: voltages and frictions must increase. Since protocol 1.4.
+    LawPoint,
 }
 
 impl ConfigField {
@@ -231,6 +236,8 @@ impl ConfigField {
             Self::NoiseLayers => ("number of noise layers", ""),
             Self::ClickLayers => ("number of edges and buttons", ""),
             Self::ElectricFrictionMax => ("largest electric friction", " N"),
+            Self::LawExponent => ("exponent of the finger's law", ""),
+            Self::LawPoint => ("point of the finger's law", " V"),
         }
     }
 }

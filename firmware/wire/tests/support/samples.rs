@@ -176,6 +176,14 @@ fn messages() -> Vec<FromBoard> {
             outcome: Ok(Accepted::TickTimes(times)),
         })
     }));
+    messages.extend([ConfigField::LawExponent, ConfigField::LawPoint].map(|field| {
+        FromBoard::Answer(Answer {
+            sequence: 201,
+            received_bytes: 200_001,
+            state: State::Armed,
+            outcome: Err(Refusal::Config(config_refusal(field, ConfigRefusal::WHOLE_SCENE))),
+        })
+    }));
     messages
 }
 

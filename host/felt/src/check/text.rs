@@ -44,7 +44,7 @@ impl SceneCheck {
             ),
         );
         line("finger", format!("{}, {}", finger.title, finger.origin));
-        let suffix = if finger.origin == Origin::Measured.word() { "" } else { ", assumed" };
+        let suffix = Origin::newtons_suffix_of(finger.origin);
         line(
             "reachable",
             format!(

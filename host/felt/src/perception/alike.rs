@@ -82,6 +82,6 @@ fn felt_texture(judged: &JudgedLayer) -> Option<&Texture> {
 /// The voltage at the 95th percentile of the friction; `None` at natural friction.
 fn voltage_v_rms(judged: &JudgedLayer, program: &Program) -> Option<f64> {
     let electric_n = judged.perception.contrast.to_n - program.reach.natural_friction_n;
-    let contact = program.loaded_contact().ok().filter(|_| electric_n > 0.0)?;
-    Some(contact.voltage_v_rms(electric_n))
+    let law = program.header.friction_law().ok().filter(|_| electric_n > 0.0)?;
+    Some(law.voltage_v_rms(electric_n))
 }

@@ -1,7 +1,7 @@
 //! Converts a commanded voltage to friction, without the errors of amplifier and finger.
 
 use frixel_layers::Waveform;
-use frixel_model::{LoadedContact, ParameterError};
+use frixel_model::{FrictionLaw, ParameterError};
 use frixel_wire::hello::BoardLimits;
 
 use frixel_scene::{Program, carrier};
@@ -9,7 +9,7 @@ use frixel_scene::{Program, carrier};
 /// The full model, driven through an ideal amplifier and a DAC with its steps.
 #[derive(Debug)]
 pub(super) struct Inversion {
-    contact: LoadedContact<f64>,
+    law: FrictionLaw,
     waveform: Waveform,
     codes_per_v_rms: f64,
     electric_friction_max_n: f64,
@@ -22,7 +22,7 @@ impl Inversion {
         let peak_per_rms = f64::from(carrier.peak_per_rms());
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
-            contact: program.loaded_contact()?,
+            law: program.header.friction_law()?,
             waveform: header.waveform,
             codes_per_v_rms: peak_per_rms * codes_per_v_peak,
             electric_friction_max_n: program.reach.electric_friction_max_n,
@@ -38,7 +38,7 @@ impl Inversion {
             Waveform::Square => f64::from(dac_code).abs(),
             Waveform::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
         };
-        self.contact.electric_friction_n(amplitude_code / self.codes_per_v_rms)
+        self.law.electric_friction_n(amplitude_code / self.codes_per_v_rms)
     }
 
     /// Whether the drive can add so much friction.
@@ -55,6 +55,6 @@ impl Inversion {
     /// Electric friction at an rms voltage that is not rounded to DAC steps, N.
     #[cfg(test)]
     pub(super) fn without_steps_n(&self, voltage_v_rms: f64) -> f64 {
-        self.contact.electric_friction_n(voltage_v_rms)
+        self.law.electric_friction_n(voltage_v_rms)
     }
 }

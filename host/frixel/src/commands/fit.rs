@@ -8,7 +8,7 @@ use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
 use clap::Args;
 use frixel_lab::fit::recipe::{self, Recipe};
-use frixel_lab::fit::{self, Fit, Settings, Summary};
+use frixel_lab::fit::{self, Division, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, Screen};
 use time::OffsetDateTime;
@@ -54,9 +54,10 @@ pub(super) struct FitArgs {
     /// Strokes to leave out, by their names in the column `stroke`.
     #[arg(long, value_name = "STROKE", value_delimiter = ',')]
     without: Vec<String>,
-    /// How friction was measured, in a few words for the profile.
-    #[arg(long, value_name = "TEXT", default_value = "load cell, strokes with the drive switched on and off")]
-    method: String,
+    /// How friction was measured, in a few words for the profile; without it, `load cell, strokes with the drive switched
+    /// on and off`, or that the data are means.
+    #[arg(long, value_name = "TEXT")]
+    method: Option<String>,
     /// Seed of the bootstrap that gives the intervals.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -100,6 +101,16 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     }
 }
 
+/// How friction was measured, as far as the data say it.
+fn method_of(fit: &Fit) -> &'static str {
+    match fit.division {
+        Division::Means => "means with their errors",
+        Division::Column | Division::Motion | Division::Blocks => {
+            "load cell, strokes with the drive switched on and off"
+        }
+    }
+}
+
 /// Prints a recipe; the list of all without a name.
 fn print_recipes(name: &str) -> Result<(), CommandError> {
     if name.is_empty() {
@@ -129,8 +140,9 @@ impl Outputs {
     }
 
     fn write(&self, args: &FitArgs, data: &Path, fit: &Fit, screen: &str) -> Result<(), CommandError> {
+        let method = args.method.clone().unwrap_or_else(|| method_of(fit).to_owned());
         let date = OffsetDateTime::now_utc().date().to_string();
-        let experiment = Experiment { date, method: args.method.clone(), screen: screen.to_owned() };
+        let experiment = Experiment { date, method, screen: screen.to_owned() };
         let mut written = vec![self.profile.filled(fit::profile(fit, experiment).to_toml().as_bytes())?];
         if let Some(plots) = &self.plots {
             let drawn = draw_fit_svg(&format!("{}, fitted", data.display()), fit)?;

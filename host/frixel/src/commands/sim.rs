@@ -6,8 +6,8 @@ use std::path::Path;
 use crate::output_file::Inputs;
 use crate::rigs::{Dropped, Server};
 use crate::scene_file::ProfileNames;
-use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke, contact_of};
-use frixel_model::LoadedContact;
+use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke};
+use frixel_model::FrictionLaw;
 use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
@@ -63,7 +63,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
 
 /// Sets the effects of the world, and returns the contact of the finger that stays whatever scene plays, if there is
 /// one.
-fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<LoadedContact<f64>>, CommandError> {
+fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<FrictionLaw>, CommandError> {
     if !args.ideal {
         config.world = config.world.realistic();
     }
@@ -73,11 +73,11 @@ fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<LoadedCon
             config.world.fingertip = person.fingertip;
         }
         let coating_gap_m = 1e-6 * screen(args.screen.as_deref())?.1.coating_gap_um();
-        return person.contact(coating_gap_m).map(Some).map_err(CommandError::Finger);
+        return person.contact(coating_gap_m).map(|contact| Some(contact.into())).map_err(CommandError::Finger);
     }
     let Some(finger) = &args.finger else { return Ok(None) };
     let names = ProfileNames { finger: Some(finger.clone()), screen: args.screen.clone() };
     let scene = names.applied_to(Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?)?;
     let program = compile(&scene, &config.board.limits, config.board.tick_hz)?;
-    contact_of(&program.header).map(Some).map_err(CommandError::Finger)
+    program.header.friction_law().map(Some).map_err(CommandError::Finger)
 }

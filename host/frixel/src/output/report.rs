@@ -231,7 +231,7 @@ impl Report {
         if let Some(seed) = self.finger_seed {
             line("finger", format!("random person {seed}, assumed; the board computes for the scene's finger"));
         }
-        let suffix = if self.finger_origin == Origin::Measured.word() { "" } else { ", assumed" };
+        let suffix = Origin::newtons_suffix_of(self.finger_origin);
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         let mismatch = size(self.load_mismatch_rms_n, self.load_mismatch_max_n).filter(|error| error.max_n > 0.0);
         let (at_load, with_load) = match mismatch {

@@ -20,7 +20,7 @@ pub fn simulated_finger(
     let example = FingerProfile::example();
     let stiffness_pa_per_m = match example.elasticity {
         Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
-        Elasticity::Soft { .. } => CONVENTIONAL_STIFFNESS_PA_PER_M,
+        Elasticity::Soft { .. } | Elasticity::Empirical(_) => CONVENTIONAL_STIFFNESS_PA_PER_M,
     };
     let finger = Finger {
         radius_m: 1e-3 * example.radius_mm,

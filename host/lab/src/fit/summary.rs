@@ -121,10 +121,8 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     let Estimate { value, low, high } = fit.friction_coefficient;
-    line(
-        "friction coefficient",
-        format!("{value:.3} (95 % interval {low:.3} to {high:.3}), the mean of this recording"),
-    );
+    let of = if fit.division == Division::Means { "of all means" } else { "the mean of this recording" };
+    line("friction coefficient", format!("{value:.3} (95 % interval {low:.3} to {high:.3}), {of}"));
     let Estimate { value, low, high } = fit.electric_friction_n;
     let (voltage, load_n) = (fit.stated_voltage_v_rms, fit.normal_load_n);
     let [value_mn, low_mn, high_mn] = [value, low, high].map(|newtons| 1e3 * newtons);

@@ -8,6 +8,8 @@ mod read;
 mod tests;
 mod write;
 
+use frixel_layers::{FingerLaw, LawPoint};
+
 use super::compile_error::CompileError;
 use super::fields::read_text;
 
@@ -28,19 +30,19 @@ pub struct FingerProfile {
     pub friction_coefficient: f64,
     /// Normal load for which scenes are compiled, 0 to 50 N.
     pub normal_load_n: f64,
-    /// Radius of curvature at the contact, 0.1 to 100 mm.
+    /// Radius of curvature at the contact, 0.1 to 100 mm; 0 for an empirical law, which has none.
     pub radius_mm: f64,
     /// How the finger gives way under a load.
     pub elasticity: Elasticity,
     /// Stratum corneum and air between coating and living tissue, as an effective gap (thickness over permittivity), 0
-    /// to 10,000 um. It is added to that of the screen's coating.
+    /// to 10,000 um. It is added to that of the screen's coating. 0 for an empirical law.
     pub skin_gap_um: f64,
     /// How the numbers came about.
     pub evidence: Evidence,
 }
 
 /// How a finger gives way under a load.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Elasticity {
     /// Springs of one stiffness, Eq. (10).
     WinklerFuss {
@@ -56,6 +58,40 @@ pub enum Elasticity {
         /// Dimensionless constant `B` of Eq. (24), 0.001 to 1000.
         shape_constant: f64,
     },
+    /// None is known: the electric friction was measured as a function of the voltage, on one screen, under one load.
+    /// The profile's evidence is [`Evidence::Empirical`].
+    Empirical(MeasuredLaw),
+}
+
+/// Electric friction as a function of the voltage, as it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredLaw {
+    /// Power of the voltage with which friction grows below the first point, 0.5 to 12.
+    pub exponent: f64,
+    /// 1 to 16 points: rms voltage in volts, electric friction in newtons. Both rise.
+    pub points: Vec<(f64, f64)>,
+    /// 95 % interval of the friction of each point, in newtons.
+    pub intervals_n: Vec<(f64, f64)>,
+}
+
+impl MeasuredLaw {
+    /// Largest rms voltage of the measurement, in volts. The law ends there.
+    pub fn voltage_max_v_rms(&self) -> f64 {
+        self.points.last().map_or(0.0, |(voltage_v_rms, _)| *voltage_v_rms)
+    }
+
+    /// The law as a scene carries it, in `f32`; `None` if it has no point, or too many.
+    pub(crate) fn of_scene(&self) -> Option<FingerLaw> {
+        let points: Vec<LawPoint> = self
+            .points
+            .iter()
+            .map(|&(voltage_v_rms, electric_friction_n)| LawPoint {
+                voltage_v_rms: voltage_v_rms as f32,
+                electric_friction_n: electric_friction_n as f32,
+            })
+            .collect();
+        FingerLaw::new(self.exponent as f32, &points)
+    }
 }
 
 /// What a profile rests on. Friction that is computed from it is called *assumed* unless it was measured.
@@ -85,6 +121,12 @@ pub enum Evidence {
         /// Least and largest normal load of the measurement, in newtons.
         normal_load_range_n: [f64; 2],
     },
+    /// A force sensor measured friction, and the contact model does not describe it: the profile has a
+    /// [`MeasuredLaw`].
+    Empirical {
+        /// Where, when and how.
+        experiment: Experiment,
+    },
 }
 
 /// An experiment with a finger.
@@ -107,6 +149,8 @@ pub enum Origin {
     Perceptual,
     /// A force sensor measured it.
     Measured,
+    /// A force sensor measured it, and the contact model does not describe it.
+    Empirical,
 }
 
 impl Origin {
@@ -116,6 +160,23 @@ impl Origin {
             Self::Assumed => "assumed",
             Self::Perceptual => "perceptual",
             Self::Measured => "measured",
+            Self::Empirical => "empirical",
+        }
+    }
+
+    /// [`Self::newtons_suffix`] of the origin of a word; that of an assumed one for other words.
+    pub fn newtons_suffix_of(word: &str) -> &'static str {
+        let origins = [Self::Assumed, Self::Perceptual, Self::Measured, Self::Empirical];
+        origins.into_iter().find(|origin| origin.word() == word).unwrap_or(Self::Assumed).newtons_suffix()
+    }
+
+    /// What is put behind newtons, with a comma and a space before it; empty for a measured finger. What a person said
+    /// gives no newtons, so that those of a perceptual profile are assumed, too.
+    pub const fn newtons_suffix(self) -> &'static str {
+        match self {
+            Self::Assumed | Self::Perceptual => ", assumed",
+            Self::Measured => "",
+            Self::Empirical => ", empirical",
         }
     }
 }
@@ -127,6 +188,7 @@ impl Evidence {
             Self::Assumed => Origin::Assumed,
             Self::Perceptual { .. } => Origin::Perceptual,
             Self::Measured { .. } => Origin::Measured,
+            Self::Empirical { .. } => Origin::Empirical,
         }
     }
 
@@ -134,7 +196,9 @@ impl Evidence {
     pub fn experiment(&self) -> Option<&Experiment> {
         match self {
             Self::Assumed => None,
-            Self::Perceptual { experiment, .. } | Self::Measured { experiment, .. } => Some(experiment),
+            Self::Perceptual { experiment, .. }
+            | Self::Measured { experiment, .. }
+            | Self::Empirical { experiment } => Some(experiment),
         }
     }
 }

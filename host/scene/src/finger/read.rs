@@ -1,6 +1,8 @@
 //! Reads the fields of a finger profile.
 
-use super::{Elasticity, Evidence, Experiment, FingerProfile, Origin};
+use frixel_layers::LAW_POINTS_MAX;
+
+use super::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
 use crate::fields::Fields;
 use crate::grammar::FieldSpec;
 use crate::log::Log;
@@ -8,20 +10,25 @@ use crate::mistake::FieldMistake;
 use crate::tables::finger as table;
 
 const MODELS: [(&str, bool); 2] = [("winkler-fuss", false), ("soft", true)];
-const ORIGINS: [(&str, Origin); 3] = [
+const ORIGINS: [(&str, Origin); 4] = [
     (Origin::Assumed.word(), Origin::Assumed),
     (Origin::Perceptual.word(), Origin::Perceptual),
     (Origin::Measured.word(), Origin::Measured),
+    (Origin::Empirical.word(), Origin::Empirical),
 ];
 
 /// Reads a whole table, that of a file or `[finger]` of a scene.
 pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
     let friction_coefficient = fields.number(log, &table::FRICTION_COEFFICIENT);
     let normal_load_n = fields.number(log, &table::NORMAL_LOAD_N);
-    let radius_mm = fields.number(log, &table::RADIUS_MM);
-    let elasticity = elasticity(&mut fields, log);
-    let skin_gap_um = fields.number(log, &table::SKIN_GAP_UM);
-    let evidence = evidence(&mut fields, log);
+    let origin = fields.choice_or_nearest(log, &table::ORIGIN, &ORIGINS).unwrap_or(Origin::Assumed);
+    let (radius_mm, elasticity, skin_gap_um) = if origin == Origin::Empirical {
+        (Some(0.0), law(&mut fields, log).map(Elasticity::Empirical), Some(0.0))
+    } else {
+        let radius_mm = fields.number(log, &table::RADIUS_MM);
+        (radius_mm, elasticity(&mut fields, log), fields.number(log, &table::SKIN_GAP_UM))
+    };
+    let evidence = evidence(origin, &mut fields, log);
     fields.close(log);
     Some(FingerProfile {
         friction_coefficient: friction_coefficient?,
@@ -49,9 +56,42 @@ fn elasticity(fields: &mut Fields, log: &mut Log) -> Option<Elasticity> {
     })
 }
 
-fn evidence(fields: &mut Fields, log: &mut Log) -> Option<Evidence> {
-    match fields.choice_or_nearest(log, &table::ORIGIN, &ORIGINS).unwrap_or(Origin::Assumed) {
+/// The law of an empirical profile.
+fn law(fields: &mut Fields, log: &mut Log) -> Option<MeasuredLaw> {
+    let exponent = fields.number(log, &table::EXPONENT);
+    let place = fields.place(table::POINTS.name);
+    let points = fields.pairs(log, &table::POINTS);
+    let intervals_place = fields.place(table::INTERVALS_N.name);
+    let intervals_n = fields.pairs(log, &table::INTERVALS_N);
+    let law = MeasuredLaw { exponent: exponent?, points: points?, intervals_n: intervals_n? };
+    let count = law.points.len();
+    let Some(of_scene) = law.of_scene() else {
+        let field = table::POINTS.name;
+        log.add(place, FieldMistake::Count { field, found: count, min: 1, max: LAW_POINTS_MAX });
+        return None;
+    };
+    if let Err(error) = of_scene.up_to(of_scene.voltage_max_v_rms()) {
+        log.add(place, FieldMistake::Law { reason: error.to_string() });
+        return None;
+    }
+    if law.intervals_n.len() != count {
+        let (field, found) = (table::INTERVALS_N.name, law.intervals_n.len());
+        log.add(intervals_place, FieldMistake::Count { field, found, min: count, max: count });
+        return None;
+    }
+    let outside = law.points.iter().zip(&law.intervals_n).find(|((_, n), (low, high))| !(low..=high).contains(&n));
+    if let Some(((_, friction_n), (low, high))) = outside {
+        let reason = format!("a friction of {friction_n} N is outside of its interval, {low} to {high} N");
+        log.add(intervals_place, FieldMistake::Law { reason });
+        return None;
+    }
+    Some(law)
+}
+
+fn evidence(origin: Origin, fields: &mut Fields, log: &mut Log) -> Option<Evidence> {
+    match origin {
         Origin::Assumed => Some(Evidence::Assumed),
+        Origin::Empirical => experiment(fields, log).map(|experiment| Evidence::Empirical { experiment }),
         Origin::Perceptual => {
             let experiment = experiment(fields, log);
             let threshold_v_rms = fields.number(log, &table::THRESHOLD_V_RMS);

@@ -25,6 +25,19 @@ measured_voltage_max_v_rms = 150
 measured_normal_load_range_n = [0.25, 0.35]
 ";
 
+/// A whole profile.
+const EMPIRICAL: &str = "\
+friction_coefficient = 0.4
+normal_load_n = 0.3
+exponent = 2.5
+points = [[40, 0.002], [150, 0.06]]
+intervals_n = [[0.001, 0.003], [0.05, 0.07]]
+origin = \"empirical\"
+date = \"2026-11-23\"
+method = \"load cell, means of 40 strokes\"
+screen = \"lab/tablet 3\"
+";
+
 const PERCEPTUAL: &str = "\
 origin = \"perceptual\"
 date = \"2026-11-22\"
@@ -35,7 +48,7 @@ threshold_interval_v_rms = [19, 26]
 ";
 
 #[test]
-fn the_three_origins_are_read() {
+fn the_origins_are_read() {
     let parse = |text: &str| FingerProfile::parse(text, "finger.toml").expect("it reads");
     assert_eq!(parse(ASSUMED).evidence.origin(), Origin::Assumed);
     let measured = parse(&format!("{ASSUMED}{MEASURED}"));
@@ -45,10 +58,17 @@ fn the_three_origins_are_read() {
     let perceptual = parse(&format!("{ASSUMED}{PERCEPTUAL}"));
     let Evidence::Perceptual { threshold_interval_v_rms, .. } = perceptual.evidence else { panic!() };
     assert_eq!(threshold_interval_v_rms, [19.0, 26.0]);
+    let empirical = parse(EMPIRICAL);
+    assert_eq!(empirical.evidence.origin(), Origin::Empirical);
+    let Elasticity::Empirical(law) = &empirical.elasticity else { panic!() };
+    assert_eq!((law.exponent, &law.points[..]), (2.5, &[(40.0, 0.002), (150.0, 0.06)][..]));
+    assert_eq!((law.voltage_max_v_rms(), &law.intervals_n[..]), (150.0, &[(0.001, 0.003), (0.05, 0.07)][..]));
 }
 
 #[test]
 fn a_written_profile_reads_back_the_same() {
+    let empirical = FingerProfile::parse(EMPIRICAL, "finger.toml").expect("it reads");
+    assert_eq!(FingerProfile::parse(&empirical.to_toml(), "finger.toml"), Ok(empirical));
     for evidence in ["", MEASURED, PERCEPTUAL] {
         for elasticity in [
             "stiffness_pa_per_m = 1e7",

@@ -11,8 +11,15 @@ pub(super) fn text(profile: &FingerProfile) -> String {
     let FingerProfile { friction_coefficient, normal_load_n, radius_mm, elasticity, skin_gap_um, evidence } = profile;
     lines.number(table::FRICTION_COEFFICIENT.name, *friction_coefficient);
     lines.number(table::NORMAL_LOAD_N.name, *normal_load_n);
-    lines.number(table::RADIUS_MM.name, *radius_mm);
+    if let Elasticity::Empirical(law) = elasticity {
+        lines.number(table::EXPONENT.name, law.exponent);
+        lines.pairs(table::POINTS.name, &law.points);
+        lines.pairs(table::INTERVALS_N.name, &law.intervals_n);
+    } else {
+        lines.number(table::RADIUS_MM.name, *radius_mm);
+    }
     match *elasticity {
+        Elasticity::Empirical(_) => {}
         Elasticity::WinklerFuss { stiffness_pa_per_m } => {
             lines.number(table::STIFFNESS_PA_PER_M.name, stiffness_pa_per_m);
         }
@@ -23,7 +30,9 @@ pub(super) fn text(profile: &FingerProfile) -> String {
             lines.number(table::SHAPE_CONSTANT.name, shape_constant);
         }
     }
-    lines.number(table::SKIN_GAP_UM.name, *skin_gap_um);
+    if !matches!(elasticity, Elasticity::Empirical(_)) {
+        lines.number(table::SKIN_GAP_UM.name, *skin_gap_um);
+    }
     lines.text(table::ORIGIN.name, evidence.origin().word());
     if let Some(Experiment { date, method, screen }) = evidence.experiment() {
         lines.text(table::DATE.name, date);
@@ -31,7 +40,7 @@ pub(super) fn text(profile: &FingerProfile) -> String {
         lines.text(table::SCREEN.name, screen);
     }
     match *evidence {
-        Evidence::Assumed => {}
+        Evidence::Assumed | Evidence::Empirical { .. } => {}
         Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms, .. } => {
             lines.number(table::THRESHOLD_V_RMS.name, threshold_v_rms);
             lines.interval(table::THRESHOLD_INTERVAL_V_RMS.name, threshold_interval_v_rms);
@@ -63,6 +72,11 @@ impl Lines {
 
     fn interval(&mut self, field: &str, [low, high]: [f64; 2]) {
         let _ = writeln!(self.0, "{field} = [{}, {}]", written(low), written(high));
+    }
+
+    fn pairs(&mut self, field: &str, pairs: &[(f64, f64)]) {
+        let pairs: Vec<String> = pairs.iter().map(|&(a, b)| format!("[{}, {}]", written(a), written(b))).collect();
+        let _ = writeln!(self.0, "{field} = [{}]", pairs.join(", "));
     }
 
     fn text(&mut self, field: &str, text: &str) {

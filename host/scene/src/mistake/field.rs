@@ -159,6 +159,12 @@ pub enum FieldMistake {
         /// The second number.
         high: f64,
     },
+    /// The numbers of an empirical law are none.
+    #[error("`exponent`, `points` and `intervals_n` are no law: {reason}")]
+    Law {
+        /// What is wrong, and what is possible.
+        reason: String,
+    },
     /// A date is not `YYYY-MM-DD`.
     #[error("`date = \"{found}\"` is not a day: write it as \"YYYY-MM-DD\"")]
     Date {

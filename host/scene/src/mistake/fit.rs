@@ -16,6 +16,17 @@ pub enum FitMistake {
         /// The board's limit.
         max: usize,
     },
+    /// The drive may go beyond the empirical law of the finger.
+    #[error(
+        "the drive goes up to {found_v_rms} V rms, and this finger was measured up to {measured_v_rms} V rms; what it \
+         feels above nobody knows: write `voltage_max_v_rms = {measured_v_rms}` under [drive]"
+    )]
+    BeyondLaw {
+        /// Largest rms voltage of the drive, V.
+        found_v_rms: f64,
+        /// Largest rms voltage of the measurement, V.
+        measured_v_rms: f64,
+    },
     /// A region extends past the screen.
     #[error(
         "{layer} reaches {beyond_mm} mm past the {edge} edge of the {screen_width_mm} mm x {screen_height_mm} mm screen: \

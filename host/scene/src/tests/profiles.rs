@@ -4,6 +4,7 @@
 use super::*;
 use crate::{Elasticity, Evidence, FingerProfile, Origin, Screen, Warning, migrate};
 use frixel_layers::Header;
+use frixel_wire::hello::feature;
 
 /// All of a scene of version 2 but its layers: the example screen and finger.
 const SHORT: &str = "version = 2\n";
@@ -231,4 +232,29 @@ fn a_scene_of_version_one_plays_as_before() {
     assert!((program.reach.electric_friction_max_n - 0.02778).abs() < 5e-6, "{:?}", program.reach);
     assert_eq!(program.finger.origin, Origin::Assumed);
     assert_eq!(program.records.len(), 1);
+}
+
+const EMPIRICAL: &str = "[finger]\nfriction_coefficient = 0.4\nnormal_load_n = 0.5\norigin = \"empirical\"\n\
+                         date = \"2026-11-23\"\nmethod = \"load cell\"\nscreen = \"example\"\nexponent = 2\n\
+                         points = [[50, 0.004], [100, 0.03], [150, 0.09]]\n\
+                         intervals_n = [[0.003, 0.005], [0.025, 0.035], [0.08, 0.1]]\n";
+
+#[test]
+fn an_empirical_finger_is_compiled_to_its_law() {
+    let text = |volts: u32| {
+        format!("{SHORT}{EMPIRICAL}[drive]\nvoltage_max_v_rms = {volts}\n{LAYER}").replace("0.3\n", "0.22\n")
+    };
+    let compiled = program(&parse(&text(150)).expect("it reads")).expect("it compiles");
+    assert_eq!((compiled.finger.origin, compiled.finger.newtons_suffix()), (Origin::Empirical, ", empirical"));
+    assert!((compiled.reach.natural_friction_n - 0.2).abs() < 1e-6);
+    assert!((compiled.reach.electric_friction_max_n - 0.09).abs() < 1e-6, "{:?}", compiled.reach);
+    assert!(compiled.features() & feature::EMPIRICAL != 0);
+    let bytes = compiled.scene_bytes();
+    assert_eq!(frixel_layers::Scene::parse(&bytes).expect("a board reads it").header(), &compiled.header);
+    let lower = program(&parse(&text(100)).expect("it reads")).expect("it compiles");
+    assert!((lower.reach.electric_friction_max_n - 0.03).abs() < 1e-6, "{:?}", lower.reach);
+    assert!(program(&parse(&text(151)).expect("it reads")).is_err());
+    let draft = compile::compile_draft(&parse(&text(200)).expect("it reads"), &LIMITS, TICK_HZ).expect("it is drawn");
+    assert!(draft.is_draft());
+    assert_eq!(draft.header.voltage_max_v_rms.to_bits(), 150.0_f32.to_bits());
 }

@@ -5,7 +5,7 @@ use std::sync::mpsc;
 use crate::rigs::EmulatedStream;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
-use frixel_hil_sim::{Stroke, World, WorldConfig, contact_of};
+use frixel_hil_sim::{Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene};
 
 use super::follow::follow;
@@ -52,7 +52,7 @@ fn world(program: &Program, simulated: &SimulatedWorld, stroke: Stroke, seed: u6
         ..WorldConfig::default()
     };
     let mut world = World::new(simulated.config(config), stroke, seed)?;
-    world.set_finger(contact_of(&program.header).map_err(CommandError::Finger)?);
+    world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
     simulated.set_finger(&mut world);
     Ok(world)
 }

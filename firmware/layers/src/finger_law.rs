@@ -1,0 +1,83 @@
+//! The empirical law of a finger, as a scene carries it.
+
+use frixel_model::{EmpiricalLaw, LawError, LawPoint};
+
+use crate::point::{POINT_LEN, Point};
+
+/// Most points of a law that this build takes: none without laws.
+pub const LAW_POINTS_MAX: usize = if cfg!(feature = "empirical") { EmpiricalLaw::POINTS_MAX } else { 0 };
+
+/// The numbers of an [`EmpiricalLaw`]: the exponent below its first point, and its points, 1 to [`LAW_POINTS_MAX`].
+/// Whether they are a law is checked at the commit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FingerLaw {
+    exponent: f32,
+    count: u8,
+    points: [LawPoint; LAW_POINTS_MAX],
+}
+
+impl FingerLaw {
+    /// The law of these numbers; `None` if there is no point, or there are too many.
+    pub fn new(exponent: f32, points: &[LawPoint]) -> Option<Self> {
+        let mut law = Self::without_points(exponent, u8::try_from(points.len()).ok()?)?;
+        for (to, from) in law.points.iter_mut().zip(points) {
+            *to = *from;
+        }
+        Some(law)
+    }
+
+    /// A law whose points are zero.
+    pub(crate) fn without_points(exponent: f32, count: u8) -> Option<Self> {
+        let zero = LawPoint { voltage_v_rms: 0.0, electric_friction_n: 0.0 };
+        (1..=LAW_POINTS_MAX).contains(&usize::from(count)).then_some(Self {
+            exponent,
+            count,
+            points: [zero; LAW_POINTS_MAX],
+        })
+    }
+
+    /// Sets the points from their bytes in a scene.
+    pub(crate) fn read_points(&mut self, bytes: &[[u8; POINT_LEN]]) {
+        for (to, Point { x, y }) in self.points.iter_mut().zip(bytes.iter().map(Point::parse)) {
+            *to = LawPoint { voltage_v_rms: x, electric_friction_n: y };
+        }
+    }
+
+    /// The bytes of the points, which follow those of the scene's own points.
+    pub fn write_points(&self) -> impl Iterator<Item = u8> + use<> {
+        let Self { points, count, .. } = *self;
+        points
+            .into_iter()
+            .take(usize::from(count))
+            .flat_map(|point| Point { x: point.voltage_v_rms, y: point.electric_friction_n }.write())
+    }
+
+    /// The power of the voltage with which friction grows below the first point.
+    pub const fn exponent(&self) -> f32 {
+        self.exponent
+    }
+
+    /// Number of points.
+    pub const fn point_count(&self) -> u8 {
+        self.count
+    }
+
+    /// The points, from the least voltage on.
+    pub fn points(&self) -> &[LawPoint] {
+        self.points.get(..usize::from(self.count)).unwrap_or_default()
+    }
+
+    /// Voltage of the last point, V rms: the law ends there.
+    pub fn voltage_max_v_rms(&self) -> f32 {
+        self.points().last().map_or(0.0, |last| last.voltage_v_rms)
+    }
+
+    /// The law up to a largest voltage.
+    ///
+    /// # Errors
+    ///
+    /// The numbers are no law, or the voltage is above that of the last point.
+    pub fn up_to(&self, voltage_max_v_rms: f32) -> Result<EmpiricalLaw, LawError> {
+        EmpiricalLaw::new(self.exponent, self.points(), voltage_max_v_rms)
+    }
+}

@@ -1,0 +1,83 @@
+//! Steady friction of a finger on a screen: by the contact model, or by an empirical law.
+
+use crate::{Contact, EmpiricalLaw, LoadedContact, ParameterError};
+
+/// Steady friction as a function of the voltage, under one normal load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "there is no allocator, and few of them")]
+pub enum FrictionLaw {
+    /// By the contact model.
+    Contact(LoadedContact<f64>),
+    /// As it was measured.
+    Empirical(MeasuredFriction),
+}
+
+/// An empirical law, with the friction at no voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredFriction {
+    /// The law, measured under one normal load.
+    pub law: EmpiricalLaw,
+    /// Friction coefficient without voltage.
+    pub friction_coefficient: f64,
+    /// Normal load, N. The law does not depend on it: under another load than that of the measurement, only the
+    /// friction at no voltage differs, because nobody has measured more.
+    pub normal_load_n: f64,
+}
+
+impl FrictionLaw {
+    /// Friction at no voltage, `mu F_N`, in newtons.
+    pub fn natural_friction_n(&self) -> f64 {
+        match self {
+            Self::Contact(contact) => contact.natural_friction_n(),
+            Self::Empirical(measured) => measured.friction_coefficient * measured.normal_load_n,
+        }
+    }
+
+    /// Normal load in newtons.
+    pub fn normal_load_n(&self) -> f64 {
+        match self {
+            Self::Contact(contact) => {
+                let scales: &Contact<f64> = contact.contact();
+                contact.natural_friction_n() / (scales.friction_scale_n() / scales.load_scale_n())
+            }
+            Self::Empirical(measured) => measured.normal_load_n,
+        }
+    }
+
+    /// Electric friction in newtons at an rms voltage of zero or more.
+    pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
+        match self {
+            Self::Contact(contact) => contact.electric_friction_n(voltage_v_rms),
+            Self::Empirical(measured) => measured.law.electric_friction_n(voltage_v_rms),
+        }
+    }
+
+    /// The rms voltage in volts for an electric friction in newtons; zero for zero and less.
+    pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
+        match self {
+            Self::Contact(contact) => contact.voltage_v_rms(electric_friction_n),
+            Self::Empirical(measured) => measured.law.voltage_v_rms(electric_friction_n),
+        }
+    }
+
+    /// The same finger under another load.
+    ///
+    /// # Errors
+    ///
+    /// The load is negative or not finite, or too large for the contact model.
+    pub fn under_load(&self, normal_load_n: f64) -> Result<Self, ParameterError> {
+        match *self {
+            Self::Contact(contact) => contact.contact().under_load(normal_load_n).map(Self::Contact),
+            Self::Empirical(measured) => {
+                let normal_load_n = crate::error::not_negative("normal_load_n", normal_load_n)?;
+                Ok(Self::Empirical(MeasuredFriction { normal_load_n, ..measured }))
+            }
+        }
+    }
+}
+
+impl From<LoadedContact<f64>> for FrictionLaw {
+    fn from(contact: LoadedContact<f64>) -> Self {
+        Self::Contact(contact)
+    }
+}
