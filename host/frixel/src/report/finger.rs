@@ -3,6 +3,8 @@
 use frixel_model::{Contact, Finger, ParameterError, Real};
 use frixel_scene::Program;
 
+use super::error::ReportError;
+
 /// The finger of a program.
 pub(super) struct DrawnFinger {
     pub(super) finger: Finger<f64>,
@@ -15,8 +17,11 @@ pub(super) struct DrawnFinger {
 }
 
 impl DrawnFinger {
-    /// The finger that a program is compiled for, by the board's numbers.
-    pub(super) fn of(program: &Program) -> Self {
+    /// The finger that a program is compiled for, by the board's numbers. Rejects one without a contact model.
+    pub(super) fn of(program: &Program) -> Result<Self, ReportError> {
+        if program.header.law.is_some() {
+            return Err(ReportError::EmpiricalFinger { title: program.finger.title.clone() });
+        }
         let (header, reach) = (&program.header, &program.reach);
         let finger = Finger {
             radius_m: header.finger_radius_m.into(),
@@ -37,7 +42,7 @@ impl DrawnFinger {
             1e3 * reach.electric_friction_max_n,
             reach.voltage_max_v_rms,
         );
-        Self { finger, gap_m, load_n, caption }
+        Ok(Self { finger, gap_m, load_n, caption })
     }
 
     /// The finger on its gap, in either precision.

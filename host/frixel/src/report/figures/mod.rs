@@ -20,7 +20,7 @@ use super::page::Answer;
 
 /// The answers, and all figures in the order of the page.
 pub(super) fn all(subject: &Subject, counts: &Counts) -> Result<(Vec<Answer>, Vec<Figure>), ReportError> {
-    let drawn = &DrawnFinger::of(subject.program);
+    let drawn = &DrawnFinger::of(subject.program)?;
     let measured = run_time::measure(drawn)?;
     let instructions = run_time::against_instructions(&measured, drawn, counts)?;
     let inversions = BoardCostFigure::new(instructions.as_ref());

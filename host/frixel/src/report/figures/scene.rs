@@ -2,7 +2,6 @@
 
 use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::RigConfig;
-use frixel_model::ContactModel;
 
 use super::{Figure, ReportError, Subject};
 use crate::rehearsal::board_costs;
@@ -118,20 +117,16 @@ pub(super) fn figure(subject: &Subject, counts: &Counts) -> Result<(Figure, Vec<
 
 /// Friction over voltage, with what the scene asks for.
 fn friction(subject: &Subject, check: &SceneCheck) -> Result<Panel, ReportError> {
-    let contact = subject.program.loaded_contact()?;
+    let law = subject.program.header.friction_law()?;
     let volts = check.reach.voltage_max_v_rms;
     let curve = (0..=POINTS).map(|point| {
         let voltage_v_rms = volts * f64::from(point) / f64::from(POINTS);
-        Ok((voltage_v_rms, 1e3 * contact.state(voltage_v_rms)?.friction_n))
+        (voltage_v_rms, 1e3 * (law.natural_friction_n() + law.electric_friction_n(voltage_v_rms)))
     });
     let most_mn = 1.08e3 * check.reach.total_max_n;
     let mut panel =
         Panel::new("Reach", Axis::linear("voltage, V rms", 0.0..volts), Axis::linear("friction, mN", 0.0..most_mn));
-    panel.add(
-        "friction of the finger",
-        Look::line(PALETTE[0], Line::Solid),
-        curve.collect::<Result<_, ReportError>>()?,
-    );
+    panel.add("friction of the finger", Look::line(PALETTE[0], Line::Solid), curve.collect());
     for (name, friction_n) in [("least that is asked for", check.asked.least_n), ("most", check.asked.most_n)] {
         let friction_mn = (1e3 * friction_n).min(most_mn);
         panel.add(name, Look::line(PALETTE[1], Line::Dashed), vec![(0.0, friction_mn), (volts, friction_mn)]);
