@@ -28,12 +28,9 @@ impl FingerLaw {
 
     /// A law whose points are zero.
     pub(crate) fn without_points(exponent: f32, count: u8) -> Option<Self> {
-        let zero = LawPoint { voltage_v_rms: 0.0, electric_friction_n: 0.0 };
-        (1..=LAW_POINTS_MAX).contains(&usize::from(count)).then_some(Self {
-            exponent,
-            count,
-            points: [zero; LAW_POINTS_MAX],
-        })
+        let points = [LawPoint { voltage_v_rms: 0.0, electric_friction_n: 0.0 }; LAW_POINTS_MAX];
+        let has_room = points.get(usize::from(count).checked_sub(1)?).is_some();
+        has_room.then_some(Self { exponent, count, points })
     }
 
     /// Sets the points from their bytes in a scene.

@@ -9,8 +9,10 @@ use frixel_wire::message::{Command, FromBoard, Request};
 use frixel_wire::payload::Payload;
 
 use super::command::frame_of;
-use super::link::KEEP_ALIVE_TIMEOUT;
 
+/// How long a link keeps the board alive after the application's last call. The link then sends nothing more, and the
+/// board sets its output to zero when its host timeout has passed.
+pub const KEEP_ALIVE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Sequence numbers of pings, one after the other. No request has them. They are so many that no two pings under way
 /// have the same.
 pub(super) const PING_SEQUENCES: RangeInclusive<u16> = 0xffc0..=0xffff;

@@ -56,8 +56,9 @@ pub use control::{ControlError, ControlLine};
 pub use device::{Counters, Device, Event, StreamSettings, StreamStatus};
 pub use error::{DeviceError, LinkClosed};
 pub use exchange::Waiting;
+pub use keep_alive::KEEP_ALIVE_TIMEOUT;
 pub use keep_alive::KeepAlive;
-pub use link::{KEEP_ALIVE_TIMEOUT, Link, Written};
+pub use link::{Link, Written};
 #[cfg(feature = "native")]
 pub use native::{DEFAULT_BAUD, PortError, PortInfo, SerialLink, UsbDevice, ports};
 pub use polling::{ByteStream, PollingLink};

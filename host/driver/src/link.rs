@@ -5,10 +5,6 @@ use std::time::Duration;
 use super::error::LinkClosed;
 use super::keep_alive::sequence_of_ping;
 
-/// How long a link keeps the board alive after the application's last call. The link then sends nothing more, and the
-/// board sets its output to zero when its host timeout has passed.
-pub const KEEP_ALIVE_TIMEOUT: Duration = Duration::from_secs(1);
-
 /// A connection to one board, with its own clock.
 ///
 /// [`Device`](crate::Device) runs the protocol over it. [`PollingLink`](crate::PollingLink) implements it over any byte

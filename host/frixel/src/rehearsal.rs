@@ -28,17 +28,11 @@ pub enum RehearsalError {
 
 /// What the simulated board of `rig` needs for a program that was compiled for it. Uploads the program once.
 pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, RehearsalError> {
-    Ok(BoardCosts::of(program, rig, wire_bytes(program, rig)?))
-}
-
-/// Bytes that the host sends, without the hello, until an empty board has accepted a scene.
-fn wire_bytes(program: &Program, rig: &RigConfig) -> Result<usize, RehearsalError> {
     let mut memory = BoardMemory::new();
     let header = &program.header;
     let stroke = Stroke::sweep(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
-    let mut device =
-        Device::connect(PollingLink::new(SimStream::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle())))?;
-    let before = device.counters().wire_bytes;
-    load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;
-    Ok((device.counters().wire_bytes - before) as usize)
+    let stream = SimStream::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle());
+    let mut device = Device::connect(PollingLink::new(stream))?;
+    let wire_bytes = load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;
+    Ok(BoardCosts::of(program, rig, wire_bytes))
 }

@@ -1,8 +1,8 @@
 //! A board that plays a program: the one piece of code for the command, the page and the experiments.
 //!
 //! The input is a compiled [`Program`](frixel_scene::Program), changes of its layers, and the samples of a stream. The
-//! output is calls on a [`Device`](frixel_driver::Device) over any link, and calls to the [`PlayListener`](frixel_felt::recorder::PlayListener) of that
-//! link, which records what is felt.
+//! output is calls on a [`Device`](frixel_driver::Device) over any link, and calls to the
+//! [`PlayListener`](frixel_felt::recorder::PlayListener) of that link, which records what is felt.
 //!
 //! - [`Player`]: plays a program, replaces it by another one, changes its layers, ends triggers, and streams samples.
 //! - [`LiveLayers`]: the settings of the layers while they play.

@@ -178,7 +178,7 @@ impl LiveLayers {
 
     /// Switches off the layer of a trigger that has ended by `now`; `None` if no trigger has ended. The change carries no
     /// notice: the board clamps what it clamped before the trigger.
-    pub fn end_trigger(&self, now: Duration) -> Option<LayerChange> {
+    pub(crate) fn end_trigger(&self, now: Duration) -> Option<LayerChange> {
         let (record, _) = *self.triggered.iter().find(|(_, ends_at)| *ends_at <= now)?;
         let setting = LayerSetting { on: false, ..self.setting(record) };
         Some(LayerChange { record, setting, clamped: None, trigger: TriggerChange::End })
@@ -214,7 +214,7 @@ impl LiveLayers {
     }
 
     /// When the next trigger ends.
-    pub fn next_end(&self) -> Option<Duration> {
+    pub(crate) fn next_end(&self) -> Option<Duration> {
         self.triggered.iter().map(|(_, ends_at)| *ends_at).min()
     }
 

@@ -17,14 +17,17 @@ pub fn start<L: Link>(
     device.play()
 }
 
-/// Disarms a board, whatever state an earlier client left it in, then uploads the program without playing it.
+/// Disarms a board, whatever state an earlier client left it in, then uploads the program without playing it. Returns
+/// the bytes that this took on the line to the board.
 pub fn load<L: Link>(
     device: &mut Device<L>,
     program: &Program,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<(), DeviceError> {
+) -> Result<u64, DeviceError> {
+    let before = device.counters().wire_bytes;
     device.disarm()?;
-    upload(device, program, progress)
+    upload(device, program, progress)?;
+    Ok(device.counters().wire_bytes - before)
 }
 
 /// Uploads a program and commits it, in any state of the board.

@@ -26,10 +26,13 @@ pub struct LayerSetting {
 
 /// Layers ask for friction that the drive cannot give, so that it is clamped.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{layers} would ask for {} N above natural friction, and 0 to {reach_n} N can be reached", side(*.asked_n, *.reach_n))]
+#[error(
+    "{} would ask for {} N above natural friction, and 0 to {reach_n} N can be reached", listed(&.layers.iter().collect::<Vec<_>>()),
+    side(*.asked_n, *.reach_n)
+)]
 pub struct Clamped {
-    /// The layers.
-    pub layers: String,
+    /// The layers, from bottom to top.
+    pub layers: Vec<LayerTitle>,
     /// The friction that they ask for, N above natural friction.
     pub asked_n: f64,
     /// The most that can be reached, rounded down, N above natural friction.
@@ -46,11 +49,11 @@ impl Program {
     pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
         let within = self.within_reach();
         let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
-        let titles: Vec<&LayerTitle> = excess.layers.iter().filter_map(|number| self.titles.get(*number)).collect();
+        let titles = excess.layers.iter().filter_map(|number| self.titles.get(*number));
         let Interval { low, high } = excess.found;
         let is_above = high - within.high > within.low - low;
         Some(Clamped {
-            layers: listed(&titles),
+            layers: titles.cloned().collect(),
             asked_n: if is_above { digits(high, up) } else { digits(low, down) },
             reach_n: digits(self.reach.electric_friction_max_n, f64::floor),
         })

@@ -31,6 +31,7 @@ impl Display for LayerNumber {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LayerTitle {
     number: LayerNumber,
+    name: Option<String>,
     text: String,
 }
 
@@ -45,12 +46,17 @@ impl LayerTitle {
     /// ```
     pub fn new(number: LayerNumber, name: Option<&str>, kind: &str) -> Self {
         let text = name.map_or_else(|| format!("layer {number} ({kind})"), |name| format!("layer {number} \"{name}\""));
-        Self { number, text }
+        Self { number, name: name.map(str::to_owned), text }
     }
 
     /// The number of the layer.
     pub fn number(&self) -> LayerNumber {
         self.number
+    }
+
+    /// The layer's name, for a place too small for the title; the title of a layer without a name.
+    pub fn name_or_title(&self) -> &str {
+        self.name.as_deref().unwrap_or(&self.text)
     }
 
     /// The title as messages have it.

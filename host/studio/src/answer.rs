@@ -3,10 +3,13 @@
 use std::fmt::Display;
 
 use frixel_scene::{Diagnostic, DiagnosticKind, Program};
+use frixel_wire::fault::{Flags, State};
+use frixel_wire::hello::Hello;
+use frixel_wire::message::Telemetry;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::host::HostError;
+use crate::host_error::HostError;
 use crate::program::ProgramError;
 
 /// A sentence about a scene, and where in the text it belongs. Lines and columns count from 1, columns in characters.
@@ -79,4 +82,75 @@ pub(crate) fn error(error: &HostError, entry: &str) -> Value {
         error => vec![Problem::error(error)],
     };
     json!({ "error": error.to_string(), "problems": problems, "isLinkLost": error.is_link_lost() })
+}
+
+/// A board that was connected to: `driving`, what Arm drives, and `isSimulated`.
+pub(crate) fn board(hello: &Hello) -> Value {
+    json!({ "driving": driven_board(hello), "isSimulated": hello.board.is_simulated() })
+}
+
+/// What Arm drives, in words that stand on its button: with the board's notices, which a person reads before the press.
+fn driven_board(hello: &Hello) -> String {
+    let board = hello.board;
+    let sentence = if board.is_simulated() {
+        format!("{board}, which has no electrode")
+    } else {
+        format!("{board} with an electrode, up to {} V peak", hello.limits.voltage_max_v_peak)
+    };
+    hello.notice_sentences().fold(sentence, |sentence, notice| sentence + "; note: " + notice)
+}
+
+/// A state as the page knows it.
+pub(crate) fn state_word(state: State) -> &'static str {
+    match state {
+        State::Disarmed => "disarmed",
+        State::Armed => "armed",
+        State::Active => "active",
+        State::Faulted => "faulted",
+    }
+}
+
+/// A telemetry message. The board reports the electric part of its target; `natural_n` is the rest.
+pub(crate) fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
+    json!({
+        "tick": telemetry.tick,
+        "xMm": 1e3 * f64::from(telemetry.finger_x_m),
+        "yMm": 1e3 * f64::from(telemetry.finger_y_m),
+        "speedMmPerS": 1e3 * f64::from(telemetry.speed_m_per_s),
+        "isTouched": !telemetry.flags.contains(Flags::NO_FINGER),
+        "referenceN": natural_n + f64::from(telemetry.asked_electric_friction_n),
+        "voltageV": telemetry.voltage_v_rms,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause, notice};
+
+    use super::*;
+
+    #[test]
+    fn the_words_on_the_button_that_arms_a_board_hold_its_notices() {
+        let mut hello = Hello {
+            protocol: (1, 4),
+            firmware: (0, 1, 0),
+            board: BoardKind::NucleoG474re,
+            id: [0; 12],
+            tick_hz: 40_000,
+            frame_max_len: 192,
+            features: 0,
+            scene_crc32: 0,
+            reset_cause: ResetCause::PowerOn,
+            last_fault: None,
+            fault_detail: 0,
+            state: State::Disarmed,
+            limits: BoardLimits { voltage_max_v_peak: 300.0, ..BoardLimits::UNSTATED },
+            notices: 0,
+        };
+        assert_eq!(driven_board(&hello), "NUCLEO-G474RE with an electrode, up to 300 V peak");
+        hello.notices = notice::LIMITS_ABOVE_CEILINGS | notice::STORED_SCENE_SKIPPED;
+        let said = driven_board(&hello);
+        assert!(said.contains("300 V peak; note: ") && said.contains("above the ceilings"), "{said}");
+        assert!(said.contains("stored scene"), "{said}");
+    }
 }

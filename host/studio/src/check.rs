@@ -10,7 +10,7 @@ use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::{problems, problems_of};
-use crate::host::HostError;
+use crate::host_error::HostError;
 use crate::layers::layers;
 use crate::program::{drafted, for_drafts};
 use crate::request::Request;
@@ -59,16 +59,9 @@ fn screen(scene: &Scene) -> Value {
 
 /// What a simulated board needs for a program: uploads it once, without playing it.
 fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
-    Ok(BoardCosts::of(program, config, wire_bytes(program, config)?))
-}
-
-/// Bytes that the host sends, without the hello, until an empty board has accepted a scene.
-fn wire_bytes(program: &Program, config: &RigConfig) -> Result<usize, HostError> {
     let mut memory = BoardMemory::new();
-    let stream = RigStream::new(&mut memory, config, 1)?;
-    let mut device = Device::connect(PollingLink::new(stream))?;
-    let before = device.counters().wire_bytes;
+    let mut device = Device::connect(PollingLink::new(RigStream::new(&mut memory, config, 1)?))?;
     let loaded = load(&mut device, program, &mut |_| ControlFlow::Continue(()));
-    loaded.map_err(|error| HostError::Refused(error.into()))?;
-    Ok((device.counters().wire_bytes - before) as usize)
+    let wire_bytes = loaded.map_err(|error| HostError::Refused(error.into()))?;
+    Ok(BoardCosts::of(program, config, wire_bytes))
 }

@@ -10,14 +10,13 @@
 use std::cell::RefCell;
 use std::time::Duration;
 
-use frixel_wire::fault::{Fault, Flags, State};
-use frixel_wire::hello::Hello;
-use frixel_wire::message::Telemetry;
+use frixel_wire::fault::{Fault, State};
 use serde_json::{Value, json};
 
 use crate::answer;
 use crate::felt::COLUMNS;
-use crate::host::{self, Host, HostError, stream_mut};
+use crate::host::{self, Host, stream_mut};
+use crate::host_error::HostError;
 use crate::link_stream::LinkStream;
 use crate::map::MAP_HEAD;
 use crate::pointer::PointerSample;
@@ -189,14 +188,14 @@ pub extern "C" fn simulator_run(ticks: u32, is_alive: u32) -> i32 {
 
 /// Connects to the board at the other end of the stream. Suspends.
 ///
-/// The answer has `driving`, a sentence, `isSimulated`, and `voltageMaxV`, the largest peak voltage of the board.
+/// The answer has `driving`, a sentence, and `isSimulated`.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_connect() -> i32 {
     respond(|| {
         HOST.set(None);
         let mut host = host::connect(LinkStream::new())?;
         host.device_mut().subscribe(TELEMETRY_TICKS)?;
-        let answer = driving(host.device().hello());
+        let answer = answer::board(host.device().hello());
         HOST.set(Some(host));
         Ok(answer)
     })
@@ -257,9 +256,11 @@ pub extern "C" fn host_wait(wait_ms: f64) -> i32 {
         host.wait(Duration::from_secs_f64(1e-3 * wait_ms.max(0.0)))?;
         let natural_n = host.playing().map_or(0.0, |playing| playing.program().reach.natural_friction_n);
         let messages = stream_mut(host).take_telemetry();
-        let telemetry: Vec<Value> = messages.iter().map(|message| telemetry(message, natural_n)).collect();
+        let telemetry = messages.iter().map(|message| answer::telemetry(message, natural_n));
+        let telemetry: Vec<Value> = telemetry.collect();
         let (state, fault) = host.state();
-        Ok(json!({ "state": state_word(state), "fault": fault.map(sentence), "telemetry": telemetry }))
+        let (state, fault) = (answer::state_word(state), fault.as_ref().map(Fault::to_string));
+        Ok(json!({ "state": state, "fault": fault, "telemetry": telemetry }))
     })
 }
 
@@ -269,49 +270,8 @@ pub extern "C" fn state_words(state: u32, fault: u32) -> i32 {
     respond(|| {
         let state = u8::try_from(state).ok().and_then(|state| State::try_from(state).ok());
         let fault = u8::try_from(fault).ok().and_then(|fault| Fault::try_from(fault).ok());
-        Ok(json!({ "state": state.map(state_word), "fault": fault.map(sentence) }))
-    })
-}
-
-fn driving(hello: &Hello) -> Value {
-    let (is_simulated, voltage_v) = (hello.board.is_simulated(), hello.limits.voltage_max_v_peak);
-    json!({ "driving": driven_board(hello), "isSimulated": is_simulated, "voltageMaxV": voltage_v })
-}
-
-/// What Arm drives, in words that stand on its button: with the board's notices, which a person reads before the press.
-fn driven_board(hello: &Hello) -> String {
-    let board = hello.board;
-    let sentence = if board.is_simulated() {
-        format!("{board}, which has no electrode")
-    } else {
-        format!("{board} with an electrode, up to {} V peak", hello.limits.voltage_max_v_peak)
-    };
-    hello.notice_sentences().fold(sentence, |sentence, notice| sentence + "; note: " + notice)
-}
-
-fn state_word(state: State) -> &'static str {
-    match state {
-        State::Disarmed => "disarmed",
-        State::Armed => "armed",
-        State::Active => "active",
-        State::Faulted => "faulted",
-    }
-}
-
-fn sentence(fault: Fault) -> String {
-    fault.to_string()
-}
-
-/// A telemetry message. The board reports the electric part of its target; `natural_n` is the rest.
-fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
-    json!({
-        "tick": telemetry.tick,
-        "xMm": 1e3 * f64::from(telemetry.finger_x_m),
-        "yMm": 1e3 * f64::from(telemetry.finger_y_m),
-        "speedMmPerS": 1e3 * f64::from(telemetry.speed_m_per_s),
-        "isTouched": !telemetry.flags.contains(Flags::NO_FINGER),
-        "referenceN": natural_n + f64::from(telemetry.asked_electric_friction_n),
-        "voltageV": telemetry.voltage_v_rms,
+        let (state, fault) = (state.map(answer::state_word), fault.as_ref().map(Fault::to_string));
+        Ok(json!({ "state": state, "fault": fault }))
     })
 }
 
@@ -346,36 +306,4 @@ fn respond_bytes(act: impl FnOnce() -> Result<Vec<u8>, HostError>) -> i32 {
     };
     OUTPUT.set(bytes);
     code
-}
-
-#[cfg(test)]
-mod tests {
-    use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause, notice};
-
-    use super::*;
-
-    #[test]
-    fn the_words_on_the_button_that_arms_a_board_hold_its_notices() {
-        let mut hello = Hello {
-            protocol: (1, 4),
-            firmware: (0, 1, 0),
-            board: BoardKind::NucleoG474re,
-            id: [0; 12],
-            tick_hz: 40_000,
-            frame_max_len: 192,
-            features: 0,
-            scene_crc32: 0,
-            reset_cause: ResetCause::PowerOn,
-            last_fault: None,
-            fault_detail: 0,
-            state: State::Disarmed,
-            limits: BoardLimits { voltage_max_v_peak: 300.0, ..BoardLimits::UNSTATED },
-            notices: 0,
-        };
-        assert_eq!(driven_board(&hello), "NUCLEO-G474RE with an electrode, up to 300 V peak");
-        hello.notices = notice::LIMITS_ABOVE_CEILINGS | notice::STORED_SCENE_SKIPPED;
-        let said = driven_board(&hello);
-        assert!(said.contains("300 V peak; note: ") && said.contains("above the ceilings"), "{said}");
-        assert!(said.contains("stored scene"), "{said}");
-    }
 }

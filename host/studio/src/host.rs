@@ -1,77 +1,13 @@
 //! The host of a board: plays the scenes of requests on it and carries out control lines, over any byte stream.
 
-use frixel_driver::{ByteStream, ControlError, ControlLine, Device, DeviceError, PollingLink};
-use frixel_hil_sim::{StrokeError, WorldError};
-use frixel_play::{PlayError, Player, Recorded};
+use frixel_driver::{ByteStream, ControlLine, Device, DeviceError, PollingLink};
+use frixel_play::{Player, Recorded};
 use frixel_scene::Program;
-
 use frixel_wire::hello::Hello;
-use thiserror::Error;
 
-use crate::program::{ProgramError, compiled};
+use crate::host_error::HostError;
+use crate::program::compiled;
 use crate::request::Request;
-
-/// Why a request of the page was not carried out.
-#[derive(Debug, Error)]
-pub enum HostError {
-    /// The scene has mistakes.
-    #[error(transparent)]
-    Program(#[from] ProgramError),
-    /// The board, the line to it, or a change of what plays failed.
-    #[error(transparent)]
-    Play(#[from] PlayError),
-    /// The board refuses a scene that the compiler accepts.
-    #[error("the board does not take this scene: {0}")]
-    Refused(PlayError),
-    /// The world of the simulator could not be built.
-    #[error(transparent)]
-    World(WorldError),
-    /// The world's finger could not be built.
-    #[error(transparent)]
-    Stroke(StrokeError),
-    /// A control line has a mistake.
-    #[error(transparent)]
-    Control(#[from] ControlError),
-    /// A control line that a page does not carry out.
-    #[error("`{line}` is not carried out in a page: write layer or trigger")]
-    NotInPage {
-        /// The line.
-        line: String,
-    },
-    /// The scene extrapolates from a measured finger, which only a simulator plays.
-    #[error("{warning}: only the simulator plays it like this")]
-    Unmeasured {
-        /// The compiler's warning.
-        warning: String,
-    },
-    /// The scene would play on after the page is gone, which only a simulator may.
-    #[error("this scene plays without its host, so a board would drive on without this page: leave `autonomous` out")]
-    Autonomous,
-    /// There is no board.
-    #[error("no board is connected: connect one, or use the simulator")]
-    NoBoard,
-}
-
-impl From<DeviceError> for HostError {
-    fn from(error: DeviceError) -> Self {
-        Self::Play(error.into())
-    }
-}
-
-impl HostError {
-    /// Whether the board can no longer be talked to over this line: it is silent, gone or restarted.
-    pub(crate) fn is_link_lost(&self) -> bool {
-        let Self::Play(PlayError::Device(error)) = self else { return false };
-        matches!(
-            error,
-            DeviceError::NoHello { .. }
-                | DeviceError::Silent { .. }
-                | DeviceError::Vanished { .. }
-                | DeviceError::Restarted { .. }
-                | DeviceError::TelemetryBackwards { .. }
-        )
-    }
-}
 
 /// The host of a board over a byte stream.
 pub(crate) type Host<S> = Player<PollingLink<S>>;
@@ -132,6 +68,7 @@ mod tests {
     use frixel_driver::LinkClosed;
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, RigConfig};
+    use frixel_play::PlayError;
     use frixel_wire::fault::State;
 
     use super::*;

@@ -20,6 +20,7 @@ mod check;
 pub mod exports;
 mod felt;
 mod host;
+mod host_error;
 mod layers;
 mod link_stream;
 mod map;
@@ -32,7 +33,7 @@ mod simulator;
 mod used_files;
 
 pub use check::check;
-pub use host::HostError;
+pub use host_error::HostError;
 pub use program::ProgramError;
 pub use request::{Numbers, Request, RequestError};
 pub use seeded::seeded_hash;

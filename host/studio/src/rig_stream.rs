@@ -9,7 +9,7 @@ use frixel_play::Recorded;
 use frixel_wire::fault::{Fault, State};
 
 use crate::felt::FeltSampler;
-use crate::host::HostError;
+use crate::host_error::HostError;
 use crate::pointer::{Finger, Pointer};
 
 /// The line to a simulated board. Each tick of virtual time passes in [`Self::step`].

@@ -8,7 +8,8 @@ use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord};
 use frixel_layers::Header;
 use frixel_play::Recorded;
 
-use crate::host::{HostError, connect, load, stream_mut};
+use crate::host::{connect, load, stream_mut};
+use crate::host_error::HostError;
 use crate::pointer::PointerSample;
 use crate::request::Request;
 use crate::rig_stream::RigStream;

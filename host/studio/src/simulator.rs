@@ -8,7 +8,8 @@ use frixel_play::PlayError;
 use frixel_wire::fault::{Fault, State};
 
 use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
-use crate::host::{self, Host, HostError, stream_mut};
+use crate::host::{self, Host, stream_mut};
+use crate::host_error::HostError;
 use crate::pointer::{Pointer, PointerSample};
 use crate::program::{drafted, for_drafts};
 use crate::request::Request;

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use frixel_scene::{FileUnavailable, Files, Scene};
 use serde_json::{Value, json};
 
-use crate::host::HostError;
+use crate::host_error::HostError;
 use crate::program::ProgramError;
 use crate::request::Request;
 

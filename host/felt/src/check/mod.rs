@@ -1,5 +1,4 @@
 //! The cost of a scene, and the friction that a finger will feel of it, computed before it is played.
-
 //!
 //! The input is a program, the limits of the board that it was compiled for, and what that board needs for it
 //! ([`BoardCosts`]). The output is [`SceneCheck`], as text for a person or as JSON.
@@ -11,13 +10,12 @@ mod text;
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
+use frixel_scene::{Program, TargetRange, middle_mm};
 use frixel_wire::hello::BoardLimits;
 use serde::Serialize;
 
-pub use board::BoardImage;
-
 use crate::perception::Perception;
-use frixel_scene::{Program, TargetRange, middle_mm};
+pub use board::BoardImage;
 
 /// What a board needs for a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,15 +31,15 @@ pub struct BoardCosts {
 }
 
 impl BoardCosts {
-    /// What the simulated board of `rig` needs for a program that it has accepted after so many bytes from the host.
-    pub fn of(program: &Program, rig: &RigConfig, wire_total_bytes: usize) -> Self {
+    /// What the board of `rig` needs for a program that it has accepted, after so many bytes on its line.
+    pub fn of(program: &Program, rig: &RigConfig, wire_total_bytes: u64) -> Self {
         let scene = program.scene_bytes();
         // This parse does not fail: the board has parsed the same bytes.
         let taken = WireScene::parse(&scene).ok();
         let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
         let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
         let (table_rows, table_rows_whole) = table.map_or((0, 0), |rows| (rows.filled, rows.whole));
-        Self { wire_total_bytes, active_bytes, table_rows, table_rows_whole }
+        Self { wire_total_bytes: wire_total_bytes as usize, active_bytes, table_rows, table_rows_whole }
     }
 }
 

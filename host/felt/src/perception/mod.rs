@@ -24,10 +24,9 @@ use click::ClickStep;
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
 use slide::Slide;
-pub use thresholds::{
-    NATURAL_NOISE_RMS_N, NEAR_THRESHOLD, NOISE_BAND_HZ, TEXTURE_MIN_HZ, VOLTAGE_DIFFERENCE_DB, Verdict, WEBER_FRACTION,
-    lag_gain, natural_noise_amplitude_n, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text,
-};
+pub use thresholds::{NATURAL_NOISE_RMS_N, Verdict, weber_steps, weber_steps_safe};
+pub(crate) use thresholds::{NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, weber_steps_text};
+use thresholds::{lag_gain, natural_noise_amplitude_n, texture_threshold_n};
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
 const SPEEDS_M_PER_S: [f64; 3] = [0.02, USUAL_M_PER_S, 0.1];

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Weber fraction of friction: the smallest change of the total friction that is felt, for a transient decrease
 /// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). It holds for steps and says nothing about fine textures.
-pub const WEBER_FRACTION: f64 = 0.11;
+pub(crate) const WEBER_FRACTION: f64 = 0.11;
 
 /// Weber fraction that rubber needed under active touch, rounded up to the 0.27 of force discrimination below 0.5 N
 /// (Fehlberg 2022, doi:10.1007/978-3-031-06249-0_3: 0.2; doi:10.1038/s41598-022-12010-0: 0.15 to 0.27). A step above it
@@ -14,17 +14,17 @@ pub const WEBER_FRACTION: f64 = 0.11;
 pub(super) const WEBER_FRACTION_SAFE: f64 = 0.27;
 
 /// Difference threshold of electrovibration voltage, dB (doi:10.1038/s41598-018-22865-x).
-pub const VOLTAGE_DIFFERENCE_DB: f64 = 1.21;
+pub(crate) const VOLTAGE_DIFFERENCE_DB: f64 = 1.21;
 
-/// Root mean square of a finger's own friction noise from [`NOISE_BAND_HZ`], N. Its spectral density falls as 1/f, so
+/// Root mean square of a finger's own friction noise from 10 to 1,000 Hz, N. Its spectral density falls as 1/f, so
 /// each octave has the same share. Computed from one trial of one bare finger at 0.53 N and 40 mm/s
 /// (romangrigorii/data-driven-playback).
 pub const NATURAL_NOISE_RMS_N: f64 = 4.5e-3;
 /// Band of [`NATURAL_NOISE_RMS_N`], Hz.
-pub const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
+const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
 
 /// Below this frequency, Hz, a change of friction counts as a step. Above it, it counts as a texture.
-pub const TEXTURE_MIN_HZ: f64 = 10.0;
+pub(super) const TEXTURE_MIN_HZ: f64 = 10.0;
 
 /// Smallest vibration that is felt: frequency in Hz and displacement amplitude in micrometres, from the four-channel
 /// model of Bolanowski et al. 1988 (doi:10.1121/1.397184). Quoted from memory.
@@ -44,7 +44,7 @@ pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 /// What [`Verdict::NearThreshold`] means, for a person. It is about a range of contrast, from the smallest Weber
 /// fraction of the studies to the largest one, or a factor of 3 on both sides of a texture's threshold; no study says
 /// which share of people is how far above it.
-pub const NEAR_THRESHOLD: &str = "near the threshold, where some people or some strokes will not notice it";
+pub(crate) const NEAR_THRESHOLD: &str = "near the threshold, where some people or some strokes will not notice it";
 
 /// Whether a person feels something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -52,7 +52,7 @@ pub const NEAR_THRESHOLD: &str = "near the threshold, where some people or some 
 pub enum Verdict {
     /// Too small for anyone in the studies.
     NotFelt,
-    /// Near the threshold, see [`NEAR_THRESHOLD`].
+    /// Near the threshold, where some people or some strokes will not notice it.
     #[serde(rename = "felt_by_some")]
     NearThreshold,
     /// Felt by everyone in the studies.
@@ -112,7 +112,7 @@ pub fn weber_steps(from_n: f64, to_n: f64) -> f64 {
 
 /// A number of Weber steps with one digit after the point, or with as many more as its verdict needs: 2.3 is felt, and
 /// 2.28 is near the threshold.
-pub fn weber_steps_text(weber_steps: f64) -> String {
+pub(crate) fn weber_steps_text(weber_steps: f64) -> String {
     let rounded = |digits: i32| (weber_steps * 10f64.powi(digits)).round() / 10f64.powi(digits);
     let is_faithful = |digits: &i32| Verdict::of_step(rounded(*digits)) == Verdict::of_step(weber_steps);
     let digits = (1..=3).find(is_faithful).unwrap_or(3);
@@ -129,7 +129,7 @@ pub fn weber_steps_safe() -> f64 {
 ///
 /// It is the displacement threshold times the magnitude of the fingertip's tangential impedance, `|k + 2 pi i f c|`,
 /// interpolated in the logarithms of frequency and displacement. It holds within a factor of 3.
-pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
+pub(super) fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
     let pair = DISPLACEMENT_THRESHOLD_UM.windows(2).find_map(|pair| match pair {
         [from, to] if (from.0..=to.0).contains(&frequency_hz) => Some((*from, *to)),
         _ => None,
@@ -142,7 +142,7 @@ pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
 }
 
 /// Amplitude of a sine with the power of a finger's own friction noise in the third of an octave around a frequency, N.
-pub fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
+pub(super) fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
     let (from_hz, to_hz) = NOISE_BAND_HZ;
     if !(from_hz..=to_hz).contains(&frequency_hz) {
         return 0.0;
@@ -152,7 +152,7 @@ pub fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
 }
 
 /// The part of a texture's amplitude that is left behind the lag of friction, from 0 to 1.
-pub fn lag_gain(wavelength_mm: f64) -> f64 {
+pub(super) fn lag_gain(wavelength_mm: f64) -> f64 {
     1.0 / libm::hypot(1.0, std::f64::consts::TAU * 1e3 * RELAXATION_LENGTH_M / wavelength_mm)
 }
 

@@ -13,6 +13,7 @@ mod plan;
 mod progress;
 mod rigs;
 mod simulated_world;
+mod target;
 mod watch;
 mod with_log;
 
@@ -27,7 +28,7 @@ use super::terminal::{self, note, note_refusals, print_line};
 use super::waiting;
 use live_scene::LiveScene;
 use outputs::PlayFiles;
-use rigs::Target;
+use target::Target;
 
 /// Results of a play.
 struct Played {

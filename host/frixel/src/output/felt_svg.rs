@@ -1,7 +1,8 @@
 //! `felt.svg`: friction and voltage over time.
 
 use super::off_strip;
-use super::trace::{Extremes, Span, Trace, TracedLayer};
+use super::span::{Extremes, Span, TracedLayer};
+use super::trace::Trace;
 use super::{DrawingError, Subject, svg};
 use frixel_chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
 use frixel_scene::Reach;
@@ -110,7 +111,7 @@ fn layers(trace: &Trace) -> Option<Strip> {
                 // Cells that follow each other touch.
                 let start_s = before.filter(|_| last.is_some()).map_or(span.start_s, |before| before.x.end);
                 let colour = PALETTE.get(layer.index % PALETTE.len()).copied().filter(|_| !layer.is_off);
-                let text = format!("{}{}", short(trace.title(layer)), if layer.is_off { " off" } else { "" });
+                let text = format!("{}{}", trace.name(layer), if layer.is_off { " off" } else { "" });
                 cells.push(StripCell { x: start_s..span.end_s, text, colour });
             }
             (None, _) => {}
@@ -118,11 +119,6 @@ fn layers(trace: &Trace) -> Option<Strip> {
         last = span.layer;
     }
     (!cells.is_empty()).then(|| Strip { label: "layer".to_owned(), cells })
-}
-
-/// The name of a layer without its number; the whole title if it has no name.
-fn short(title: &str) -> &str {
-    title.split('"').nth(1).unwrap_or(title)
 }
 
 /// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.

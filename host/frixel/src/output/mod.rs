@@ -23,6 +23,7 @@ mod preview_png;
 mod report;
 mod scene_png;
 mod score_svg;
+mod span;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -39,7 +40,8 @@ pub use preview_png::draw_preview_png;
 pub(crate) use report::{Effects, Report, WorldReport, draft_line};
 pub(crate) use scene_png::draw_scene_png;
 pub(crate) use score_svg::draw_score_svg;
-pub(crate) use trace::{Trace, TracedLayer};
+pub(crate) use span::TracedLayer;
+pub(crate) use trace::Trace;
 
 /// The subject of a picture, from which its title is made.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,32 +1,10 @@
 //! The strip of `felt.svg` that says why the output is off while a finger is on the screen.
 
-use frixel_felt::recorder::FeltRow;
-use frixel_wire::fault::Flags;
-
-use super::trace::Span;
+use super::span::{OFF_REASONS, Span};
 use frixel_chart::{Line, Look, PALETTE, Panel, Strip, StripCell};
 
-/// Below this voltage the output counts as off, V rms: on the example finger it adds some micronewtons.
-const OFF_BELOW_V_RMS: f64 = 1.0;
 /// Opacity of the samples in the legend, as in the strip.
 const OPACITY: f64 = 0.3;
-
-/// The flags that switch the output off, the strongest reason first, and what they mean on a screen with a finger.
-const REASONS: [(Flags, &str); 5] = [
-    (Flags::HOST_SILENT, "the host is silent"),
-    (Flags::TOUCH_STALE, "the touch reports are too old"),
-    (Flags::NO_FINGER, "the board knows of no finger: touch reports are late or lost"),
-    (Flags::STILL, "the finger stands still"),
-    (Flags::STREAM_DRY, "the stream has no samples"),
-];
-
-/// Why the output is off at a row, as an index for [`REASONS`]; `None` where it is on, where there is no finger, and
-/// where the scene has no friction.
-pub(super) fn reason(row: &FeltRow) -> Option<usize> {
-    let is_off = row.x_mm.is_some() && row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms < OFF_BELOW_V_RMS);
-    let flags = row.flags.filter(|_| is_off)?;
-    REASONS.iter().position(|(flag, _)| flags.contains(*flag))
-}
 
 /// Adds the strip to a panel, and its reasons to the legend; nothing if the output is never off.
 pub(super) fn add_to(panel: &mut Panel, spans: &[Span]) {
@@ -44,7 +22,7 @@ pub(super) fn add_to(panel: &mut Panel, spans: &[Span]) {
         }
         last = off;
     }
-    for (reason, (_, meaning)) in REASONS.iter().enumerate() {
+    for (reason, (_, meaning)) in OFF_REASONS.iter().enumerate() {
         if cells.iter().any(|(other, _)| *other == reason) {
             let look = Look::line(colour(reason), Line::Filled(OPACITY));
             panel.add(&format!("output off: {meaning}"), look, Vec::new());

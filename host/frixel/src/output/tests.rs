@@ -7,7 +7,7 @@ use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
 use proptest::prelude::*;
 
-use super::trace::Extremes;
+use super::span::Extremes;
 use super::*;
 use crate::output_file::{Inputs, OutputFile};
 use crate::scene_file;

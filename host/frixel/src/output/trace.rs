@@ -3,7 +3,7 @@
 use frixel_felt::recorder::FeltRow;
 use frixel_scene::LayerTitle;
 
-use super::off_strip;
+use super::span::{Span, TracedLayer};
 
 /// Largest number of time spans that are kept.
 const SPANS_MAX: usize = 1_600;
@@ -16,9 +16,6 @@ const PLACE_STEP_MM: f64 = 0.2;
 const SPEEDS_MAX: usize = 8_192;
 /// A finger slower than this is left out of the median, mm/s.
 const SLIDES_FROM_MM_S: f64 = 2.0;
-/// A span counts as off if the output is off in this part of its rows. In a long play, the moments at which the finger
-/// turns are less. A pause of a tenth of a second is not, in a play of up to ten minutes.
-const OFF_PART_MIN: f64 = 0.1;
 
 /// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
 #[derive(Clone, Debug)]
@@ -33,14 +30,6 @@ pub(crate) struct Trace {
     way_mm: f64,
     last_place_mm: Option<(f64, f64)>,
     layers: Vec<LayerTitle>,
-}
-
-/// A layer that [`Trace::layer`] knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TracedLayer {
-    /// Index of its title.
-    pub(super) index: usize,
-    pub(super) is_off: bool,
 }
 
 /// Every n-th speed of the sliding finger.
@@ -71,90 +60,6 @@ impl Speeds {
         let mut sorted = self.mm_s.clone();
         sorted.sort_by(f64::total_cmp);
         sorted.get(sorted.len() / 2).copied()
-    }
-}
-
-/// The extremes over consecutive rows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
-    pub(super) start_s: f64,
-    pub(super) end_s: f64,
-    pub(super) wanted_n: Option<Extremes>,
-    pub(super) asked_n: Option<Extremes>,
-    pub(super) felt_n: Option<Extremes>,
-    pub(super) voltage_v_rms: Option<Extremes>,
-    /// Length of the finger's way at the end of the span, mm.
-    pub(super) way_mm: f64,
-    /// The topmost layer under the finger at the end of the span.
-    pub(super) layer: Option<TracedLayer>,
-    pub(super) rows: u32,
-    pub(super) off_rows: u32,
-    /// The strongest reason for which the output is off at one of these rows, see [`off_strip::reason`].
-    pub(super) off_reason: Option<usize>,
-}
-
-/// Least and largest value of a quantity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extremes {
-    pub(super) least: f64,
-    pub(super) largest: f64,
-}
-
-impl Extremes {
-    fn of(value: Option<f64>) -> Option<Self> {
-        value.filter(|value| value.is_finite()).map(|value| Self { least: value, largest: value })
-    }
-
-    /// The extremes of both ranges together.
-    pub(super) fn joined(self, other: Self) -> Self {
-        Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
-    }
-
-    fn join(one: Option<Self>, other: Option<Self>) -> Option<Self> {
-        match (one, other) {
-            (Some(one), Some(other)) => Some(one.joined(other)),
-            _ => one.or(other),
-        }
-    }
-}
-
-impl Span {
-    fn of(row: &FeltRow, way_mm: f64, layer: Option<TracedLayer>) -> Self {
-        let off_reason = off_strip::reason(row);
-        Self {
-            way_mm,
-            layer,
-            rows: 1,
-            off_rows: u32::from(off_reason.is_some()),
-            off_reason,
-            start_s: row.t_s,
-            end_s: row.t_s,
-            wanted_n: Extremes::of(row.wanted_n),
-            asked_n: Extremes::of(row.asked_n),
-            felt_n: Extremes::of(row.felt_n),
-            voltage_v_rms: Extremes::of(row.voltage_v_rms),
-        }
-    }
-
-    fn join(&self, later: &Self) -> Self {
-        Self {
-            start_s: self.start_s,
-            end_s: later.end_s,
-            wanted_n: Extremes::join(self.wanted_n, later.wanted_n),
-            asked_n: Extremes::join(self.asked_n, later.asked_n),
-            felt_n: Extremes::join(self.felt_n, later.felt_n),
-            way_mm: later.way_mm,
-            layer: later.layer,
-            rows: self.rows + later.rows,
-            off_rows: self.off_rows + later.off_rows,
-            off_reason: self.off_reason.into_iter().chain(later.off_reason).min(),
-            voltage_v_rms: Extremes::join(self.voltage_v_rms, later.voltage_v_rms),
-        }
-    }
-
-    /// Why the output is off; `None` if it is on for nearly all of the span.
-    pub(super) fn off(&self) -> Option<usize> {
-        self.off_reason.filter(|_| f64::from(self.off_rows) >= OFF_PART_MIN * f64::from(self.rows))
     }
 }
 
@@ -205,9 +110,9 @@ impl Trace {
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));
     }
 
-    /// The title of a layer.
-    pub(super) fn title(&self, layer: TracedLayer) -> &str {
-        self.layers.get(layer.index).map_or("", LayerTitle::as_str)
+    /// The name of a layer; its title if it has no name.
+    pub(super) fn name(&self, layer: TracedLayer) -> &str {
+        self.layers.get(layer.index).map_or("", LayerTitle::name_or_title)
     }
 
     /// Spans in order of time.

@@ -74,6 +74,11 @@ export class Engine {
     this.#checker = new WorkerClient("checker", (message) => this.onFailure(message));
   }
 
+  /** What `onState` was told last; at the start, the simulator. */
+  get state() {
+    return { link: this.#link, ...this.#state };
+  }
+
   async start() {
     const module = this.#module;
     const board = this.#board.start({ module, seed: this.#seed });
@@ -141,7 +146,7 @@ export class Engine {
   /** @param {Omit<T.State, "link">} state */
   #report(state) {
     this.#state = state;
-    const now = { link: this.#link, ...state };
+    const now = this.state;
     if (JSON.stringify(now) === this.#reported) return;
     this.#reported = JSON.stringify(now);
     this.onState(now);

@@ -49,7 +49,7 @@ export class Board {
   constructor(engine) {
     this.#engine = engine;
     engine.onState = (state) => this.#show(state);
-    this.#show({ link: "simulator", state: "disarmed", needsArm: false, driving: "the simulator in this page" });
+    this.#show(engine.state);
     byId("board").textContent = "Simulator: starting…";
     byId("open-board").onclick = () => this.#open();
     byId("arm").onclick = () => attempt(() => engine.arm());

@@ -12,8 +12,8 @@ use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
 use super::plan::Plan;
-use super::rigs::Target;
 use super::simulated_world::SimulatedWorld;
+use super::target::Target;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
 /// Plays on the firmware in an emulator, under a simulated finger.

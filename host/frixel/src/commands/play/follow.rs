@@ -15,7 +15,7 @@ use super::live_scene::LiveScene;
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
-use super::rigs::Target;
+use super::target::Target;
 use super::{CommandError, Interrupt, PlayArgs, Played, note, waiting};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.

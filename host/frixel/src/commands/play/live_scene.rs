@@ -12,7 +12,7 @@ use frixel_wire::hello::BoardLimits;
 
 use super::outputs::PlayFiles;
 use super::plan::{check_measured, print_notes};
-use super::rigs::Target;
+use super::target::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
 
 /// Loads and compiles scenes while one plays.

@@ -11,7 +11,7 @@ use frixel_felt::recorder::FeltRow;
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
 use super::super::experiment::cut_off;
-use super::rigs::Target;
+use super::target::Target;
 use super::with_log::joined;
 use super::{CommandError, PlayArgs};
 

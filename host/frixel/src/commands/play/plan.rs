@@ -14,7 +14,7 @@ use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
 use super::super::stroke::check_on_screen;
-use super::rigs::Target;
+use super::target::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
 
 /// Time for which the finger is lifted before it repeats a stroke that is shorter than the stream, s.

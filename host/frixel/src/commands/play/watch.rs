@@ -6,7 +6,8 @@ use std::time::Duration;
 use crate::scene_file::SceneFiles;
 
 use super::outputs::PlayFiles;
-use super::rigs::{self, Target};
+use super::rigs;
+use super::target::Target;
 use super::{CommandError, Interrupt, PlayArgs, finish, note};
 
 /// Time between two checks of the files.

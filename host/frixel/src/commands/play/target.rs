@@ -1,0 +1,56 @@
+//! The kinds of board that `--port` can name.
+
+use frixel_hil_sim::RigConfig;
+use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
+use frixel_wire::hello::{BoardLimits, Hello};
+
+/// Kind of the board that plays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// The simulated board in this process.
+    Simulator,
+    /// The firmware in an emulator.
+    Emulator,
+    /// A board on a serial port, real or virtual.
+    Port,
+}
+
+impl Target {
+    /// The kind of board that `--port` names.
+    pub(super) fn of(port: &str) -> Self {
+        match port {
+            "sim" => Self::Simulator,
+            "qemu" => Self::Emulator,
+            _ => Self::Port,
+        }
+    }
+
+    /// Whether the play runs in the board's own time, with a finger that is simulated beside it.
+    pub(super) fn is_virtual_time(self) -> bool {
+        self != Self::Port
+    }
+
+    /// Compiles a scene for this kind of board. Only the simulator in this process plays drafts.
+    pub(super) fn compile(self, scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
+        match self {
+            Self::Simulator => compile_draft(scene, limits, tick_hz),
+            Self::Emulator | Self::Port => compile(scene, limits, tick_hz),
+        }
+    }
+
+    /// The limits and the tick rate that scenes are compiled for. The simulator's own limit of time is lifted while it
+    /// plays, for drafts.
+    pub(super) fn limits(self, hello: &Hello) -> (BoardLimits, u32) {
+        let board = RigConfig::default().board;
+        if self == Self::Simulator { (board.limits, board.tick_hz) } else { (hello.limits, hello.tick_hz) }
+    }
+
+    /// The name of this kind in the report.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Simulator => "sim",
+            Self::Emulator => "qemu",
+            Self::Port => "board",
+        }
+    }
+}

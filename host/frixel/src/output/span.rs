@@ -1,0 +1,119 @@
+//! What a picture shows of consecutive rows of a play.
+
+use frixel_felt::recorder::FeltRow;
+use frixel_wire::fault::Flags;
+
+/// Below this voltage the output counts as off, V rms: on the example finger it adds some micronewtons.
+const OFF_BELOW_V_RMS: f64 = 1.0;
+/// A span counts as off if the output is off in this part of its rows. In a long play, the moments at which the finger
+/// turns are less. A pause of a tenth of a second is not, in a play of up to ten minutes.
+const OFF_PART_MIN: f64 = 0.1;
+
+/// The flags that switch the output off, the strongest reason first, and what they mean on a screen with a finger.
+pub(super) const OFF_REASONS: [(Flags, &str); 5] = [
+    (Flags::HOST_SILENT, "the host is silent"),
+    (Flags::TOUCH_STALE, "the touch reports are too old"),
+    (Flags::NO_FINGER, "the board knows of no finger: touch reports are late or lost"),
+    (Flags::STILL, "the finger stands still"),
+    (Flags::STREAM_DRY, "the stream has no samples"),
+];
+
+/// A layer that [`Trace::layer`](super::trace::Trace::layer) knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TracedLayer {
+    /// Index of its title.
+    pub(super) index: usize,
+    pub(super) is_off: bool,
+}
+
+/// The extremes over consecutive rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub(super) start_s: f64,
+    pub(super) end_s: f64,
+    pub(super) wanted_n: Option<Extremes>,
+    pub(super) asked_n: Option<Extremes>,
+    pub(super) felt_n: Option<Extremes>,
+    pub(super) voltage_v_rms: Option<Extremes>,
+    /// Length of the finger's way at the end of the span, mm.
+    pub(super) way_mm: f64,
+    /// The topmost layer under the finger at the end of the span.
+    pub(super) layer: Option<TracedLayer>,
+    pub(super) rows: u32,
+    pub(super) off_rows: u32,
+    /// The strongest reason for which the output is off at one of these rows, an index for [`OFF_REASONS`].
+    pub(super) off_reason: Option<usize>,
+}
+
+/// Least and largest value of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extremes {
+    pub(super) least: f64,
+    pub(super) largest: f64,
+}
+
+impl Extremes {
+    fn of(value: Option<f64>) -> Option<Self> {
+        value.filter(|value| value.is_finite()).map(|value| Self { least: value, largest: value })
+    }
+
+    /// The extremes of both ranges together.
+    pub(super) fn joined(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
+    }
+
+    fn join(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        match (one, other) {
+            (Some(one), Some(other)) => Some(one.joined(other)),
+            _ => one.or(other),
+        }
+    }
+}
+
+impl Span {
+    pub(super) fn of(row: &FeltRow, way_mm: f64, layer: Option<TracedLayer>) -> Self {
+        let off_reason = off_reason(row);
+        Self {
+            way_mm,
+            layer,
+            rows: 1,
+            off_rows: u32::from(off_reason.is_some()),
+            off_reason,
+            start_s: row.t_s,
+            end_s: row.t_s,
+            wanted_n: Extremes::of(row.wanted_n),
+            asked_n: Extremes::of(row.asked_n),
+            felt_n: Extremes::of(row.felt_n),
+            voltage_v_rms: Extremes::of(row.voltage_v_rms),
+        }
+    }
+
+    pub(super) fn join(&self, later: &Self) -> Self {
+        Self {
+            start_s: self.start_s,
+            end_s: later.end_s,
+            wanted_n: Extremes::join(self.wanted_n, later.wanted_n),
+            asked_n: Extremes::join(self.asked_n, later.asked_n),
+            felt_n: Extremes::join(self.felt_n, later.felt_n),
+            way_mm: later.way_mm,
+            layer: later.layer,
+            rows: self.rows + later.rows,
+            off_rows: self.off_rows + later.off_rows,
+            off_reason: self.off_reason.into_iter().chain(later.off_reason).min(),
+            voltage_v_rms: Extremes::join(self.voltage_v_rms, later.voltage_v_rms),
+        }
+    }
+
+    /// Why the output is off; `None` if it is on for nearly all of the span.
+    pub(super) fn off(&self) -> Option<usize> {
+        self.off_reason.filter(|_| f64::from(self.off_rows) >= OFF_PART_MIN * f64::from(self.rows))
+    }
+}
+
+/// Why the output is off at a row, as an index for [`OFF_REASONS`]; `None` where it is on, where there is no finger, and
+/// where the scene has no friction.
+fn off_reason(row: &FeltRow) -> Option<usize> {
+    let is_off = row.x_mm.is_some() && row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms < OFF_BELOW_V_RMS);
+    let flags = row.flags.filter(|_| is_off)?;
+    OFF_REASONS.iter().position(|(flag, _)| flags.contains(*flag))
+}
