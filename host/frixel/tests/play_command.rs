@@ -143,6 +143,9 @@ fn the_reference_has_the_load_and_the_noise_of_the_finger() {
     let error_n = number(&realistic, "friction_error_rms_n");
     assert!((1e-5..2e-3).contains(&error_n), "{error_n} N rms");
     assert!(number(&realistic, "inversion_error_max_n") < 1e-5);
+    let without = play_constant(folder.path(), &["--no-leakage"]);
+    assert_eq!(without["world"], "without-leakage");
+    assert!(number(&without, "friction_error_rms_n") < error_n, "what leaks is an error: {without}");
 
     // Back and forth: where the finger turns, friction against its motion is negative for some micrometres.
     let turns = play_constant(folder.path(), &["--times", "3"]);

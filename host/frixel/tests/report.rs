@@ -33,9 +33,18 @@ fn report() -> &'static BTreeMap<String, String> {
         let folder = tempfile::tempdir().unwrap();
         let bench = folder.path().join("bench.json");
         fs::write(&bench, BENCH).unwrap();
-        let out = folder.path().join("a/b");
-        files(&frixel::report::write(&out, Some(&bench)).unwrap(), &out)
+        made(&folder.path().join("a/b"), &["--bench", &bench.display().to_string()])
     })
+}
+
+/// The files of a report, which the command names.
+fn made(out: &Path, args: &[&str]) -> BTreeMap<String, String> {
+    let run = frixel(&[&["--out", &out.display().to_string()], args].concat());
+    assert!(run.status.success() && run.stderr.is_empty(), "{run:?}");
+    let named = String::from_utf8(run.stdout).unwrap();
+    let paths: Vec<PathBuf> =
+        named.lines().map(|line| line.trim_start().strip_prefix("wrote").unwrap().trim().into()).collect();
+    files(&paths, out)
 }
 
 fn files(paths: &[PathBuf], folder: &Path) -> BTreeMap<String, String> {
@@ -67,9 +76,9 @@ fn the_page_shows_every_figure_and_needs_nothing_else() {
     let files = report();
     let page = &files["index.html"];
     let figures: Vec<&str> = files.keys().filter_map(|name| name.strip_suffix(".csv")).collect();
-    assert_eq!(figures.len(), 8);
-    assert_eq!(page.matches("<svg ").count(), 8);
-    assert_eq!(page.matches("</svg>").count(), 8);
+    assert_eq!(figures.len(), 10);
+    assert_eq!(page.matches("<svg ").count(), 10);
+    assert_eq!(page.matches("</svg>").count(), 10);
     for figure in figures {
         assert!(page.contains(&format!("<h2 id=\"{figure}\">")), "{figure}");
         assert!(page.contains(&format!("<a href=\"#{figure}\">")), "{figure}");
@@ -83,9 +92,9 @@ fn the_page_shows_every_figure_and_needs_nothing_else() {
     for axis in ["relative error", "bytes"] {
         assert!(page.contains(axis), "{axis}");
     }
-    assert_eq!(page.matches("Worst points").count(), 3);
-    // Both directions of the two maps, both precisions of the soft finger.
-    assert_eq!(page.matches("\nworst: ").count(), 6, "they are marked in the pictures");
+    assert_eq!(page.matches("Worst points").count(), 4);
+    // Both directions of the three maps, both precisions of the soft finger.
+    assert_eq!(page.matches("\nworst: ").count(), 8, "they are marked in the pictures");
 }
 
 #[test]
@@ -94,15 +103,11 @@ fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
     let bench = folder.path().join("bench.json");
     fs::write(&bench, BENCH).unwrap();
     let out = folder.path().join("out");
-    let run = frixel(&["--out", &out.display().to_string(), "--bench", &bench.display().to_string()]);
-    assert!(run.status.success() && run.stderr.is_empty(), "{run:?}");
-    let named = String::from_utf8(run.stdout).unwrap();
-    let paths: Vec<PathBuf> =
-        named.lines().map(|line| line.trim_start().strip_prefix("wrote").unwrap().trim().into()).collect();
-    let (first, second) = (report(), files(&paths, &out));
+    let (first, second) = (report(), made(&out, &["--bench", &bench.display().to_string()]));
     assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
-    // Without the section of the measured figure.
+    // Without the answer and the section of the measured figure.
     let constant = |page: &str| {
+        let page: String = page.lines().filter(|line| !line.contains("MEASURED here")).collect();
         let start = page.find(&format!("<h2 id=\"{MEASURED}\">")).unwrap();
         let end = start + 1 + page[start + 1..].find("<h2 ").unwrap();
         page[..start].to_owned() + &page[end..]
@@ -132,17 +137,18 @@ fn counts_are_asked_for_and_shown() {
     // Without a count of an inversion or of a tick among layers, the page says that, and how to come by one.
     fs::write(path("other.json"), "{ \"m4f.tick_idle\": 209 }").unwrap();
     let other = path("other.json");
-    for (args, why) in [(vec!["--bench", &other], "has no count of one"), (vec![], "was made without --bench")] {
-        let run = frixel(&[["--out", &path("page")].as_slice(), &args].concat());
-        assert!(run.status.success(), "{run:?}");
-        let page = fs::read_to_string(folder.path().join("page/index.html")).unwrap();
-        for what in ["an inversion", "a tick"] {
-            let start = page.find(&format!("What {what} takes on a board is not shown: ")).unwrap();
-            let sentence = &page[start..start + page[start..].find("</p>").unwrap()];
-            assert!(sentence.contains(why) && sentence.contains("cargo xtask bench"), "{what}: {sentence}");
-        }
-        assert_eq!(page.matches("<svg ").count(), 6);
+    let page = &made(&folder.path().join("page"), &["--bench", &other])["index.html"];
+    for what in ["an inversion", "a tick"] {
+        let start = page.find(&format!("What {what} takes on a board is not shown: ")).unwrap();
+        let sentence = &page[start..start + page[start..].find("</p>").unwrap()];
+        assert!(sentence.contains("has no count of one") && sentence.contains("cargo xtask bench"), "{sentence}");
     }
+    assert_eq!(page.matches("<svg ").count(), 8);
+    // Without a file, the counts of this version and their date.
+    let page = &made(&folder.path().join("committed"), &[])["index.html"];
+    assert_eq!(page.matches("<svg ").count(), 10);
+    let date = page.split_once("counted by cargo xtask bench in an emulator, source of ").unwrap().1;
+    assert!(date.starts_with("20") && date.as_bytes()[4] == b'-', "{}", &date[..12]);
     fs::write(path("bad.json"), "{ \"m4f.inverse_table\": \"sixteen\" }").unwrap();
     for (file, message) in
         [("none.json", "`cargo xtask bench` writes such a file"), ("bad.json", "expected a JSON object of numbers")]
@@ -289,6 +295,61 @@ fn maps_stay_below_the_goals_and_are_not_empty() {
             assert!(worst <= goal && worst > least, "{precision} {column}: {worst}");
         }
     }
+}
+
+/// What a problem itself makes of the rounding of its numbers is not the model's error.
+#[test]
+fn errors_near_pull_off_stay_below_what_rounding_makes_of_them() {
+    let rows = rows("stability-pulled");
+    assert_eq!(rows.len(), 26 * 48);
+    for row in &rows {
+        // The bound of `PulledContact`.
+        let bound = 4e-15 * (number(row, "condition") / 12.0).max(1.0);
+        assert!(number(row, "forward_relative_error") <= bound, "{row:?}");
+        assert!(number(row, "inverse_relative_error") <= 4e-15, "{row:?}");
+    }
+    assert!(largest(&rows, "forward_relative_error") > 1e-10 && largest(&rows, "condition") > 1e6);
+}
+
+/// The rows of the table on the first screen.
+fn answers(page: &str) -> Vec<&str> {
+    let table = page.split_once("<table>").unwrap().1.split_once("</table>").unwrap().0;
+    assert!(page.find("<table>") < page.find("<nav>"), "it comes first");
+    table.trim().lines().collect()
+}
+
+#[test]
+fn three_questions_are_answered_on_the_first_screen() {
+    let page = &report()["index.html"];
+    let answers = answers(page);
+    assert_eq!(answers.len(), 3);
+    for (answer, question, figure, says) in [
+        (answers[0], "Error against run time", MEASURED, ["MEASURED here", "16 instructions, estimated 27 cycles"]),
+        (answers[1], "Stability on stiff", "stability-f64", ["n = 6.81e6", "of the load before pull-off"]),
+        (answers[2], "What is left out", "scene", ["estimated 1313 of 2550 cycles", "250.0 to 380.0 mN at 150 V rms"]),
+    ] {
+        assert!(answer.contains(&format!("<th>{question}")), "{answer}");
+        assert!(answer.contains(&format!("<a href=\"#{figure}\">")), "{answer}");
+        for words in says {
+            assert!(answer.contains(words), "{words}: {answer}");
+        }
+    }
+}
+
+#[test]
+fn a_report_is_about_the_scene_and_the_finger_that_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("two.toml");
+    let constant = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.25\n";
+    fs::write(&scene, format!("version = 2\n{}", constant.repeat(2))).unwrap();
+    let files = made(&folder.path().join("out"), &[&scene.display().to_string(), "--finger", "dry"]);
+    let page = &files["index.html"];
+    let answer = answers(page)[2];
+    assert!(answer.contains("two.toml that are played: 1; layer 1 (constant) is optimised away"), "{answer}");
+    assert!(page.matches("Drawn for finger &quot;dry&quot;, assumed: R = ").count() >= 4);
+    assert!(!answer.contains("1008 of 1008 bytes"), "a quarter of the reach needs less of the table: {answer}");
+    let run = frixel(&[&scene.display().to_string(), "--out", &scene.display().to_string()]);
+    assert!(!run.status.success());
 }
 
 /// Errors of a method in the order of its sizes.

@@ -1,11 +1,11 @@
 //! Upper and lower bound of the model, and a finger of finite size.
 use std::error::Error;
 
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded};
 use frixel_model::ContactModel;
 
-use super::geometric;
+use super::{example, geometric};
 
 /// Outer radii of the attraction, in metres.
 const OUTER_RADII_M: [f64; 3] = [1e-3, 0.5e-3, 0.2e-3];

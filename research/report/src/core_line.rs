@@ -1,11 +1,11 @@
 //! Fig. 3 of the paper: contact radius and friction over voltage without a load, on one core line.
 use std::error::Error;
 
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 use frixel_model::{Contact, ContactModel, Finger};
 
-use super::{even, geometric};
+use super::{even, example, geometric};
 
 /// A finger to plot on the core line, with its name in the legend.
 struct Example {

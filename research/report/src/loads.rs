@@ -2,11 +2,11 @@
 use core::f64::consts::PI;
 use std::error::Error;
 
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, graded, signed};
 use frixel_model::{Contact, ContactModel, ContactState};
 
-use super::even;
+use super::{even, example};
 
 /// The paper's relative normal force `f_N = F_N/(k R h0^2)`, Eq. (44), for a coating of permittivity one.
 const RELATIVE_LOADS: [f64; 9] = [-20.0, -10.0, -5.0, -1.0, 0.0, 1.0, 5.0, 10.0, 20.0];

@@ -1,5 +1,5 @@
-//! Writes the figures of the contact model's paper, and those behind decisions of the design: which tick rate and which
-//! touch estimator. `cargo run --release -p frixel-research -- FOLDER` puts them on one page, with the numbers behind
+//! Writes the figures of the contact model's paper, those behind decisions of the design: which tick rate and which
+//! touch estimator, and what two readings of charge leakage predict for touch. `cargo run --release -p frixel-research -- FOLDER` puts them on one page, with the numbers behind
 //! each picture beside it.
 //!
 //! What an inversion, a scene and extreme cases cost is in `frixel report`.
@@ -7,6 +7,8 @@
 
 mod bounds;
 mod core_line;
+mod example;
+mod leakage;
 mod loads;
 mod soft;
 #[cfg(test)]
@@ -30,6 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let page = Page {
         title: "The contact model's paper, and choices of the design",
         maker: "frixel-research",
+        answers: &[],
         figures: &figures()?,
     };
     for file in page.write(&folder, &Inputs::default())? {
@@ -39,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// All figures in the order of the page.
-fn figures() -> Result<[Figure; 7], Box<dyn Error>> {
+fn figures() -> Result<[Figure; 8], Box<dyn Error>> {
     Ok([
         core_line::figure()?,
         loads::contact_radius()?,
@@ -48,6 +51,7 @@ fn figures() -> Result<[Figure; 7], Box<dyn Error>> {
         soft::figure()?,
         tick_rate::figure()?,
         touch_estimators::figure()?,
+        leakage::figure()?,
     ])
 }
 

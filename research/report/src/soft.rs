@@ -2,11 +2,11 @@
 use core::f64::consts::PI;
 use std::error::Error;
 
-use frixel::report::{Data, Figure, example};
+use frixel::report::{Data, Figure};
 use frixel_chart::{Axis, Chart, Line, Look, PALETTE, Panel, graded};
 use frixel_model::{ContactModel, ParameterError, SoftContact, SoftFinger, contact_exponent};
 
-use super::geometric;
+use super::{example, geometric};
 
 /// Stress exponents; at 0.5 the stiffness is constant.
 const STRESS_EXPONENTS: [f64; 5] = [0.1, 0.3, 0.5, 0.75, 1.0];

@@ -9,8 +9,8 @@ use super::Figure;
 type Row = HashMap<String, String>;
 
 /// The figures, which are computed once for all tests.
-fn figures() -> &'static [Figure; 7] {
-    static FIGURES: OnceLock<[Figure; 7]> = OnceLock::new();
+fn figures() -> &'static [Figure; 8] {
+    static FIGURES: OnceLock<[Figure; 8]> = OnceLock::new();
     FIGURES.get_or_init(|| super::figures().unwrap())
 }
 
@@ -172,5 +172,24 @@ fn fewer_ticks_make_a_larger_error() {
     for row in rows.iter().filter(|row| !row["rms_error_over_reachable_range"].is_empty()) {
         let (ticks, carrier) = (number(row, "tick_hz"), number(row, "carrier_hz"));
         assert!(carrier >= 125.0 && ticks / (2.0 * carrier) >= 4.0, "what a board takes");
+    }
+}
+
+#[test]
+fn thresholds_have_the_published_shape_without_leakage_and_the_published_order_with_it() {
+    let rows = rows("threshold-over-frequency");
+    let threshold = |leakage: &str, wave: &str, drive: &str| {
+        let is = |row: &&Row| row["leakage_hz"] == leakage && row["wave"] == wave && row["drive_hz"] == drive;
+        let text = &rows.iter().find(is).unwrap()["threshold_v_peak"];
+        if text.is_empty() { f64::INFINITY } else { text.parse::<f64>().unwrap() }
+    };
+    // A published sine has its least threshold in the middle, and can be felt at 15 Hz within 200 V.
+    let sine = |drive| threshold("0", "sine", drive);
+    assert!(sine("15") > 3.0 * sine("120") && sine("240") > sine("120") && sine("15") < 200.0, "{}", sine("15"));
+    assert!(threshold("250", "sine", "15") > 200.0 && threshold("250", "sine", "30") > 150.0);
+    // A published square wave is felt more easily than a sine below 60 Hz.
+    for drive in ["15", "30"] {
+        assert!(threshold("250", "square", drive) < threshold("250", "sine", drive), "{drive}");
+        assert!(threshold("0", "square", drive) > threshold("0", "sine", drive), "{drive}");
     }
 }

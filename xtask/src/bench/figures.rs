@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use serde_json::Value;
+
 /// Figures by name: instructions of `m4f.…` and `m3.…` at the worst input, and bytes of images. A name that ends in
 /// [`CYCLES`] is the estimated number of cycles at the same input, and one that ends in [`MEAN`] is the mean over all
 /// inputs.
@@ -42,9 +44,12 @@ impl Figures {
         table
     }
 
-    /// The figures as JSON.
-    pub(crate) fn json(&self) -> Result<String, String> {
-        serde_json::to_string_pretty(&self.0).map(|json| json + "\n").map_err(|error| error.to_string())
+    /// The figures as JSON, with the date of their source.
+    pub(crate) fn json(&self, date: &str) -> Result<String, String> {
+        let mut object: BTreeMap<&str, Value> =
+            self.0.iter().map(|(name, value)| (name.as_str(), (*value).into())).collect();
+        object.insert("date", date.into());
+        serde_json::to_string_pretty(&object).map(|json| json + "\n").map_err(|error| error.to_string())
     }
 }
 

@@ -129,7 +129,7 @@ pub fn weber_steps_safe() -> f64 {
 ///
 /// It is the displacement threshold times the magnitude of the fingertip's tangential impedance, `|k + 2 pi i f c|`,
 /// interpolated in the logarithms of frequency and displacement. It holds within a factor of 3.
-pub(super) fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
+pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
     let pair = DISPLACEMENT_THRESHOLD_UM.windows(2).find_map(|pair| match pair {
         [from, to] if (from.0..=to.0).contains(&frequency_hz) => Some((*from, *to)),
         _ => None,

@@ -9,12 +9,13 @@ use super::terminal::print_line;
 use super::{DemoArgs, PlayArgs, play};
 
 /// The scene and its picture are embedded in the executable, so that the demo needs no files.
-const SCENE: &str = include_str!("../../../../scenes/brick.toml");
-const PICTURE: &[u8] = include_bytes!("../../../../scenes/textures/brick.png");
+pub(super) const SCENE: &str = include_str!("../../../../scenes/brick.toml");
+pub(super) const PICTURE_NAME: &str = "textures/brick.png";
+pub(super) const PICTURE: &[u8] = include_bytes!("../../../../scenes/textures/brick.png");
 
 pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
     let scene = args.out.join("brick.toml");
-    create(&args.out.join("textures/brick.png"), PICTURE)?;
+    create(&args.out.join(PICTURE_NAME), PICTURE)?;
     let place = scene.display();
     if create(&scene, SCENE.as_bytes())? {
         print_line(format_args!("{place} is new: a wall of bricks, as a picture of friction"))?;

@@ -146,7 +146,7 @@ pub(crate) enum CommandError {
     )]
     StrokeOnBoard { port: String },
     #[error(
-        "--ideal and --finger-seed change the world of --port sim and --port qemu only; a board at {port} has its own: \
+        "--ideal, --no-leakage and --finger-seed change the world of --port sim and --port qemu only; a board at {port} has its own: \
          leave them out"
     )]
     WorldOnBoard { port: String },

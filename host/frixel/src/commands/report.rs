@@ -1,24 +1,49 @@
-//! `frixel report`: the model's error and its cost, on one page.
+//! `frixel report`: the model's error, its cost, and what a scene leaves out, on one page.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
+use frixel_hil_sim::RigConfig;
+use frixel_scene::{Scene, compile};
 
+use super::demo;
 use super::error::CommandError;
+use super::profiles::ProfileArgs;
 use super::terminal::print_line;
+use crate::output_file::Inputs;
+use crate::report::Subject;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
+    /// The scene whose finger is drawn, and of which the report says what is left out. Without it, the bundled bricks.
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    profiles: ProfileArgs,
     /// Folder for the page and its numbers.
     #[arg(long, default_value = "frixel-report")]
     out: PathBuf,
-    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json.
+    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json. Without it, those of
+    /// this version.
     #[arg(long, value_name = "FILE.json")]
     bench: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &ReportArgs) -> Result<(), CommandError> {
-    for file in crate::report::write(&args.out, args.bench.as_deref())? {
+    let names = args.profiles.names();
+    let (name, scene, files) = if let Some(path) = &args.scene {
+        let (scene, files) = names.load_with_files(path);
+        (path.display().to_string(), scene?, files.paths().map(PathBuf::from).collect())
+    } else {
+        let files = BTreeMap::from([(demo::PICTURE_NAME.to_owned(), demo::PICTURE.to_vec())]);
+        let scene = Scene::parse(demo::SCENE, "brick.toml", &files)?;
+        ("the bundled scene of bricks".to_owned(), names.applied_to(scene)?, Vec::new())
+    };
+    let rig = RigConfig::default();
+    let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
+    let inputs = Inputs::new(files.iter().chain(&args.bench));
+    let subject = Subject { name: &name, program: &program };
+    for file in crate::report::write(&args.out, &subject, args.bench.as_deref(), &inputs)? {
         print_line(format_args!("  {:<16} {}", "wrote", file.display()))?;
     }
     Ok(())

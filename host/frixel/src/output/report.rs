@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use frixel_driver::{Counters, StreamStatus};
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
@@ -19,8 +19,8 @@ pub(crate) struct Report {
     pub board_refuses: Vec<String>,
     /// Whether finger or board is simulated.
     pub simulated: bool,
-    /// The simulated world, `realistic` or `ideal`.
-    pub world: Option<&'static str>,
+    /// The simulated world, `realistic`, `without-leakage` or `ideal`.
+    pub world: Option<Effects>,
     /// Seed of the simulated person whose finger the board does not know.
     pub finger_seed: Option<u64>,
     /// Number of ticks played.
@@ -81,24 +81,43 @@ pub(crate) struct Report {
 /// The world that was simulated beside a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct WorldReport {
-    /// Whether every effect beside the contact model was switched off.
-    pub is_ideal: bool,
+    /// Which effects it had beside the contact model.
+    pub effects: Effects,
     /// Seed of the random person; `None` if the finger was the scene's.
     pub finger_seed: Option<u64>,
 }
 
-impl WorldReport {
-    /// The name of the world, for programs.
-    fn name(&self) -> &'static str {
-        if self.is_ideal { IDEAL } else { REALISTIC }
+/// Effects of the simulated world beside the contact model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effects {
+    None,
+    /// All but charge that leaks through the skin, about which measurements disagree.
+    AllButLeakage,
+    All,
+}
+
+impl Effects {
+    /// The name of the world, for programs, and what is in it.
+    const fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::None => ("ideal", "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports"),
+            Self::AllButLeakage => (
+                "without-leakage",
+                "with load changes, noise, pre-sliding, offsets and lost touch reports; --no-leakage switches leakage off",
+            ),
+            Self::All => (
+                "realistic",
+                "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them off",
+            ),
+        }
     }
 }
 
-const IDEAL: &str = "ideal";
-const REALISTIC: &str = "realistic";
-const IDEAL_WORLD: &str = "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports";
-const REALISTIC_WORLD: &str =
-    "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them off";
+impl Serialize for Effects {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.words().0)
+    }
+}
 
 impl Report {
     /// Computes the report from the results of a play.
@@ -163,7 +182,7 @@ impl Report {
     pub(crate) fn with_world(self, world: Option<WorldReport>) -> Self {
         let finger_seed = world.and_then(|world| world.finger_seed);
         let finger_origin = if finger_seed.is_some() { Origin::Assumed.word() } else { self.finger_origin };
-        Self { world: world.map(|world| world.name()), finger_seed, finger_origin, ..self }
+        Self { world: world.map(|world| world.effects), finger_seed, finger_origin, ..self }
     }
 
     /// Says why a board refuses the scene. If there is a reason, it is a draft.
@@ -206,8 +225,8 @@ impl Report {
             line("draft", draft_line(self.board_refuses.len()));
         }
         if let Some(world) = self.world {
-            let what = if world == IDEAL { IDEAL_WORLD } else { REALISTIC_WORLD };
-            line("world", format!("{world}: {what}"));
+            let (name, what) = world.words();
+            line("world", format!("{name}: {what}"));
         }
         if let Some(seed) = self.finger_seed {
             line("finger", format!("random person {seed}, assumed; the board computes for the scene's finger"));
@@ -221,7 +240,11 @@ impl Report {
         };
         line("reachable", range(self.reachable_min_n, self.reachable_max_n) + at_load);
         if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
-            let turns = if self.world == Some(REALISTIC) { "; not where the finger lands or turns" } else { "" };
+            let turns = if self.world.is_some_and(|world| world != Effects::None) {
+                "; not where the finger lands or turns"
+            } else {
+                ""
+            };
             line("reference", format!("{}{with_load}{turns}", range(least, most)));
         }
         let electric_n = self.reachable_max_n - self.reachable_min_n;

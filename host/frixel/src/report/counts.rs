@@ -4,34 +4,66 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use serde_json::{Error, Value, from_str, from_value};
+
 use super::error::ReportError;
+
+/// The counts of this version, which `FRIXEL_BLESS=1 cargo xtask bench` writes.
+const COMMITTED: &str = include_str!("bench.json");
 
 /// Counts by name: `CORE.WHAT` is the largest number of instructions, `CORE.WHAT_mean` their mean, and
 /// `CORE.WHAT_cycles` an estimate in cycles.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Counts(BTreeMap<String, f64>);
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Counts {
+    /// The day of the source that was counted; empty in a file that does not say.
+    date: String,
+    counts: BTreeMap<String, f64>,
+}
 
 impl Counts {
+    /// Reads a file of counts.
     pub(super) fn read(path: &Path) -> Result<Self, ReportError> {
         let text =
             fs::read_to_string(path).map_err(|source| ReportError::ReadBench { path: path.to_owned(), source })?;
-        let counts =
-            serde_json::from_str(&text).map_err(|source| ReportError::Bench { path: path.to_owned(), source })?;
-        Ok(Self(counts))
+        Self::parse(&text).map_err(|source| ReportError::Bench { path: path.to_owned(), source })
+    }
+
+    /// The counts of this version.
+    pub(super) fn committed() -> Result<Self, ReportError> {
+        Self::parse(COMMITTED).map_err(|source| ReportError::Bench { path: "bench.json".into(), source })
+    }
+
+    fn parse(text: &str) -> Result<Self, Error> {
+        let mut object: BTreeMap<String, Value> = from_str(text)?;
+        let date = object.remove("date").map(from_value).transpose()?.unwrap_or_default();
+        let counts = object.into_iter().map(|(name, value)| Ok((name, from_value(value)?)));
+        Ok(Self { date, counts: counts.collect::<Result<_, Error>>()? })
+    }
+
+    /// How and when the counts were made, in words that follow "instructions".
+    pub(super) fn origin(&self) -> String {
+        let Self { date, .. } = self;
+        let of = if date.is_empty() { String::new() } else { format!(", source of {date}") };
+        format!("counted by cargo xtask bench in an emulator{of}")
+    }
+
+    /// A number by its whole name.
+    pub(super) fn get(&self, name: &str) -> Option<f64> {
+        self.counts.get(name).copied()
     }
 
     /// Largest number of instructions of one call on a core.
     pub(super) fn instructions(&self, core: &str, what: &str) -> Option<f64> {
-        self.0.get(&format!("{core}.{what}")).copied()
+        self.get(&format!("{core}.{what}"))
     }
 
     /// Mean number of instructions over all calls.
     pub(super) fn mean(&self, core: &str, what: &str) -> Option<f64> {
-        self.0.get(&format!("{core}.{what}_mean")).copied()
+        self.get(&format!("{core}.{what}_mean"))
     }
 
     /// Estimated cycles of the call with the most instructions.
     pub(super) fn cycles(&self, core: &str, what: &str) -> Option<f64> {
-        self.0.get(&format!("{core}.{what}_cycles")).copied()
+        self.get(&format!("{core}.{what}_cycles"))
     }
 }

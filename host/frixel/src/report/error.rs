@@ -8,6 +8,7 @@ use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 use crate::output_file::OutputFileError;
+use crate::rehearsal::RehearsalError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.
@@ -35,6 +36,12 @@ pub enum ReportError {
         /// Error of the parser.
         source: serde_json::Error,
     },
+    /// The finger of the scene has an empirical law.
+    #[error("the report is about the contact model, and {title} is empirical: draw it for another one with --finger")]
+    EmpiricalFinger {
+        /// The finger, for a person.
+        title: String,
+    },
     /// A picture could not be drawn.
     #[error("{name} cannot be drawn ({reason})")]
     Drawing {
@@ -61,6 +68,9 @@ pub enum ReportError {
     /// A scene could not be encoded into frames.
     #[error("a scene on the wire: {0}")]
     Wire(#[from] WriteError),
+    /// The simulated board did not take the scene.
+    #[error(transparent)]
+    Rehearsal(#[from] RehearsalError),
     /// A scene could not be compiled.
     #[error(transparent)]
     Texture(#[from] CompileError),

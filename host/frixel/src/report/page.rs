@@ -12,8 +12,21 @@ body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; m
 padding: 0 20px; }
 h1 { margin-bottom: 0; } h2 { margin: 3rem 0 0.5rem; font-size: 1.3rem; }
 figure { margin: 0; } figure svg { width: 100%; height: auto; } figcaption { max-width: 62rem; }
-figcaption p { margin: 0.5rem 0; } nav li { margin: 0.15rem 0; } a { color: #0072b2; }
+figcaption p { margin: 0.5rem 0; } table { border-collapse: collapse; margin: 1rem 0; } th, td { border-top: 1px solid #ccc; \
+padding: 0.5rem 0.8rem 0.5rem 0; text-align: left; vertical-align: top; } th { width: 10rem; } td p { margin: 0 0 0.3rem; } \
+nav li { margin: 0.15rem 0; } a { color: #0072b2; }
 ";
+
+/// The answer to a question, in numbers, at the top of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// What is asked, in a few words.
+    pub question: &'static str,
+    /// The answer with its worst points, a sentence or a few each.
+    pub sentences: Vec<String>,
+    /// Name of the figure that shows it.
+    pub figure: &'static str,
+}
 
 /// A page of figures.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +35,8 @@ pub struct Page<'p> {
     pub title: &'p str,
     /// The program that makes it, as it is called.
     pub maker: &'p str,
+    /// What the figures say, in numbers.
+    pub answers: &'p [Answer],
     /// The figures, in order.
     pub figures: &'p [Figure],
 }
@@ -48,6 +63,20 @@ impl Page<'_> {
         Ok(paths)
     }
 
+    /// The answers as a table, each with a link to its figure.
+    fn answers_html(&self) -> String {
+        let mut table = String::new();
+        for Answer { question, sentences, figure } in self.answers {
+            // Writing to a string cannot fail.
+            let _ = write!(table, "<tr><th>{}</th><td>", escaped(question));
+            for sentence in sentences {
+                let _ = write!(table, "<p>{}</p>", escaped(sentence));
+            }
+            let _ = writeln!(table, "</td><td><a href=\"#{figure}\">figure</a></td></tr>");
+        }
+        if table.is_empty() { table } else { format!("<table>\n{table}</table>\n") }
+    }
+
     /// The page with all figures that were drawn.
     fn html(&self, figures: &[(&Figure, String)]) -> String {
         let Self { title, maker, .. } = self;
@@ -58,10 +87,11 @@ impl Page<'_> {
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <title>{title} (frixel)</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-             <h1>{title}</h1>\n\
+             <h1>{title}</h1>\n{}\
              <p>Made by <code>{maker}</code>, version {}. Equation and figure numbers are those of Argatov and Borodich, \
              <i>A macro model for electroadhesive contact of a soft finger with a touchscreen</i>. The numbers behind each picture \
              stand in a CSV file beside this page.</p>\n<nav>\n<ol>\n",
+            self.answers_html(),
             env!("CARGO_PKG_VERSION")
         );
         for (figure, _) in figures {

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use crate::default_stroke;
-use crate::output::WorldReport;
+use crate::output::{Effects, WorldReport};
 use crate::stream;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
@@ -58,7 +58,9 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         }
         Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
-        Target::Port if args.ideal || args.finger_seed.is_some() => Err(CommandError::WorldOnBoard { port: port() }),
+        Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() => {
+            Err(CommandError::WorldOnBoard { port: port() })
+        }
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
             Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
         }

@@ -1,6 +1,6 @@
 //! The world around a simulated or emulated board: which effects it has, and whose finger is in it.
 
-use crate::output::WorldReport;
+use crate::output::{Effects, WorldReport};
 use frixel_hil_sim::{Person, Stroke, World, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::Scene;
@@ -10,7 +10,7 @@ use super::{CommandError, PlayArgs};
 /// The world that the options of a play describe.
 #[derive(Clone, Debug)]
 pub(super) struct SimulatedWorld {
-    is_ideal: bool,
+    effects: Effects,
     person: Option<DrawnPerson>,
 }
 
@@ -32,17 +32,18 @@ impl SimulatedWorld {
             let contact = person.contact(coating_gap_m).map_err(CommandError::Finger)?;
             Ok(DrawnPerson { seed, person, contact })
         };
-        Ok(Self { is_ideal: args.ideal, person: args.finger_seed.map(draw).transpose()? })
+        Ok(Self { effects: args.effects(), person: args.finger_seed.map(draw).transpose()? })
     }
 
     /// The configuration of this world; `config` has the rates of the board.
     pub(super) fn config(&self, config: WorldConfig) -> WorldConfig {
-        if self.is_ideal {
+        if self.effects == Effects::None {
             return config;
         }
         let realistic = config.realistic();
         let fingertip = self.person.as_ref().map_or(realistic.fingertip, |drawn| drawn.person.fingertip);
-        WorldConfig { fingertip, ..realistic }
+        let leaks = self.effects == Effects::All;
+        WorldConfig { fingertip: if leaks { fingertip } else { fingertip.without_leakage() }, ..realistic }
     }
 
     /// Puts the drawn person's finger into the world, if there is one.
@@ -55,11 +56,11 @@ impl SimulatedWorld {
     /// Whether the simulated finger is more than the scene's finger in steady sliding under its load, so that the
     /// reference is meant for it.
     pub(super) fn has_own_reference(&self, stroke: &Stroke) -> bool {
-        !self.is_ideal || self.person.is_some() || stroke.has_loads()
+        self.effects != Effects::None || self.person.is_some() || stroke.has_loads()
     }
 
     /// What the report says about this world.
     pub(super) fn report(&self) -> WorldReport {
-        WorldReport { is_ideal: self.is_ideal, finger_seed: self.person.as_ref().map(|drawn| drawn.seed) }
+        WorldReport { effects: self.effects, finger_seed: self.person.as_ref().map(|drawn| drawn.seed) }
     }
 }

@@ -5,9 +5,10 @@ use core::f64::consts::LOG10_2;
 use frixel_model::ContactModel;
 
 use super::boards::BoardCostFigure;
-use super::{Figure, ReportError, example};
+use super::{Figure, ReportError};
 use crate::report::counts::Counts;
 use crate::report::figure::{Data, Value};
+use crate::report::finger::DrawnFinger;
 use crate::report::methods::{Bench, Kind, Method, Parameters, RANGE_V_RMS};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 
@@ -40,7 +41,7 @@ const fn dashed(colour: RGBColor, mark: Mark) -> Look {
     Look { colour, line: Line::Dashed, mark }
 }
 
-/// All methods, measured for the example finger under one load.
+/// All methods, measured for one finger under one load.
 pub(super) struct Measured {
     load_n: f64,
     methods: Vec<Method>,
@@ -74,28 +75,60 @@ impl Measured {
     }
 }
 
-/// Measures all methods without a load and under the load of the example finger.
-pub(super) fn measure() -> Result<[Measured; 2], ReportError> {
-    let finger = example::FINGER;
+/// Measures all methods without a load and under the load of a finger.
+pub(super) fn measure(drawn: &DrawnFinger) -> Result<[Measured; 2], ReportError> {
+    let finger = drawn.finger;
     let measured = |load_n: f64| {
         let bench = Bench {
-            contact: &example::contact::<f64>()?.under_load(load_n)?,
-            single: &example::contact::<f32>()?.under_load(load_n as f32)?,
+            contact: &drawn.contact::<f64>()?.under_load(load_n)?,
+            single: &drawn.contact::<f32>()?.under_load(load_n as f32)?,
             parameters: Parameters {
                 radius_m: finger.radius_m,
                 stiffness_pa_per_m: finger.stiffness_pa_per_m,
                 friction_coefficient: finger.friction_coefficient,
-                gap_m: example::GAP_M,
+                gap_m: drawn.gap_m,
                 normal_load_n: load_n,
             },
         };
         Ok::<_, ReportError>(Measured { load_n, methods: bench.all()? })
     };
-    Ok([measured(0.0)?, measured(example::LOAD_N)?])
+    Ok([measured(0.0)?, measured(drawn.load_n)?])
+}
+
+/// What an inversion costs and how exact it is, for the methods that matter most, under the finger's load.
+pub(super) fn sentences(measured: &[Measured; 2], counts: &Counts) -> Vec<String> {
+    let [_, loaded] = measured;
+    let kinds = [
+        (Kind::Device, "board's table"),
+        (Kind::ClosedF32, "closed form in f32"),
+        (Kind::ClosedF64, "closed form in f64"),
+    ];
+    let mut sentences = Vec::new();
+    for (kind, name) in kinds {
+        let Some(method) = loaded.of(kind).next() else { continue };
+        let cost = method.counted.and_then(|what| {
+            let (instructions, cycles) = (counts.instructions("m4f", what)?, counts.cycles("m4f", what)?);
+            Some(format!("; on a Cortex-M4F {instructions} instructions, estimated {cycles} cycles"))
+        });
+        sentences.push(format!(
+            "The {name}: error at most {:.1e}, worst at {:.3} mN; MEASURED here {:.0} ns, {:.2} of the f64 closed form's{}.",
+            method.error,
+            1e3 * method.worst_n,
+            1e9 * method.seconds,
+            method.seconds / loaded.unit_seconds(),
+            cost.unwrap_or_default()
+        ));
+    }
+    sentences.push(format!("Instructions were {}.", counts.origin()));
+    sentences
 }
 
 /// Error over run time on this computer.
-pub(super) fn against_time(measured: &[Measured; 2], boards: BoardCostFigure) -> Result<Figure, ReportError> {
+pub(super) fn against_time(
+    measured: &[Measured; 2],
+    drawn: &DrawnFinger,
+    boards: BoardCostFigure,
+) -> Result<Figure, ReportError> {
     let time = || Axis::log("MEASURED run time / the f64 closed form's", 0.05..200.0);
     let panels = measured.each_ref().map(|one| one.panel(time(), |method| Some(method.seconds / one.unit_seconds())));
     let mut data = Data::new([
@@ -142,7 +175,7 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: BoardCostFigure) ->
              it knows nothing. Direct tables find their row from the bits of the friction and evaluate a polynomial. \
              Integers have codes of 32 bits for friction, and their error is that against the code."
                 .to_owned(),
-            example::CAPTION.to_owned(),
+            drawn.caption.clone(),
         ],
         chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
@@ -150,7 +183,7 @@ pub(super) fn against_time(measured: &[Measured; 2], boards: BoardCostFigure) ->
 }
 
 /// Error over size in bytes.
-pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportError> {
+pub(super) fn against_size(measured: &[Measured; 2], drawn: &DrawnFinger) -> Result<Figure, ReportError> {
     let size = || Axis::log("size of the table, bytes", 1e2..1e5);
     let panels = measured.each_ref().map(|one| {
         let mut panel = one.panel(size(), |method| method.bytes.map(|bytes| bytes as f64));
@@ -176,13 +209,14 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
         caption: vec![
             format!(
                 "Largest relative error in electric friction over 1 V to 200 V, as above, against the bytes of the \
-                 table. Without a load friction spans {:.0} octaves, under 0.5 N {:.0}, and tables are shorter. A \
+                 table. Without a load friction spans {:.0} octaves, under {} N {:.0}, and tables are shorter. A \
                  higher order is smaller at the same error, until rounding in f32 ends it near 10⁻⁶. The board's table \
                  has a fixed size, whatever the load.",
-                range_octaves(measured[0].load_n),
-                range_octaves(measured[1].load_n),
+                range_octaves(drawn, measured[0].load_n),
+                measured[1].load_n,
+                range_octaves(drawn, measured[1].load_n),
             ),
-            example::CAPTION.to_owned(),
+            drawn.caption.clone(),
         ],
         chart: Chart::new(panels.into(), 2).with_shared_legend(),
         csv: data.csv()?,
@@ -190,7 +224,11 @@ pub(super) fn against_size(measured: &[Measured; 2]) -> Result<Figure, ReportErr
 }
 
 /// Error over instructions on boards; `None` if `counts` has no method.
-pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) -> Result<Option<Figure>, ReportError> {
+pub(super) fn against_instructions(
+    measured: &[Measured; 2],
+    drawn: &DrawnFinger,
+    counts: &Counts,
+) -> Result<Option<Figure>, ReportError> {
     let mut data = Data::new(["core", "method", "instructions", "estimated_cycles", "largest_relative_error"]);
     let mut panels = Vec::new();
     for (core, core_name) in CORES {
@@ -224,13 +262,15 @@ pub(super) fn against_instructions(measured: &[Measured; 2], counts: &Counts) ->
         name: "error-against-instructions",
         title: "Error against instructions on a board".to_owned(),
         caption: vec![
-            "Largest relative error in electric friction over 1 V to 200 V, without a load or under 0.5 N, whichever \
-             is larger, against the largest number of instructions that one inversion took over all inputs. Counts \
-             come from the file given with --bench, which cargo xtask bench writes: they were counted in an emulator, \
-             and the cycles beside them are estimates; instructions are not cycles. A board of 170 MHz has 4,250 \
-             cycles to a tick at 40 kHz, and 170 to a microsecond."
-                .to_owned(),
-            example::CAPTION.to_owned(),
+            format!(
+                "Largest relative error in electric friction over 1 V to 200 V, without a load or under {} N, whichever \
+                 is larger, against the largest number of instructions that one inversion took over all inputs. \
+                 Instructions were {}; the cycles beside them are *estimated*: instructions are not cycles. A board of \
+                 170 MHz has 4,250 cycles to a tick at 40 kHz, and 170 to a microsecond.",
+                measured[1].load_n,
+                counts.origin()
+            ),
+            drawn.caption.clone(),
         ],
         chart: Chart::new(panels, columns).with_shared_legend(),
         csv: data.csv()?,
@@ -251,13 +291,13 @@ fn name(kind: Kind) -> &'static str {
 
 fn nanoseconds(measured: &[Measured; 2]) -> String {
     let [unloaded, loaded] = measured.each_ref().map(|one| 1e9 * one.unit_seconds());
-    format!("{unloaded:.0} ns without a load, {loaded:.0} ns under 0.5 N")
+    format!("{unloaded:.0} ns without a load, {loaded:.0} ns under {} N", measured[1].load_n)
 }
 
 /// Octaves of electric friction between the least and the largest voltage.
-fn range_octaves(load_n: f64) -> f64 {
+fn range_octaves(drawn: &DrawnFinger, load_n: f64) -> f64 {
     let friction = |voltage: f64| {
-        let contact = example::contact::<f64>().ok()?.under_load(load_n).ok()?;
+        let contact = drawn.contact::<f64>().ok()?.under_load(load_n).ok()?;
         contact.state(voltage).ok().map(|state| state.electric_friction_n)
     };
     let octaves = |low: f64, high: f64| (high / low).log10() / LOG10_2;

@@ -6,20 +6,27 @@ use std::ops::RangeInclusive;
 
 use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
-use frixel_model::InverseTable;
+use frixel_model::{Finger, InverseTable};
 use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use super::{Figure, ReportError};
 use crate::report::figure::Data;
+use crate::report::finger::DrawnFinger;
 use crate::report::wire::OnTheWire;
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use frixel_scene::{CompileError, Program, Scene, compile};
 
 /// The beginning of every scene.
-const HEAD: &str = "version = 1\n\
-                    [screen]\nwidth_mm = 120\nheight_mm = 80\n\
-                    [coating]\nthickness_um = 10\npermittivity = 1\n\
-                    [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
+fn head(drawn: &DrawnFinger) -> String {
+    let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = drawn.finger;
+    let (radius_mm, gap_um, load_n) = (1e3 * radius_m, 1e6 * drawn.gap_m, drawn.load_n);
+    format!(
+        "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n\
+         [coating]\nthickness_um = {gap_um}\npermittivity = 1\n\
+         [finger]\nradius_mm = {radius_mm}\nstiffness_pa_per_m = {stiffness_pa_per_m:e}\n\
+         friction_coefficient = {friction_coefficient}\nnormal_load_n = {load_n}\n"
+    )
+}
 /// Layers are placed on a lattice, so that no two are in the same cell of the board's grid.
 const COLUMNS: usize = 8;
 const LATTICE_MM: (f64, f64) = (15.0, 10.0);
@@ -37,8 +44,8 @@ fn corner_mm(number: usize) -> (f64, f64) {
     ((number % COLUMNS) as f64 * LATTICE_MM.0, (number / COLUMNS) as f64 * LATTICE_MM.1)
 }
 
-fn gratings(count: usize) -> String {
-    (0..count).fold(HEAD.to_owned(), |mut text, number| {
+fn gratings(head: &str, count: usize) -> String {
+    (0..count).fold(head.to_owned(), |mut text, number| {
         let (x_mm, y_mm) = corner_mm(number);
         // Writing to a string cannot fail.
         let _ = write!(
@@ -50,8 +57,8 @@ fn gratings(count: usize) -> String {
     })
 }
 
-fn polygons(count: usize, vertices: usize) -> String {
-    (0..count).fold(HEAD.to_owned(), |mut text, number| {
+fn polygons(head: &str, count: usize, vertices: usize) -> String {
+    (0..count).fold(head.to_owned(), |mut text, number| {
         let (left_mm, top_mm) = corner_mm(number);
         let points: Vec<_> = (0..vertices)
             .map(|vertex| {
@@ -69,17 +76,17 @@ fn polygons(count: usize, vertices: usize) -> String {
     })
 }
 
-fn picture(side: usize) -> String {
+fn picture(head: &str, side: usize) -> String {
     let width_mm = side as f64 * PITCH_MM;
     format!(
-        "{HEAD}[[layer]]\nkind = \"bitmap\"\npicture = \"{PICTURE}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = {width_mm}\n\
+        "{head}[[layer]]\nkind = \"bitmap\"\npicture = \"{PICTURE}\"\nx_mm = 0\ny_mm = 0\nwidth_mm = {width_mm}\n\
          pitch_mm = {PITCH_MM}\n"
     )
 }
 
 /// A scene with the same friction everywhere.
-fn one_friction(percent: usize) -> String {
-    format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
+fn one_friction(head: &str, percent: usize) -> String {
+    format!("{head}[[layer]]\nkind = \"constant\"\nfriction_fraction = {}\n", percent as f64 / 100.0)
 }
 
 /// The files of the scenes.
@@ -105,8 +112,8 @@ fn compiled(text: &str, pictures: &Pictures) -> Result<Program, CompileError> {
 }
 
 /// Largest number of polygon vertices that fits into a tick.
-fn vertices_max(pictures: &Pictures) -> usize {
-    let fits = |vertices: &usize| compiled(&polygons(1, *vertices), pictures).is_ok();
+fn vertices_max(head: &str, pictures: &Pictures) -> usize {
+    let fits = |vertices: &usize| compiled(&polygons(head, 1, *vertices), pictures).is_ok();
     (VERTICES_MIN..=POLYGON_POINTS_MAX).rev().find(fits).unwrap_or(VERTICES_MIN)
 }
 
@@ -185,22 +192,23 @@ impl Family {
 }
 
 /// All scenes: gratings, polygons with few and with many vertices, pictures, and uniform frictions.
-fn families() -> Result<[Family; 5], ReportError> {
+fn families(head: &str) -> Result<[Family; 5], ReportError> {
     let files = &pictures()?;
-    let many = vertices_max(files);
-    let of_polygons =
-        |vertices: usize| (1..=POINTS_MAX / vertices).map(move |count| (count * vertices, polygons(count, vertices)));
+    let many = vertices_max(head, files);
+    let of_polygons = |vertices: usize| {
+        (1..=POINTS_MAX / vertices).map(move |count| (count * vertices, polygons(head, count, vertices)))
+    };
     Ok([
-        Family::new("gratings", PALETTE[0], files, (1..=RECORDS_MAX).map(|count| (count, gratings(count))))?,
+        Family::new("gratings", PALETTE[0], files, (1..=RECORDS_MAX).map(|count| (count, gratings(head, count))))?,
         Family::new("triangles", PALETTE[2], files, of_polygons(VERTICES_MIN))?,
         Family::new(&format!("polygons of {many} vertices"), PALETTE[1], files, of_polygons(many))?,
-        Family::new("a picture", PALETTE[3], files, SIDES.into_iter().map(|side| (side, picture(side))))?,
-        Family::new("a friction", PALETTE[4], files, PERCENTS.map(|percent| (percent, one_friction(percent))))?,
+        Family::new("a picture", PALETTE[3], files, SIDES.into_iter().map(|side| (side, picture(head, side))))?,
+        Family::new("a friction", PALETTE[4], files, PERCENTS.map(|percent| (percent, one_friction(head, percent))))?,
     ])
 }
 
-pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
-    let families = families()?;
+pub(super) fn figure(drawn: &DrawnFinger, tick: &str) -> Result<Figure, ReportError> {
+    let families = families(&head(drawn))?;
     let [gratings, triangles, polygons, pictures, frictions] = &families;
     let mut data =
         Data::new(["content", "unit", "amount", "scene_bytes", "picture_bytes", "frames", "wire_bytes", "table_bytes"]);
@@ -225,13 +233,13 @@ pub(super) fn figure(tick: &str) -> Result<Figure, ReportError> {
     Ok(Figure {
         name: "bytes-against-scene-content",
         title: "Bytes on the wire and of the table against what is in the scene".to_owned(),
-        caption: caption(&families, tick),
+        caption: caption(&families, tick, &drawn.caption),
         chart: Chart::new(vec![left, middle, right, table], 2).with_shared_legend(),
         csv: data.csv()?,
     })
 }
 
-fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
+fn caption(families: &[Family; 5], tick: &str, finger: &str) -> Vec<String> {
     let [gratings, _, polygons, pictures, frictions] = families;
     let table = |percent: usize| {
         frictions.scenes.iter().find(|scene| scene.amount == percent).map_or(0, |scene| scene.table_bytes)
@@ -272,6 +280,7 @@ fn caption(families: &[Family; 5], tick: &str) -> Vec<String> {
             size_of::<InverseTable>(),
         ),
         tick.to_owned(),
+        finger.to_owned(),
     ]
 }
 
@@ -310,7 +319,9 @@ mod tests {
     #[test]
     fn the_driver_sends_as_much() {
         let files = pictures().expect("a picture");
-        for text in [HEAD.to_owned(), gratings(1), gratings(64), polygons(42, 3), picture(50), picture(250)] {
+        let head = "version = 2\n";
+        let texts = [gratings(head, 1), gratings(head, 64), polygons(head, 42, 3)];
+        for text in texts.into_iter().chain([head.to_owned(), picture(head, 50), picture(head, 250)]) {
             let program = compiled(&text, &files).expect("it compiles");
             let wire = OnTheWire::of(&program).expect("frames");
             assert_eq!((wire.frames as u64, wire.wire_bytes as u64), sent(&program));

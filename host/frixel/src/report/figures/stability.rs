@@ -9,9 +9,9 @@ use frixel_chart::{Axis, Cell, Chart, Field, Look, Mark, PALETTE, Panel};
 
 /// The parameters are powers of two, and so exact in f32: the error is the model's rounding, not that of its
 /// parameters.
-const FINGER: Finger<f64> =
+pub(super) const FINGER: Finger<f64> =
     Finger { radius_m: 1.0 / 128.0, stiffness_pa_per_m: 16_777_216.0, friction_coefficient: 0.5 };
-const GAP_M: f64 = 1.0 / 131_072.0;
+pub(super) const GAP_M: f64 = 1.0 / 131_072.0;
 
 /// Position of the strip for no load, and the least load of the plane.
 const NO_LOAD: (f64, f64) = (1e-8, 1e-7);
@@ -93,19 +93,22 @@ struct Precision {
     half_unit: &'static str,
 }
 
-pub(super) fn in_f64() -> Result<Figure, ReportError> {
+/// A map, and its worst points in words.
+pub(super) type Mapped = (Figure, String);
+
+pub(super) fn in_f64() -> Result<Mapped, ReportError> {
     let precision =
         Precision { name: "stability-f64", title: "f64", goal: 4e-15, colours: (1e-17, 4e-15), half_unit: "1.1e-16" };
     figure(&precision, &map::<f64>()?)
 }
 
-pub(super) fn in_f32() -> Result<Figure, ReportError> {
+pub(super) fn in_f32() -> Result<Mapped, ReportError> {
     let precision =
         Precision { name: "stability-f32", title: "f32", goal: 1e-6, colours: (1e-9, 1e-6), half_unit: "6.0e-8" };
     figure(&precision, &map::<f32>()?)
 }
 
-fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
+fn figure(precision: &Precision, map: &Map) -> Result<Mapped, ReportError> {
     let panel = |title: &str, error: fn(&Errors) -> f64, worst: &Worst| {
         let (low, high) = (f64::from(Q_DECADES.0), f64::from(Q_DECADES.1));
         let cells =
@@ -130,7 +133,8 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
         data.row([left.into(), right.into(), low.into(), high.into(), cell.forward.into(), cell.inverse.into()]);
     }
     let title = precision.title;
-    Ok(Figure {
+    let worst = format!("forward {}; inverse {}", map.forward.sentence(), map.inverse.sentence());
+    let figure = Figure {
         name: precision.name,
         title: format!("Stability in {title}: error over the plane of attraction and load"),
         caption: vec![
@@ -143,10 +147,8 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
                 precision.half_unit, precision.goal
             ),
             format!(
-                "Worst points: forward {}; inverse {}. The finger's parameters are powers of two (R = 1/128 m, k = 2²⁴ \
-                 Pa/m, gap 2⁻¹⁷ m, µ = 1/2), and so exact.",
-                map.forward.sentence(),
-                map.inverse.sentence()
+                "Worst points: {worst}. The finger's parameters are powers of two (R = 1/128 m, k = 2²⁴ Pa/m, gap 2⁻¹⁷ \
+                 m, µ = 1/2), and so exact."
             ),
         ],
         chart: Chart::new(
@@ -157,5 +159,6 @@ fn figure(precision: &Precision, map: &Map) -> Result<Figure, ReportError> {
             2,
         ),
         csv: data.csv()?,
-    })
+    };
+    Ok((figure, worst))
 }

@@ -104,7 +104,8 @@ fn panel(title: &str, range: std::ops::Range<f64>, goal: f64, points: &[Point]) 
     panel
 }
 
-pub(super) fn figure() -> Result<Figure, ReportError> {
+/// The figure, and its worst points in f64 in words.
+pub(super) fn figure() -> Result<(Figure, String), ReportError> {
     let (double, single) = (points::<f64>()?, points::<f32>()?);
     let mut data = Data::new([
         "precision",
@@ -132,7 +133,7 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
         let (forward, inverse) = (Worst::of(points, |point| point.forward), Worst::of(points, |point| point.inverse));
         format!("friction {}; voltage {}", forward.sentence(), inverse.sentence())
     };
-    Ok(Figure {
+    let figure = Figure {
         name: "stability-soft",
         title: "Stability of the soft finger: error over its exponent".to_owned(),
         caption: vec![
@@ -149,5 +150,6 @@ pub(super) fn figure() -> Result<Figure, ReportError> {
             2,
         ),
         csv: data.csv()?,
-    })
+    };
+    Ok((figure, worst(&double)))
 }

@@ -74,10 +74,11 @@ pub(super) fn figure(counts: &Counts) -> Result<Option<Figure>, ReportError> {
                  the finger, so that layers elsewhere hardly count{elsewhere}. The longest ticks differ by what else \
                  falls into them, such as an early edge of the carrier."
             ),
-            "A scene is refused when a tick at some place is estimated at more cycles than the board states in its \
-             hello; the estimate adds up cycles by class of instruction. Counts come from the file given with --bench, \
-             which cargo xtask bench writes: they were counted in an emulator."
-                .to_owned(),
+            format!(
+                "A scene is refused when a tick at some place is estimated at more cycles than the board states in its \
+                 hello; the estimate adds up cycles by class of instruction. Instructions were {}.",
+                counts.origin()
+            ),
         ],
         chart: Chart::new(vec![panel], 1),
         csv: data.csv()?,

@@ -49,6 +49,8 @@ pub(super) struct Method {
     pub(super) bytes: Option<usize>,
     /// Largest relative error in electric friction over the range.
     pub(super) error: f64,
+    /// The electric friction at which it is that large, in newtons.
+    pub(super) worst_n: f64,
     /// Measured seconds per call in a chain of dependent calls.
     pub(super) seconds: f64,
 }
@@ -95,13 +97,14 @@ impl Bench<'_> {
 
     fn in_f64(&self, kind: Kind, size: String, invert: impl Fn(f64) -> f64) -> Method {
         let error = |x: f64| (self.contact.electric_friction_n(invert(x)) / x - 1.0).abs();
-        let worst = largest(self.frictions(ERROR_POINTS).map(error));
+        let (error, worst_n) = largest(self.frictions(ERROR_POINTS).map(|x| (error(x), x)));
         Method {
             kind,
             size,
             counted: None,
             bytes: None,
-            error: worst,
+            error,
+            worst_n,
             seconds: seconds_per_call(&self.timed(|x| x), invert),
         }
     }
@@ -111,13 +114,14 @@ impl Bench<'_> {
             let x = x as f32;
             (self.contact.electric_friction_n(f64::from(invert(x))) / f64::from(x) - 1.0).abs()
         };
-        let worst = largest(self.frictions(ERROR_POINTS).map(error));
+        let (error, worst_n) = largest(self.frictions(ERROR_POINTS).map(|x| (error(x), x)));
         Method {
             kind,
             size,
             counted: None,
             bytes,
-            error: worst,
+            error,
+            worst_n,
             seconds: seconds_per_call(&self.timed(|x| x as f32), invert),
         }
     }
@@ -138,13 +142,14 @@ impl Bench<'_> {
             let voltage_v_rms = f64::from(invert(code)) * units.1;
             (self.contact.electric_friction_n(voltage_v_rms) / (f64::from(code) * units.0) - 1.0).abs()
         };
-        let worst = largest(self.frictions(ERROR_POINTS).map(error));
+        let (error, worst_n) = largest(self.frictions(ERROR_POINTS).map(|x| (error(x), x)));
         Method {
             kind,
             size,
             counted: None,
             bytes: Some(bytes),
-            error: worst,
+            error,
+            worst_n,
             seconds: seconds_per_call(&self.timed(code), invert),
         }
     }
@@ -155,9 +160,12 @@ impl Bench<'_> {
     }
 }
 
-/// The largest error; infinite if one is not a number, which `f64::max` would ignore.
-fn largest(errors: impl Iterator<Item = f64>) -> f64 {
-    errors.fold(0.0, |worst, error| if error.is_nan() { f64::INFINITY } else { worst.max(error) })
+/// The largest error and its place; infinite if one is not a number, which no comparison finds.
+fn largest(errors: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    errors.fold((0.0, f64::NAN), |worst, (error, place)| {
+        let error = if error.is_nan() { f64::INFINITY } else { error };
+        if error > worst.0 { (error, place) } else { worst }
+    })
 }
 
 impl Parameters {
@@ -174,9 +182,10 @@ mod tests {
 
     #[test]
     fn an_error_that_is_no_number_is_the_largest() {
+        let placed = |errors: [f64; 3]| largest(errors.into_iter().zip([0.1, 0.2, 0.3]));
         for errors in [[1.0, f64::NAN, 2.0], [f64::NAN, 1.0, 2.0], [1.0, 2.0, f64::NAN]] {
-            assert!(largest(errors.into_iter()).is_infinite());
+            assert!(placed(errors).0.is_infinite());
         }
-        assert!((largest([1.0, 3.0, 2.0].into_iter()) - 3.0).abs() < f64::EPSILON);
+        assert_eq!(placed([1.0, 3.0, 2.0]), (3.0, 0.2));
     }
 }

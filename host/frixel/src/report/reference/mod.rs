@@ -1,13 +1,14 @@
 //! Reference solutions of the paper's equations with 80 digits, computed by `model/reference/report.py`. The report
 //! compares the model with them.
 
-use frixel_model::{ContactModel, Real};
+use frixel_model::{ContactModel, PulledContact, Real};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::ReportError;
 
 const PLANE: &str = include_str!("plane.csv");
+const PULLED: &str = include_str!("pulled.csv");
 const SOFT: &str = include_str!("soft.csv");
 
 /// Cells per decade of the plane.
@@ -29,6 +30,36 @@ pub(super) struct PlaneRow {
     given_electric_friction_n: f64,
     answer_voltage_v: f64,
     answer_voltage_v_rest: f64,
+}
+
+/// Cells per decade of the plane of a finger that is pulled off.
+pub(super) const PULLED_CELLS_PER_DECADE: i32 = 2;
+
+/// The centre of a cell of the plane of attraction and distance from pull-off. Its numbers are exact in f64.
+#[derive(Clone, Debug, Deserialize)]
+pub(super) struct PulledRow {
+    /// Lower end of the cell in the part of the pull-off load that is missing, in units of
+    /// 1/[`PULLED_CELLS_PER_DECADE`] of a decade.
+    pub(super) part_cell: i32,
+    /// Lower end of the cell in `q`, in the same units.
+    pub(super) q_cell: i32,
+    pub(super) voltage_v: f64,
+    pub(super) normal_force_n: f64,
+    friction_n: f64,
+    friction_n_rest: f64,
+    given_friction_n: f64,
+    answer_voltage_v: f64,
+    answer_voltage_v_rest: f64,
+}
+
+impl PulledRow {
+    /// Relative errors of friction in total from voltage, and of voltage from friction in total.
+    pub(super) fn errors(&self, model: &PulledContact<f64>) -> Result<(f64, f64), ReportError> {
+        let friction_n = model.state(self.voltage_v)?.friction_n;
+        let voltage_v_rms = model.voltage_for_friction(self.given_friction_n)?;
+        let forward = Answer(self.friction_n, self.friction_n_rest).relative_error(friction_n);
+        Ok((forward, Answer(self.answer_voltage_v, self.answer_voltage_v_rest).relative_error(voltage_v_rms)))
+    }
 }
 
 /// A soft finger at one voltage.
@@ -100,6 +131,11 @@ answers!(SoftRow);
 /// All cells of the plane in order of increasing load, followed by those without a load.
 pub(super) fn plane() -> Result<Vec<PlaneRow>, csv::Error> {
     rows(PLANE)
+}
+
+/// All cells of a finger that is pulled off, in order of increasing distance from pull-off.
+pub(super) fn pulled() -> Result<Vec<PulledRow>, csv::Error> {
+    rows(PULLED)
 }
 
 /// The rows of the soft finger, without a load and then with one, in order of exponent and then of voltage.

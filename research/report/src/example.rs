@@ -4,18 +4,18 @@
 use frixel_model::{Contact, Finger, ParameterError, Real};
 
 /// The finger.
-pub const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+pub(super) const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
 /// Effective gap of coating and skin, in metres.
-pub const GAP_M: f64 = 1e-5;
+pub(super) const GAP_M: f64 = 1e-5;
 /// Normal load, in newtons.
-pub const LOAD_N: f64 = 0.5;
+pub(super) const LOAD_N: f64 = 0.5;
 /// Last sentence of the caption of a figure about this finger.
-pub const CAPTION: &str = "Example finger, assumed: R = 8 mm, k = 18 MPa/m, µ = 0.5, on an effective gap of 10 µm in place of \
+pub(super) const CAPTION: &str = "Example finger, assumed: R = 8 mm, k = 18 MPa/m, µ = 0.5, on an effective gap of 10 µm in place of \
                            the 5 µm of its profile (250 mN of friction \
                            without voltage under 0.5 N, and 28 mN more at 150 V rms).";
 
 /// The finger on its gap, in either precision.
-pub fn contact<T: Real>() -> Result<Contact<T>, ParameterError> {
+pub(super) fn contact<T: Real>() -> Result<Contact<T>, ParameterError> {
     let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = FINGER;
     let finger = Finger {
         radius_m: T::from_f64(radius_m),
