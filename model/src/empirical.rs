@@ -255,7 +255,14 @@ impl LawPoint {
 
 /// The power of the friction with which the voltage grows from one point to another.
 fn power<T: Real>(start: Point<T>, end: Point<T>) -> T {
-    (end.1 / start.1 - T::ONE).ln_1p() / (end.0 / start.0 - T::ONE).ln_1p()
+    ln_ratio(end.1, start.1) / ln_ratio(end.0, start.0)
+}
+
+// Inlined, it would put three divisions into one block, which the compiler calls through a register when it builds for
+// size; the depth of the stack could then not be computed from the image.
+#[inline(never)]
+fn ln_ratio<T: Real>(end: T, start: T) -> T {
+    (end / start - T::ONE).ln_1p()
 }
 
 /// The voltage of the power law through two points.

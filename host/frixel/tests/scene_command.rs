@@ -218,8 +218,11 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
         path.extension().is_some_and(|extension| extension == "toml").then(|| path.display().to_string())
     });
     let stream = "[carrier]\nshape = \"sine\"\n[[layer]]\nkind = \"stream\"\nlow_n = 0\nhigh_n = 0.01\n";
+    let empirical = "version = 2\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
+        \"2026-11-23\", method = \"load cell\", screen = \"example\", exponent = 2, points = [[150, 0.09]], intervals_n = \
+        [[0.08, 0.1]] }\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.21\n";
     let mut found: Vec<String> = Vec::new();
-    for scene in every.chain([files.scene(stream)]) {
+    for scene in every.chain([files.scene(stream), files.write("empirical.toml", empirical)]) {
         let check: Value =
             serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json", "--board"])).unwrap();
         let names: Vec<String> = serde_json::from_value(check["board"]["features"].clone()).unwrap();
