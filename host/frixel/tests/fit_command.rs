@@ -1,6 +1,7 @@
 //! From a board to a profile: `frixel calibrate` on the in-process simulator, then `frixel fit` on what it wrote.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+use std::fmt::Write as _;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -102,6 +103,37 @@ fn a_calibrated_person_is_recovered() {
     .unwrap();
     let thick = fail(folder.path(), &["fit", "data.csv", "--screen", "thick.toml"]);
     assert!(thick.contains("the coating alone has 10.256 um"), "{thick}");
+}
+
+/// A finger whose friction grows as the voltage to the power 4 contradicts the contact model.
+#[test]
+fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
+    let folder = TempDir::new().unwrap();
+    let law = person::Law::Power { voltage: 4.0, load: 1.0 };
+    let mut csv = String::from("voltage_v_rms,normal_force_n,friction_n,time_s,stroke,speed_mm_s\n");
+    for row in (person::Person { law, ..person::Person::example(1) }).record(&person::Protocol::default()) {
+        let (time_s, speed_mm_s) = (row.time_s.unwrap(), row.speed_mm_s.unwrap());
+        let (volts, load_n, friction_n) = (row.voltage_v_rms, row.normal_force_n, row.friction_n);
+        let stroke = row.stroke.unwrap();
+        writeln!(csv, "{volts},{load_n},{friction_n},{time_s},{stroke},{speed_mm_s}").unwrap();
+    }
+    fs::write(folder.path().join("data.csv"), csv).unwrap();
+    assert!(fail(folder.path(), &["fit", "data.csv", "-o", "z.toml"]).contains("--law empirical"));
+    assert!(!folder.path().join("z.toml").exists());
+
+    let said = succeed(folder.path(), &["fit", "data.csv", "-o", "z.toml", "--law", "empirical"]);
+    for words in ["empirical", "strokes left out", "up to this voltage", "z.toml"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let text = fs::read_to_string(folder.path().join("z.toml")).unwrap();
+    let profile = FingerProfile::parse(&text, "z.toml").unwrap();
+    assert!(matches!(profile.evidence, Evidence::Empirical { .. }));
+    let scene =
+        "version = 2\nfinger = \"z.toml\"\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
+    fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    assert!(succeed(folder.path(), &["scene", "check", "scene.toml"]).contains("empirical"));
+    succeed(folder.path(), &["play", "scene.toml", "--out", "out", "--ideal"]);
+    assert!(folder.path().join("out").is_dir());
 }
 
 #[test]

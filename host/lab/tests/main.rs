@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod coverage;
+mod empirical;
 mod person;
 mod refusals;
 mod simulated;

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use frixel_lab::fit::recipe::{self, Recipe};
-use frixel_lab::fit::{self, Division, Fit, Settings, Summary};
+use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
-use frixel_scene::{Experiment, Screen};
+use frixel_scene::{Experiment, FingerProfile, Screen};
 use time::OffsetDateTime;
 
 use super::argument::positive;
@@ -35,9 +35,13 @@ pub(super) struct FitArgs {
     /// without NAME, the list of them.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
     recipe: Option<String>,
-    /// The finger profile to write. Residual plots stand beside it, in a file of the same name that ends in .svg.
+    /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name that
+    /// ends in .svg.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
+    /// The law of the voltage that is fitted.
+    #[arg(long, value_enum, default_value_t = Law::Contact)]
+    law: Law,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
@@ -61,6 +65,52 @@ pub(super) struct FitArgs {
     /// Seed of the bootstrap that gives the intervals.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+}
+
+/// Laws of the voltage that can be fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Law {
+    /// The contact model, which data that contradict it refuse.
+    Contact,
+    /// A power of the voltage that is fitted to the data: for a finger that the contact model does not describe, on this
+    /// screen, under this load and up to the highest voltage of the data.
+    Empirical,
+}
+
+/// A finger, fitted by one of the laws.
+enum Fitted {
+    Contact(Box<Fit>),
+    Empirical(EmpiricalFit),
+}
+
+impl Fitted {
+    fn profile(&self, experiment: Experiment) -> FingerProfile {
+        match self {
+            Self::Contact(fit) => fit::profile(fit, experiment),
+            Self::Empirical(fit) => fit.profile(experiment),
+        }
+    }
+
+    fn words(&self, screen: &str) -> String {
+        match self {
+            Self::Contact(fit) => fit::words(fit, screen),
+            Self::Empirical(fit) => fit.words(),
+        }
+    }
+
+    fn json(&self) -> serde_json::Value {
+        match self {
+            Self::Contact(fit) => serde_json::json!(Summary::from(&**fit)),
+            Self::Empirical(fit) => fit.json(),
+        }
+    }
+
+    fn division(&self) -> Division {
+        match self {
+            Self::Contact(fit) => fit.division,
+            Self::Empirical(fit) => fit.division,
+        }
+    }
 }
 
 pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
@@ -87,12 +137,15 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         }
     };
     note_understood(path, understood.as_deref());
-    let fit = fit::fit_data(data, &settings).map_err(refused)?;
+    let fit = match args.law {
+        Law::Contact => fit::fit_data(data, &settings).map(|fit| Fitted::Contact(Box::new(fit))),
+        Law::Empirical => fit::fit_power_law(data, &settings).map(Fitted::Empirical),
+    };
+    let fit = fit.map_err(refused)?;
     if let Some(outputs) = &outputs {
         outputs.write(args, path, &fit, &screen_name)?;
     }
-    let text =
-        if args.json { serde_json::json!(Summary::from(&fit)).to_string() } else { fit::words(&fit, &screen_name) };
+    let text = if args.json { fit.json().to_string() } else { fit.words(&screen_name) };
     let text = text.trim_end_matches('\n');
     match &outputs {
         Some(outputs) if args.json => say(&outputs.profile, text),
@@ -102,8 +155,8 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
 }
 
 /// How friction was measured, as far as the data say it.
-fn method_of(fit: &Fit) -> &'static str {
-    match fit.division {
+fn method_of(division: Division) -> &'static str {
+    match division {
         Division::Means => "means with their errors",
         Division::Column | Division::Motion | Division::Blocks => {
             "load cell, strokes with the drive switched on and off"
@@ -131,7 +184,7 @@ impl Outputs {
     fn new(args: &FitArgs, data: &PathBuf, path: &Path) -> Result<Self, CommandError> {
         let inputs = Inputs::new([data].into_iter().chain(args.screen.as_ref().map(PathBuf::from).as_ref()));
         let profile = OutputFile::new(path, "-o", &inputs)?;
-        if !profile.is_file() {
+        if !profile.is_file() || args.law == Law::Empirical {
             return Ok(Self { profile, plots: None });
         }
         let plots = OutputFile::new(&path.with_extension("svg"), "-o", &inputs)?;
@@ -139,12 +192,12 @@ impl Outputs {
         Ok(Self { profile, plots: Some(plots) })
     }
 
-    fn write(&self, args: &FitArgs, data: &Path, fit: &Fit, screen: &str) -> Result<(), CommandError> {
-        let method = args.method.clone().unwrap_or_else(|| method_of(fit).to_owned());
+    fn write(&self, args: &FitArgs, data: &Path, fit: &Fitted, screen: &str) -> Result<(), CommandError> {
+        let method = args.method.clone().unwrap_or_else(|| method_of(fit.division()).to_owned());
         let date = OffsetDateTime::now_utc().date().to_string();
         let experiment = Experiment { date, method, screen: screen.to_owned() };
-        let mut written = vec![self.profile.filled(fit::profile(fit, experiment).to_toml().as_bytes())?];
-        if let Some(plots) = &self.plots {
+        let mut written = vec![self.profile.filled(fit.profile(experiment).to_toml().as_bytes())?];
+        if let (Some(plots), Fitted::Contact(fit)) = (&self.plots, fit) {
             let drawn = draw_fit_svg(&format!("{}, fitted", data.display()), fit)?;
             written.push(plots.filled(drawn.as_bytes())?);
         }

@@ -91,7 +91,7 @@ pub(crate) const OUTPUTS: [Output; 15] = [
 
 /// Every argument that names a file to read, or a port, by the type of a path.
 #[allow(dead_code, reason = "only the test of the command line reads it")]
-pub(crate) const INPUTS: [&str; 16] = [
+pub(crate) const INPUTS: [&str; 17] = [
     "calibrate forces",
     "fit data",
     "model eval input",
@@ -102,6 +102,7 @@ pub(crate) const INPUTS: [&str; 16] = [
     "play stroke",
     "play with_log",
     "report bench",
+    "report scene",
     "scene check scene",
     "scene migrate scene",
     "scene preview scene",

@@ -278,9 +278,9 @@ pub enum FitError {
     /// The exponent of voltage or load contradicts the model.
     #[error(
         "electric friction grows as {quantity} to the power {value:.2} (99.9 % interval {low:.2} to {high:.2}), and the \
-         model says {model:.2}: the contact model does not hold for these data, so no profile is fitted; check {}, and \
-         see docs/truth.md",
-        what_bends(.quantity)
+         model says {model:.2}: the contact model does not hold for these data, so no profile is fitted; check {}; see \
+         docs/truth.md",
+        cure(.quantity)
     )]
     LawBroken {
         /// `voltage` or `load`.
@@ -293,6 +293,31 @@ pub enum FitError {
         high: f64,
         /// The model's exponent.
         model: f64,
+    },
+    /// Electric friction follows no power of the voltage.
+    #[error(
+        "at {voltage_v_rms:.0} V rms electric friction was {measured_mn:.1} mN, and the power law that fits best says \
+         {law_mn:.1} mN, further than the noise of these strokes explains ({error_mn:.1} mN): write the points that you \
+         measured into a profile (docs/scene.md, \"Empirical fingers\")"
+    )]
+    NoPowerLaw {
+        /// Voltage, in volts rms.
+        voltage_v_rms: f64,
+        /// Mean of the strokes, in millinewtons.
+        measured_mn: f64,
+        /// What the law says, in millinewtons.
+        law_mn: f64,
+        /// 99.9 % half-interval of the mean, in millinewtons.
+        error_mn: f64,
+    },
+    /// No profile has such an exponent.
+    #[error(
+        "electric friction grows as voltage to the power {exponent:.2}, and a profile takes 0.5 to 12: check for a \
+         voltage that was not applied, and for strokes in which the finger stuck"
+    )]
+    ExponentOutOfRange {
+        /// Exponent of the voltage.
+        exponent: f64,
     },
     /// The gap of the fit is smaller than the screen's coating.
     #[error(
@@ -313,11 +338,13 @@ pub enum FitError {
     NotConverged,
 }
 
-/// What bends the measured exponent of a quantity. A factor on volts or newtons does not.
-fn what_bends(quantity: &str) -> &'static str {
+/// What bends the measured exponent of a quantity, which a factor on volts or newtons does not; and what to do if
+/// nothing does.
+fn cure(quantity: &str) -> &'static str {
     if quantity == "load" {
         "that friction does not leak into the sensor's normal force, nor the load into its friction"
     } else {
-        "that the amplifier reaches the highest voltage with the electrode connected, and that the force sensor is linear"
+        "that the amplifier reaches the highest voltage with the electrode connected, and that the force sensor is \
+         linear; if so, `frixel fit DATA.csv --law empirical` fits a power law of the voltage in the model's place"
     }
 }

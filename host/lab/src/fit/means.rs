@@ -18,10 +18,10 @@ use super::faults::Faults;
 use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
-use super::search::{Search, coupling_of, start};
+use super::search::{Search, start};
 use super::statistics::median;
 use super::table::{FRICTION, LOAD, VOLTAGE, voltage_v_rms};
-use super::{Coupling, Fit, Settings, results, rules, verdict};
+use super::{FittedData, Settings, rules};
 use crate::table::{Column, Place, Reading, Row, Table, Unit};
 
 const STANDARD_ERROR: Column = Column::new("friction_se_n", "newtons").converted(Unit::Newtons);
@@ -112,12 +112,12 @@ pub(super) fn read<R: Read>(mut table: Table<R>, errors: &Errors) -> Result<Read
     Ok(Reading { value: rows, understood: Some(understood) })
 }
 
-/// Fits a finger to means. Fails if they contradict the model, or scatter more than their errors explain.
-pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<Fit, FitError> {
+/// Fits laws to means. Fails if they scatter more than their errors explain.
+pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, FitError> {
     let voltage_range_v_rms = check(rows)?;
     let loads = || rows.iter().map(|row| row.normal_force_n);
     let load_range_n = (loads().fold(f64::INFINITY, f64::min), loads().fold(0.0, f64::max));
-    rules::check_stated(settings, voltage_range_v_rms, load_range_n)?;
+    rules::check_stated_load(settings, load_range_n)?;
     let normal_load_n = settings.normal_load_n.unwrap_or_else(|| median(loads()));
 
     let observations: Vec<Observation> = rows.iter().map(observation).collect();
@@ -134,23 +134,12 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<Fit, FitError
     let draws = Draws::of_errors(rows.iter().map(|row| row.count.map(|count| count - 1.0)).sum());
     let fitted = Fitted::of_draws(best, replicates, draws)?;
     check_scatter(&observations, &fitted)?;
-    let judge = verdict::Judge { fitted: &fitted, observations: &observations };
-    let voltage_exponent = judge.voltage(normal_load_n, voltage_range_v_rms.1)?;
-    let load_exponent = judge.load(normal_load_n)?;
-
-    let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
-    let gap_m = Coupling(coupling.value).gap_m();
-    let fit = Fit {
+    Ok(FittedData {
         friction_coefficient: fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?,
-        coupling_sqrt_n_per_v2: coupling,
-        stated_voltage_v_rms: settings.voltage_v_rms,
+        fitted,
+        strokes,
+        observations,
         normal_load_n,
-        electric_friction_n: fitted.electric_friction_n(settings.voltage_v_rms, normal_load_n)?,
-        electric_friction_most_n: fitted.electric_friction_n(voltage_range_v_rms.1, normal_load_n)?,
-        voltage_exponent,
-        load_exponent,
-        gap_m,
-        skin_gap_m: gap_m - settings.coating_gap_m,
         voltage_range_v_rms,
         load_range_n,
         rows: rows.len(),
@@ -158,10 +147,8 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<Fit, FitError
         has_time: false,
         has_speed: false,
         bandwidth_hz: None,
-        strokes: results(&strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
-    };
-    verdict::check_fit(&fit, settings)?;
-    Ok(fit)
+        held_out: None,
+    })
 }
 
 /// Whether means can be fitted; returns the lowest and the highest voltage.
@@ -246,8 +233,8 @@ mod tests {
     use rand_pcg::Pcg64;
     use rand_pcg::rand_core::SeedableRng;
 
-    use super::super::{Data, Settings, Verdict, data, fit_data, words};
-    use super::{Coupling, Fit, FitError, Measured, Normal, Observation};
+    use super::super::{Coupling, Data, Fit, Settings, Verdict, data, fit_data, words};
+    use super::{FitError, Measured, Normal, Observation};
     use crate::fit::law::Attraction;
 
     const COEFFICIENT: f64 = 0.5;

@@ -7,8 +7,9 @@
 //!
 //! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
-//! least squares (`search`, `least_squares`), intervals come from a bootstrap over strokes (`intervals`, `bootstrap`),
-//! and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it).
+//! least squares (`search`, `least_squares`), its error is told from strokes that it has not seen (`held_out`), intervals come from a bootstrap over strokes (`intervals`, `bootstrap`),
+//! and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it). A finger that contradicts
+//! the model has a power law of its own instead (`empirical`).
 //!
 //! # What is estimated
 //!
@@ -21,8 +22,10 @@
 
 mod bootstrap;
 mod contrast;
+mod empirical;
 mod error;
 mod faults;
+mod held_out;
 mod intervals;
 mod law;
 mod least_squares;
@@ -40,9 +43,11 @@ mod verdict;
 
 pub use bootstrap::Estimate;
 use contrast::{Levels, StrokeMeans, stroke_means};
+pub use empirical::{EmpiricalFit, fit_power_law};
 pub use error::FitError;
 use faults::Faults;
 pub use faults::{Fault, FaultyStroke};
+pub use held_out::HeldOut;
 use intervals::{Fitted, wandering};
 use law::{Attraction, Coupling};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
@@ -110,6 +115,8 @@ pub struct Fit {
     /// Bandwidth with which friction follows a switch of the drive, in Hz: that of the force sensor, and of the finger;
     /// `None` if the data cannot tell.
     pub bandwidth_hz: Option<f64>,
+    /// Errors in strokes that a fit has not seen; `None` for means, and if a fit without one stroke does not converge.
+    pub held_out: Option<HeldOut>,
     /// What was measured in each stroke, and what the fit says.
     pub strokes: Vec<StrokeResult>,
 }
@@ -146,56 +153,106 @@ impl Fit {
     }
 }
 
-/// Fits a finger to a recording or to means.
-pub fn fit_data(data: Data, settings: &Settings) -> Result<Fit, FitError> {
-    match data {
-        Data::Recording(rows) => fit(rows, settings),
-        Data::Means(rows) => means::fit(&rows, settings),
+/// Laws fitted to a recording or to means, before any of them is judged.
+struct FittedData {
+    fitted: Fitted,
+    strokes: Vec<StrokeMeans>,
+    observations: Vec<Observation>,
+    friction_coefficient: Estimate,
+    /// Normal load at which friction is stated, in newtons.
+    normal_load_n: f64,
+    voltage_range_v_rms: (f64, f64),
+    load_range_n: (f64, f64),
+    rows: usize,
+    division: Division,
+    has_time: bool,
+    has_speed: bool,
+    bandwidth_hz: Option<f64>,
+    held_out: Option<HeldOut>,
+}
+
+impl FittedData {
+    fn of(data: Data, settings: &Settings) -> Result<Self, FitError> {
+        match data {
+            Data::Recording(rows) => Self::of_recording(rows, settings),
+            Data::Means(rows) => means::fit(&rows, settings),
+        }
+    }
+
+    fn of_recording(rows: Vec<Row>, settings: &Settings) -> Result<Self, FitError> {
+        let mut faults = Faults::default();
+        let fitted = Self::of_strokes_without(&mut faults, rows, settings);
+        // A faulty stroke may be the cause of what else is wrong.
+        faults.check()?;
+        fitted
+    }
+
+    /// Fits the laws to the strokes without faults; the others are added to `faults`.
+    fn of_strokes_without(faults: &mut Faults, rows: Vec<Row>, settings: &Settings) -> Result<Self, FitError> {
+        rules::check_units(&rows)?;
+        let mut recording = Recording::new(rows, &settings.without, faults)?;
+        let (load_median_n, load_range_n) = rules::check_loads(&mut recording, faults);
+        rules::check_strokes(&recording)?;
+        let levels = Levels::of(&recording);
+        let voltage_range_v_rms = rules::check_levels(&levels)?;
+        rules::check_carrier(&recording, &levels)?;
+        let mut strokes = stroke_means(&recording, &levels);
+        rules::check_natural(&mut strokes, faults)?;
+        rules::check_forces(&recording)?;
+        let bandwidth_hz = sensor::check_bandwidth(&recording, &levels)?;
+        rules::check_stated_load(settings, load_range_n)?;
+        let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
+
+        let observations: Vec<Observation> = strokes.iter().flat_map(|stroke| &stroke.observations).copied().collect();
+        let start = start(&strokes, &observations)?;
+        let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
+        let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
+        rules::check_slip(&strokes, &best.power, faults);
+        // The search for intervals takes longest.
+        faults.check()?;
+        let held_out = HeldOut::of(&search, &strokes, &best);
+        let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
+        let friction_coefficient = fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?;
+        Ok(Self {
+            friction_coefficient: wandering(&strokes, friction_coefficient),
+            fitted,
+            observations,
+            normal_load_n,
+            voltage_range_v_rms,
+            load_range_n,
+            rows: recording.rows().count(),
+            division: recording.division,
+            has_time: recording.has_time,
+            has_speed: recording.has_speed,
+            bandwidth_hz,
+            held_out,
+            strokes,
+        })
     }
 }
 
-/// Fits a finger to the rows of a recording.
-pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
-    let mut faults = Faults::default();
-    let fit = fit_without(&mut faults, rows, settings);
-    // A faulty stroke may be the cause of what else is wrong.
-    faults.check()?;
-    fit
+/// Fits the contact model to a recording or to means.
+pub fn fit_data(data: Data, settings: &Settings) -> Result<Fit, FitError> {
+    judged(&FittedData::of(data, settings)?, settings)
 }
 
-/// Fits a finger to the strokes without faults; the others are added to `faults`.
-fn fit_without(faults: &mut Faults, rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
-    rules::check_units(&rows)?;
-    let mut recording = Recording::new(rows, &settings.without, faults)?;
-    let (load_median_n, load_range_n) = rules::check_loads(&mut recording, faults);
-    rules::check_strokes(&recording)?;
-    let levels = Levels::of(&recording);
-    let voltage_range_v_rms = rules::check_levels(&levels)?;
-    rules::check_carrier(&recording, &levels)?;
-    let mut strokes = stroke_means(&recording, &levels);
-    rules::check_natural(&mut strokes, faults)?;
-    rules::check_forces(&recording)?;
-    let bandwidth_hz = sensor::check_bandwidth(&recording, &levels)?;
-    rules::check_stated(settings, voltage_range_v_rms, load_range_n)?;
-    let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
+/// Fits the contact model to the rows of a recording.
+pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
+    fit_data(Data::Recording(rows), settings)
+}
 
-    let observations: Vec<Observation> = strokes.iter().flat_map(|stroke| &stroke.observations).copied().collect();
-    let start = start(&strokes, &observations)?;
-    let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
-    let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
-    rules::check_slip(&strokes, &best.contact, faults);
-    // The search for intervals takes longest.
-    faults.check()?;
-    let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
-    let judge = verdict::Judge { fitted: &fitted, observations: &observations };
+/// The fit of the contact model. Fails if the data contradict it.
+fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
+    let FittedData { fitted, normal_load_n, voltage_range_v_rms, .. } = data;
+    let (normal_load_n, voltage_range_v_rms) = (*normal_load_n, *voltage_range_v_rms);
+    rules::check_stated_voltage(settings, voltage_range_v_rms)?;
+    let judge = verdict::Judge { fitted, observations: &data.observations };
     let voltage_exponent = judge.voltage(normal_load_n, voltage_range_v_rms.1)?;
     let load_exponent = judge.load(normal_load_n)?;
-
-    let friction_coefficient = fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?;
     let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
     let gap_m = Coupling(coupling.value).gap_m();
     let fit = Fit {
-        friction_coefficient: wandering(&strokes, friction_coefficient),
+        friction_coefficient: data.friction_coefficient,
         coupling_sqrt_n_per_v2: coupling,
         stated_voltage_v_rms: settings.voltage_v_rms,
         normal_load_n,
@@ -206,15 +263,17 @@ fn fit_without(faults: &mut Faults, rows: Vec<Row>, settings: &Settings) -> Resu
         gap_m,
         skin_gap_m: gap_m - settings.coating_gap_m,
         voltage_range_v_rms,
-        load_range_n,
-        rows: recording.rows().count(),
-        division: recording.division,
-        has_time: recording.has_time,
-        has_speed: recording.has_speed,
-        bandwidth_hz,
-        strokes: results(&strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
+        load_range_n: data.load_range_n,
+        rows: data.rows,
+        division: data.division,
+        has_time: data.has_time,
+        has_speed: data.has_speed,
+        bandwidth_hz: data.bandwidth_hz,
+        held_out: data.held_out,
+        strokes: results(&data.strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
-    verdict::check_fit(&fit, settings)?;
+    verdict::check_estimates(fit.division, &fit.strokes, &fit.friction_coefficient, &fit.electric_friction_n)?;
+    verdict::check_gap(&fit, settings)?;
     Ok(fit)
 }
 

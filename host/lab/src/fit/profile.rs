@@ -25,6 +25,6 @@ pub fn profile(fit: &Fit, experiment: Experiment) -> FingerProfile {
 }
 
 /// A number of six significant digits: far beyond what was measured, and readable.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

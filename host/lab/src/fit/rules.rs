@@ -164,12 +164,14 @@ pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mu
     }
 }
 
-/// Whether friction is stated at a voltage and a load that were measured.
-pub(super) fn check_stated(settings: &Settings, voltages: (f64, f64), loads: (f64, f64)) -> Result<(), FitError> {
+/// Whether friction is stated at a voltage that was measured.
+pub(super) fn check_stated_voltage(settings: &Settings, voltages: (f64, f64)) -> Result<(), FitError> {
     let (stated, max) = (settings.voltage_v_rms, voltages.1);
-    if stated > EXTRAPOLATION * max {
-        return Err(FitError::VoltageExtrapolated { max, stated });
-    }
+    if stated > EXTRAPOLATION * max { Err(FitError::VoltageExtrapolated { max, stated }) } else { Ok(()) }
+}
+
+/// Whether friction is stated under a load that was measured.
+pub(super) fn check_stated_load(settings: &Settings, loads: (f64, f64)) -> Result<(), FitError> {
     let (low, high) = loads;
     match settings.normal_load_n {
         Some(stated) if !(low / EXTRAPOLATION..=high * EXTRAPOLATION).contains(&stated) => {

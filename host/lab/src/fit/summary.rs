@@ -64,6 +64,8 @@ pub struct Summary {
     /// Bandwidth with which friction follows a switch of the drive, Hz: that of force sensor and finger together;
     /// `null` where the data cannot tell.
     pub bandwidth_hz: Option<f64>,
+    /// Root mean square error of electric friction in strokes that a fit has not seen, N; `null` for means.
+    pub held_out_error_n: Option<f64>,
 }
 
 impl From<&Fit> for Summary {
@@ -102,6 +104,7 @@ impl From<&Fit> for Summary {
                 Division::Means => "means",
             },
             bandwidth_hz: fit.bandwidth_hz,
+            held_out_error_n: fit.held_out.map(|held_out| held_out.contact_error_n),
         }
     }
 }
@@ -149,6 +152,9 @@ pub fn words(fit: &Fit, screen: &str) -> String {
     if let Some(bandwidth_hz) = fit.bandwidth_hz {
         let rise_ms = 1e3 * BANDWIDTH_TIMES_RISE / bandwidth_hz;
         line("force sensor", format!("follows a switch of the drive in {rise_ms:.1} ms, as with {bandwidth_hz:.0} Hz"));
+    }
+    if let Some(held_out) = &fit.held_out {
+        line("strokes left out", held_out.words(held_out.contact_error_n));
     }
     let skin_um = 1e6 * fit.skin_gap_m;
     line(

@@ -177,11 +177,16 @@ fn exact(observations: &[Observation], solution: &Solution) -> Option<Vec<Observ
     Some(exact.collect())
 }
 
-/// Fails if a fit is too uncertain, if the finger changed while it was measured, or if the gap is inside the coating.
-pub(super) fn check_fit(fit: &Fit, settings: &Settings) -> Result<(), FitError> {
-    let third = fit.strokes.len() / 3;
-    let first = fit.strokes.get(..third).unwrap_or_default();
-    let last = fit.strokes.get(fit.strokes.len() - third..).unwrap_or_default();
+/// Fails if estimates are too uncertain, or if the finger changed while it was measured.
+pub(super) fn check_estimates(
+    division: Division,
+    strokes: &[StrokeResult],
+    friction_coefficient: &Estimate,
+    electric_friction_n: &Estimate,
+) -> Result<(), FitError> {
+    let third = strokes.len() / 3;
+    let first = strokes.get(..third).unwrap_or_default();
+    let last = strokes.get(strokes.len() - third..).unwrap_or_default();
     let natural = |stroke: &StrokeResult| stroke.natural_coefficient.map(|coefficient| (coefficient, 1.0));
     let electric = |stroke: &StrokeResult| {
         let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
@@ -193,18 +198,23 @@ pub(super) fn check_fit(fit: &Fit, settings: &Settings) -> Result<(), FitError> 
     let natural = [weighted_mean(first, natural), weighted_mean(last, natural)];
     let electric = [weighted_mean(first, electric), weighted_mean(last, electric)];
     // Rows of means do not stand in the order of time.
-    if fit.division != Division::Means {
+    if division != Division::Means {
         check_drift("friction coefficient", natural, 1.0)?;
-        check_drift("electric friction in newtons", electric, fit.electric_friction_n.value)?;
+        check_drift("electric friction in newtons", electric, electric_friction_n.value)?;
     }
     for (quantity, estimate) in
-        [("friction coefficient", fit.friction_coefficient), ("electric friction in newtons", fit.electric_friction_n)]
+        [("friction coefficient", friction_coefficient), ("electric friction in newtons", electric_friction_n)]
     {
         if !estimate.is_within(INTERVAL_SHARE) {
-            let Estimate { value, low, high } = estimate;
+            let Estimate { value, low, high } = *estimate;
             return Err(FitError::TooUncertain { quantity, low, high, value });
         }
     }
+    Ok(())
+}
+
+/// Fails if the gap of a fit is inside the coating.
+pub(super) fn check_gap(fit: &Fit, settings: &Settings) -> Result<(), FitError> {
     if fit.skin_gap_m <= 0.0 {
         let (gap_um, coating_um) = (1e6 * fit.gap_m, 1e6 * settings.coating_gap_m);
         return Err(FitError::GapInsideCoating { gap_um, coating_um });
