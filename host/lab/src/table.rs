@@ -4,8 +4,8 @@
 //! A header may state another unit than the caller's (`friction_mn`, `friction [mN]`); numbers are converted.
 //!
 //! Spreadsheets write tables in other ways than programs do: with semicolons or tabs between columns, with decimal
-//! commas, in UTF-16. What a file has is found from its first [`HEAD_BYTES`] bytes, and what can be read in two ways is
-//! refused. [`Table::understood`] says in a sentence what was found.
+//! commas, in UTF-16. What a file has is found from its first 64 KiB, and what can be read in two ways is refused.
+//! [`Table::understood`] says in a sentence what was found.
 //!
 //! Cells may have blanks around them. Blank lines, and lines that start with `#`, are skipped. Rows are numbered as the
 //! lines of the file, so that an editor or a spreadsheet shows the row that a message names.

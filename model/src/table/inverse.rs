@@ -194,7 +194,7 @@ impl InverseTable {
     ///
     /// The friction at the returned voltage is within [`Self::RELATIVE_ERROR`] of the target. The voltage is zero for a
     /// negative friction and for not-a-number. Above the largest friction it is the largest voltage, which it never
-    /// exceeds. Below the range it falls along a straight line to zero.
+    /// exceeds. Below the range it falls along a straight line to zero; that of an empirical law is zero there.
     #[inline]
     pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
         self.grid.evaluate(&self.rows, electric_friction_n)
