@@ -128,7 +128,8 @@ impl Display for DoubleSingle {
     }
 }
 
-/// Powers, logarithms and arc tangents are computed in `f64`; no board uses them.
+/// Powers, logarithms and arc tangents are computed in `f64`; a board uses powers and logarithms for an empirical law,
+/// and arc tangents never.
 impl Real for DoubleSingle {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };

@@ -6,7 +6,7 @@ use core::fmt::{Display, Formatter, Result as FmtResult};
 
 use crate::Real;
 use crate::double_single::DoubleSingle;
-use crate::table::{Curve, LAW_DENSITY, LAW_ROWS, Point, RowGrid, round_down};
+use crate::table::{Curve, FRICTION_MAX_N, LAW_DENSITY, LAW_ROWS, Point, RowGrid, round_down};
 
 /// A point of an empirical law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,7 +158,7 @@ impl EmpiricalLaw {
         let voltage = DoubleSingle::from(voltage_max_v_rms);
         let (point, power) = law.segment(|point| DoubleSingle::from(point.voltage_v_rms) >= voltage);
         let top_n = round_down(point.0 * (voltage / point.1).pow(DoubleSingle::ONE / power));
-        if !(top_n < f32::MAX) {
+        if !(top_n <= FRICTION_MAX_N) {
             return Err(LawError::Unrepresentable);
         }
         law.grid = RowGrid::new(LAW_ROWS, LAW_DENSITY, top_n, voltage_max_v_rms)
@@ -169,8 +169,8 @@ impl EmpiricalLaw {
     }
 
     /// Electric friction in newtons at an rms voltage of zero or more. Above the last point the last power law continues:
-    /// within a carrier period the voltage on an electrode is above its rms value, which no board drives above that of the
-    /// last point.
+    /// within a carrier period the voltage on an electrode exceeds its rms value. Only the rms value stays at or below that
+    /// of the last point.
     pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
         if !(voltage_v_rms > 0.0) {
             return 0.0;

@@ -197,4 +197,8 @@ fn what_is_no_law_is_refused_with_the_reason() {
     }
     assert_eq!(refused(2.0, &[(100.0, 1e-36)], 100.0), LawError::Unrepresentable);
     assert_eq!(refused(12.0, &[(100.0, 1e-9)], 0.5), LawError::Unrepresentable);
+    // The coefficients of their rows underflow, and a row would drive above the largest voltage.
+    for (exponent, friction_n) in [(0.67, 1e16), (2.0, 1e24), (2.0, 1.1e12)] {
+        assert_eq!(refused(exponent, &[(150.0, friction_n)], 150.0), LawError::Unrepresentable);
+    }
 }

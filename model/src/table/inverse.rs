@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 use core::ops::Range;
 
 use super::TableError;
-use super::float::{RowGrid, round_down};
+use super::float::{FRICTION_MAX_N, RowGrid, round_down};
 use super::interpolation::Curve;
 use crate::double_single::DoubleSingle;
 use crate::{EmpiricalLaw, Finger, LawError, LawPoint, LoadedContact, Real};
@@ -177,6 +177,9 @@ impl InverseTable {
         let knee_row = grid.row(knee_n);
         if knee_row >= ROWS {
             return Err(TableError::TooManySegments);
+        }
+        if friction_max_n > FRICTION_MAX_N {
+            return Err(TableError::Unrepresentable);
         }
         let end = grid.end_row(ROWS, asked_max_n, knee_n);
         let knee_start = DoubleSingle::from(grid.start_n(knee_row));

@@ -26,7 +26,7 @@ use core::fmt::{Display, Formatter, Result as FmtResult};
 pub use builder::{Precision, TableBuilder, TableShape};
 pub use fixed::FixedTable;
 pub use float::SizedTable;
-pub(crate) use float::{RowGrid, round_down};
+pub(crate) use float::{FRICTION_MAX_N, RowGrid, round_down};
 pub(crate) use interpolation::{Curve, Point};
 pub use inverse::{EmpiricalTableFilling, InverseTable, InverseTableFilling};
 pub(crate) use inverse::{LAW_DENSITY, LAW_ROWS};
