@@ -8,16 +8,44 @@
 )]
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use frixel::rehearsal::board_costs;
 use frixel::rigs::SimStream;
+use frixel::scene_file;
 use frixel_driver::{Device, DeviceError, PollingLink, Upload};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
-use frixel_layers::{Point, Record, Scene as WireScene};
 use frixel_scene::{Scene, compile};
+use frixel_testkit::scene_with_points;
+
+/// The files of the scenes that a fuzzer starts from: those of the gallery, and one whose finger is an empirical law.
+pub fn scene_files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let gallery =
+        fs::read_dir(folder.join("../scenes")).expect("the gallery").map(|entry| entry.expect("a file").path());
+    let mut files: Vec<PathBuf> = gallery.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    assert!(!files.is_empty());
+    files.sort();
+    files.push(folder.join("empirical.toml"));
+    files
+}
+
+/// Those of the same scenes that have no pictures, compiled, each with the name of its file.
+pub fn compiled_scenes() -> Vec<(String, Vec<u8>)> {
+    let board = RigConfig::default().board;
+    let programs = scene_files().into_iter().map(|file| {
+        let scene = scene_file::load(&file).expect("a scene");
+        (file, compile(&scene, &board.limits, board.tick_hz).expect("a valid scene"))
+    });
+    let programs = programs.filter(|(_, program)| program.bitmaps.is_empty());
+    let name = |file: PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    programs.map(|(file, program)| (name(file), program.scene_bytes())).collect()
+}
 
 /// Compiles arbitrary text as a scene file. It is rejected, or becomes a program that a board accepts, with ticks in
 /// time.
@@ -37,14 +65,16 @@ pub fn scene_bytes(bytes: &[u8]) {
     let Ok(scene) = WireScene::parse(bytes) else { return };
     let records: Vec<_> = scene.records().collect();
     let points: Vec<_> = scene.points().collect();
-    let mut written = scene.header().write(records.len() as u8, points.len() as u8).to_vec();
-    written.extend(records.iter().flat_map(Record::write));
-    written.extend(points.iter().flat_map(Point::write));
+    let written = scene_with_points(scene.header(), &records, &points);
     let again = WireScene::parse(&written).expect("what was read can be written");
     let records_again: Vec<_> = again.records().collect();
     let points_again: Vec<_> = again.points().collect();
     // Compare the text, because not-a-number is not equal to itself.
-    assert_eq!(format!("{records:?} {points:?}"), format!("{records_again:?} {points_again:?}"));
+    let (header, header_again) = (scene.header(), again.header());
+    assert_eq!(
+        format!("{header:?} {records:?} {points:?}"),
+        format!("{header_again:?} {records_again:?} {points_again:?}")
+    );
 }
 
 /// Uploads arbitrary bytes as a compiled scene. The board rejects them, or estimates their longest tick to be within

@@ -2,34 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use frixel::scene_file;
-use frixel_fuzz::{scene_bytes, scene_load, scene_text};
-use frixel_hil_sim::RigConfig;
-use frixel_scene::compile;
+use frixel_fuzz::{compiled_scenes, scene_bytes, scene_files, scene_load, scene_text};
 use frixel_testkit::Random;
 
 /// Changed copies of each scene.
 const COPIES: u64 = 200;
-
-fn scenes() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
-    paths.sort();
-    assert!(!paths.is_empty());
-    paths
-}
-
-/// The compiled scenes that have no pictures.
-fn compiled() -> Vec<Vec<u8>> {
-    let board = RigConfig::default().board;
-    let programs = scenes()
-        .into_iter()
-        .map(|path| compile(&scene_file::load(&path).unwrap(), &board.limits, board.tick_hz).unwrap());
-    programs.filter(|program| program.bitmaps.is_empty()).map(|program| program.scene_bytes()).collect()
-}
 
 /// A copy with one to four bytes changed.
 fn changed(bytes: &[u8], random: &mut Random) -> Vec<u8> {
@@ -43,7 +21,7 @@ fn changed(bytes: &[u8], random: &mut Random) -> Vec<u8> {
 
 #[test]
 fn changed_texts_are_refused_or_become_programs_that_a_board_accepts() {
-    for path in scenes() {
+    for path in scene_files() {
         let text = fs::read(&path).unwrap();
         scene_text(&String::from_utf8_lossy(&text));
         for seed in 0..COPIES {
@@ -54,7 +32,7 @@ fn changed_texts_are_refused_or_become_programs_that_a_board_accepts() {
 
 #[test]
 fn changed_bytes_are_refused_or_can_be_written_back() {
-    for scene in compiled() {
+    for (_, scene) in compiled_scenes() {
         scene_bytes(&scene);
         for seed in 0..20 * COPIES {
             scene_bytes(&changed(&scene, &mut Random::new(seed)));
@@ -65,7 +43,7 @@ fn changed_bytes_are_refused_or_can_be_written_back() {
 #[test]
 fn changed_bytes_are_refused_by_the_board_or_play_without_a_fault() {
     let mut played = 0;
-    for scene in compiled() {
+    for (_, scene) in compiled_scenes() {
         assert!(scene_load(&scene));
         played += (0..COPIES).filter(|seed| scene_load(&changed(&scene, &mut Random::new(*seed)))).count();
     }
