@@ -84,7 +84,10 @@ impl Voltage {
             if places.has("voltage_max_v_rms") {
                 log.add(place, FitMistake::BeyondLaw { found_v_rms, measured_v_rms });
             } else {
-                log.note(place, format!("drive: it ends at {measured_v_rms} V rms, up to which this finger was measured"));
+                log.note(
+                    place,
+                    format!("drive: it ends at {measured_v_rms} V rms, up to which this finger was measured"),
+                );
             }
             self.max_v_rms = measured_v_rms;
         }
