@@ -44,7 +44,7 @@ pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 const STAGES: [Stage; 15] = [
     Stage { name: "format", tier: Tier::First, needs: &[FORMAT], run: format },
     Stage { name: "lints", tier: Tier::First, needs: &[CLIPPY], run: lints },
-    Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET, Need::Git], run: feature_sets },
+    Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET, CLIPPY, Need::Git], run: feature_sets },
     Stage {
         name: "images",
         tier: Tier::First,
@@ -185,8 +185,8 @@ fn unless_firmware_unchanged(name: &str, check: impl FnOnce() -> Result<Outcome,
     stamps::unless_unchanged(name, &FIRMWARE_INPUTS.map(str::to_owned), check)
 }
 
-/// Checks the session without features, and with each feature alone, with warnings as errors. Also runs the tests of
-/// the layers and of the session without features.
+/// Checks the lints of the session without features, and with each feature alone, with warnings as errors. Also runs
+/// the tests of the layers and of the session without features.
 fn check_feature_sets() -> Result<(), String> {
     let path = root().join(SESSION).join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -194,7 +194,7 @@ fn check_feature_sets() -> Result<(), String> {
     let features = manifest.get("features").and_then(toml::Value::as_table);
     let features = features.ok_or_else(|| format!("{} has no features", path.display()))?;
     // As the images are built, so that they share what the compiler itself takes.
-    let all = ["check", "--quiet", "--release", "--locked", "--target", M4F, "--target-dir", IMAGES_TARGET_FOLDER];
+    let all = ["clippy", "--quiet", "--release", "--locked", "--target", M4F, "--target-dir", IMAGES_TARGET_FOLDER];
     let none = [&all[..], &["--no-default-features"]].concat();
     let flags = [("RUSTFLAGS", "-D warnings")];
     cargo("session with all features", SESSION, &all, &flags)?;

@@ -10,11 +10,8 @@
 //! smaller limit of a new scene falls first.
 
 use fixed::types::{I1F15, I17F15};
-use frixel_layers::Waveform;
+use frixel_layers::{Waveform, cosine};
 use frixel_wire::dac_code::DacCode;
-
-#[cfg(feature = "sine-carrier")]
-use frixel_layers::cosine;
 
 /// Parameters of a carrier; part of [`Active`](crate::Active).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,12 +141,10 @@ impl Carrier {
         let amplitude = envelope_v_rms * timing.codes_per_v_rms;
         let code = match timing.waveform {
             Waveform::Square => amplitude,
-            #[cfg(feature = "sine-carrier")]
-            Waveform::Sine => {
+            Waveform::Sine if cfg!(feature = "sine-carrier") => {
                 // The crest, at which the cosine's angle is 0, is a quarter of a turn before the edge.
                 amplitude * cosine(self.left_ticks as f32 * timing.turns_per_tick - 0.25)
             }
-            #[cfg(not(feature = "sine-carrier"))]
             Waveform::Sine => 0.0,
         };
         I17F15::from_bits((code + 0.5) as i32).min(timing.code_max.0.into())

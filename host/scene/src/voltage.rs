@@ -74,14 +74,21 @@ impl Voltage {
         Self { max_v_rms, max_v_peak, slew_v_per_us, peak_per_rms, hard_max_v_rms, hard_max_v_peak }
     }
 
-    /// Refuses a largest voltage above that of an empirical law, which is never extrapolated, and lowers it.
+    /// Ends the drive where an empirical law ends, which is never extrapolated. A scene that asks for more is refused.
     pub(super) fn end_with_law(&mut self, scene: &Scene, log: &mut Log) {
         let Elasticity::Empirical(law) = &scene.finger().elasticity else { return };
         let measured_v_rms = law.voltage_max_v_rms();
         if self.max_v_rms > measured_v_rms {
-            let found_v_rms = self.max_v_rms;
-            let mistake = FitMistake::BeyondLaw { found_v_rms, measured_v_rms };
-            log.add(scene.drive.places.field("voltage_max_v_rms"), mistake);
+            let (places, found_v_rms) = (&scene.drive.places, self.max_v_rms);
+            let place = places.field("voltage_max_v_rms");
+            if places.has("voltage_max_v_rms") {
+                log.add(place, FitMistake::BeyondLaw { found_v_rms, measured_v_rms });
+            } else {
+                log.note(
+                    place,
+                    format!("drive: it ends at {measured_v_rms} V rms, up to which this finger was measured"),
+                );
+            }
             self.max_v_rms = measured_v_rms;
         }
     }

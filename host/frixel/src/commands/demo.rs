@@ -1,17 +1,35 @@
 //! `frixel demo`: the bundled brick texture on the simulator.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use crate::output_file::{Inputs, OutputFile};
 
 use super::error::CommandError;
+use super::play::{self, PlayArgs};
 use super::terminal::print_line;
-use super::{DemoArgs, PlayArgs, play};
 
 /// The scene and its picture are embedded in the executable, so that the demo needs no files.
 pub(super) const SCENE: &str = include_str!("../../../../scenes/brick.toml");
 pub(super) const PICTURE_NAME: &str = "textures/brick.png";
 pub(super) const PICTURE: &[u8] = include_bytes!("../../../../scenes/textures/brick.png");
+
+/// Folder of the results.
+const FOLDER: &str = "frixel-out";
+
+#[derive(Debug, Args)]
+pub(super) struct DemoArgs {
+    /// Output folder.
+    #[arg(long, default_value = FOLDER)]
+    out: PathBuf,
+}
+
+impl Default for DemoArgs {
+    fn default() -> Self {
+        Self { out: FOLDER.into() }
+    }
+}
 
 pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
     let scene = args.out.join("brick.toml");
@@ -28,7 +46,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
          two of the smallest steps that a finger feels"
     ))?;
     print_line(format_args!("open {out}/scene.png for the path of the finger, {out}/felt.svg for what it felt"))?;
-    play::run(&PlayArgs { out: args.out.clone(), ..PlayArgs::ideal(&scene) })?;
+    play::run(&PlayArgs::ideal(&scene, &args.out))?;
     print_line(format_args!("change {place} and play it again: frixel play {place}"))
 }
 

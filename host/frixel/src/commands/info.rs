@@ -1,12 +1,19 @@
 //! `frixel info`.
 
+use clap::Args;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_layers::feature_names;
 use frixel_wire::hello::Hello;
 
-use super::InfoArgs;
 use super::error::CommandError;
 use super::terminal::print;
+
+#[derive(Debug, Args)]
+pub(super) struct InfoArgs {
+    /// Path of the board's serial port.
+    #[arg(long)]
+    port: String,
+}
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
     let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;

@@ -28,12 +28,11 @@ mod terminal;
 mod threshold;
 mod waiting;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
-use crate::output::Effects;
 use error::CommandError;
 use stroke::StrokeArgs;
 
@@ -54,11 +53,11 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Play the bundled brick texture on the simulated board, under a simulated finger.
-    Demo(DemoArgs),
+    Demo(demo::DemoArgs),
     /// Write a first scene, with comments.
     New(new::NewArgs),
     /// Play a scene on a board or on the simulator.
-    Play(PlayArgs),
+    Play(play::PlayArgs),
     /// Check a scene, or draw it, before it is played.
     #[command(subcommand)]
     Scene(scene::SceneCommand),
@@ -71,7 +70,7 @@ enum Command {
     /// List the serial ports.
     Ports,
     /// Identify the board at a port.
-    Info(InfoArgs),
+    Info(info::InfoArgs),
     /// Record the way of a finger on a board, as a stroke.
     Record(record::RecordArgs),
     /// Say what a board's last fault was.
@@ -93,82 +92,7 @@ enum Command {
     Report(report::ReportArgs),
 }
 
-#[derive(Debug, Args)]
-struct DemoArgs {
-    /// Output folder.
-    #[arg(long, default_value = "frixel-out")]
-    out: PathBuf,
-}
-
-#[derive(Debug, Args)]
-#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
-struct PlayArgs {
-    /// The scene, a TOML file (docs/scene.md).
-    scene: PathBuf,
-    #[command(flatten)]
-    profiles: profiles::ProfileArgs,
-    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's
-    /// serial port.
-    #[arg(long, default_value = "sim")]
-    port: String,
-    #[command(flatten)]
-    stroke: StrokeArgs,
-    /// How long to play. Without it, as long as the file of --stream or the stroke lasts; on a board without --stream,
-    /// until Ctrl-C.
-    #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
-    seconds: Option<f64>,
-    /// Output folder. What an earlier play has left there is replaced.
-    #[arg(long, default_value = "frixel-out")]
-    out: PathBuf,
-    /// Replace also what a finger did on a board that is not a simulator.
-    #[arg(long)]
-    overwrite: bool,
-    /// Print one JSON object in place of the summary.
-    #[arg(long)]
-    json: bool,
-    /// Seed of the simulator's random numbers.
-    #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
-    seed: u64,
-    /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
-    /// all of them are simulated.
-    #[arg(long)]
-    ideal: bool,
-    /// Simulate skin through which no charge leaks. Measurements disagree whether it does (docs/truth.md); without this, it
-    /// leaks below 250 Hz.
-    #[arg(long, conflicts_with = "ideal")]
-    no_leakage: bool,
-    /// Simulated person, whose finger the board does not know: another one for each seed. Without it, the finger is the
-    /// scene's.
-    #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true)]
-    finger_seed: Option<u64>,
-    /// Rows a second in felt.csv; at most 1000 on a board.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
-    csv_hz: u32,
-    /// Let a board that is not a simulator drive its electrode.
-    #[arg(long)]
-    arm: bool,
-    /// Play the scene anew whenever its file is saved; for a board at a serial port, `frixel sim` among them. Not with
-    /// --stream.
-    #[arg(long)]
-    watch: bool,
-    /// Change the scene while it plays, by lines on standard input: `layer "OK" off`, `layer 3 gain 0.5`,
-    /// `trigger "click"`, `replace FILE`, `wait SECONDS`, `quit`. On the simulator, time stands still until the next
-    /// line comes, or the input ends.
-    #[arg(long)]
-    control: bool,
-    /// Join what the finger of a virtual board felt: the felt.csv that its `frixel sim` writes, on this machine. With
-    /// it, a play to the port of that board writes felt.svg, and `felt_n` into felt.csv.
-    #[arg(long, value_name = "FILE.csv")]
-    with_log: Option<PathBuf>,
-    /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
-    /// little-endian.
-    #[arg(long, value_name = "FILE.wav")]
-    stream: Option<PathBuf>,
-    /// Sample rate of standard input, in Hz.
-    #[arg(long, value_name = "HZ")]
-    stream_hz: Option<u32>,
-}
-
+/// Of every system, so that one without pseudo-terminals says what it lacks.
 #[derive(Debug, Args)]
 struct SimArgs {
     #[command(flatten)]
@@ -195,53 +119,10 @@ struct SimArgs {
     seed: u64,
 }
 
-#[derive(Debug, Args)]
-struct InfoArgs {
-    /// Path of the board's serial port.
-    #[arg(long)]
-    port: String,
-}
-
-impl PlayArgs {
-    /// The options of a play on the simulator in an ideal world, without any other option.
-    fn ideal(scene: &Path) -> Self {
-        Self {
-            scene: scene.to_owned(),
-            profiles: profiles::ProfileArgs::default(),
-            port: "sim".into(),
-            stroke: StrokeArgs::default(),
-            seconds: None,
-            out: "frixel-out".into(),
-            overwrite: false,
-            json: false,
-            seed: 1,
-            ideal: true,
-            no_leakage: false,
-            finger_seed: None,
-            csv_hz: 1000,
-            arm: false,
-            watch: false,
-            with_log: None,
-            control: false,
-            stream: None,
-            stream_hz: None,
-        }
-    }
-
-    /// The effects that the simulated world has beside the contact model.
-    fn effects(&self) -> Effects {
-        match (self.ideal, self.no_leakage) {
-            (true, _) => Effects::None,
-            (false, true) => Effects::AllButLeakage,
-            (false, false) => Effects::All,
-        }
-    }
-}
-
 impl Cli {
     pub(crate) fn run(self) -> Result<(), CommandError> {
         match self.command {
-            None => demo::run(&DemoArgs { out: "frixel-out".into() }),
+            None => demo::run(&demo::DemoArgs::default()),
             Some(Command::Demo(args)) => demo::run(&args),
             Some(Command::New(args)) => new::run(&args),
             Some(Command::Play(args)) => play::run(&args),

@@ -19,7 +19,7 @@ pub enum FitMistake {
     /// The drive may go beyond the empirical law of the finger.
     #[error(
         "the drive goes up to {found_v_rms} V rms, and this finger was measured up to {measured_v_rms} V rms; what it \
-         feels above nobody knows: write `voltage_max_v_rms = {measured_v_rms}` under [drive]"
+         feels above nobody knows: leave `voltage_max_v_rms` out, and the drive ends there"
     )]
     BeyondLaw {
         /// Largest rms voltage of the drive, V.

@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn a_play_of_a_person_that_ends_while_another_one_begins_is_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
-        let args = PlayArgs { out: folder.path().to_owned(), ..PlayArgs::ideal("a.toml".as_ref()) };
+        let args = PlayArgs::ideal("a.toml".as_ref(), folder.path());
         let files = files(&args);
         fs::write(folder.path().join("summary.json"), "{\"simulated\": false}").unwrap();
         let error = Outputs::create(&args, files, true, &program("plate")).err().unwrap().to_string();
@@ -293,7 +293,7 @@ mod tests {
     fn what_a_person_did_stays_as_a_recording_where_the_other_files_fail() {
         let folder = tempfile::tempdir().unwrap();
         let (out, log) = (folder.path().to_owned(), Some(folder.path().join("no-log.csv")));
-        let args = PlayArgs { out, with_log: log, ..PlayArgs::ideal("a.toml".as_ref()) };
+        let args = PlayArgs { with_log: log, ..PlayArgs::ideal("a.toml".as_ref(), &out) };
         let plate = program("plate");
         let mut outputs = Outputs::create(&args, files(&args), false, &plate).unwrap();
         outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }]).unwrap();
@@ -316,8 +316,7 @@ mod tests {
             writeln!(text, "{t_s},60,40,50,0.25").unwrap();
         }
         fs::write(&log, text + "2,60,40,50,0.25\n").unwrap();
-        let args =
-            PlayArgs { out: folder.path().join("out"), with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref()) };
+        let args = PlayArgs { with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref(), &folder.path().join("out")) };
 
         let (first, second) = (program("first"), program("second"));
         let mut outputs = Outputs::create(&args, files(&args), true, &first).unwrap();
