@@ -11,7 +11,6 @@ use std::io::Read;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-use super::bootstrap::Draws;
 use super::contrast::StrokeMeans;
 use super::error::FitError;
 use super::faults::Faults;
@@ -19,9 +18,10 @@ use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
 use super::search::{Search, start};
-use super::statistics::median;
 use super::table::{FRICTION, LOAD, VOLTAGE, voltage_v_rms};
 use super::{FittedData, Settings, rules};
+use crate::bootstrap::Draws;
+use crate::statistics::median;
 use crate::table::{Column, Place, Reading, Row, Table, Unit};
 
 const STANDARD_ERROR: Column = Column::new("friction_se_n", "newtons").converted(Unit::Newtons);
