@@ -77,13 +77,13 @@ const FAST: Class = Class { rate_hz: 500.0, latency_s: 3e-3, wavelength_mm: 2.0 
 const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 50.0, GOAL),
     (SLOW, 100.0, Held { ratio_max: 0.32, spurious_max_n: 5e-3, ..GOAL }),
-    (SLOW, 200.0, Held { ratio_max: 0.68, correlation_min: 0.76, spurious_max_n: 10e-3 }),
+    (SLOW, 200.0, Held { ratio_max: 0.70, correlation_min: 0.74, spurious_max_n: 10e-3 }),
     (MEDIUM, 50.0, GOAL),
     (MEDIUM, 100.0, GOAL),
-    (MEDIUM, 200.0, Held { ratio_max: 0.51, correlation_min: 0.86, spurious_max_n: 6.5e-3 }),
+    (MEDIUM, 200.0, Held { ratio_max: 0.55, correlation_min: 0.84, spurious_max_n: 6e-3 }),
     (FAST, 50.0, GOAL),
     (FAST, 100.0, GOAL),
-    (FAST, 200.0, Held { ratio_max: 0.43, ..GOAL }),
+    (FAST, 200.0, Held { ratio_max: 0.47, correlation_min: 0.88, ..GOAL }),
 ];
 
 /// Every effect of the plant, with a touch source of a class that loses one report in eight and bunches one in thirty.

@@ -10,8 +10,8 @@ const ACCELERATION_S: f32 = 0.04;
 /// Standard deviation of the acceleration of a finger at rest, in m/s^2.
 const ACCELERATION_M_PER_S2: f32 = 0.3;
 /// Standard deviation of the acceleration per m/s of recent speed, added to that of a finger at rest, in 1/s: a finger
-/// that moves fast also turns fast. Recorded strokes of people ask for 12 to 25; above 12, simulated ones buzz more.
-const ACCELERATION_PER_SPEED_PER_S: f32 = 12.0;
+/// that moves fast also turns fast.
+const ACCELERATION_PER_SPEED_PER_S: f32 = 6.0;
 /// Time constant with which the recent speed decays, in s.
 const RECENT_S: f32 = 0.5;
 /// Standard deviation of a measured place, in m: between the 0.02 mm of an infrared frame and the steps of 0.18 mm of a
