@@ -140,7 +140,7 @@ impl EmpiricalLaw {
                 return Err(LawError::Order { point: number });
             }
             if let Some(before) = before {
-                let found = (DoubleSingle::ONE / power(before.at(), point.at::<DoubleSingle>())).to_f32();
+                let found = 1.0 / power::<f32>(before.at(), point.at());
                 if !(found >= least * (1.0 - EXPONENT_ROUNDING) && found <= most * (1.0 + EXPONENT_ROUNDING)) {
                     return Err(LawError::Slope { point: number, found });
                 }
@@ -192,7 +192,7 @@ impl EmpiricalLaw {
         }
         let electric_friction_n = electric_friction_n.min(f64::from(self.last().electric_friction_n));
         match self.knots(electric_friction_n) {
-            Some((start, end)) => between(start, end, electric_friction_n),
+            Some((start, end)) => power_law(start, end)(electric_friction_n),
             None => Curve::voltage_v_rms(self, electric_friction_n),
         }
     }
@@ -240,8 +240,8 @@ impl<T: Real> Curve<T> for EmpiricalLaw {
         point.1 * (electric_friction_n / point.0).pow(power)
     }
 
-    fn voltage_between(&self, start: Point<T>, end: Point<T>, electric_friction_n: T) -> T {
-        between(start, end, electric_friction_n)
+    fn between(&self, start: Point<T>, end: Point<T>) -> impl Fn(T) -> T {
+        power_law(start, end)
     }
 }
 
@@ -265,7 +265,8 @@ fn ln_ratio<T: Real>(end: T, start: T) -> T {
     (end / start - T::ONE).ln_1p()
 }
 
-/// The voltage of the power law through two points.
-fn between<T: Real>(start: Point<T>, end: Point<T>, friction_n: T) -> T {
-    start.1 * (friction_n / start.0).pow(power(start, end))
+/// The voltage as a function of the friction, by the power law through two points.
+fn power_law<T: Real>(start: Point<T>, end: Point<T>) -> impl Fn(T) -> T {
+    let power = power(start, end);
+    move |friction_n| start.1 * (friction_n / start.0).pow(power)
 }
