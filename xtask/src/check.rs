@@ -4,30 +4,16 @@ use std::fs;
 
 use crate::bench::programs::{self, Pace};
 use crate::command::{IMAGES_TARGET_FOLDER, M3, M4F, WASM, cargo_in, root, run};
+use crate::inputs::packages;
 use crate::needs::{Machine, Missing, Need};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
 use crate::test_programs::{self, Programs};
-use crate::{bench, budgets, fuzz, portability, results, stamps, studio_tests};
+use crate::{bench, budgets, fuzz, inputs, portability, results, stamps, studio_tests};
 
 /// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 8] =
     ["budgets.toml", "Cargo.lock", "Cargo.toml", "clippy.toml", "firmware", "model", "rustfmt.toml", "xtask"];
-/// Inputs of everything that is made of the crates of the page and of the command.
-pub(crate) const HOST_INPUTS: [&str; 12] = [
-    "Cargo.lock",
-    "Cargo.toml",
-    "LICENSE-APACHE",
-    "LICENSE-MIT",
-    "clippy.toml",
-    "docs",
-    "firmware",
-    "hil-sim",
-    "host",
-    "model",
-    "scenes",
-    "xtask",
-];
 /// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
 
@@ -55,7 +41,7 @@ pub(crate) const M3_TARGET: Need = Need::Target(M3);
 pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 
 /// All checks, in the order in which they run: a cheap one fails first.
-const STAGES: [Stage; 14] = [
+const STAGES: [Stage; 15] = [
     Stage { name: "format", tier: Tier::First, needs: &[FORMAT], run: format },
     Stage { name: "lints", tier: Tier::First, needs: &[CLIPPY], run: lints },
     Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET, CLIPPY, Need::Git], run: feature_sets },
@@ -81,6 +67,12 @@ const STAGES: [Stage; 14] = [
     },
     Stage { name: "scripts of the studio", tier: Tier::First, needs: &studio_tests::SCRIPT_NEEDS, run: studio_scripts },
     Stage { name: "studio in a browser", tier: Tier::First, needs: &studio_tests::NEEDS, run: studio_in_a_browser },
+    Stage {
+        name: "studio beside the command",
+        tier: Tier::First,
+        needs: &studio_tests::NEEDS,
+        run: studio_beside_the_command,
+    },
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
@@ -161,7 +153,8 @@ fn documentation() -> Result<Outcome, String> {
 }
 
 fn page() -> Result<Outcome, String> {
-    unless_host_unchanged("page", || passed(portability::page_crates()))
+    let inputs = portability::page_inputs(&packages()?);
+    stamps::unless_unchanged("page", &inputs, || passed(portability::page_crates()))
 }
 
 fn studio_scripts() -> Result<Outcome, String> {
@@ -170,7 +163,13 @@ fn studio_scripts() -> Result<Outcome, String> {
 }
 
 fn studio_in_a_browser() -> Result<Outcome, String> {
-    unless_host_unchanged("studio", || passed(studio_tests::run_all()))
+    let inputs = studio_tests::page_inputs(&packages()?);
+    stamps::unless_unchanged("studio", &inputs, || passed(studio_tests::run_page()))
+}
+
+fn studio_beside_the_command() -> Result<Outcome, String> {
+    let inputs = studio_tests::command_inputs(&packages()?);
+    stamps::unless_unchanged("studio-command", &inputs, || passed(studio_tests::run_beside_command()))
 }
 
 fn budgets_stage() -> Result<Outcome, String> {
@@ -178,19 +177,16 @@ fn budgets_stage() -> Result<Outcome, String> {
 }
 
 fn other_systems() -> Result<Outcome, String> {
-    unless_host_unchanged("other-systems", || passed(portability::other_systems()))
+    let inputs = inputs::of_libraries(&["frixel"], &packages()?);
+    stamps::unless_unchanged("other-systems", &inputs, || passed(portability::other_systems()))
 }
 
 fn unless_firmware_unchanged(name: &str, check: impl FnOnce() -> Result<Outcome, String>) -> Result<Outcome, String> {
     stamps::unless_unchanged(name, &FIRMWARE_INPUTS.map(str::to_owned), check)
 }
 
-fn unless_host_unchanged(name: &str, check: impl FnOnce() -> Result<Outcome, String>) -> Result<Outcome, String> {
-    stamps::unless_unchanged(name, &HOST_INPUTS.map(str::to_owned), check)
-}
-
-/// Checks the lints of the session without features, and with each feature alone, with warnings as errors. Also runs the tests of
-/// the layers and of the session without features.
+/// Checks the lints of the session without features, and with each feature alone, with warnings as errors. Also runs
+/// the tests of the layers and of the session without features.
 fn check_feature_sets() -> Result<(), String> {
     let path = root().join(SESSION).join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -282,9 +278,10 @@ mod tests {
 
     #[test]
     fn every_file_that_the_page_carries_is_among_the_inputs_of_its_tests() {
+        let inputs = studio_tests::page_inputs(&packages().unwrap());
         let folders = studio::CARRIED.map(|(folder, _, _)| folder);
         for path in folders.into_iter().chain(licences::FILES) {
-            let is_input = HOST_INPUTS.iter().any(|input| std::path::Path::new(path).starts_with(input));
+            let is_input = inputs.iter().any(|input| std::path::Path::new(path).starts_with(input));
             assert!(is_input, "{path} is no input of the tests of the studio");
         }
     }

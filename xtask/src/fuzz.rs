@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use std::time::Duration;
 
-use crate::check::HOST_INPUTS;
 use crate::command::{cargo_in, root, run, target_folder, text_of};
+use crate::inputs::{self, packages};
 use crate::outcome::Outcome;
 use crate::stamps;
 
@@ -23,7 +23,7 @@ const RUSTFLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanit
 const PROFILE: &str = "fuzz";
 /// Runs every target for the minutes of `cargo xtask test --all`.
 pub(crate) fn run_all() -> Result<Outcome, String> {
-    let inputs: Vec<String> = HOST_INPUTS.iter().chain(&["fuzz"]).map(|path| (*path).to_owned()).collect();
+    let inputs = inputs::of_libraries(&["frixel-fuzz"], &packages()?);
     stamps::unless_unchanged("fuzz", &inputs, || run_for(TIME).map(|()| Outcome::Passed))
 }
 

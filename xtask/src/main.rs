@@ -7,6 +7,7 @@ mod command;
 #[cfg(test)]
 mod dependency_uses;
 mod fuzz;
+mod inputs;
 mod licences;
 mod needs;
 mod outcome;
@@ -70,7 +71,8 @@ fn main() -> ExitCode {
         ["studio-test"] => {
             let result = require(&studio_tests::NEEDS)
                 .and_then(|()| studio_tests::check_scripts())
-                .and_then(|()| studio_tests::run_all());
+                .and_then(|()| studio_tests::run_page())
+                .and_then(|()| studio_tests::run_beside_command());
             results::print();
             result
         }

@@ -1,11 +1,13 @@
 //! The checks of the studio: types and lints of its scripts, and its tests in Chromium (`host/studio/test`), driven by
 //! node and playwright-core.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
+use crate::inputs::{self, Package};
 use crate::needs::Need;
 use crate::{results, studio};
 
@@ -16,6 +18,11 @@ pub(crate) const NEEDS: [Need; 5] = [Need::Target(WASM), Need::Node, Need::Npm, 
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
+/// The tests in which the page meets the command `frixel`. All others run without it, so that a change in the command
+/// does not concern them.
+const COMMAND_TESTS: &str = "command.test.mjs";
+/// Files of tests that run at once: those on the machine's clock wait, while others compute.
+const FILES_AT_ONCE: u32 = 2;
 /// Longest time of a file of tests, ms.
 const TEST_TIMEOUT_MS: u32 = 600_000;
 
@@ -29,23 +36,51 @@ pub(crate) fn check_scripts() -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the page, and runs the tests in it.
-pub(crate) fn run_all() -> Result<(), String> {
-    let page = studio::build()?;
-    // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
-    let native = ["build", "--locked", "--workspace", "--bin", "frixel", "--example", HASHES, "--example", REAL_BOARD];
-    run("command and examples", cargo_in(".").args(native))?;
+/// What the tests of the page read: the crates and files that the page is made of, and how it is built.
+pub(crate) fn page_inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
+    let more = ["LICENSE-APACHE", "LICENSE-MIT", "docs", "scenes", "xtask"].map(str::to_owned);
+    inputs::of_libraries(&["frixel-studio"], packages).into_iter().chain(more).collect()
+}
+
+/// What the tests of the page beside the command read.
+pub(crate) fn command_inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
+    page_inputs(packages).into_iter().chain(inputs::of_libraries(&["frixel"], packages)).collect()
+}
+
+/// Builds the page, and runs the tests in it that need no command: they are not told where it is.
+pub(crate) fn run_page() -> Result<(), String> {
+    let tests: Vec<String> = tests()?.into_iter().filter(|name| name != COMMAND_TESTS).collect();
+    let mut runner = runner(&["--example", HASHES])?;
     let hashes = target_folder().join("studio/hashes.json");
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
     fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
-    let folder = root().join("host/studio/test");
+    runner.env("STUDIO_HASHES", absolute(&hashes)?).env_remove("FRIXEL");
+    results::run("studio in a browser", runner.args(tests))
+}
+
+/// Builds the page and the command, and runs the tests in which one meets the other.
+pub(crate) fn run_beside_command() -> Result<(), String> {
+    let mut runner = runner(&["--bin", "frixel"])?;
+    results::run("studio beside the command", runner.env("FRIXEL", built("frixel")?).arg(COMMAND_TESTS))
+}
+
+/// The runner of tests, with the page and the virtual board that says it is real. Builds these programs, too.
+fn runner(programs: &[&str]) -> Result<Command, String> {
+    let page = studio::build()?;
+    // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
+    let native = ["build", "--locked", "--workspace", "--example", REAL_BOARD];
+    run("programs", cargo_in(".").args(native).args(programs))?;
+    let folder = test_folder();
     install(&folder)?;
     let mut node = Command::new("node");
-    node.current_dir(&folder).args(["--test", "--test-concurrency=1"]).arg(format!("--test-timeout={TEST_TIMEOUT_MS}"));
-    node.args(tests(&folder)?);
-    node.env("STUDIO_PAGE", page).env("STUDIO_HASHES", absolute(&hashes)?);
-    node.env("FRIXEL", built("frixel")?).env("REAL_BOARD", built(&format!("examples/{REAL_BOARD}"))?);
-    results::run("studio in a browser", &mut node)
+    node.current_dir(&folder).arg("--test").arg(format!("--test-concurrency={FILES_AT_ONCE}"));
+    node.arg(format!("--test-timeout={TEST_TIMEOUT_MS}"));
+    node.env("STUDIO_PAGE", page).env("REAL_BOARD", built(&format!("examples/{REAL_BOARD}"))?);
+    Ok(node)
+}
+
+fn test_folder() -> PathBuf {
+    root().join("host/studio/test")
 }
 
 /// Installs the packages of the lock file, unless they are there.
@@ -59,8 +94,9 @@ fn install(folder: &Path) -> Result<(), String> {
 }
 
 /// The names of the test files, sorted.
-fn tests(folder: &Path) -> Result<Vec<String>, String> {
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+fn tests() -> Result<Vec<String>, String> {
+    let folder = test_folder();
+    let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> = names.filter(|name| name.ends_with(".test.mjs")).collect();
     names.sort();

@@ -1,17 +1,24 @@
 //! Builds the workspace's tests once, then runs them package by package, skipping packages whose inputs are unchanged.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 
 use serde_json::Value;
 
 use crate::command::{cargo_in, root, text_of};
+use crate::inputs::{self, packages};
 use crate::outcome::Outcome;
 use crate::{results, stamps};
 
 /// The name of the test programs that need an emulator, one in each package that has such tests.
 const ON_EMULATORS: &str = "emulated";
+
+/// The package most of whose tests wait for virtual boards, which run in real time, and for other processes. With more
+/// threads than processors, the processors work meanwhile.
+const COMMAND: &str = "frixel";
+const THREADS_PER_PROCESSOR: usize = 4;
 
 /// Which test programs are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,27 +27,6 @@ pub(crate) enum Programs {
     OnThisMachine,
     /// Those that need an emulator.
     OnEmulators,
-}
-
-/// Inputs of tests besides the folders of their package and of its dependencies.
-const MORE_INPUTS: [(&str, &[&str]); 6] = [
-    ("frixel", &["README.md", "docs", "firmware", "scenes"]),
-    ("frixel-fuzz", &["scenes"]),
-    ("frixel-scene", &["docs", "scenes"]),
-    ("frixel-studio", &["scenes"]),
-    ("frixel-hil-sim", &["firmware"]),
-    // They read the manifests, lock files and sources of every package, and the licences in the page.
-    ("xtask", &["LICENSE-APACHE", "LICENSE-MIT", "firmware", "fuzz", "hil-sim", "host", "model", "research"]),
-];
-
-/// Inputs of the tests of every package.
-const ALWAYS: [&str; 2] = ["Cargo.lock", "Cargo.toml"];
-
-/// A package of the workspace.
-struct Package {
-    folder: String,
-    /// The packages of the workspace that it depends on, including dev-dependencies.
-    dependencies: Vec<String>,
 }
 
 /// A built test program.
@@ -63,7 +49,7 @@ pub(crate) fn run_all(which: Programs) -> Result<Outcome, String> {
                 Programs::OnThisMachine => format!("tests-{name}"),
                 Programs::OnEmulators => format!("tests-{name}-{ON_EMULATORS}"),
             };
-            all = all.and(stamps::unless_unchanged(&stamp, &inputs(name, &packages), || {
+            all = all.and(stamps::unless_unchanged(&stamp, &inputs::of_tests(name, &packages), || {
                 programs.iter().try_for_each(|program| program.run(&package.folder)).map(|()| Outcome::Passed)
             })?);
         }
@@ -74,11 +60,15 @@ pub(crate) fn run_all(which: Programs) -> Result<Outcome, String> {
 /// Runs the documentation tests.
 pub(crate) fn run_documentation() -> Result<Outcome, String> {
     let folders = packages()?.into_values().map(|package| package.folder);
-    let inputs: Vec<String> = folders.chain(ALWAYS.iter().map(|path| (*path).to_owned())).collect();
+    let inputs: Vec<String> = folders.chain(inputs::ALWAYS.iter().map(|path| (*path).to_owned())).collect();
     stamps::unless_unchanged("documentation-tests", &inputs, || {
         results::run("documentation tests", cargo_in(".").args(["test", "--workspace", "--locked", "--doc"]))?;
         Ok(Outcome::Passed)
     })
+}
+
+fn processors() -> usize {
+    thread::available_parallelism().map_or(1, NonZero::get)
 }
 
 impl TestProgram {
@@ -90,27 +80,14 @@ impl TestProgram {
         let folder = root().join(folder);
         // Runs the program in the same way as cargo does.
         let mut command = Command::new(&self.path);
+        if self.package == COMMAND {
+            command.env("RUST_TEST_THREADS", (THREADS_PER_PROCESSOR * processors()).to_string());
+        }
         results::run(
             &format!("{}: {}", self.package, self.name),
             command.current_dir(&folder).env("CARGO_MANIFEST_DIR", &folder),
         )
     }
-}
-
-/// The files and folders that the tests of a package depend on.
-fn inputs(name: &str, packages: &BTreeMap<String, Package>) -> Vec<String> {
-    let mut found = BTreeSet::new();
-    let mut waiting = vec![name];
-    while let Some(name) = waiting.pop() {
-        if let Some(package) = packages.get(name)
-            && found.insert(name)
-        {
-            waiting.extend(package.dependencies.iter().map(String::as_str));
-        }
-    }
-    let folders = found.iter().filter_map(|name| packages.get(*name)).map(|package| package.folder.clone());
-    let more = MORE_INPUTS.iter().filter(|(package, _)| *package == name).flat_map(|(_, more)| *more);
-    folders.chain(more.chain(&ALWAYS).map(|path| (*path).to_owned())).collect()
 }
 
 /// Builds every test program of the workspace, with the same set of features for all.
@@ -141,126 +118,12 @@ fn name_in(manifest: &Path) -> Result<String, String> {
     name.map(str::to_owned).ok_or_else(|| explain(&"it has no package name"))
 }
 
-/// The packages of the workspace by name, as reported by cargo.
-fn packages() -> Result<BTreeMap<String, Package>, String> {
-    let mut command = cargo_in(".");
-    command.args(["metadata", "--locked", "--no-deps", "--format-version", "1"]);
-    let metadata: Value = serde_json::from_str(&text_of(&mut command)?).map_err(|error| error.to_string())?;
-    let root = metadata.get("workspace_root").and_then(Value::as_str).ok_or("cargo names no workspace")?;
-    let packages = metadata.get("packages").and_then(Value::as_array).ok_or("cargo names no packages")?;
-    packages
-        .iter()
-        .map(|package| package_of(package, Path::new(root)).ok_or_else(|| format!("cargo describes {package}")))
-        .collect()
-}
-
-/// Extracts the name and the properties of a package from cargo's metadata.
-fn package_of(package: &Value, root: &Path) -> Option<(String, Package)> {
-    let manifest = Path::new(package.get("manifest_path")?.as_str()?);
-    let folder = manifest.parent()?.strip_prefix(root).ok()?.to_str()?.to_owned();
-    let dependencies = package.get("dependencies")?.as_array()?;
-    let dependencies = dependencies.iter().filter(|dependency| dependency.get("path").is_some());
-    let dependencies = dependencies.filter_map(|dependency| Some(dependency.get("name")?.as_str()?.to_owned()));
-    Some((package.get("name")?.as_str()?.to_owned(), Package { folder, dependencies: dependencies.collect() }))
-}
-
 #[cfg(test)]
 mod tests {
     use std::fs;
 
     use super::*;
-    use crate::{check, licences};
-
-    #[test]
-    fn the_inputs_of_a_package_are_those_of_all_that_it_depends_on() {
-        let package = |folder: &str, dependencies: &[&str]| Package {
-            folder: folder.to_owned(),
-            dependencies: dependencies.iter().map(|name| (*name).to_owned()).collect(),
-        };
-        let packages = BTreeMap::from([
-            ("model".to_owned(), package("model", &[])),
-            ("wire".to_owned(), package("firmware/wire", &["model"])),
-            ("frixel".to_owned(), package("host", &["wire"])),
-        ]);
-        let found = inputs("frixel", &packages);
-        for expected in ["model", "firmware/wire", "host", "scenes", "Cargo.lock"] {
-            assert!(found.iter().any(|path| path == expected), "{expected} is missing in {found:?}");
-        }
-        assert_eq!(inputs("model", &packages), ["model", "Cargo.lock", "Cargo.toml"]);
-    }
-
-    /// The files below a folder that have this ending.
-    fn files_below(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            let is_built = path.file_name().is_some_and(|name| name == "target" || name == "node_modules");
-            if path.is_dir() && !is_built {
-                files_below(&path, ending, found);
-            } else if path.extension().is_some_and(|found| found == ending) {
-                found.push(path);
-            }
-        }
-    }
-
-    /// The string literals of a source file that lead out of a folder.
-    fn paths_outwards(text: &str) -> impl Iterator<Item = &str> {
-        let literals = text.split('"').skip(1).step_by(2);
-        literals.filter(|literal| literal.contains("../") && !literal.contains(char::is_whitespace))
-    }
-
-    /// What a relative path names in the repository, if it is there.
-    fn in_repository(folder: &Path, path: &str) -> Option<String> {
-        let path = folder.join(path.trim_start_matches('/')).canonicalize().ok()?;
-        let path = path.strip_prefix(root().canonicalize().unwrap()).ok()?.to_str()?.to_owned();
-        // Artefacts are not files of the repository.
-        (!path.split('/').any(|name| name == "target")).then_some(path)
-    }
-
-    /// Tests read files by paths relative to their source file (`include_str!`) or to their package's folder. A path to a
-    /// folder that the package lies in, such as the repository's root, says nothing and is not looked at.
-    #[test]
-    fn every_file_that_a_package_reads_by_a_relative_path_is_among_the_inputs_of_its_tests() {
-        let packages = packages().unwrap();
-        let mut outwards = 0;
-        for (name, package) in &packages {
-            let folder = root().join(&package.folder);
-            let inputs = inputs(name, &packages);
-            let mut sources = Vec::new();
-            files_below(&folder, "rs", &mut sources);
-            for source in sources {
-                let text = fs::read_to_string(&source).unwrap();
-                let beside = source.parent().unwrap();
-                for path in paths_outwards(&text) {
-                    let meant = [beside, &folder].map(|folder| in_repository(folder, path));
-                    for meant in
-                        meant.into_iter().flatten().filter(|meant| !Path::new(&package.folder).starts_with(meant))
-                    {
-                        let is_input = inputs.iter().any(|input| Path::new(&meant).starts_with(input));
-                        assert!(is_input, "{}: {meant} is no input of the tests of {name}", source.display());
-                        outwards += 1;
-                    }
-                }
-            }
-        }
-        assert!(outwards > 20, "only {outwards} paths were found");
-    }
-
-    #[test]
-    fn the_scenes_are_inputs_of_the_studios_tests() {
-        assert!(inputs("frixel-studio", &packages().unwrap()).contains(&"scenes".to_owned()));
-    }
-
-    /// This program's own tests look into every package, and at the licences in the page.
-    #[test]
-    fn what_the_tests_of_xtask_read_is_among_their_inputs() {
-        let packages = packages().unwrap();
-        let inputs = inputs("xtask", &packages);
-        let folders = packages.values().map(|package| package.folder.as_str());
-        for path in folders.chain(licences::FILES).chain(check::IMAGES.iter().map(|image| image.folder)) {
-            let is_input = inputs.iter().any(|input| Path::new(path).starts_with(input));
-            assert!(is_input, "{path} is no input of the tests of xtask");
-        }
-    }
+    use crate::inputs::tests::files_below;
 
     /// The files of `tests` are modules of few programs, which cargo does not look for by itself.
     #[test]

@@ -7,13 +7,20 @@
 //!
 //! All of them compare the electric parts of the two: natural friction is the same in both, and would make any display
 //! look faithful. For contrast, which is relative to the total friction, the mean natural friction takes the place of
-//! the natural friction of each moment, whose own changes are no contrast of the scene.
+//! the natural friction of each moment, whose own changes are no contrast of the scene; and it counts only where the
+//! board drove the scene, since an output that is off makes no contrast of the scene either.
+//!
+//! Landing and end of a touch count as much as its middle. A ratio to a reference of which nothing can be felt is
+//! absent.
 
+use std::ops::Range;
+
+use frixel_wire::fault::Flags;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
 
 use crate::percentile::percentiles;
-use crate::perception::{WEBER_FRACTION, weber_steps};
+use crate::perception::{WEBER_FRACTION, natural_noise_amplitude_n, weber_steps};
 use crate::recorder::FeltRow;
 use crate::spectrum::Spectrum;
 
@@ -29,8 +36,17 @@ const STRETCH_MIN: usize = 1000;
 const DELAYS: std::ops::RangeInclusive<i32> = -40..=400;
 /// Correlation at a delay below which it says nothing.
 const CORRELATION_MIN: f64 = 0.1;
+/// Covariances that differ by less, relative to them, are the same.
+const ROUNDING: f64 = 1e-9;
 /// Samples of the mean from which rates are taken: a quarter of a period at [`BAND_END_HZ`].
 const RATE_SAMPLES: usize = 10;
+/// Least rms of the changes of a reference, N, to which something is in a ratio: that of the smallest texture with a
+/// threshold, whose amplitude is 0.2 mN.
+const REFERENCE_MIN_RMS_N: f64 = 1.4e-4;
+/// Third octaves from [`BAND_BORDER_HZ`] to [`BAND_END_HZ`].
+const THIRD_OCTAVES: u32 = 10;
+/// Outputs that are off, whatever the scene says.
+const OFF: [Flags; 4] = [Flags::NO_FINGER, Flags::TOUCH_STALE, Flags::STILL, Flags::HOST_SILENT];
 
 /// One sample of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,6 +60,8 @@ pub struct FidelitySample {
     pub felt_n: f64,
     /// Natural friction, which both have, N.
     pub natural_n: f64,
+    /// Whether the board drove the scene: not while touch reports were missing or the finger stood still.
+    pub is_driven: bool,
 }
 
 impl From<&FeltRow> for FidelitySample {
@@ -54,6 +72,7 @@ impl From<&FeltRow> for FidelitySample {
             reference_n: row.wanted_n.unwrap_or(0.0),
             felt_n: row.felt_n.unwrap_or(0.0),
             natural_n: row.natural_n.unwrap_or(0.0),
+            is_driven: row.flags.is_some_and(|flags| !OFF.into_iter().any(|off| flags.contains(off))),
         }
     }
 }
@@ -70,32 +89,40 @@ impl FidelitySample {
     }
 }
 
-/// How faithfully friction was felt.
+/// How faithfully friction was felt. A ratio to a reference of which nothing can be felt is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Fidelity {
+    /// Rms error from 0 to 400 Hz, the mean error included, over the rms of the reference without its mean.
+    pub error: Option<f64>,
+    /// Correlation of felt and reference below 400 Hz.
+    pub correlation: Option<f64>,
     /// Rms error below 40 Hz over the rms of the reference, both without their means.
-    pub error_below_40_hz: f64,
+    pub error_below_40_hz: Option<f64>,
     /// Correlation of felt and reference below 40 Hz.
-    pub correlation_below_40_hz: f64,
+    pub correlation_below_40_hz: Option<f64>,
     /// Rms error below 40 Hz, its mean included, in Weber fractions of the mean reference.
     pub error_weber: f64,
     /// Power of the reference over that of the error below 40 Hz, dB.
-    pub snr_below_40_hz_db: f64,
+    pub snr_below_40_hz_db: Option<f64>,
     /// Power of the reference over that of the error from 40 to 400 Hz, dB.
-    pub snr_above_40_hz_db: f64,
+    pub snr_above_40_hz_db: Option<f64>,
     /// Felt contrast, 5th to 95th percentile of electric friction above the mean natural friction, in Weber steps.
     pub contrast_weber_steps: f64,
     /// The felt contrast over that of the reference, both in Weber steps.
-    pub contrast_kept: f64,
-    /// Delay of the felt friction, at which it is most like the reference, ms.
-    pub delay_ms: f64,
+    pub contrast_kept: Option<f64>,
+    /// Delay of the felt friction, at which it is most like the reference, ms; `None` where the two have nothing in
+    /// common.
+    pub delay_ms: Option<f64>,
     /// The same as a distance at the mean speed, mm.
-    pub delay_mm: f64,
+    pub delay_mm: Option<f64>,
     /// 99th percentile of the rate of change of the felt friction over that of the reference.
-    pub peak_rate_kept: f64,
-    /// What the felt friction has beyond the reference from 40 to 400 Hz, N: the root of the difference of the two
-    /// powers, 0 if it has less. A texture that is out of phase, which nobody feels, is not spurious.
+    pub peak_rate_kept: Option<f64>,
+    /// What the felt friction has beyond the reference in the third octaves from 40 to 400 Hz, N: the root of the sum of
+    /// what their powers have grown by. One that lost power makes up for none that grew. A texture that is out of phase,
+    /// which nobody feels, is not spurious.
     pub spurious_40_to_400_hz_n: f64,
+    /// The third octave that has grown most, over the finger's own noise in it, dB; `None` if none has grown.
+    pub spurious_over_noise_db: Option<f64>,
 }
 
 impl Fidelity {
@@ -112,73 +139,103 @@ impl Fidelity {
         let mean_n = mean(|sample| sample.reference_n);
         let speed_m_per_s = mean(|sample| sample.speed_m_per_s.unwrap_or(0.0));
         let natural_n = mean(|sample| sample.natural_n);
+        let driven = || scored.iter().filter(|sample| sample.is_driven);
         let contrast = |electric_n: fn(&FidelitySample) -> f64| {
-            let [low_n, high_n] = percentiles(scored.iter().map(electric_n).collect(), [5, 95])?;
-            Some(weber_steps(natural_n + low_n, natural_n + high_n))
+            percentiles(driven().map(electric_n).collect(), [5, 95])
+                .map(|[low_n, high_n]| weber_steps(natural_n + low_n, natural_n + high_n))
         };
-        let felt_steps = contrast(FidelitySample::felt_electric_n)?;
-        let reference_steps = contrast(FidelitySample::reference_electric_n)?;
-        let delay_s = powers.delay() / SAMPLE_HZ;
+        let felt_steps = contrast(FidelitySample::felt_electric_n).unwrap_or(0.0);
+        let reference_steps = contrast(FidelitySample::reference_electric_n);
+        let felt_rate = peak_rate(&touches, FidelitySample::felt_electric_n)?;
+        let reference_rate = peak_rate(&touches, FidelitySample::reference_electric_n)?;
+        let Powers { weight, low, high, error_mean, .. } = powers;
+        let whole = powers.whole();
+        let is_reference_felt = whole.reference >= weight * REFERENCE_MIN_RMS_N * REFERENCE_MIN_RMS_N;
+        let ratio = |value: f64| (is_reference_felt && value.is_finite()).then_some(value);
+        let delay_s = powers.delay().and_then(ratio).map(|delay| delay / SAMPLE_HZ);
         Some(Self {
-            error_below_40_hz: (powers.error_low / powers.reference_low).sqrt(),
-            correlation_below_40_hz: powers.correlation_low(),
-            error_weber: ((powers.error_low + powers.error_mean) / powers.weight).sqrt() / (WEBER_FRACTION * mean_n),
-            snr_below_40_hz_db: 10.0 * libm::log10(powers.reference_low / powers.error_low),
-            snr_above_40_hz_db: 10.0 * libm::log10(powers.reference_high / powers.error_high),
+            error: ratio(((error_mean + whole.error) / whole.reference).sqrt()),
+            correlation: ratio(whole.correlation()),
+            error_below_40_hz: ratio((low.error / low.reference).sqrt()),
+            correlation_below_40_hz: ratio(low.correlation()),
+            error_weber: ((low.error + error_mean) / weight).sqrt() / (WEBER_FRACTION * mean_n),
+            snr_below_40_hz_db: ratio(decibels(low.reference / low.error)),
+            snr_above_40_hz_db: ratio(decibels(high.reference / high.error)),
             contrast_weber_steps: felt_steps,
-            contrast_kept: felt_steps / reference_steps,
-            delay_ms: 1e3 * delay_s,
-            delay_mm: 1e3 * delay_s * speed_m_per_s,
-            peak_rate_kept: peak_rate(&touches, FidelitySample::felt_electric_n)?
-                / peak_rate(&touches, FidelitySample::reference_electric_n)?,
-            spurious_40_to_400_hz_n: ((powers.felt_high - powers.reference_high).max(0.0) / powers.weight).sqrt(),
+            contrast_kept: reference_steps.and_then(|steps| ratio(felt_steps / steps)),
+            delay_ms: delay_s.map(|delay_s| 1e3 * delay_s),
+            delay_mm: delay_s.map(|delay_s| 1e3 * delay_s * speed_m_per_s),
+            peak_rate_kept: ratio(felt_rate / reference_rate),
+            spurious_40_to_400_hz_n: (powers.grown().sum::<f64>() / weight).sqrt(),
+            spurious_over_noise_db: powers.spurious_over_noise_db(),
         })
     }
+}
+
+fn decibels(ratio: f64) -> f64 {
+    10.0 * libm::log10(ratio)
+}
+
+/// Lower end of a third octave, and upper end of the one before, Hz.
+fn third_octave_hz(number: u32) -> f64 {
+    BAND_BORDER_HZ * libm::pow(BAND_END_HZ / BAND_BORDER_HZ, f64::from(number) / f64::from(THIRD_OCTAVES))
 }
 
 /// Sums over touches, weighted by their length.
 #[derive(Clone, Debug, Default)]
 struct Powers {
     weight: f64,
-    reference_low: f64,
-    reference_high: f64,
-    felt_low: f64,
-    felt_high: f64,
-    error_low: f64,
-    /// Square of the mean error, which the spectrum leaves out.
+    /// Below [`BAND_BORDER_HZ`].
+    low: Band,
+    /// Up to [`BAND_END_HZ`].
+    high: Band,
+    /// Square of the mean error, which the spectra leave out.
     error_mean: f64,
-    error_high: f64,
-    /// Covariance of felt and reference.
-    cross_low: f64,
     /// Covariance at each of [`DELAYS`].
     covariance_by_delay: Vec<f64>,
+    /// What the felt friction has beyond the reference in each third octave; negative if it has less.
+    growth: [f64; THIRD_OCTAVES as usize],
+}
+
+/// The powers of a band of frequencies.
+#[derive(Clone, Copy, Debug, Default)]
+struct Band {
+    reference: f64,
+    felt: f64,
+    error: f64,
+    /// Covariance of felt and reference.
+    cross: f64,
 }
 
 impl Powers {
     fn add(&mut self, touch: &[FidelitySample]) {
-        let spectrum =
-            |value: fn(&FidelitySample) -> f64| Spectrum::of(&touch.iter().map(value).collect::<Vec<f64>>(), SAMPLE_HZ);
-        let reference = spectrum(FidelitySample::reference_electric_n);
-        let felt = spectrum(FidelitySample::felt_electric_n);
-        let error = spectrum(|sample| sample.felt_n - sample.reference_n);
+        let signal = |value: fn(&FidelitySample) -> f64| touch.iter().map(value).collect::<Vec<f64>>();
+        let signals = [
+            signal(FidelitySample::reference_electric_n),
+            signal(FidelitySample::felt_electric_n),
+            signal(|sample| sample.felt_n - sample.reference_n),
+        ];
+        let [reference_n, felt_n, error_n] = &signals;
         let weight = touch.len() as f64;
-        let border = (BAND_BORDER_HZ / reference.bin_hz) as usize;
-        let end = (BAND_END_HZ / reference.bin_hz) as usize;
-        let sum = |spectrum: &Spectrum, from: usize, to: usize| {
-            weight * spectrum.bins.get(from..to).unwrap_or_default().iter().map(Complex::norm_sqr).sum::<f64>()
-        };
         self.weight += weight;
-        self.reference_low += sum(&reference, 0, border);
-        self.reference_high += sum(&reference, border, end);
-        self.felt_low += sum(&felt, 0, border);
-        self.felt_high += sum(&felt, border, end);
-        self.error_low += sum(&error, 0, border);
-        let mean_n = touch.iter().map(|sample| sample.felt_n - sample.reference_n).sum::<f64>() / weight;
+        let mean_n = error_n.iter().sum::<f64>() / weight;
         self.error_mean += weight * mean_n * mean_n;
-        self.error_high += sum(&error, border, end);
-        let pairs = reference.bins.iter().zip(&felt.bins).take(border);
-        let cross: Vec<_> = pairs.map(|(reference, felt)| felt * reference.conj()).collect();
-        self.cross_low += weight * cross.iter().map(|cross| cross.re).sum::<f64>();
+        let spectra = [reference_n, felt_n, error_n].map(|signal| Spectrum::of_whole(signal, SAMPLE_HZ));
+        self.low.add(&spectra, 0.0..BAND_BORDER_HZ, weight);
+        self.high.add(&spectra, BAND_BORDER_HZ..BAND_END_HZ, weight);
+        let [reference, felt, _] = &spectra;
+        self.add_delays(reference, felt, weight);
+        let [reference, felt] = [reference_n, felt_n].map(|signal| Spectrum::of_levelled(signal, SAMPLE_HZ));
+        for (number, growth) in (0..).zip(&mut self.growth) {
+            let band_hz = third_octave_hz(number)..third_octave_hz(number + 1);
+            *growth += weight * (felt.band_power(band_hz.clone()) - reference.band_power(band_hz));
+        }
+    }
+
+    fn add_delays(&mut self, reference: &Spectrum, felt: &Spectrum, weight: f64) {
+        let low_hz = 0.0..BAND_BORDER_HZ;
+        let pairs = reference.band(low_hz.clone()).iter().zip(felt.band(low_hz));
+        let cross: Vec<Complex<f64>> = pairs.map(|(reference, felt)| felt * reference.conj()).collect();
         self.covariance_by_delay.resize(DELAYS.count(), 0.0);
         for (covariance, delay) in self.covariance_by_delay.iter_mut().zip(DELAYS) {
             let turn = std::f64::consts::TAU * reference.bin_hz * f64::from(delay) / SAMPLE_HZ;
@@ -190,17 +247,57 @@ impl Powers {
         }
     }
 
-    /// Correlation of felt and reference; 0 for a display that adds nothing, so that it does not drop out of a mean.
-    fn correlation_low(&self) -> f64 {
-        let scale = (self.reference_low * self.felt_low).sqrt();
-        if scale > 0.0 { self.cross_low / scale } else { 0.0 }
+    /// Both bands.
+    fn whole(&self) -> Band {
+        let Self { low, high, .. } = self;
+        Band {
+            reference: low.reference + high.reference,
+            felt: low.felt + high.felt,
+            error: low.error + high.error,
+            cross: low.cross + high.cross,
+        }
     }
 
-    /// The delay of the largest covariance, in samples; not-a-number where felt and reference have nothing in common.
-    fn delay(&self) -> f64 {
-        let likeness = CORRELATION_MIN * (self.reference_low * self.felt_low).sqrt();
-        let delays = self.covariance_by_delay.iter().zip(DELAYS).filter(|(covariance, _)| **covariance > likeness);
-        delays.max_by(|(one, _), (other, _)| one.total_cmp(other)).map_or(f64::NAN, |(_, delay)| f64::from(delay))
+    /// The delay of the largest covariance, in samples: of those that differ by rounding only, as the periods of a
+    /// grating do, the least. `None` where felt and reference have nothing in common.
+    fn delay(&self) -> Option<f64> {
+        let largest = self.covariance_by_delay.iter().copied().max_by(f64::total_cmp)?;
+        let likeness = CORRELATION_MIN * (self.low.reference * self.low.felt).sqrt();
+        let delays = self.covariance_by_delay.iter().zip(DELAYS);
+        let best = delays.filter(|(covariance, _)| **covariance >= largest * (1.0 - ROUNDING));
+        best.map(|(_, delay)| f64::from(delay)).min_by_key(|delay| delay.abs() as u32).filter(|_| largest > likeness)
+    }
+
+    /// By what the third octaves that grew have grown.
+    fn grown(&self) -> impl Iterator<Item = f64> {
+        self.growth.iter().map(|growth| growth.max(0.0))
+    }
+
+    fn spurious_over_noise_db(&self) -> Option<f64> {
+        let over_noise = (0..).zip(self.grown()).map(|(number, growth)| {
+            let middle_hz = (third_octave_hz(number) * third_octave_hz(number + 1)).sqrt();
+            let amplitude_n = natural_noise_amplitude_n(middle_hz);
+            growth / self.weight / (0.5 * amplitude_n * amplitude_n)
+        });
+        over_noise.filter(|ratio| *ratio > 0.0).max_by(f64::total_cmp).map(decibels)
+    }
+}
+
+impl Band {
+    /// Adds the powers of a touch from the spectra of reference, felt friction and error.
+    fn add(&mut self, spectra: &[Spectrum; 3], band_hz: Range<f64>, weight: f64) {
+        let [reference, felt, error] = spectra;
+        self.reference += weight * reference.band_power(band_hz.clone());
+        self.felt += weight * felt.band_power(band_hz.clone());
+        self.error += weight * error.band_power(band_hz.clone());
+        let pairs = reference.band(band_hz.clone()).iter().zip(felt.band(band_hz));
+        self.cross += weight * pairs.map(|(reference, felt)| (felt * reference.conj()).re).sum::<f64>();
+    }
+
+    /// Correlation of felt and reference; 0 for a display that adds nothing, so that it does not drop out of a mean.
+    fn correlation(&self) -> f64 {
+        let scale = (self.reference * self.felt).sqrt();
+        if scale > 0.0 { self.cross / scale } else { 0.0 }
     }
 }
 
@@ -215,108 +312,4 @@ fn peak_rate(touches: &[&[FidelitySample]], value: fn(&FidelitySample) -> f64) -
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::TAU;
-
-    use super::*;
-
-    const SPEED_M_PER_S: f64 = 0.1;
-
-    /// A finger over a grating of 10 Hz and 20 mN; `felt_n` makes the felt friction from the time.
-    fn scored(felt_n: impl Fn(f64) -> f64) -> Fidelity {
-        let sample = |number: u32| {
-            let t_s = f64::from(number) / SAMPLE_HZ;
-            FidelitySample {
-                speed_m_per_s: Some(SPEED_M_PER_S),
-                reference_n: grating_n(t_s),
-                felt_n: felt_n(t_s),
-                natural_n: 0.3,
-            }
-        };
-        Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap()
-    }
-
-    fn grating_n(t_s: f64) -> f64 {
-        0.3 + 0.02 * libm::sin(TAU * 10.0 * t_s)
-    }
-
-    #[test]
-    fn a_display_without_fault_is_perfect() {
-        let fidelity = scored(grating_n);
-        assert_eq!(fidelity.error_below_40_hz.to_bits(), 0.0_f64.to_bits());
-        assert_eq!(fidelity.delay_ms.to_bits(), 0.0_f64.to_bits());
-        for one in [fidelity.correlation_below_40_hz, fidelity.contrast_kept, fidelity.peak_rate_kept] {
-            assert!((one - 1.0).abs() < 1e-12, "{fidelity:?}");
-        }
-    }
-
-    #[test]
-    fn a_delay_is_found_in_ms_and_mm() {
-        let fidelity = scored(|t_s| grating_n(t_s - 0.015));
-        assert!((fidelity.delay_ms - 15.0).abs() <= 0.25, "{fidelity:?}");
-        assert!((fidelity.delay_mm - 1.5).abs() <= 0.03, "{fidelity:?}");
-        // |1 - e^(i w T)| = 2 sin(w T / 2), against the sine itself.
-        let expected = 2.0 * libm::sin(std::f64::consts::PI * 10.0 * 0.015);
-        assert!((fidelity.error_below_40_hz / expected - 1.0).abs() < 0.02, "{fidelity:?}");
-        assert!((fidelity.correlation_below_40_hz - libm::cos(TAU * 10.0 * 0.015)).abs() < 0.01, "{fidelity:?}");
-    }
-
-    #[test]
-    fn half_of_the_contrast_is_half() {
-        let fidelity = scored(|t_s| 0.3 + 0.5 * (grating_n(t_s) - 0.3));
-        assert!((fidelity.contrast_kept - 0.5).abs() < 0.01, "{fidelity:?}");
-        assert!((fidelity.peak_rate_kept - 0.5).abs() < 1e-6, "{fidelity:?}");
-        assert!((fidelity.snr_below_40_hz_db - 6.02).abs() < 0.1, "{fidelity:?}");
-        // An rms of 10 mN / sqrt(2) is 0.214 fractions of 0.11 times 0.3 N.
-        assert!((fidelity.error_weber - 0.01 / 2.0_f64.sqrt() / 0.033).abs() < 0.01, "{fidelity:?}");
-    }
-
-    #[test]
-    fn force_that_the_scene_does_not_have_is_spurious() {
-        let fidelity = scored(|t_s| grating_n(t_s) + 0.004 * libm::sin(TAU * 150.0 * t_s));
-        assert!((fidelity.spurious_40_to_400_hz_n / (0.004 / 2.0_f64.sqrt()) - 1.0).abs() < 0.01, "{fidelity:?}");
-        assert!(fidelity.error_below_40_hz < 1e-3, "{fidelity:?}");
-    }
-
-    /// The same texture of 150 Hz, a quarter of a period late: nobody feels its phase.
-    #[test]
-    fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
-        let texture = |number: u32, late: f64| 0.004 * libm::sin(TAU * (150.0 * f64::from(number) / SAMPLE_HZ - late));
-        let sample = |number: u32| FidelitySample {
-            speed_m_per_s: Some(SPEED_M_PER_S),
-            reference_n: 0.3 + texture(number, 0.0),
-            felt_n: 0.3 + texture(number, 0.25),
-            natural_n: 0.3,
-        };
-        let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
-        assert!(fidelity.spurious_40_to_400_hz_n < 1e-4, "{fidelity:?}");
-        assert!((fidelity.snr_above_40_hz_db + 3.01).abs() < 0.1, "{fidelity:?}");
-    }
-
-    /// Natural friction that changes by more than the grating, which a display without output does not take part in.
-    #[test]
-    fn natural_friction_makes_no_display_look_faithful() {
-        let sample = |number: u32| {
-            let t_s = f64::from(number) / SAMPLE_HZ;
-            let natural_n = 0.3 + 0.1 * libm::sin(TAU * 3.0 * t_s);
-            let reference_n = natural_n + grating_n(t_s) - 0.3;
-            FidelitySample { speed_m_per_s: Some(SPEED_M_PER_S), reference_n, felt_n: natural_n, natural_n }
-        };
-        let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
-        assert!((fidelity.error_below_40_hz - 1.0).abs() < 1e-9, "{fidelity:?}");
-        assert!(fidelity.correlation_below_40_hz.abs() < 1e-12, "{fidelity:?}");
-        assert!(fidelity.contrast_weber_steps.abs() < 1e-12, "{fidelity:?}");
-        assert!(fidelity.contrast_kept.abs() < 1e-12, "{fidelity:?}");
-    }
-
-    #[test]
-    fn a_flat_output_keeps_no_contrast_and_a_short_touch_has_no_score() {
-        let flat = scored(|_| 0.25);
-        assert!(flat.contrast_kept.abs() < 1e-12 && flat.error_below_40_hz > 0.99, "{flat:?}");
-        assert!(flat.delay_ms.is_nan(), "{flat:?}");
-        // 50 mN too little, and the rms of the grating.
-        let rms_n = 0.05_f64.hypot(0.02 / 2.0_f64.sqrt());
-        assert!((flat.error_weber / (rms_n / 0.033) - 1.0).abs() < 0.01, "{flat:?}");
-        assert_eq!(Fidelity::of(&[FidelitySample::default(); 100]), None);
-    }
-}
+mod tests;

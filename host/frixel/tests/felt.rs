@@ -13,9 +13,9 @@ use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
 use frixel_lab::score::Trial;
 use frixel_scene::{Program, Scene, compile};
 
-/// Error below 40 Hz over the reference's swing, correlation, and spurious force between 40 and 400 Hz: a finger's own
-/// noise, measured as 4.5 mN from 10 to 1000 Hz, of which a 1/f spectrum has 3.2 mN from 40 to 400 Hz. The goal is the
-/// larger, until the noise of that band is better known.
+/// Error from 0 to 400 Hz over the rms of the reference's changes, landing and end of a touch included, correlation, and
+/// spurious force between 40 and 400 Hz: a finger's own noise, measured as 4.5 mN from 10 to 1000 Hz, of which a 1/f
+/// spectrum has 3.2 mN from 40 to 400 Hz. The goal is the larger, until the noise of that band is better known.
 const GOAL: Held = Held { ratio_max: 0.25, correlation_min: 0.9, spurious_max_n: 4.5e-3 };
 const SECONDS: f64 = 8.5;
 /// Swing of the texture: nearly all that the finger below has at 150 V.
@@ -49,8 +49,8 @@ impl Felt {
         let count = plays.len() as f64;
         let mean = |value: &dyn Fn(&Fidelity) -> f64| plays.iter().map(value).sum::<f64>() / count;
         Self {
-            ratio: mean(&|play| play.error_below_40_hz.powi(2)).sqrt(),
-            correlation: mean(&|play| play.correlation_below_40_hz),
+            ratio: mean(&|play| play.error.unwrap().powi(2)).sqrt(),
+            correlation: mean(&|play| play.correlation.unwrap()),
             spurious_n: mean(&|play| play.spurious_40_to_400_hz_n.powi(2)).sqrt(),
         }
     }
@@ -80,10 +80,10 @@ const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 200.0, Held { ratio_max: 0.70, correlation_min: 0.74, spurious_max_n: 10e-3 }),
     (MEDIUM, 50.0, GOAL),
     (MEDIUM, 100.0, GOAL),
-    (MEDIUM, 200.0, Held { ratio_max: 0.55, correlation_min: 0.84, ..GOAL }),
+    (MEDIUM, 200.0, Held { ratio_max: 0.55, correlation_min: 0.84, spurious_max_n: 6e-3 }),
     (FAST, 50.0, GOAL),
     (FAST, 100.0, GOAL),
-    (FAST, 200.0, Held { ratio_max: 0.42, ..GOAL }),
+    (FAST, 200.0, Held { ratio_max: 0.47, correlation_min: 0.88, ..GOAL }),
 ];
 
 /// Every effect of the plant, with a touch source of a class that loses one report in eight and bunches one in thirty.

@@ -81,7 +81,7 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
     assert_eq!(json["plays"].as_array().unwrap().len(), 4);
     let csv = std::fs::read_to_string(out.path().join("score.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
-    assert!(csv.starts_with("person,stroke,seed,error_below_40_hz,"));
+    assert!(csv.starts_with("simulated_person,stroke,seed,error,correlation,"));
     assert!(std::fs::read_to_string(out.path().join("score.svg")).unwrap().contains("simulated"));
 }
 
@@ -102,7 +102,7 @@ fn people_differ_and_come_again() {
     };
     let json = plays();
     let people: Vec<u64> =
-        json["plays"].as_array().unwrap().iter().filter_map(|play| play["person"].as_u64()).collect();
+        json["plays"].as_array().unwrap().iter().filter_map(|play| play["simulated_person"].as_u64()).collect();
     assert_eq!(people, [1, 1, 2, 2, 3, 3]);
     let contrast = |play: usize| json["plays"][play]["fidelity"]["contrast_weber_steps"].as_f64().unwrap();
     assert!((contrast(0) - contrast(2)).abs() > 0.05 && (contrast(2) - contrast(4)).abs() > 0.05, "{json}");

@@ -11,10 +11,12 @@
 //! Files, ports, clocks and the terminal are the caller's: the `frixel` command is one.
 #![forbid(unsafe_code)]
 
+mod bootstrap;
 pub mod calibration;
 pub mod fit;
 pub mod model_csv;
 pub mod score;
+mod statistics;
 pub mod stroke_file;
 pub mod table;
 pub mod threshold;

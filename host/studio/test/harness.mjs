@@ -1,8 +1,8 @@
 // What the browser tests share: the page in Chromium, the bundled scenes, and a virtual board.
 //
 // `cargo xtask studio-test` builds what they need, and says in the environment where it is:
-// STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), FRIXEL (the command),
-// REAL_BOARD (examples/real_board.rs).
+// STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), REAL_BOARD
+// (examples/real_board.rs), and for `command.test.mjs` alone FRIXEL (the command).
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import {
-  addSerialPort, boardTime, cleanUp, CONSTANT, endLeftovers, openOnlyEngine, startRealBoard, startStudio, stateOf,
+  addSerialPort, boardTime, cleanUp, CONSTANT, endLeftovers, openOnlyEngine, startRealBoard, stateOf,
 } from "./harness.mjs";
 import { answeredIn, framesIn, requestIn } from "./wire.mjs";
 
@@ -202,31 +202,5 @@ test("a port can be connected again after a failed connection and after a lost l
   await page.evaluate(() => tested.simulate());
   assert.ok(!(await isOpen()));
   assert.deepEqual(errors, []);
-  await close();
-});
-
-test("the bridge can be connected again after a failed connection and after a silent board", async () => {
-  const board = await startRealBoard();
-  const { page, close } = await openOnlyEngine(await startStudio(board.terminal));
-  const connect = () =>
-    page.evaluate(async () => {
-      const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-      return tested.connectSocket(bridgeUrl()).catch((error) => error.message);
-    });
-  board.hang(true);
-  assert.match(await connect(), /no frixel board answered/);
-  board.hang(false);
-  assert.equal(await connect(), undefined);
-  await page.evaluate(async (text) => {
-    await tested.play({ "a.toml": text }, "a.toml", {});
-    await tested.arm();
-  }, CONSTANT);
-  await board.until("driving", stateOf.driving);
-  board.hang(true);
-  await page.waitForFunction(() => states.at(-1).link === "none");
-  assert.match(await page.evaluate(() => states.at(-1).fault), /not answered/);
-  board.hang(false);
-  await board.until("disarmed", stateOf.disarmed);
-  assert.equal(await connect(), undefined, "connected again");
   await close();
 });

@@ -1,50 +1,12 @@
 // The page in a browser: texts of scenes, their mistakes, layers and drafts.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import fs from "node:fs";
-import os from "node:os";
-import path from "node:path";
 import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers, required } from "./harness.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
 import { assertSays, openIncluding, openStudio, tabsOf, wholeStroke } from "./page.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
-
-test("a typed mistake shows the sentence of `frixel scene check`, and the mended scene plays on", async () => {
-  const { page, errors, close } = await openStudio();
-  const good = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
-  await page.evaluate((text) => played(text), good);
-  const line = good.split("\n").findIndex((each) => each.startsWith("kind =")) + 1;
-  await page.evaluate((line) => studioPage.editor.goTo(undefined, line), line);
-  await page.keyboard.press("End");
-  await page.keyboard.press("ArrowLeft");
-  await page.keyboard.type("x");
-  const shown = page.locator("#problems li.error");
-  await shown.waitFor();
-  const bad = await page.evaluate(() => studioPage.editor.text);
-  const file = path.join(fs.mkdtempSync(path.join(os.tmpdir(), "frixel-page-")), "scene.toml");
-  fs.writeFileSync(file, bad);
-  let said = "";
-  try {
-    execFileSync(required("FRIXEL"), ["scene", "check", file], { encoding: "utf8", stdio: "pipe" });
-  } catch ({ stdout, stderr }) {
-    said = stdout + stderr;
-  }
-  const [, sentence] = /scene\.toml:\d+:\d+: (.+)/.exec(said);
-  assert.equal(await shown.evaluate((item) => item.lastChild.textContent), sentence);
-  assert.ok(sentence.includes("gratingx"), sentence);
-  await page.locator(".cm-lintRange-error").waitFor();
-  const state = await page.evaluate(() => document.documentElement.dataset.state);
-  assert.equal(state, "active", "the scene before plays on");
-  await page.keyboard.press("Backspace");
-  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
-  assert.equal(await shown.count(), 0);
-  assert.equal(await page.evaluate(() => studioPage.editor.text), good);
-  assert.deepEqual(errors, []);
-  await close();
-});
 
 test("completion offers what the kind of a layer has, and the kind first", async () => {
   const { page, errors, close } = await openStudio();

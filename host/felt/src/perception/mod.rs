@@ -24,9 +24,11 @@ use click::ClickStep;
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
 use slide::Slide;
+use thresholds::lag_gain;
 pub use thresholds::{NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe};
-pub(crate) use thresholds::{NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, weber_steps_text};
-use thresholds::{lag_gain, natural_noise_amplitude_n};
+pub(crate) use thresholds::{
+    NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n, weber_steps_text,
+};
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
 const SPEEDS_M_PER_S: [f64; 3] = [0.02, USUAL_M_PER_S, 0.1];

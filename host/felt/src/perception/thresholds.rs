@@ -142,7 +142,7 @@ pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
 }
 
 /// Amplitude of a sine with the power of a finger's own friction noise in the third of an octave around a frequency, N.
-pub(super) fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
+pub(crate) fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
     let (from_hz, to_hz) = NOISE_BAND_HZ;
     if !(from_hz..=to_hz).contains(&frequency_hz) {
         return 0.0;

@@ -5,8 +5,8 @@
 
 use super::least_squares::{Measured, Observation};
 use super::recording::{Recording, Stroke};
-use super::statistics::mean;
 use super::table::Row;
+use crate::statistics::mean;
 
 /// Voltages within this factor of the lowest one of a level are one level.
 const LEVEL_WIDTH: f64 = 1.05;

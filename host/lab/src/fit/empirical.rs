@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use frixel_scene::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw};
 
-use super::bootstrap::{Estimate, Z_999};
 use super::error::FitError;
 use super::law::Attraction;
 use super::least_squares::Solution;
 use super::profile::rounded;
-use super::statistics::{mean, student_quantile};
 use super::{Data, Division, FittedData, HeldOut, Settings, StrokeResult, results, verdict};
+use crate::bootstrap::{Estimate, Z_999};
+use crate::statistics::{mean, student_quantile};
 
 /// Voltages within this factor of the lowest one of a level are one level.
 const LEVEL_WIDTH: f64 = 1.05;

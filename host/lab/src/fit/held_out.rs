@@ -3,7 +3,7 @@
 use super::contrast::StrokeMeans;
 use super::least_squares::{Observation, Solution};
 use super::search::{Replicate, Search, attraction_of};
-use super::statistics::mean;
+use crate::statistics::mean;
 
 /// Errors of electric friction in strokes that were left out of the fit, one after the other. The noise of a single
 /// stroke is part of them.

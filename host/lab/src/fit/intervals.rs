@@ -1,11 +1,11 @@
 //! Intervals of what is fitted, from a bootstrap over strokes.
 
-use super::bootstrap::{Draws, Estimate, Z_95};
 use super::contrast::StrokeMeans;
 use super::error::FitError;
 use super::least_squares::{Observation, Solution};
 use super::search::{Replicate, Search};
-use super::statistics::{mean, student_quantile};
+use crate::bootstrap::{Draws, Estimate, Z_95};
+use crate::statistics::{mean, student_quantile};
 
 /// Number of draws of the bootstrap.
 pub(super) const DRAWS: usize = 499;
@@ -29,7 +29,8 @@ impl Fitted {
         strokes: &[StrokeMeans],
         seed: u64,
     ) -> Result<Self, FitError> {
-        let mut draws = Draws::new(strokes, seed);
+        let levels: Vec<_> = strokes.iter().map(|stroke| stroke.top_level).collect();
+        let mut draws = Draws::new(&levels, seed);
         let fitted = (0..DRAWS).filter_map(|_| {
             let drawn = draws.draw().into_iter().filter_map(|index| strokes.get(index));
             let drawn: Vec<Observation> = drawn.flat_map(|stroke| &stroke.observations).copied().collect();

@@ -11,7 +11,6 @@ use std::io::Read;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-use super::bootstrap::Draws;
 use super::contrast::StrokeMeans;
 use super::error::FitError;
 use super::faults::Faults;
@@ -19,9 +18,10 @@ use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
 use super::search::{Search, start};
-use super::statistics::median;
 use super::table::{FRICTION, LOAD, VOLTAGE, voltage_v_rms};
 use super::{FittedData, Settings, rules};
+use crate::bootstrap::Draws;
+use crate::statistics::median;
 use crate::table::{Column, Place, Reading, Row, Table, Unit};
 
 const STANDARD_ERROR: Column = Column::new("friction_se_n", "newtons").converted(Unit::Newtons);
@@ -235,6 +235,7 @@ mod tests {
 
     use super::super::{Coupling, Data, Fit, Settings, Verdict, data, fit_data, words};
     use super::{FitError, Measured, Normal, Observation};
+    use crate::bootstrap::Estimate;
     use crate::fit::law::Attraction;
 
     const COEFFICIENT: f64 = 0.5;
@@ -297,17 +298,29 @@ mod tests {
         }
     }
 
+    /// How many of these tables are fitted, and how many of the intervals contain the truth.
+    fn covered(tables: u64) -> (u32, u32) {
+        let electric_n = truth_n(150.0, 0.5) - truth_n(0.0, 0.5);
+        let fits = (0..tables).filter_map(|seed| fitted(&table(Some(seed), 1.0, &[0.4, 0.5, 0.6])).ok());
+        fits.map(|fit| fit.electric_friction_n).fold((0, 0), |(fits, covered), Estimate { low, high, .. }| {
+            (fits + 1, covered + u32::from((low..=high).contains(&electric_n)))
+        })
+    }
+
+    #[test]
+    #[ignore = "half a minute: cargo xtask soak people"]
+    fn intervals_of_600_tables_contain_the_truth() {
+        let (fits, covered) = covered(600);
+        println!("means: {covered} of {fits} intervals contain the truth");
+        let share = f64::from(covered) / f64::from(fits);
+        assert!(fits >= 588 && (0.93..=0.97).contains(&share), "{covered} of {fits}");
+    }
+
     #[test]
     fn intervals_come_from_the_stated_errors() {
-        let electric_n = truth_n(150.0, 0.5) - truth_n(0.0, 0.5);
-        let (mut covered, mut fits) = (0, 0);
-        for seed in 0..60 {
-            let Ok(fit) = fitted(&table(Some(seed), 1.0, &[0.4, 0.5, 0.6])) else { continue };
-            let estimate = fit.electric_friction_n;
-            fits += 1;
-            covered += i32::from((estimate.low..=estimate.high).contains(&electric_n));
-        }
+        let (fits, covered) = covered(60);
         assert!(fits >= 58, "{fits}");
+        // 95 %, less 1.8 standard errors.
         assert!(covered * 100 >= 90 * fits, "{covered} of {fits}");
         let wide = fitted(&table(None, 1.0, &[0.5])).unwrap().electric_friction_n;
         let narrow = fitted(&table(None, 1.0, &[0.5, 0.5, 0.5, 0.5])).unwrap().electric_friction_n;

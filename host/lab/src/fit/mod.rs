@@ -20,7 +20,6 @@
 //!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers what the
 //!   model says and what a power law without any model says.
 
-mod bootstrap;
 mod contrast;
 mod empirical;
 mod error;
@@ -36,12 +35,11 @@ mod recording;
 mod rules;
 mod search;
 mod sensor;
-mod statistics;
 mod summary;
 mod table;
 mod verdict;
 
-pub use bootstrap::Estimate;
+pub use crate::bootstrap::Estimate;
 use contrast::{Levels, StrokeMeans, stroke_means};
 pub use empirical::{EmpiricalFit, fit_power_law};
 pub use error::FitError;

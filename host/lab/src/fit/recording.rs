@@ -2,8 +2,8 @@
 
 use super::error::FitError;
 use super::faults::{Fault, Faults};
-use super::statistics::median;
 use super::table::Row;
+use crate::statistics::median;
 
 /// What is dropped at the beginning of a stroke, in seconds: the finger starts to slide.
 const START_S: f64 = 0.15;

@@ -6,8 +6,8 @@ use super::error::FitError;
 use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
 use super::recording::{Recording, Stroke};
-use super::statistics::{mean, median};
 use super::table::Row;
+use crate::statistics::{mean, median};
 
 /// Least number of strokes: intervals from fewer are too wide to be of use.
 const STROKES_MIN: usize = 8;

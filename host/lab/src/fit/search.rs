@@ -4,8 +4,8 @@ use super::contrast::StrokeMeans;
 use super::error::FitError;
 use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
 use super::least_squares::{Form, Measured, Observation, Solution, solve};
-use super::statistics::median;
 use super::verdict;
+use crate::statistics::median;
 
 /// The laws fitted to the same observations: the contact model, and power laws that know no model.
 pub(super) struct Replicate {

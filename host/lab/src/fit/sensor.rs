@@ -7,7 +7,7 @@
 use super::contrast::{Levels, Run, runs};
 use super::error::FitError;
 use super::recording::{Recording, usual_interval_s};
-use super::statistics::mean;
+use crate::statistics::mean;
 
 /// What is looked at around a switch, in seconds: `frixel calibrate` switches after 20 to 30 ms.
 const BEFORE_S: f64 = 8e-3;

@@ -1,13 +1,13 @@
 //! What a fit says about the model, and rules that it must keep.
 
-use super::bootstrap::{Estimate, Z_95, Z_999};
 use super::error::FitError;
 use super::intervals::Fitted;
 use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
 use super::least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
 use super::search::{Replicate, coupling_of};
-use super::statistics::mean;
 use super::{Division, Fit, Settings, StrokeResult};
+use crate::bootstrap::{Estimate, Z_95, Z_999};
+use crate::statistics::mean;
 
 /// Highest voltage of the data below which its exponent says nothing about the model, in volts rms.
 const VERDICT_V_RMS: f64 = 100.0;

@@ -1,4 +1,4 @@
-//! The numbers of a score, and what a person notices of them.
+//! The numbers of a score, what a person notices of them, and the goals.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -6,9 +6,12 @@ use frixel_felt::fidelity::Fidelity;
 use frixel_felt::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
 
-/// Number of standard errors on either side of a mean in its 95 % interval, by the number of independent values less
-/// one: Student's t, from 1 to 10.
-const STANDARD_ERRORS: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
+use crate::bootstrap::{Draws, Z_95};
+
+/// Draws of the bootstrap of an interval.
+const DRAWS: usize = 2000;
+/// Seed of the draws: the same score has the same intervals.
+const SEED: u64 = 1;
 
 /// A number of [`Fidelity`].
 pub(super) struct Metric {
@@ -17,8 +20,9 @@ pub(super) struct Metric {
     unit: &'static str,
     /// Factor from SI units to `unit`.
     factor: f64,
-    value: fn(&Fidelity) -> f64,
+    value: fn(&Fidelity) -> Option<f64>,
     human: fn() -> Option<Human>,
+    goal: Option<Goal>,
 }
 
 /// What a person notices.
@@ -28,6 +32,27 @@ pub struct Human {
     pub value: f64,
     /// What it is, with its source.
     pub meaning: &'static str,
+}
+
+/// What a display is to reach, for features that are as large as its touch source needs and strokes with a median speed
+/// of at most 100 mm/s (`docs/touch.md`).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Goal {
+    /// The number is to be at most so large.
+    AtMost(f64),
+    /// The number is to be at least so large.
+    AtLeast(f64),
+}
+
+impl Goal {
+    /// Whether a value reaches the goal.
+    pub fn is_met_by(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => value <= limit,
+            Self::AtLeast(limit) => value >= limit,
+        }
+    }
 }
 
 /// A number of [`Fidelity`] over all plays.
@@ -41,16 +66,19 @@ pub struct MetricScore {
     pub unit: &'static str,
     /// Mean over the people, or over the strokes of the scene's finger, of the mean over the plays of each.
     pub mean: f64,
-    /// 95 % interval of the mean over people, or strokes, like these; absent with a single one.
+    /// 95 % interval of the mean over people, or strokes, like these, by bootstrap: it contains no value that none of
+    /// them had. Absent with a single one.
     pub interval: Option<[f64; 2]>,
     /// What a person notices; absent where it is not known.
     pub human: Option<Human>,
+    /// What a display is to reach; absent where there is no goal.
+    pub goal: Option<Goal>,
 }
 
 impl Metric {
-    /// A metric without a unit, of which nothing is known that a person notices.
-    const fn new(key: &'static str, title: &'static str, value: fn(&Fidelity) -> f64) -> Self {
-        Self { key, title, unit: "", factor: 1.0, value, human: || None }
+    /// A metric without a unit, of which nothing is known that a person notices, and without a goal.
+    const fn new(key: &'static str, title: &'static str, value: fn(&Fidelity) -> Option<f64>) -> Self {
+        Self { key, title, unit: "", factor: 1.0, value, human: || None, goal: None }
     }
 
     /// Name in JSON and CSV.
@@ -58,51 +86,58 @@ impl Metric {
         self.key
     }
 
-    /// The number of a play, in the metric's unit.
-    pub(super) fn of(&self, fidelity: &Fidelity) -> f64 {
-        self.factor * (self.value)(fidelity)
+    /// The number of a play, in the metric's unit; `None` where it does not exist.
+    pub(super) fn of(&self, fidelity: &Fidelity) -> Option<f64> {
+        (self.value)(fidelity).map(|value| self.factor * value)
     }
 
     /// The number over groups of plays, each independent of the others; `None` without a play in which it exists.
     pub(super) fn score(&self, groups: &[Vec<Fidelity>]) -> Option<MetricScore> {
-        let mean_of = |group: &Vec<Fidelity>| {
-            let values: Vec<f64> = group.iter().map(|play| self.of(play)).filter(|value| value.is_finite()).collect();
-            (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-        };
-        let values: Vec<f64> = groups.iter().filter_map(mean_of).collect();
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count - 1.0);
-        let half = standard_errors(values.len()) * (variance / count).sqrt();
-        (count > 0.0).then(|| MetricScore {
+        let values: Vec<f64> =
+            groups.iter().filter_map(|group| mean(group.iter().filter_map(|play| self.of(play)))).collect();
+        Some(MetricScore {
             key: self.key,
             title: self.title,
             unit: self.unit,
-            mean,
-            interval: (count > 1.0).then_some([mean - half, mean + half]),
+            mean: mean(values.iter().copied())?,
+            interval: interval(&values),
             human: (self.human)(),
+            goal: self.goal,
         })
     }
 }
 
-/// Half of the 95 % interval of a mean of so many values, in standard errors.
-fn standard_errors(count: usize) -> f64 {
-    let freedom = count.saturating_sub(1);
-    // Beyond the table, the first terms of the expansion about the normal distribution, to 0.2 %.
-    let expanded = |freedom: usize| 1.96 + 2.372 / freedom as f64 + 2.8 / (freedom * freedom) as f64;
-    freedom
-        .checked_sub(1)
-        .and_then(|index| STANDARD_ERRORS.get(index).copied())
-        .unwrap_or_else(|| expanded(freedom.max(1)))
+/// Mean; `None` without values.
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mean = crate::statistics::mean(values);
+    mean.is_finite().then_some(mean)
 }
 
-pub(super) const METRICS: [Metric; 11] = [
+/// 95 % interval of the mean of independent values; `None` of a single one.
+fn interval(values: &[f64]) -> Option<[f64; 2]> {
+    if values.len() < 2 {
+        return None;
+    }
+    let mut draws = Draws::new(&vec![(); values.len()], SEED);
+    let drawn =
+        (0..DRAWS).filter_map(|_| mean(draws.draw().into_iter().filter_map(|index| values.get(index).copied())));
+    let mut means: Vec<f64> = drawn.collect();
+    let (low, high) = draws.interval(&mut means, Z_95);
+    Some([low, high])
+}
+
+pub(super) const METRICS: [Metric; 14] = [
+    Metric { goal: Some(Goal::AtMost(0.25)), ..Metric::new("error", "error, 0 to 400 Hz", |fidelity| fidelity.error) },
+    Metric {
+        goal: Some(Goal::AtLeast(0.9)),
+        ..Metric::new("correlation", "correlation, 0 to 400 Hz", |fidelity| fidelity.correlation)
+    },
     Metric::new("error_below_40_hz", "error below 40 Hz", |fidelity| fidelity.error_below_40_hz),
     Metric::new("correlation_below_40_hz", "correlation below 40 Hz", |fidelity| fidelity.correlation_below_40_hz),
     Metric {
         unit: "Weber fractions",
         human: || Some(Human { value: 1.0, meaning: "smallest step felt (doi:10.1098/rsif.2017.0641)" }),
-        ..Metric::new("error_weber", "error", |fidelity| fidelity.error_weber)
+        ..Metric::new("error_weber", "error", |fidelity| Some(fidelity.error_weber))
     },
     Metric {
         unit: "dB",
@@ -117,7 +152,7 @@ pub(super) const METRICS: [Metric; 11] = [
         human: || {
             Some(Human { value: weber_steps_safe(), meaning: "felt by everyone in the studies (ln 1.27 / ln 1.11)" })
         },
-        ..Metric::new("contrast_weber_steps", "contrast felt", |fidelity| fidelity.contrast_weber_steps)
+        ..Metric::new("contrast_weber_steps", "contrast felt", |fidelity| Some(fidelity.contrast_weber_steps))
     },
     Metric::new("contrast_kept", "contrast kept", |fidelity| fidelity.contrast_kept),
     Metric {
@@ -142,8 +177,13 @@ pub(super) const METRICS: [Metric; 11] = [
             Some(Human { value: 1e3 * NATURAL_NOISE_RMS_N * FRAC_1_SQRT_2, meaning })
         },
         ..Metric::new("spurious_40_to_400_hz_mn", "spurious force, 40 to 400 Hz", |fidelity| {
-            fidelity.spurious_40_to_400_hz_n
+            Some(fidelity.spurious_40_to_400_hz_n)
         })
+    },
+    Metric {
+        unit: "dB",
+        goal: Some(Goal::AtMost(6.0)),
+        ..Metric::new("spurious_over_noise_db", "worst third octave of it", |fidelity| fidelity.spurious_over_noise_db)
     },
 ];
 
@@ -152,28 +192,44 @@ mod tests {
     use super::*;
 
     fn plays(errors: &[f64]) -> Vec<Fidelity> {
-        let play = |error: &f64| Fidelity { error_below_40_hz: *error, ..Fidelity::default() };
+        let play = |error: &f64| Fidelity { correlation: Some(*error), ..Fidelity::default() };
         errors.iter().map(play).collect()
+    }
+
+    fn correlation(groups: &[Vec<Fidelity>]) -> MetricScore {
+        METRICS[1].score(groups).unwrap()
     }
 
     /// Seeds of a stroke that are all alike say as much as one.
     #[test]
     fn the_stroke_is_the_unit_of_an_interval() {
-        let score = |groups: &[Vec<Fidelity>]| METRICS[0].score(groups).unwrap();
-        let once = score(&[plays(&[0.1]), plays(&[0.3])]);
-        let often = score(&[plays(&[0.1; 20]), plays(&[0.3; 20])]);
+        let once = correlation(&[plays(&[0.1]), plays(&[0.3])]);
+        let often = correlation(&[plays(&[0.1; 20]), plays(&[0.3; 20])]);
         assert!((once.mean - 0.2).abs() < 1e-12 && (often.mean - 0.2).abs() < 1e-12);
-        // The mean of two has a standard error of 0.1, and t is 12.7.
-        let [low, high] = often.interval.unwrap();
-        assert!((high - low - 2.0 * 12.706 * 0.1).abs() < 1e-9, "{low} to {high}");
-        assert_eq!(score(&[plays(&[0.1; 20])]).interval, None);
+        let ends = once.interval.unwrap().into_iter().zip(often.interval.unwrap());
+        assert!(ends.into_iter().all(|(one, other)| (one - other).abs() < 1e-12));
+        assert_eq!(correlation(&[plays(&[0.1; 20])]).interval, None);
+    }
+
+    /// Two strokes tell little of others, and yet no correlation is above 1.
+    #[test]
+    fn an_interval_stays_within_the_values_of_the_strokes() {
+        let [low, high] = correlation(&[plays(&[0.4]), plays(&[1.0])]).interval.unwrap();
+        assert!((low - 0.4).abs() < 1e-12 && (high - 1.0).abs() < 1e-12, "{low} to {high}");
     }
 
     #[test]
-    fn students_t_has_no_step_at_the_end_of_its_table() {
-        let true_values = [(12, 2.201), (21, 2.086), (31, 2.042), (101, 1.984)];
-        for (count, t) in true_values {
-            assert!((standard_errors(count) / t - 1.0).abs() < 2e-3, "{count}: {}", standard_errors(count));
-        }
+    fn an_interval_of_many_strokes_is_two_standard_errors_wide_on_either_side() {
+        let values: Vec<Vec<Fidelity>> = (0..100).map(|number| plays(&[f64::from(number) / 99.0])).collect();
+        let [low, high] = correlation(&values).interval.unwrap();
+        let standard_error = (1.0_f64 / 12.0).sqrt() / 10.0;
+        assert!(((high - low) / (2.0 * 1.984 * standard_error) - 1.0).abs() < 0.1, "{low} to {high}");
+    }
+
+    #[test]
+    fn a_play_without_a_number_is_not_in_its_mean() {
+        let absent = Fidelity::default();
+        assert!((correlation(&[vec![absent], plays(&[0.5])]).mean - 0.5).abs() < 1e-12);
+        assert_eq!(METRICS[1].score(&[vec![absent]]), None);
     }
 }

@@ -12,7 +12,7 @@ use frixel_model::LoadedContact;
 use serde::Serialize;
 
 use metric::METRICS;
-pub use metric::{Human, MetricScore};
+pub use metric::{Goal, Human, MetricScore};
 
 /// One play to score.
 #[derive(Clone, Debug)]
@@ -49,7 +49,8 @@ impl Trial {
 /// The score of one play.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialScore {
-    /// Number of the person whose finger it was; absent for the finger that the scene is meant for.
+    /// Number of the simulated person whose finger it was; absent for the finger that the scene is meant for.
+    #[serde(rename = "simulated_person")]
     pub person: Option<u64>,
     /// Name of the stroke.
     pub stroke: String,

@@ -75,8 +75,10 @@ impl Recording {
             reference_n: texture(true_m),
             felt_n: texture(place_m),
             natural_n: 0.0,
+            is_driven: true,
         });
-        Fidelity::of(&compared.collect::<Vec<_>>()).map_or(f64::NAN, |fidelity| fidelity.error_below_40_hz)
+        let fidelity = Fidelity::of(&compared.collect::<Vec<_>>());
+        fidelity.and_then(|fidelity| fidelity.error_below_40_hz).unwrap_or(f64::NAN)
     }
 
     /// The error of a filter that sees each report when it arrives.

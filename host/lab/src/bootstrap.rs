@@ -1,18 +1,17 @@
-//! Intervals by bootstrap over strokes: strokes are drawn again and again, with replacement, and each draw is fitted.
+//! Intervals by bootstrap: independent values are drawn again and again, with replacement, and each draw is evaluated.
 //!
-//! The noise of natural friction is correlated within a stroke, so rows are not independent, and intervals that take
-//! them to be are too narrow. Strokes are the smallest parts that are.
+//! Of a recording, strokes are drawn: the noise of natural friction is correlated within a stroke, so rows are not
+//! independent, and intervals that take them to be are too narrow. Of a score, people are, or strokes of one finger.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-use super::contrast::StrokeMeans;
-use super::statistics::{normal_probability, quantile, student_quantile};
+use crate::statistics::{normal_probability, quantile, student_quantile};
 
 /// Gaussian quantile of a two-sided interval of 95 %.
-pub(super) const Z_95: f64 = 1.959_964;
+pub(crate) const Z_95: f64 = 1.959_964;
 /// Gaussian quantile of a two-sided interval of 99.9 %.
-pub(super) const Z_999: f64 = 3.290_527;
+pub(crate) const Z_999: f64 = 3.290_527;
 
 /// An estimate with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,14 +26,14 @@ pub struct Estimate {
 
 impl Estimate {
     /// Whether both ends lie within this share of the value.
-    pub(super) fn is_within(&self, share: f64) -> bool {
+    pub(crate) fn is_within(&self, share: f64) -> bool {
         let room = share * self.value.abs();
         self.high - self.value <= room && self.value - self.low <= room
     }
 }
 
-/// Strokes in groups of one voltage, from which they are drawn.
-pub(super) struct Draws {
+/// Values in groups, from each of which as many are drawn as it has.
+pub(crate) struct Draws {
     groups: Vec<Vec<usize>>,
     random: Pcg64,
     expansion: Expansion,
@@ -42,37 +41,37 @@ pub(super) struct Draws {
 
 /// By what intervals are wider than the spread of the draws.
 enum Expansion {
-    /// The draws are of strokes: few of them vary less than they should.
-    Strokes,
+    /// The draws are of values: few of them vary less than they should.
+    Values,
     /// The draws are of means with stated errors, which have this many degrees of freedom; `None` if they are exact.
     Errors(Option<f64>),
 }
 
 impl Draws {
-    /// Groups strokes by their highest voltage, so that each draw has as many strokes of each voltage as the recording.
-    /// With fewer than three strokes of a voltage, all strokes are one group.
-    pub(super) fn new(strokes: &[StrokeMeans], seed: u64) -> Self {
-        let mut levels: Vec<_> = strokes.iter().map(|stroke| stroke.top_level).collect();
-        levels.sort_unstable();
-        levels.dedup();
-        let members = |level| {
-            let numbered = strokes.iter().enumerate().filter(move |(_, stroke)| stroke.top_level == level);
+    /// Groups values by a key, so that each draw has as many of each as there are, as of strokes with the same highest
+    /// voltage. With fewer than three values of a key, all values are one group.
+    pub(crate) fn new<K: Ord>(keys: &[K], seed: u64) -> Self {
+        let mut distinct: Vec<&K> = keys.iter().collect();
+        distinct.sort_unstable();
+        distinct.dedup();
+        let members = |key| {
+            let numbered = keys.iter().enumerate().filter(move |(_, other)| *other == key);
             numbered.map(|(index, _)| index).collect::<Vec<_>>()
         };
-        let mut groups: Vec<_> = levels.into_iter().map(members).collect();
+        let mut groups: Vec<_> = distinct.into_iter().map(members).collect();
         if groups.iter().any(|group| group.len() < 3) {
-            groups = vec![(0..strokes.len()).collect()];
+            groups = vec![(0..keys.len()).collect()];
         }
-        Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Strokes }
+        Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Values }
     }
 
     /// For values that were drawn from stated errors with this many degrees of freedom.
-    pub(super) fn of_errors(freedom: Option<f64>) -> Self {
+    pub(crate) fn of_errors(freedom: Option<f64>) -> Self {
         Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0), expansion: Expansion::Errors(freedom) }
     }
 
-    /// Draws strokes, with replacement.
-    pub(super) fn draw(&mut self) -> Vec<usize> {
+    /// Draws the indices of values, with replacement.
+    pub(crate) fn draw(&mut self) -> Vec<usize> {
         let Self { groups, random, .. } = self;
         let mut drawn = Vec::new();
         for group in groups {
@@ -84,21 +83,21 @@ impl Draws {
     }
 
     /// The two-sided interval of the values that the draws gave, for the Gaussian quantile `z`: the expanded percentile
-    /// interval (Hesterberg 2015, doi:10.1080/00031305.2015.1089789), which corrects for the small number of strokes.
-    pub(super) fn interval(&self, values: &mut [f64], z: f64) -> (f64, f64) {
+    /// interval (Hesterberg 2015, doi:10.1080/00031305.2015.1089789), which corrects for the small number of values.
+    pub(crate) fn interval(&self, values: &mut [f64], z: f64) -> (f64, f64) {
         values.sort_by(f64::total_cmp);
         let part = normal_probability(-self.expanded(z));
         (quantile(values, part), quantile(values, 1.0 - part))
     }
 
     /// How many standard deviations of the draws make an interval as wide as that of the Gaussian quantile `z` for many
-    /// strokes: Student's quantile, and the variance that draws from few strokes lack.
+    /// values: Student's quantile, and the variance that draws from few values lack.
     ///
-    /// Nearly all that is known of electric friction comes from the strokes of the highest voltage, so that the degrees
-    /// of freedom are those of one group.
-    pub(super) fn expanded(&self, z: f64) -> f64 {
+    /// The degrees of freedom are those of one group: nearly all that is known of electric friction comes from the
+    /// strokes of the highest voltage.
+    pub(crate) fn expanded(&self, z: f64) -> f64 {
         match self.expansion {
-            Expansion::Strokes => {}
+            Expansion::Values => {}
             Expansion::Errors(None) => return z,
             Expansion::Errors(Some(freedom)) => return student_quantile(z, freedom),
         }

@@ -3,14 +3,14 @@
 use core::f64::consts::SQRT_2;
 
 /// Median; not-a-number of no values.
-pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     quantile(&values, 0.5)
 }
 
 /// The quantile of sorted values, interpolated between neighbours; not-a-number of no values.
-pub(super) fn quantile(sorted: &[f64], part: f64) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
     let place = part.clamp(0.0, 1.0) * sorted.len().saturating_sub(1) as f64;
     let below = place.floor();
     let at = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
@@ -19,19 +19,19 @@ pub(super) fn quantile(sorted: &[f64], part: f64) -> f64 {
 }
 
 /// Mean; not-a-number of no values.
-pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / count
 }
 
 /// Probability that a Gaussian number of mean 0 and standard deviation 1 is below `z`.
-pub(super) fn normal_probability(z: f64) -> f64 {
+pub(crate) fn normal_probability(z: f64) -> f64 {
     0.5 * libm::erfc(-z / SQRT_2)
 }
 
 /// The quantile of Student's distribution for `freedom` degrees of freedom where the Gaussian one is `z`: the first
 /// terms of its expansion (Abramowitz and Stegun 26.7.5), within 1 % for 5 degrees and more at the 97.5 % point.
-pub(super) fn student_quantile(z: f64, freedom: f64) -> f64 {
+pub(crate) fn student_quantile(z: f64, freedom: f64) -> f64 {
     let square = z * z;
     let first = z * (square + 1.0) / 4.0;
     let second = z * ((5.0 * square + 16.0) * square + 3.0) / 96.0;

@@ -1,12 +1,17 @@
-// A board outside of the page: a native `frixel sim` behind a `navigator.serial` made of byte streams.
+// The page beside the command: `frixel sim` behind a `navigator.serial` made of byte streams, the bridge of `frixel
+// studio`, and the sentences of `frixel scene check`. Only these tests are told where the command is.
 
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import fs from "node:fs";
+import os from "node:os";
 import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import {
-  addOnlyEngine, addSerialPort, cleanUp, endLeftovers, openOnlyEngine, openPage, rowsOf, startStudio,
-  startVirtualBoard, WAIT_MAX_MS,
+  addOnlyEngine, addSerialPort, cleanUp, CONSTANT, endLeftovers, openOnlyEngine, openPage, required, rowsOf,
+  startRealBoard, startStudio, startVirtualBoard, stateOf, WAIT_MAX_MS,
 } from "./harness.mjs";
+import { openStudio } from "./page.mjs";
 
 /** The longest host timeout: a machine that is held up for less does not disarm the board. */
 const HOST_TIMEOUT_MS = 1000;
@@ -117,4 +122,64 @@ test("the page of `frixel studio` plays, and reaches a board through the bridge"
   const events = eventsOf(board).map((row) => row.event);
   assert.deepEqual(events.slice(0, 2), ["armed", "active"]);
   assert.equal(events.at(-1), "host-silent", "a page that is closed leaves the board to its host timeout");
+});
+
+test("the bridge can be connected again after a failed connection and after a silent board", async () => {
+  const board = await startRealBoard();
+  const { page, close } = await openOnlyEngine(await startStudio(board.terminal));
+  const connect = () =>
+    page.evaluate(async () => {
+      const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
+      return tested.connectSocket(bridgeUrl()).catch((error) => error.message);
+    });
+  board.hang(true);
+  assert.match(await connect(), /no frixel board answered/);
+  board.hang(false);
+  assert.equal(await connect(), undefined);
+  await page.evaluate(async (text) => {
+    await tested.play({ "a.toml": text }, "a.toml", {});
+    await tested.arm();
+  }, CONSTANT);
+  await board.until("driving", stateOf.driving);
+  board.hang(true);
+  await page.waitForFunction(() => states.at(-1).link === "none");
+  assert.match(await page.evaluate(() => states.at(-1).fault), /not answered/);
+  board.hang(false);
+  await board.until("disarmed", stateOf.disarmed);
+  assert.equal(await connect(), undefined, "connected again");
+  await close();
+});
+
+test("a typed mistake shows the sentence of `frixel scene check`, and the mended scene plays on", async () => {
+  const { page, errors, close } = await openStudio();
+  const good = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
+  await page.evaluate((text) => played(text), good);
+  const line = good.split("\n").findIndex((each) => each.startsWith("kind =")) + 1;
+  await page.evaluate((line) => studioPage.editor.goTo(undefined, line), line);
+  await page.keyboard.press("End");
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.type("x");
+  const shown = page.locator("#problems li.error");
+  await shown.waitFor();
+  const bad = await page.evaluate(() => studioPage.editor.text);
+  const file = path.join(fs.mkdtempSync(path.join(os.tmpdir(), "frixel-page-")), "scene.toml");
+  fs.writeFileSync(file, bad);
+  let said = "";
+  try {
+    execFileSync(required("FRIXEL"), ["scene", "check", file], { encoding: "utf8", stdio: "pipe" });
+  } catch ({ stdout, stderr }) {
+    said = stdout + stderr;
+  }
+  const [, sentence] = /scene\.toml:\d+:\d+: (.+)/.exec(said);
+  assert.equal(await shown.evaluate((item) => item.lastChild.textContent), sentence);
+  assert.ok(sentence.includes("gratingx"), sentence);
+  await page.locator(".cm-lintRange-error").waitFor();
+  const state = await page.evaluate(() => document.documentElement.dataset.state);
+  assert.equal(state, "active", "the scene before plays on");
+  await page.keyboard.press("Backspace");
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  assert.equal(await shown.count(), 0);
+  assert.equal(await page.evaluate(() => studioPage.editor.text), good);
+  assert.deepEqual(errors, []);
+  await close();
 });
