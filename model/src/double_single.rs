@@ -98,7 +98,7 @@ impl DoubleSingle {
     /// Logarithm of a number from the smallest normal one to [`LN_MAX`]; not-a-number otherwise.
     #[inline(never)]
     fn ln(self) -> Self {
-        if !(f32::MIN_POSITIVE..=LN_MAX).contains(&self.high) {
+        if !(self.high >= f32::MIN_POSITIVE && self.high <= LN_MAX) {
             return Self::from(f32::NAN);
         }
         // The significand from sqrt(1/2) to sqrt(2).

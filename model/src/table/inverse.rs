@@ -247,7 +247,8 @@ impl EmpiricalTableFilling {
     /// Computes the next `rows_max` rows, with three powers each. `table` must be the table that
     /// [`InverseTable::begin_law`] returned with `self`. Returns whether the table is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, LawError> {
-        self.0.fill(table, rows_max).map_err(|_: TableError| LawError::Unrepresentable)
+        let found = table.electric_friction_max_n();
+        self.0.fill(table, rows_max).map_err(|_: TableError| LawError::Friction { found })
     }
 }
 
