@@ -185,7 +185,7 @@ impl World {
     }
 
     /// Steady friction of the finger on the screen.
-    pub fn finger(&self) -> &FrictionLaw {
+    pub fn finger_law(&self) -> &FrictionLaw {
         self.fingertip.law()
     }
 

@@ -96,7 +96,7 @@ fn the_plant_has_the_boards_law_where_the_peak_limit_binds() {
             (0..8_000).for_each(|_| drop(script.step()));
             let voltage_v_rms = f64::from(script.status().telemetry.voltage_v_rms);
             let error_of = |found_n: f64| (found_n / f64::from(friction_n) - 1.0).abs();
-            let error = error_of(script.rig.world_mut().finger().electric_friction_n(voltage_v_rms));
+            let error = error_of(script.rig.world_mut().finger_law().electric_friction_n(voltage_v_rms));
             assert!(error < 1e-5, "{waveform:?}, {voltage_max_v_peak} V peak, {friction_n} N: {error:e}");
             differs_from_rms_limit |=
                 error_of(header.friction_law().unwrap().electric_friction_n(voltage_v_rms)) > 1e-4;
