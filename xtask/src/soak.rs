@@ -30,7 +30,12 @@ const PARTS: [Part; 8] = [
         run: tables,
     },
     Part { name: "strokes", what: "textures under many strokes of people", needs: &[], run: strokes },
-    Part { name: "people", what: "fits of 200 simulated people and of 600 tables of means, and what they cover", needs: &[], run: people },
+    Part {
+        name: "people",
+        what: "fits of 200 simulated people and of 600 tables of means, and what they cover",
+        needs: &[],
+        run: people,
+    },
     Part {
         name: "fit",
         what: "`frixel calibrate` and `frixel fit` of 200 people with 20 seeds each, against steady friction",

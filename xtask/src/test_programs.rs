@@ -18,7 +18,7 @@ const ON_EMULATORS: &str = "emulated";
 /// The package most of whose tests wait for virtual boards, which run in real time, and for other processes. With more
 /// threads than processors, the processors work meanwhile.
 const COMMAND: &str = "frixel";
-const THREADS_PER_PROCESSOR: usize = 4;
+const THREADS_PER_PROCESSOR: usize = 2;
 
 /// Which test programs are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

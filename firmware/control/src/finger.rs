@@ -1,10 +1,27 @@
 //! The finger's state in the tick: its track, if a finger is on the screen.
 
 use crate::Track;
+use crate::board::Board;
 use crate::tick_count::is_past;
 
-/// Touch data is stale after this many report periods without a report.
-pub const STALE_AFTER_PERIODS: f32 = 3.0;
+/// Touch data is stale after this many report periods without a report, and after [`STALE_MAX_S`].
+const STALE_AFTER_PERIODS: f32 = 4.0;
+/// No board drives a finger for longer without a report, in s, whatever report period it states: a finger that was
+/// lifted must not find a driven screen when it comes back, and nobody knows where a finger is that was not reported
+/// for so long.
+const STALE_MAX_S: f32 = 40e-3;
+/// The friction falls in the last of so many equal parts of that time: from the third report period on.
+const FALL_PART: f32 = 4.0;
+
+/// Ticks without a report until touch data is stale.
+pub fn stale_after_ticks(board: &Board) -> u32 {
+    board.ticks((STALE_AFTER_PERIODS * board.limits.touch_report_period_s).min(STALE_MAX_S))
+}
+
+/// By how much the gain on the friction falls in a tick before touch data is stale after so many ticks.
+pub(crate) fn fall_per_tick(stale_after_ticks: u32) -> f32 {
+    FALL_PART / stale_after_ticks.max(1) as f32
+}
 
 /// Whether there is a finger, and its track.
 #[derive(Clone, Copy, Debug, PartialEq)]

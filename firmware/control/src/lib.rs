@@ -43,7 +43,7 @@ pub use active::Active;
 pub use amplifier::{AmplifierSpec, ReadyWhileDisabled, SwitchingTime};
 pub use board::Board;
 pub use carrier::CarrierTiming;
-pub use finger::STALE_AFTER_PERIODS;
+pub use finger::stale_after_ticks;
 pub use io::{Drive, Sense};
 pub use order::{Counters, Order, Status};
 #[cfg(feature = "stream")]

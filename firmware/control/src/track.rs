@@ -46,6 +46,14 @@ impl Track {
         [x + elapsed_s * (vx + elapsed_s * ax), y + elapsed_s * (vy + elapsed_s * ay)]
     }
 
+    /// Gain on the friction, from 0 to 1: it falls by `fall_per_tick` at every tick and is zero at the end, where the
+    /// touch data is stale.
+    #[inline]
+    pub fn gain_before_end(&self, tick: u32, fall_per_tick: f32) -> f32 {
+        let gain = fall_per_tick * self.until_tick.wrapping_sub(tick) as f32;
+        if gain < 1.0 { gain } else { 1.0 }
+    }
+
     /// Velocity after a time, in m/s.
     #[inline]
     pub fn velocity_m_per_s(&self, elapsed_s: f32) -> [f32; 2] {

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: u32 = 829;
+pub(crate) const EMPTY: u32 = 843;
 
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: u32 = 37;

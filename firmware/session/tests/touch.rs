@@ -9,6 +9,7 @@ use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::frame::{FRAME_MAX_LEN, crc32, encode};
+use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{Answer, Command};
 use frixel_wire::payload::chunk_frame;
 use frixel_wire::scene::RECORDS_MAX;
@@ -18,8 +19,8 @@ const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 const REPORT_TICKS: u32 = 400;
 /// 2 ms.
 const LIFT_TICKS_MAX: u32 = 80;
-/// 10 ms, as `STALE_AFTER_PERIODS` makes three of them.
-const STALE_TICKS: u32 = 3 * REPORT_TICKS;
+/// Four report periods.
+const STALE_TICKS: u32 = 4 * REPORT_TICKS;
 
 /// The finger slides at 100 mm/s.
 fn report(tick: u32) -> Touch {
@@ -210,9 +211,9 @@ fn a_track_that_is_handed_over_after_its_end_drives_nothing() {
     assert!(board.status().telemetry.flags.contains(Flags::TOUCH_STALE));
 }
 
-/// The tick follows a track for at most three report periods, even if its end is later.
+/// The tick follows a track for at most four report periods, even if its end is later.
 #[test]
-fn a_track_of_late_end_expires_after_three_report_periods() {
+fn a_track_of_late_end_expires_after_four_report_periods() {
     let mut board = playing();
     let track = next_track(&mut board, report(4 * REPORT_TICKS));
     for endless in [track.until_tick + 1_000_000, track.from_tick.wrapping_add(i32::MAX as u32)] {
@@ -220,6 +221,44 @@ fn a_track_of_late_end_expires_after_three_report_periods() {
         let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 2..=STALE_TICKS + 2).contains(&on), "{on}");
     }
+}
+
+/// A source that dies in the middle of a stroke, on boards of any report period.
+#[test]
+fn without_a_report_for_40_ms_no_board_drives() {
+    for (period_ms, expected_ms) in
+        [(0.0, 0), (1.0, 4), (2.0, 8), (8.0, 32), (10.0, 40), (20.0, 40), (50.0, 40), (1e9, 40), (f32::NAN, 40)]
+    {
+        let limits = BoardLimits { touch_report_period_s: 1e-3 * period_ms, ..Board::SIMULATOR.limits };
+        let mut board = TestBoard::of(Board { touch_from_host: true, limits, ..Board::SIMULATOR });
+        board.play(&constant_scene(0.02));
+        for tick in 0..=4_000 {
+            if tick % 40 == 0 {
+                board.touch = Some(report(tick));
+            }
+            board.tick();
+        }
+        let on = (1..10_000).take_while(|_| board.tick() != OFF).count() as u32;
+        assert!(on.abs_diff(40 * expected_ms) <= 2, "a period of {period_ms} ms: on for {on} ticks");
+        assert!((0..10_000).all(|_| board.tick() == OFF));
+    }
+}
+
+/// The friction falls from the third report period on; a report in between brings it back, without a lift.
+#[test]
+fn friction_falls_before_touch_data_is_stale() {
+    let mut board = playing();
+    board.touch = Some(report(4 * REPORT_TICKS));
+    let asked_n = |board: &TestBoard| board.status().telemetry.asked_electric_friction_n;
+    let is_stale = |board: &TestBoard| board.status().telemetry.flags.contains(Flags::TOUCH_STALE);
+    board.ticks(3 * REPORT_TICKS);
+    assert!((asked_n(&board) - 0.02).abs() < 1e-6 && !is_stale(&board));
+    board.ticks(REPORT_TICKS / 2);
+    assert!((asked_n(&board) - 0.01).abs() < 1e-4 && is_stale(&board), "{}", asked_n(&board));
+    assert!(!board.status().telemetry.flags.contains(Flags::NO_FINGER));
+    board.touch = Some(report(7 * REPORT_TICKS + REPORT_TICKS / 2));
+    assert!((0..REPORT_TICKS).all(|_| board.tick() != OFF));
+    assert!((asked_n(&board) - 0.02).abs() < 1e-6 && !is_stale(&board));
 }
 
 #[test]
@@ -264,7 +303,7 @@ fn the_finger_is_followed_while_the_tick_count_wraps() {
 
 #[test]
 fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
-    for ticks in [1, 500, 1_199, 1_200, 1_201] {
+    for ticks in [1, 500, 1_199, 1_200, 1_599, 1_600, 1_601] {
         let mut board = playing_until_wrap(ticks);
         board.touch = Some(report(0));
         let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;

@@ -187,7 +187,7 @@ impl Flags {
     pub const STILL: Self = Self(1 << 2);
     /// No finger touches the screen, or no touch has been reported yet.
     pub const NO_FINGER: Self = Self(1 << 3);
-    /// Touch data is too old to be used.
+    /// Touch data is old: friction falls, and is zero when [`Self::NO_FINGER`] is set, too.
     pub const TOUCH_STALE: Self = Self(1 << 4);
     /// A carrier edge came early, to keep the electrode free of direct current.
     pub const CARRIER_BALANCED: Self = Self(1 << 5);

@@ -89,7 +89,9 @@ export function addSimulatedClock() {
       await stepBoards();
       if (!isHung) runDue();
     }
-    channel.port2.postMessage(null);
+    // While no timer runs, nobody waits for this clock: the processors are left to what else goes on.
+    if (timers.length > 0) channel.port2.postMessage(null);
+    else setTimeout(() => channel.port2.postMessage(null), STEP_MS);
   };
   channel.port2.postMessage(null);
 }

@@ -27,7 +27,7 @@ use frixel_wire::fault::State;
 
 use crate::carrier::Carrier;
 use crate::envelope::Envelope;
-use crate::finger::{Finger, STALE_AFTER_PERIODS};
+use crate::finger::{Finger, fall_per_tick, stale_after_ticks};
 use crate::order::Counters;
 use crate::stream::Player;
 #[cfg(feature = "stream")]
@@ -68,6 +68,8 @@ struct Timing {
     tick_period_s: f32,
     /// Longest time for which a track is followed, even if its own end is later.
     track_ticks_max: u32,
+    /// See [`Track::gain_before_end`].
+    fall_per_tick: f32,
     host_timeout_default_ticks: u32,
 }
 
@@ -76,10 +78,12 @@ impl<'a> Ticker<'a> {
     /// scene.
     pub fn new(board: &Board, pool: &'a BitmapPool, active: &'a mut Active) -> Self {
         let carrier = Carrier::new(&active.carrier);
+        let stale_after_ticks = stale_after_ticks(board);
         Self {
             timing: Timing {
                 tick_period_s: board.tick_period_s(),
-                track_ticks_max: board.ticks(STALE_AFTER_PERIODS * board.limits.touch_report_period_s) + 1,
+                track_ticks_max: stale_after_ticks + 1,
+                fall_per_tick: fall_per_tick(stale_after_ticks),
                 host_timeout_default_ticks: supervisor::host_timeout_default_ticks(board),
             },
             tick: 0,
@@ -149,8 +153,8 @@ impl<'a> Ticker<'a> {
         let elapsed_s = self.elapsed_s(track);
         self.inputs.set_place(track.place_m(elapsed_s), self.tick);
         self.inputs.velocity_m_per_s = track.velocity_m_per_s(elapsed_s);
-        let standstill_gain = track.ramp.gain_at(self.tick);
-        let friction_n = standstill_gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
+        let gain = track.ramp.gain_at(self.tick) * track.gain_before_end(self.tick, self.timing.fall_per_tick);
+        let friction_n = gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
         // Zero for a friction that is not a number.
         let target_v_rms = table.voltage_v_rms(friction_n);
         if is_out_of_reach(friction_n, table) {

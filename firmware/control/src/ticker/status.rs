@@ -4,9 +4,9 @@ use frixel_wire::fault::{Flags, State};
 use frixel_wire::message::Telemetry;
 
 use super::{Ticker, is_out_of_reach};
-use crate::Status;
 use crate::finger::Finger;
 use crate::order::Counters;
+use crate::{Status, Track};
 
 impl Ticker<'_> {
     /// The state of the supervisor.
@@ -58,9 +58,11 @@ impl Ticker<'_> {
         let slewed = self.envelope.voltage_v_rms().to_bits() != self.target_v_rms.to_bits();
         let balanced = self.carrier.early_edges() > 0 && self.carrier.last_early_tick() == self.tick;
         let still = self.finger.track().is_some_and(|track| track.ramp.gain_at(self.tick) < 1.0);
+        let falls = |track: &Track| track.gain_before_end(self.tick, self.timing.fall_per_tick) < 1.0;
+        let stale = self.finger == Finger::Stale || self.finger.track().is_some_and(falls);
         [
             (Flags::NO_FINGER, self.finger.track().is_none()),
-            (Flags::TOUCH_STALE, self.finger == Finger::Stale),
+            (Flags::TOUCH_STALE, stale),
             (Flags::STILL, still),
             (Flags::SATURATED, saturated),
             (Flags::SLEWED, slewed),

@@ -58,7 +58,8 @@ impl Motion {
                 .map_err(Refusal::Config)?;
         }
         let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
-        if status.telemetry.flags.contains(Flags::TOUCH_STALE) {
+        // While the friction falls, touch data is stale, but there is still a finger.
+        if status.telemetry.flags.contains(Flags::TOUCH_STALE.with(Flags::NO_FINGER)) {
             // There was no report for a while: drop fingers whose lift was lost.
             self.fingers.forget();
         }

@@ -8,9 +8,7 @@ use frixel_layers::range::LENGTH_MAX_M;
 
 use super::estimator::{Estimate, Estimator};
 use super::standstill::{Standstill, StandstillTiming};
-use frixel_control::STALE_AFTER_PERIODS;
-use frixel_control::is_past;
-use frixel_control::{Board, Order, Track};
+use frixel_control::{Board, Order, Track, is_past, stale_after_ticks};
 use frixel_wire::touch::Touch;
 
 /// Samples older than this are ignored, in s.
@@ -73,7 +71,7 @@ impl Tracker {
         Self {
             timing: Timing {
                 tick_period_s: board.tick_period_s(),
-                stale_after_ticks: board.ticks(STALE_AFTER_PERIODS * board.limits.touch_report_period_s),
+                stale_after_ticks: stale_after_ticks(board),
                 sample_age_max_ticks: board.ticks(SAMPLE_AGE_MAX_S),
                 report_period_s: board.limits.touch_report_period_s,
                 standstill: StandstillTiming::new(board.tick_hz),
