@@ -93,7 +93,9 @@ fn the_plant_has_the_boards_law_where_the_peak_limit_binds() {
         // At the bends, and between them.
         for friction_n in [2.47e-3_f32, 5.52e-3, 6.07e-3, 0.01, 0.0135, 0.0159] {
             let mut script = playing(&header, friction_n, 1);
-            (0..8_000).for_each(|_| drop(script.step()));
+            for _ in 0..8_000 {
+                script.step();
+            }
             let voltage_v_rms = f64::from(script.status().telemetry.voltage_v_rms);
             let error_of = |found_n: f64| (found_n / f64::from(friction_n) - 1.0).abs();
             let error = error_of(script.rig.world_mut().finger_law().electric_friction_n(voltage_v_rms));

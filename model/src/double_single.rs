@@ -90,9 +90,14 @@ impl DoubleSingle {
         Self { high: self.high * factor, low: self.low * factor }
     }
 
-    /// `ln((1 + s)/(1 - s))` for `|s|` up to 0.172.
-    fn twice_atanh(self) -> Self {
-        Self::TWO * self * ATANH.at(self * self)
+    /// Logarithm of `1 + self`, from sqrt(1/2) to sqrt(2).
+    #[inline(never)]
+    fn ln_1p_near_zero(self) -> Self {
+        let s = self / (Self::TWO + self);
+        // Not doubled by a product: the compiler would call the third through a register when it builds for size, and the
+        // depth of the stack could not be computed from the image.
+        let half = s * ATANH.at(s * s);
+        half + half
     }
 
     /// Logarithm of a number from the smallest normal one to [`LN_MAX`]; not-a-number otherwise.
@@ -105,8 +110,7 @@ impl DoubleSingle {
         let above = self.high.to_bits().wrapping_sub(core::f32::consts::FRAC_1_SQRT_2.to_bits());
         let exponent = above as i32 >> SIGNIFICAND_BITS;
         let significand = self.times_power_of_two(-exponent);
-        let s = (significand - Self::ONE) / (significand + Self::ONE);
-        s.twice_atanh() + LN_2 * Self::from(exponent as f32)
+        (significand - Self::ONE).ln_1p_near_zero() + LN_2 * Self::from(exponent as f32)
     }
 
     /// Zero and infinity beyond [`EXP_RANGE`].
@@ -286,7 +290,7 @@ impl Real for DoubleSingle {
     }
     /// Within 1e-13; not-a-number above 1e38, and for -1 and less.
     fn ln_1p(self) -> Self {
-        if self.high.abs() < 0.25 { (self / (Self::TWO + self)).twice_atanh() } else { (Self::ONE + self).ln() }
+        if self.high.abs() < 0.25 { self.ln_1p_near_zero() } else { (Self::ONE + self).ln() }
     }
     fn atan(self) -> Self {
         Self::from_f64(libm::atan(self.into()))
