@@ -107,6 +107,11 @@ impl Fingertip {
         })
     }
 
+    /// Steady friction.
+    pub(crate) fn law(&self) -> &FrictionLaw {
+        &self.law
+    }
+
     /// Changes finger, profile or load; the friction follows with the lag.
     pub(crate) fn set_law(&mut self, law: FrictionLaw) {
         self.profile = law;

@@ -4,7 +4,7 @@ use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
-use frixel_session::{Session, TableRows, active_bytes_filled, table_rows};
+use frixel_session::{Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 use frixel_wire::message::Refusal;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
@@ -88,7 +88,7 @@ pub struct Rig<'a> {
     scene: Option<Header>,
     journal: Option<Journal>,
     tick: u64,
-    tick_hz: u32,
+    board: Board,
 }
 
 impl<'a> Rig<'a> {
@@ -114,7 +114,7 @@ impl<'a> Rig<'a> {
             scene: None,
             journal: None,
             tick: 0,
-            tick_hz,
+            board: config.board,
         })
     }
 
@@ -125,7 +125,7 @@ impl<'a> Rig<'a> {
 
     /// Ticks a second.
     pub fn tick_hz(&self) -> u32 {
-        self.tick_hz
+        self.board.tick_hz
     }
 
     /// The world, to inject faults and to move the finger.
@@ -226,7 +226,10 @@ impl<'a> Rig<'a> {
     /// Sets the world's finger to the scene's, unless a scenario has set another.
     fn put_scenes_finger_on(&mut self) {
         self.scene = self.session.scene_header().copied();
-        if let Some(Ok(law)) = self.scene.as_ref().map(Header::friction_law) {
+        let Some(header) = self.scene else { return };
+        // The knots of an empirical law depend on the voltage that the board can give.
+        let Ok(voltage_max_v_rms) = voltage_max_v_rms(&header, &self.board) else { return };
+        if let Ok(law) = (Header { voltage_max_v_rms, ..header }).friction_law() {
             self.world.set_scenes_finger(law);
         }
     }

@@ -184,6 +184,11 @@ impl World {
         self.fingertip.set_law(law.into());
     }
 
+    /// Steady friction of the finger on the screen.
+    pub fn finger_law(&self) -> &FrictionLaw {
+        self.fingertip.law()
+    }
+
     /// Replaces the finger by that of the scene's profile, unless this world has a finger of its own.
     pub(crate) fn set_scenes_finger(&mut self, law: FrictionLaw) {
         self.fingertip.set_scene_load(&law);

@@ -15,6 +15,7 @@ use frixel_hil_sim::{Journal, LineFault, Point, RigConfig, Stroke};
 use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
 };
+use frixel_testkit::empirical_header;
 use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
@@ -211,6 +212,35 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
         Record { region, blend, gain, layer: with_picture(layer, crc32) }
     });
     (iter::once(constant(0.003)).chain(records).collect(), points)
+}
+
+/// The board computes the table of an empirical law of 16 points in `f32` pairs, as the in-process board does.
+#[test]
+fn the_law_of_a_finger_is_the_same() {
+    let Some(image) = emulator::image() else { return };
+    let path = Stroke::minimum_jerk(Point { x_m: 0.005, y_m: 0.02 }, Point { x_m: 0.115, y_m: 0.06 }, 0.9).unwrap();
+    let journal = journal(BOARD, path.looped(0.02).unwrap(), 5, |script| {
+        script.hello();
+        for (waveform, voltage_max_v_rms) in [(Waveform::Square, 150.0), (Waveform::Sine, 97.0)] {
+            let header = Header { waveform, voltage_max_v_rms, ..empirical_header() };
+            // From rows far below the least bend up to the largest friction.
+            let stripes = |trough_n, crest_n| {
+                Layer::Grating(Grating {
+                    wave: Wave::Saw,
+                    cycles_per_m_x: 60.0,
+                    cycles_per_m_y: 20.0,
+                    phase_turns: 0.0,
+                    trough_n,
+                    crest_n,
+                })
+            };
+            for (trough_n, crest_n) in [(0.0, 2e-4), (1e-4, 0.03), (0.02, 0.1)] {
+                script.play(&scene(&header, &[record(stripes(trough_n, crest_n))]));
+                script.run(TICKS / 5);
+            }
+        }
+    });
+    assert_same(&image, &journal);
 }
 
 #[test]

@@ -81,6 +81,32 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
     }
 }
 
+/// The knots of a law follow the largest voltage: here that of the peak limit, and the law's bends lie between knots.
+#[test]
+fn the_plant_has_the_boards_law_where_the_peak_limit_binds() {
+    let whole = frixel_testkit::empirical_header();
+    for (waveform, voltage_max_v_peak) in
+        [(Waveform::Square, 141.0), (Waveform::Square, 100.3), (Waveform::Sine, 170.0)]
+    {
+        let header = Header { waveform, voltage_max_v_peak, host_timeout_s: 1.0, autonomous: true, ..whole };
+        let mut differs_from_rms_limit = false;
+        // At the bends, and between them.
+        for friction_n in [2.47e-3_f32, 5.52e-3, 6.07e-3, 0.01, 0.0135, 0.0159] {
+            let mut script = playing(&header, friction_n, 1);
+            for _ in 0..8_000 {
+                script.step();
+            }
+            let voltage_v_rms = f64::from(script.status().telemetry.voltage_v_rms);
+            let error_of = |found_n: f64| (found_n / f64::from(friction_n) - 1.0).abs();
+            let error = error_of(script.rig.world_mut().finger_law().electric_friction_n(voltage_v_rms));
+            assert!(error < 1e-5, "{waveform:?}, {voltage_max_v_peak} V peak, {friction_n} N: {error:e}");
+            differs_from_rms_limit |=
+                error_of(header.friction_law().unwrap().electric_friction_n(voltage_v_rms)) > 1e-4;
+        }
+        assert!(differs_from_rms_limit, "{waveform:?}, {voltage_max_v_peak} V peak");
+    }
+}
+
 #[test]
 fn a_cut_cable_ends_at_zero_within_the_host_timeout() {
     let header = Header { autonomous: false, host_timeout_s: 0.1, ..HEADER };

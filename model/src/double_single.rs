@@ -19,6 +19,117 @@ pub(crate) struct DoubleSingle {
     low: f32,
 }
 
+/// `ln 2`.
+const LN_2: DoubleSingle = DoubleSingle::of(core::f64::consts::LN_2);
+/// Coefficients of `atanh(s)/s` in `s^2`, up to `|s| = 0.172`, where the next one adds less than 1e-15. Those of `f32`
+/// add less than 1e-7.
+const ATANH: Polynomial = Polynomial {
+    leading: &[
+        DoubleSingle::of(1.0),
+        DoubleSingle::of(1.0 / 3.0),
+        DoubleSingle::of(1.0 / 5.0),
+        DoubleSingle::of(1.0 / 7.0),
+    ],
+    others: &[1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0],
+};
+/// Coefficients of `exp(r)`, up to `|r| = 0.347`, where the next one adds less than 2e-16. Those of `f32` add less than
+/// 2e-7.
+const EXP: Polynomial = Polynomial {
+    leading: &[
+        DoubleSingle::of(1.0),
+        DoubleSingle::of(1.0),
+        DoubleSingle::of(1.0 / 2.0),
+        DoubleSingle::of(1.0 / 6.0),
+        DoubleSingle::of(1.0 / 24.0),
+        DoubleSingle::of(1.0 / 120.0),
+        DoubleSingle::of(1.0 / 720.0),
+    ],
+    others: &[
+        1.0 / 5_040.0,
+        1.0 / 40_320.0,
+        1.0 / 362_880.0,
+        1.0 / 3_628_800.0,
+        1.0 / 39_916_800.0,
+        1.0 / 479_001_600.0,
+    ],
+};
+/// Bits of the significand of an `f32` below its leading one.
+const SIGNIFICAND_BITS: u32 = f32::MANTISSA_DIGITS - 1;
+/// What the exponent of an `f32` is stored with.
+const EXPONENT_BIAS: i32 = f32::MAX_EXP - 1;
+/// The largest number that [`DoubleSingle::ln`] takes.
+const LN_MAX: f32 = 1e38;
+/// What [`DoubleSingle::exp`] is computed of, at most and at least: beyond, the result is not a normal `f32`.
+const EXP_RANGE: [f32; 2] = [-87.0, 88.0];
+
+/// A polynomial, the constant coefficient first.
+struct Polynomial {
+    leading: &'static [DoubleSingle],
+    /// Those that add so little that `f32` is precise enough.
+    others: &'static [f32],
+}
+
+impl Polynomial {
+    #[inline(never)]
+    fn at(&self, x: DoubleSingle) -> DoubleSingle {
+        let rest = self.others.iter().rev().fold(0.0, |sum, coefficient| sum * x.high + coefficient);
+        self.leading.iter().rev().fold(DoubleSingle::from(rest), |sum, coefficient| sum * x + *coefficient)
+    }
+}
+
+impl DoubleSingle {
+    /// The nearest number to `value`.
+    const fn of(value: f64) -> Self {
+        let high = value as f32;
+        Self { high, low: (value - high as f64) as f32 }
+    }
+
+    /// The product with `2^exponent`, which is normal.
+    fn times_power_of_two(self, exponent: i32) -> Self {
+        let factor = f32::from_bits(((exponent + EXPONENT_BIAS) as u32) << SIGNIFICAND_BITS);
+        Self { high: self.high * factor, low: self.low * factor }
+    }
+
+    /// Logarithm of `1 + self`, from sqrt(1/2) to sqrt(2).
+    #[inline(never)]
+    fn ln_1p_near_zero(self) -> Self {
+        let s = self / (Self::TWO + self);
+        // Not doubled by a product: the compiler would call the third through a register when it builds for size, and the
+        // depth of the stack could not be computed from the image.
+        let half = s * ATANH.at(s * s);
+        half + half
+    }
+
+    /// Logarithm of a number from the smallest normal one to [`LN_MAX`]; not-a-number otherwise.
+    #[inline(never)]
+    fn ln(self) -> Self {
+        if !(self.high >= f32::MIN_POSITIVE && self.high <= LN_MAX) {
+            return Self::from(f32::NAN);
+        }
+        // The significand from sqrt(1/2) to sqrt(2).
+        let above = self.high.to_bits().wrapping_sub(core::f32::consts::FRAC_1_SQRT_2.to_bits());
+        let exponent = above as i32 >> SIGNIFICAND_BITS;
+        let significand = self.times_power_of_two(-exponent);
+        (significand - Self::ONE).ln_1p_near_zero() + LN_2 * Self::from(exponent as f32)
+    }
+
+    /// Zero and infinity beyond [`EXP_RANGE`].
+    #[inline(never)]
+    fn exp(self) -> Self {
+        let [least, largest] = EXP_RANGE;
+        if self.high < least {
+            return Self::ZERO;
+        }
+        if self.high > largest {
+            return Self::from(f32::INFINITY);
+        }
+        let halves = self.high / LN_2.high;
+        let exponent = (halves + if halves < 0.0 { -0.5 } else { 0.5 }) as i32;
+        let rest = self - LN_2 * Self::from(exponent as f32);
+        EXP.at(rest).times_power_of_two(exponent)
+    }
+}
+
 /// `a + b` exactly, when `a` is the larger one.
 fn fast_two_sum(a: f32, b: f32) -> DoubleSingle {
     let high = a + b;
@@ -128,8 +239,7 @@ impl Display for DoubleSingle {
     }
 }
 
-/// Powers, logarithms and arc tangents are computed in `f64`; a board uses powers and logarithms for an empirical law,
-/// and arc tangents never.
+/// Arc tangents are computed in `f64`; a board never uses them.
 impl Real for DoubleSingle {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };
@@ -140,8 +250,7 @@ impl Real for DoubleSingle {
 
     #[inline]
     fn from_f64(value: f64) -> Self {
-        let high = value as f32;
-        Self { high, low: (value - f64::from(high)) as f32 }
+        Self::of(value)
     }
     #[inline]
     fn to_f32(self) -> f32 {
@@ -170,11 +279,18 @@ impl Real for DoubleSingle {
         let rest = ((self.high - square.high) - square.low) + self.low;
         fast_two_sum(root, 0.5 * inverse * rest)
     }
+    /// Within 2e-12 from 1e-37 to 1e38; zero and infinity outside of that. Zero for bases below the smallest normal number,
+    /// not-a-number for bases above 1e38.
+    #[inline(never)]
     fn pow(self, exponent: Self) -> Self {
-        Self::from_f64(libm::pow(self.into(), exponent.into()))
+        if self.high < f32::MIN_POSITIVE {
+            return Self::ZERO;
+        }
+        (exponent * self.ln()).exp()
     }
+    /// Within 1e-13; not-a-number above 1e38, and for -1 and less.
     fn ln_1p(self) -> Self {
-        Self::from_f64(libm::log1p(self.into()))
+        if self.high.abs() < 0.25 { self.ln_1p_near_zero() } else { (Self::ONE + self).ln() }
     }
     fn atan(self) -> Self {
         Self::from_f64(libm::atan(self.into()))
@@ -220,13 +336,27 @@ mod tests {
             .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
     }
 
+    /// A number from -1/2 to 0.
+    fn below_one(a: DoubleSingle) -> DoubleSingle {
+        -(DoubleSingle::ONE / (DoubleSingle::TWO + a))
+    }
+
     #[test]
     fn operations_are_within_their_bounds() {
+        let third = DoubleSingle::ONE / DoubleSingle::from(3.0);
         for (name, worst, bound) in [
             ("sum", worst(|a, b| a + b, |a, b| a + b), 1.1e-14),
             ("product", worst(|a, b| a * b, |a, b| a * b), 2.5e-14),
             ("quotient", worst(|a, b| a / b, |a, b| a / b), 5.4e-14),
             ("root", worst(|a, _| a.sqrt(), |a, _| libm::sqrt(a)), 1e-13),
+            ("logarithm", worst(|a, _| a.ln_1p(), |a, _| libm::log1p(a)), 1e-13),
+            (
+                "logarithm below 1",
+                worst(|a, _| below_one(a).ln_1p(), |a, _| libm::log1p(below_one(DoubleSingle::from_f64(a)).into())),
+                1e-13,
+            ),
+            ("power", worst(|a, _| a.pow(third), |a, _| libm::pow(a, third.into())), 1e-13),
+            ("square", worst(|a, _| a.pow(DoubleSingle::TWO), |a, _| a * a), 1e-12),
         ] {
             assert!(worst < bound, "{name}: {worst:e}");
             assert!(worst > 1e-3 * bound, "{name}: {worst:e} shows nothing");
@@ -241,6 +371,27 @@ mod tests {
             assert!((f64::from(one - other) / exact - 1.0).abs() < 1e-13, "{a:e}");
             assert!(other < one && one.abs() == (-one).abs(), "{a:e}");
         }
+    }
+
+    #[test]
+    fn powers_and_logarithms_end_where_they_say() {
+        let pow = |base: f32, exponent: f32| DoubleSingle::from(base).pow(DoubleSingle::from(exponent));
+        for base in [1.5e-38_f32, 1e-30, 0.3, 1.0, 2.5, 1e30, 1e38] {
+            for exponent in [-3.0_f32, -1.0, -0.3, 0.0, 1e-3, 0.7, 1.0, 12.0] {
+                let (found, exact) = (pow(base, exponent), libm::pow(base.into(), exponent.into()));
+                if (1e-37..1e38).contains(&exact) {
+                    assert!((f64::from(found) / exact - 1.0).abs() < 2e-12, "{base:e}^{exponent}: {found} {exact:e}");
+                } else {
+                    assert!(found.high == 0.0 || found.high > 1e38, "{base:e}^{exponent}: {found}");
+                }
+            }
+        }
+        assert_eq!((pow(0.0, 2.0), pow(-1.0, 2.0)), (DoubleSingle::ZERO, DoubleSingle::ZERO));
+        assert!(pow(f32::NAN, 2.0).high.is_nan() && pow(f32::INFINITY, 2.0).high.is_nan());
+        for outside in [-1.0, -2.0, 1.1e38, f32::INFINITY, f32::NAN] {
+            assert!(DoubleSingle::from(outside).ln_1p().high.is_nan(), "{outside}");
+        }
+        assert_eq!(DoubleSingle::ZERO.ln_1p(), DoubleSingle::ZERO);
     }
 
     #[test]

@@ -79,8 +79,11 @@ pub enum LawError {
         /// Voltage of the last point, V rms.
         max: f32,
     },
-    /// The friction at the largest voltage is too small or too large for a table.
-    Unrepresentable,
+    /// The friction at the largest voltage is outside of [`EmpiricalLaw::FRICTIONS_N`].
+    Friction {
+        /// The friction, N.
+        found: f32,
+    },
 }
 
 impl Display for LawError {
@@ -100,7 +103,10 @@ impl Display for LawError {
             Self::Voltage { found, max } => {
                 write!(f, "the largest voltage is {found} V rms, and the law ends at {max} V rms")
             }
-            Self::Unrepresentable => f.write_str("the friction at the largest voltage is too small or too large"),
+            Self::Friction { found } => {
+                let [least, most] = FRICTIONS_N;
+                write!(f, "the friction at the largest voltage is {found:e} N, and {least:e} to {most:e} N is possible")
+            }
         }
     }
 }
@@ -111,6 +117,8 @@ impl Error for LawError {}
 const POINTS_MAX: usize = 16;
 /// See [`EmpiricalLaw::EXPONENTS`].
 const EXPONENTS: [f32; 2] = [0.5, 12.0];
+/// See [`EmpiricalLaw::FRICTIONS_N`].
+const FRICTIONS_N: [f32; 2] = [1e-6, FRICTION_MAX_N];
 /// Powers that are outside of [`EXPONENTS`] by less than this, relative to them, count as rounding errors of `f32`.
 const EXPONENT_ROUNDING: f32 = 1e-5;
 
@@ -120,6 +128,9 @@ impl EmpiricalLaw {
     /// Least and greatest power of the voltage with which friction may grow: [`crate::InverseTable::RELATIVE_ERROR`]
     /// holds between them.
     pub const EXPONENTS: [f32; 2] = EXPONENTS;
+    /// Least and greatest friction at the largest voltage, N. Below, the coefficients of a table's rows overflow; above,
+    /// they underflow.
+    pub const FRICTIONS_N: [f32; 2] = FRICTIONS_N;
 
     /// The law of these points, with this exponent below the first, up to a largest voltage, which is at most that of
     /// the last point: a law is never extrapolated.
@@ -140,7 +151,7 @@ impl EmpiricalLaw {
                 return Err(LawError::Order { point: number });
             }
             if let Some(before) = before {
-                let found = (DoubleSingle::ONE / power(before.at(), point.at::<DoubleSingle>())).to_f32();
+                let found = 1.0 / power::<f32>(before.at(), point.at());
                 if !(found >= least * (1.0 - EXPONENT_ROUNDING) && found <= most * (1.0 + EXPONENT_ROUNDING)) {
                     return Err(LawError::Slope { point: number, found });
                 }
@@ -158,13 +169,12 @@ impl EmpiricalLaw {
         let voltage = DoubleSingle::from(voltage_max_v_rms);
         let (point, power) = law.segment(|point| DoubleSingle::from(point.voltage_v_rms) >= voltage);
         let top_n = round_down(point.0 * (voltage / point.1).pow(DoubleSingle::ONE / power));
-        if !(top_n <= FRICTION_MAX_N) {
-            return Err(LawError::Unrepresentable);
+        let [least, most] = FRICTIONS_N;
+        let unrepresentable = LawError::Friction { found: top_n };
+        if !(least..=most).contains(&top_n) {
+            return Err(unrepresentable);
         }
-        law.grid = RowGrid::new(LAW_ROWS, LAW_DENSITY, top_n, voltage_max_v_rms)
-            .ok()
-            .filter(|grid| grid.start_n(0) >= f32::MIN_POSITIVE)
-            .ok_or(LawError::Unrepresentable)?;
+        law.grid = RowGrid::new(LAW_ROWS, LAW_DENSITY, top_n, voltage_max_v_rms).map_err(|_| unrepresentable)?;
         Ok(law)
     }
 
@@ -192,7 +202,7 @@ impl EmpiricalLaw {
         }
         let electric_friction_n = electric_friction_n.min(f64::from(self.last().electric_friction_n));
         match self.knots(electric_friction_n) {
-            Some((start, end)) => between(start, end, electric_friction_n),
+            Some((start, end)) => power_law(start, end)(electric_friction_n),
             None => Curve::voltage_v_rms(self, electric_friction_n),
         }
     }
@@ -240,8 +250,8 @@ impl<T: Real> Curve<T> for EmpiricalLaw {
         point.1 * (electric_friction_n / point.0).pow(power)
     }
 
-    fn voltage_between(&self, start: Point<T>, end: Point<T>, electric_friction_n: T) -> T {
-        between(start, end, electric_friction_n)
+    fn between(&self, start: Point<T>, end: Point<T>) -> impl Fn(T) -> T {
+        power_law(start, end)
     }
 }
 
@@ -265,7 +275,8 @@ fn ln_ratio<T: Real>(end: T, start: T) -> T {
     (end / start - T::ONE).ln_1p()
 }
 
-/// The voltage of the power law through two points.
-fn between<T: Real>(start: Point<T>, end: Point<T>, friction_n: T) -> T {
-    start.1 * (friction_n / start.0).pow(power(start, end))
+/// The voltage as a function of the friction, by the power law through two points.
+fn power_law<T: Real>(start: Point<T>, end: Point<T>) -> impl Fn(T) -> T {
+    let power = power(start, end);
+    move |friction_n| start.1 * (friction_n / start.0).pow(power)
 }

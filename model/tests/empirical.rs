@@ -38,7 +38,7 @@ fn cases() -> Vec<Case> {
     // A steep step between two flat parts.
     cases.push((1.0, vec![(40.0, 2e-3), (90.0, 4e-3), (100.0, 0.013), (200.0, 0.03)]));
     cases.push((12.0, vec![(100.0, 2e-3), (190.0, 3e-3), (200.0, 5e-3)]));
-    cases.push((2.0, vec![(50.0, 1e-9), (150.0, 8e-9)]));
+    cases.push((2.0, vec![(50.0, 1.25e-6), (150.0, 1e-5)]));
     cases.push((2.0, vec![(50.0, 10.0), (150.0, 30.0)]));
     let sixteen =
         (1_u8..=16).map(f32::from).map(|step| (12.0 * step, 1e-4 * step * step * (1.0 + 0.05 * (step % 3.0))));
@@ -195,10 +195,25 @@ fn what_is_no_law_is_refused_with_the_reason() {
     for voltage in [100.1, 0.0, -1.0, f32::NAN, f32::INFINITY] {
         assert!(matches!(refused(2.0, &[(100.0, 0.1)], voltage), LawError::Voltage { max: 100.0, .. }));
     }
-    assert_eq!(refused(2.0, &[(100.0, 1e-36)], 100.0), LawError::Unrepresentable);
-    assert_eq!(refused(12.0, &[(100.0, 1e-9)], 0.5), LawError::Unrepresentable);
-    // The coefficients of their rows underflow, and a row would drive above the largest voltage.
-    for (exponent, friction_n) in [(0.67, 1e16), (2.0, 1e24), (2.0, 1.1e12)] {
-        assert_eq!(refused(exponent, &[(150.0, friction_n)], 150.0), LawError::Unrepresentable);
+    for (exponent, friction_n, voltage_max_v_rms) in [
+        (2.0, 1e-36, 100.0),
+        (2.0, 0.9e-6, 100.0),
+        (12.0, 1e-3, 50.0),
+        // The coefficients of their rows would underflow, and a row drive above the largest voltage.
+        (0.67, 1e16, 100.0),
+        (2.0, 1e24, 100.0),
+        (2.0, 1.1e12, 100.0),
+    ] {
+        let [least, most] = EmpiricalLaw::FRICTIONS_N;
+        let error = refused(exponent, &[(100.0, friction_n)], voltage_max_v_rms);
+        assert!(matches!(error, LawError::Friction { found } if found < least || found > most), "{error}");
+    }
+    // The ends of the range have tables.
+    for (exponent, friction_n) in [(0.5, 1e-6), (2.4, 1e-6), (12.0, 1e-6), (0.5, 1e12), (12.0, 1e12)] {
+        for voltage_v_rms in [1.0, 1e4] {
+            let table =
+                InverseTable::of_law(exponent, &points(&[(voltage_v_rms, friction_n)]), voltage_v_rms, f32::NAN);
+            assert!(table.is_ok(), "{exponent} {friction_n:e} {voltage_v_rms}: {table:?}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use cortex_m::singleton;
 use frixel_control::{Active, Board, Drive, Sense, StreamBuffer, Ticker};
 use frixel_layers::{BitmapPool, Header, Point, Record};
 use frixel_session::{Session, Touch};
-use frixel_testkit::{HEADER, IdealMonitor, RandomScene, record, scene_with_points};
+use frixel_testkit::{HEADER, IdealMonitor, RandomScene, empirical_header, record, scene_with_points};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
@@ -112,16 +112,30 @@ impl Bench {
     /// Counts the steps of the commits of random scenes, and of one with the most layers and points.
     fn commit_steps(&mut self, counter: &mut Counter, crc32: u32) {
         let mut case = counter.case("commit_step");
-        let mut commit = |scene: &[u8]| {
-            self.host.upload(scene);
-            self.host.commit(scene, |host| case.take(|host: &mut Host, ()| host.poll(), host, ()));
-            assert!(self.host.session.scene() == Some(scene), "the scene is refused");
-        };
-        commit(&largest_scene());
+        self.commit(&largest_scene(), &mut case);
         for seed in 0..COMMITTED_RANDOM_SCENES {
-            commit(&RandomScene::new(seed, crc32).bytes());
+            self.commit(&RandomScene::new(seed, crc32).bytes(), &mut case);
         }
         case.report();
+        self.law_commit_steps(counter.case("commit_law_step"));
+    }
+
+    /// Counts the steps of the commits of scenes whose finger has an empirical law: up to the whole voltage, and up to
+    /// a part of it.
+    fn law_commit_steps(&mut self, mut case: Case) {
+        for voltage_max_v_rms in [150.0, 97.0] {
+            let header = Header { voltage_max_v_rms, ..empirical_header() };
+            let scene = scene_with_points(&header, &[record(GRATING)], &[]);
+            self.commit(&scene, &mut case);
+        }
+        case.report();
+    }
+
+    /// Counts the steps of a commit, which the board must accept.
+    fn commit(&mut self, scene: &[u8], case: &mut Case) {
+        self.host.upload(scene);
+        self.host.commit(scene, |host| case.take(|host: &mut Host, ()| host.poll(), host, ()));
+        assert!(self.host.session.scene() == Some(scene), "the scene is refused");
     }
 
     /// Counts ticks without output.

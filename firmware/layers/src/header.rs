@@ -28,6 +28,8 @@ mod field {
     pub(super) const RECORDS: usize = 2;
     pub(super) const FLAGS: usize = 3;
     pub(super) const NUMBERS: usize = 4;
+    /// Number of the law's points, in the place of the stiffness.
+    pub(super) const LAW_POINTS: usize = 16;
     pub(super) const WAVEFORM: usize = 52;
     pub(super) const POINTS: usize = 53;
     pub(super) const ELECTRIC_FRICTION_MAX: usize = 54;
@@ -107,7 +109,8 @@ pub enum Leader {
 }
 
 impl Header {
-    /// The bytes of the header of a scene with `records` records and `points` points.
+    /// The bytes of the header of a scene with `records` records and `points` points. Beside a law there is no room for
+    /// radius, stiffness and gap; [`Self::check`] refuses a stiffness and a gap that are not zero.
     pub fn write(&self, records: u8, points: u8) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];
         let flags = [
@@ -182,7 +185,11 @@ impl Header {
             *value = f32::from_le_bytes(get_at(bytes, field::NUMBERS + 4 * number));
         }
         if cfg!(feature = "empirical") && is_set(flag::EMPIRICAL) {
-            let count = header.stiffness_pa_per_m.to_bits() as u8;
+            let [count, rest @ ..]: [u8; 4] = get_at(bytes, field::LAW_POINTS);
+            if let Some(place) = rest.iter().position(|byte| *byte != 0) {
+                let offset = (field::LAW_POINTS + 1 + place) as u8;
+                return Err(SceneError::NotZero { record: SceneError::HEADER, offset });
+            }
             let law = FingerLaw::without_points(header.finger_radius_m, count).ok_or(SceneError::Points {
                 record: SceneError::HEADER,
                 first: 0,
@@ -221,7 +228,7 @@ impl Header {
 
     /// The law; never one in a build without laws, so that the compiler omits what it would need.
     #[inline]
-    pub(crate) fn law(&self) -> Option<&FingerLaw> {
+    pub fn law(&self) -> Option<&FingerLaw> {
         self.law.as_ref().filter(|_| cfg!(feature = "empirical"))
     }
 
@@ -243,7 +250,9 @@ impl Header {
         ]
     }
 
-    /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers.
+    /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers. The knots of a law depend on the
+    /// largest voltage: where the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a header with
+    /// the lower voltage.
     ///
     /// # Errors
     ///
@@ -276,15 +285,20 @@ impl Header {
         // A law is not extrapolated.
         let voltage_max_v_rms =
             self.law().map_or(voltage_max_v_peak, |law| law.voltage_max_v_rms().min(voltage_max_v_peak));
+        let (radius, stiffness, gap) = (self.finger_radius_m, self.stiffness_pa_per_m, self.effective_gap_m);
         let [radius, stiffness, gap] = match self.law() {
             None => [
-                (ConfigField::FingerRadius, self.finger_radius_m, 1e-4, 1.0),
-                (ConfigField::Stiffness, self.stiffness_pa_per_m, 1e3, 1e14),
-                (ConfigField::EffectiveGap, self.effective_gap_m, 1e-12, 1e-2),
+                (ConfigField::FingerRadius, radius, 1e-4, 1.0),
+                (ConfigField::Stiffness, stiffness, 1e3, 1e14),
+                (ConfigField::EffectiveGap, gap, 1e-12, 1e-2),
             ],
             Some(law) => {
                 let [least, most] = EmpiricalLaw::EXPONENTS;
-                [(ConfigField::LawExponent, law.exponent(), least, most); 3]
+                [
+                    (ConfigField::LawExponent, law.exponent(), least, most),
+                    (ConfigField::Stiffness, stiffness, 0.0, 0.0),
+                    (ConfigField::EffectiveGap, gap, 0.0, 0.0),
+                ]
             }
         };
         for (field, found, min, max) in [

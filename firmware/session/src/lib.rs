@@ -70,5 +70,5 @@ pub use frixel_wire::touch::Touch;
 pub use queues::{Queues, SessionEnds, TickEnds};
 #[cfg(feature = "store")]
 pub use scene::StoredScene;
-pub use scene::{TableRows, active_bytes_filled, table_rows};
+pub use scene::{TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 pub use session::Session;

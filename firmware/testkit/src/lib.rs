@@ -42,6 +42,8 @@ mod scenes;
 
 #[cfg(feature = "monitor")]
 pub use self::monitor::IdealMonitor;
+#[cfg(feature = "samples")]
+pub use self::scenes::empirical_header;
 #[cfg(feature = "scenes")]
 pub use self::scenes::{HEADER, SceneBytes, constant, record, scene, scene_with_points};
 #[cfg(feature = "samples")]

@@ -4,6 +4,8 @@ use frixel_layers::{
     Blend, Constant, HEADER_LEN, Header, Layer, Leader, POINT_LEN, Point, RECORD_LEN, Record, Region, SCENE_MAX_LEN,
     Waveform,
 };
+#[cfg(feature = "samples")]
+use frixel_layers::{FingerLaw, LawPoint};
 
 /// The example finger under a load of 0.5 N, with at most 150 V rms.
 pub const HEADER: Header = Header {
@@ -27,6 +29,36 @@ pub const HEADER: Header = Header {
     electric_friction_max_n: None,
     law: None,
 };
+
+/// A law of the most points, with a bend at each of them: rms voltage in V, electric friction in N.
+#[cfg(feature = "samples")]
+const LAW: [(f32, f32); 16] = [
+    (20.0, 4.99e-4),
+    (22.9, 5.72e-4),
+    (26.2, 8.56e-4),
+    (29.9, 9.52e-4),
+    (34.2, 1.86e-3),
+    (39.1, 2.28e-3),
+    (44.8, 2.47e-3),
+    (51.2, 4.22e-3),
+    (58.6, 5.52e-3),
+    (67.0, 6.07e-3),
+    (76.6, 0.0135),
+    (87.6, 0.0159),
+    (100.2, 0.0466),
+    (114.7, 0.0506),
+    (131.1, 0.0706),
+    (150.0, 0.09),
+];
+
+/// [`HEADER`] with a finger that has an empirical law of the most points.
+#[cfg(feature = "samples")]
+#[must_use]
+pub fn empirical_header() -> Header {
+    let points = LAW.map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
+    let law = FingerLaw::new(2.0, &points);
+    Header { finger_radius_m: 0.0, stiffness_pa_per_m: 0.0, effective_gap_m: 0.0, law, ..HEADER }
+}
 
 /// A layer on the whole screen that replaces those below.
 #[must_use]

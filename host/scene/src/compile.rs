@@ -111,8 +111,8 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let carrier = carrier(scene.carrier.waveform, half_period_ticks, tick_hz, limits);
     let mut voltage = Voltage::of(scene, limits, &carrier, log);
     let mistakes = log.mistakes();
-    voltage.limit_current(scene, limits, &carrier, if is_carrier_valid { &mut *log } else { &mut unreported });
     voltage.end_with_law(scene, log);
+    voltage.limit_current(scene, limits, &carrier, if is_carrier_valid { &mut *log } else { &mut unreported });
     let effective_gap_um = effective_gap_um(scene, log);
     let contact = Springs::of(scene.finger(), effective_gap_um * 1e-6, voltage.max_v_rms);
     let springs = contact.map_err(|mistake| log.add(scene.profiles.place, mistake)).ok()?;

@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 use core::ops::Range;
 
 use super::bound::TOP_MARGIN;
-use super::interpolation::{Curve, polynomial};
+use super::interpolation::{Curve, Point, polynomial};
 use super::{TableBuilder, TableError};
 use crate::Real;
 
@@ -90,21 +90,24 @@ impl RowGrid {
         Some(self.voltage_max_v_rms)
     }
 
-    /// Fills the rows `needed` of all the table's `rows` with a curve.
+    /// The point of a curve where a row begins.
+    pub(super) fn start<T: Real>(&self, row: usize, curve: &impl Curve<T>) -> Point<T> {
+        let friction_n = T::from(self.start_n(row));
+        (friction_n, curve.voltage_v_rms(friction_n))
+    }
+
+    /// Fills the rows `needed` of all the table's `rows` with a curve, from the point where the first one begins.
+    /// Returns the point where the next one begins.
     pub(super) fn fill<T: Real, const C: usize>(
         &self,
         curve: &impl Curve<T>,
         rows: &mut [[f32; C]],
         needed: Range<usize>,
-    ) -> Result<(), TableError> {
+        mut start: Point<T>,
+    ) -> Result<Point<T>, TableError> {
         let last = rows.len().saturating_sub(1);
-        let point = |friction_n: f32| {
-            let friction_n = T::from(friction_n);
-            (friction_n, curve.voltage_v_rms(friction_n))
-        };
-        let mut start = point(self.start_n(needed.start));
         for (index, row) in rows.iter_mut().enumerate().take(needed.end).skip(needed.start) {
-            let mut end = point(self.start_n(index + 1));
+            let mut end = self.start(index + 1, curve);
             if index == last {
                 end.1 = end.1 * T::from(1.0 - TOP_MARGIN);
             }
@@ -114,7 +117,7 @@ impl RowGrid {
             }
             start = end;
         }
-        Ok(())
+        Ok(start)
     }
 }
 
@@ -154,7 +157,7 @@ impl<'rows, const C: usize> SizedTable<'rows, C> {
         let friction_max_n = round_down(builder.friction_max_n);
         let voltage_max_v_rms = round_down(builder.contact.voltage_v_rms(builder.friction_max_n));
         let grid = RowGrid::new(layout.rows, layout.density, friction_max_n, voltage_max_v_rms)?;
-        grid.fill(builder.contact, rows, 0..layout.rows)?;
+        grid.fill(builder.contact, rows, 0..layout.rows, grid.start(0, builder.contact))?;
         Ok(Self { grid, rows })
     }
 

@@ -15,10 +15,10 @@ pub(crate) trait Curve<T> {
     /// The voltage, in volts rms, for a friction above zero, in newtons.
     fn voltage_v_rms(&self, electric_friction_n: T) -> T;
 
-    /// The voltage for a friction within a row, whose ends are given.
+    /// The voltage as a function of the friction within a row, whose ends are given.
     #[inline]
-    fn voltage_between(&self, _start: Point<T>, _end: Point<T>, electric_friction_n: T) -> T {
-        self.voltage_v_rms(electric_friction_n)
+    fn between(&self, _start: Point<T>, _end: Point<T>) -> impl Fn(T) -> T {
+        |electric_friction_n| self.voltage_v_rms(electric_friction_n)
     }
 }
 
@@ -68,10 +68,11 @@ fn points<T: Real, const C: usize>(curve: &impl Curve<T>, start: Point<T>, end: 
         3 => &[0.0],
         _ => &[],
     };
+    let voltage_v_rms = curve.between(start, end);
     let mut points = [start; C];
     for (point, at) in points.iter_mut().skip(1).zip(inner) {
         let x = middle + T::from(*at) * half;
-        *point = (x, curve.voltage_between(start, end, x));
+        *point = (x, voltage_v_rms(x));
     }
     if let Some(last) = points.last_mut() {
         *last = end;

@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::TableError;
 use super::float::{FRICTION_MAX_N, RowGrid, round_down};
-use super::interpolation::Curve;
+use super::interpolation::{Curve, Point};
 use crate::double_single::DoubleSingle;
 use crate::{EmpiricalLaw, Finger, LawError, LawPoint, LoadedContact, Real};
 
@@ -148,7 +148,8 @@ impl InverseTable {
         let curve = EmpiricalLaw::new(exponent, points, voltage_max_v_rms)?;
         let grid = curve.grid();
         let end = grid.end_row(ROWS, asked_max_n, grid.start_n(0));
-        Ok((Self { grid, rows: [[0.0; 4]; ROWS] }, EmpiricalTableFilling(Filling { curve, rows: 0..end })))
+        let start = grid.start(0, &curve);
+        Ok((Self { grid, rows: [[0.0; 4]; ROWS] }, EmpiricalTableFilling(Filling { curve, rows: 0..end, start })))
     }
 
     fn in_double_single(
@@ -182,9 +183,11 @@ impl InverseTable {
             return Err(TableError::Unrepresentable);
         }
         let end = grid.end_row(ROWS, asked_max_n, knee_n);
-        let knee_start = DoubleSingle::from(grid.start_n(knee_row));
-        let line = [0.0, (contact.voltage_v_rms(knee_start) / knee_start).to_f32(), 0.0, 0.0];
-        Ok((Self { grid, rows: [line; ROWS] }, InverseTableFilling(Filling { curve: contact, rows: knee_row..end })))
+        let start = grid.start(knee_row, &contact);
+        let (knee_start_n, knee_start_v_rms) = start;
+        let line = [0.0, (knee_start_v_rms / knee_start_n).to_f32(), 0.0, 0.0];
+        let filling = InverseTableFilling(Filling { curve: contact, rows: knee_row..end, start });
+        Ok((Self { grid, rows: [line; ROWS] }, filling))
     }
 
     /// Number of rows that hold a piece of the curve. The others cost no evaluation of the closed form.
@@ -244,7 +247,8 @@ impl EmpiricalTableFilling {
     /// Computes the next `rows_max` rows, with three powers each. `table` must be the table that
     /// [`InverseTable::begin_law`] returned with `self`. Returns whether the table is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, LawError> {
-        self.0.fill(table, rows_max).map_err(|_: TableError| LawError::Unrepresentable)
+        let found = table.electric_friction_max_n();
+        self.0.fill(table, rows_max).map_err(|_: TableError| LawError::Friction { found })
     }
 }
 
@@ -253,13 +257,15 @@ impl EmpiricalTableFilling {
 struct Filling<C> {
     curve: C,
     rows: Range<usize>,
+    /// Where the first of them begins.
+    start: Point<DoubleSingle>,
 }
 
 impl<C: Curve<DoubleSingle>> Filling<C> {
     fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
         let Range { start, end } = self.rows;
         let next = end.min(start.saturating_add(rows_max));
-        table.grid.fill(&self.curve, &mut table.rows, start..next)?;
+        self.start = table.grid.fill(&self.curve, &mut table.rows, start..next, self.start)?;
         self.rows.start = next;
         if next < end {
             return Ok(false);

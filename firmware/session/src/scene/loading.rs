@@ -1,13 +1,12 @@
 //! Checks a scene's configuration and computes the coefficients that the tick reads, in steps.
 
 use frixel_control::{Active, Board, CarrierTiming};
-#[cfg(feature = "empirical")]
-use frixel_layers::FingerLaw;
 use frixel_layers::cost::{LayerCosts, Worst};
-use frixel_layers::{Grid, Header, Point, Scene, active_bytes, within};
-use frixel_model::{Carrier, Finger, InverseTable, InverseTableFilling, TableError, Waveform};
-#[cfg(feature = "empirical")]
-use frixel_model::{EmpiricalLaw, EmpiricalTableFilling, LawError};
+use frixel_layers::{FingerLaw, Grid, Header, Point, Scene, active_bytes, within};
+use frixel_model::{
+    Carrier, EmpiricalLaw, EmpiricalTableFilling, Finger, InverseTable, InverseTableFilling, LawError, LawPoint,
+    TableError, Waveform,
+};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
@@ -17,8 +16,7 @@ use super::bitmap_directory::Directory;
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table that a step of loading computes.
 const ROWS_PER_STEP: usize = 4;
-/// The same of an empirical law, whose powers a board computes without help of its FPU.
-#[cfg(feature = "empirical")]
+/// The same of an empirical law.
 const LAW_ROWS_PER_STEP: usize = 2;
 
 /// The next step of loading a scene.
@@ -46,7 +44,6 @@ pub(crate) enum Loading {
     /// Rows of the inverse table.
     Rows(InverseTableFilling),
     /// Rows of the inverse table of an empirical law.
-    #[cfg(feature = "empirical")]
     LawRows(EmpiricalTableFilling),
 }
 
@@ -100,18 +97,17 @@ impl Loading {
                     Self::Table
                 }
             }
-            #[cfg(feature = "empirical")]
-            Self::Table if header.law.is_some() => {
-                let Some(law) = &header.law else { return Ok(true) };
-                let (table, filling) =
-                    begin_law_table(header, law, active.voltage_max_v_rms).map_err(Refusal::Config)?;
-                active.table = Some(table);
-                Self::LawRows(filling)
-            }
             Self::Table => {
-                let (table, filling) = begin_table(header, active.voltage_max_v_rms).map_err(Refusal::Config)?;
-                active.table = Some(table);
-                Self::Rows(filling)
+                let voltage_max_v_rms = active.voltage_max_v_rms;
+                if let Some(law) = header.law() {
+                    let (table, filling) = begin_law_table(header, law, voltage_max_v_rms).map_err(Refusal::Config)?;
+                    active.table = Some(table);
+                    Self::LawRows(filling)
+                } else {
+                    let (table, filling) = begin_table(header, voltage_max_v_rms).map_err(Refusal::Config)?;
+                    active.table = Some(table);
+                    Self::Rows(filling)
+                }
             }
             Self::Rows(filling) => {
                 let Some(table) = &mut active.table else { return Ok(true) };
@@ -119,9 +115,8 @@ impl Loading {
                     .fill(table, ROWS_PER_STEP)
                     .map_err(|error| Refusal::Config(no_table(&error, header, active.voltage_max_v_rms)));
             }
-            #[cfg(feature = "empirical")]
             Self::LawRows(filling) => {
-                let (Some(table), Some(law)) = (&mut active.table, &header.law) else { return Ok(true) };
+                let (Some(table), Some(law)) = (&mut active.table, header.law()) else { return Ok(true) };
                 return filling.fill(table, LAW_ROWS_PER_STEP).map_err(|error| Refusal::Config(no_law(&error, law)));
             }
         };
@@ -178,6 +173,16 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     Ok((timing, voltage_max_v_rms))
 }
 
+/// The largest rms voltage that a board gives for a header: within its rms limit, and within its peak limit for the
+/// peaks of its carrier.
+///
+/// # Errors
+///
+/// The refusal of a carrier whose current is too large.
+pub fn voltage_max_v_rms(header: &Header, board: &Board) -> Result<f32, Refusal> {
+    carrier(header, board).map(|(_, voltage_max_v_rms)| voltage_max_v_rms).map_err(Refusal::Config)
+}
+
 /// Number of rows of a scene's inverse table that hold a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableRows {
@@ -196,7 +201,6 @@ fn begin_table(header: &Header, voltage_max_v_rms: f32) -> Result<(InverseTable,
 }
 
 /// Begins the inverse table of a scene's empirical law.
-#[cfg(feature = "empirical")]
 fn begin_law_table(
     header: &Header,
     law: &FingerLaw,
@@ -206,22 +210,36 @@ fn begin_law_table(
     InverseTable::begin_law(law.exponent(), law.points(), voltage_max_v_rms, max_n).map_err(|error| no_law(&error, law))
 }
 
-#[cfg(feature = "empirical")]
+/// The number that is no law's, and the range that it is outside of.
 fn no_law(error: &LawError, law: &FingerLaw) -> ConfigRefusal {
-    let voltage_v_rms = |point: usize| law.points().get(point).map_or(0.0, |point| point.voltage_v_rms);
-    let [least, most] = EmpiricalLaw::EXPONENTS;
-    let (field, found, min, max) = match *error {
-        LawError::Exponent { found } | LawError::Slope { found, .. } => (ConfigField::LawExponent, found, least, most),
-        LawError::Order { point } => {
-            let before = point.checked_sub(1).map_or(0.0, voltage_v_rms);
-            (ConfigField::LawPoint, voltage_v_rms(point), before, f32::INFINITY)
+    let (field, found, [min, max]) = match *error {
+        LawError::Exponent { found } | LawError::Slope { found, .. } => {
+            (ConfigField::LawExponent, found, EmpiricalLaw::EXPONENTS)
         }
-        LawError::Voltage { found, max } => (ConfigField::VoltageRms, found, 0.0, max),
-        LawError::PointCount { .. } | LawError::Unrepresentable => {
-            (ConfigField::LawPoint, law.voltage_max_v_rms(), 0.0, f32::INFINITY)
-        }
+        LawError::Friction { found } => (ConfigField::LawFriction, found, EmpiricalLaw::FRICTIONS_N),
+        LawError::Voltage { found, max } => (ConfigField::VoltageRms, found, [f32::MIN_POSITIVE, max]),
+        LawError::Order { point } => no_point(law, point),
+        LawError::PointCount { .. } => no_point(law, 0),
     };
     ConfigRefusal { field, found, min, max, layer: ConfigRefusal::WHOLE_SCENE }
+}
+
+/// What does not rise up to a point: its voltage, or else its friction.
+fn no_point(law: &FingerLaw, number: usize) -> (ConfigField, f32, [f32; 2]) {
+    let point = |number: usize| {
+        law.points()
+            .get(number)
+            .map_or((0.0, 0.0), |&LawPoint { voltage_v_rms, electric_friction_n }| (voltage_v_rms, electric_friction_n))
+    };
+    let (before_v, before_n) = number.checked_sub(1).map_or((0.0, 0.0), point);
+    let (found_v, found_n) = point(number);
+    let [voltages, frictions] = [before_v, before_n].map(|before| [before.next_up(), f32::MAX]);
+    let [min, max] = voltages;
+    if found_v >= min && found_v <= max {
+        (ConfigField::LawFriction, found_n, frictions)
+    } else {
+        (ConfigField::LawPoint, found_v, voltages)
+    }
 }
 
 fn no_table(error: &TableError, header: &Header, voltage_max_v_rms: f32) -> ConfigRefusal {
@@ -251,10 +269,9 @@ pub fn active_bytes_filled(scene: &Scene) -> usize {
 /// omitted rows save time at a commit.
 pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
     let header = scene.header();
-    let (_, voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
+    let voltage_max_v_rms = voltage_max_v_rms(header, board)?;
     let rows = |header: &Header| {
-        #[cfg(feature = "empirical")]
-        if let Some(law) = &header.law {
+        if let Some(law) = header.law() {
             let begun = begin_law_table(header, law, voltage_max_v_rms);
             return begun.map(|(_, filling)| filling.rows()).map_err(Refusal::Config);
         }

@@ -27,7 +27,7 @@ use heapless::Vec;
 
 use bitmap_directory::Directory;
 use commit::Commit;
-pub use loading::{TableRows, active_bytes_filled, table_rows};
+pub use loading::{TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 pub(crate) use memory::Removal;
 #[cfg(feature = "store")]
 pub use stored::StoredScene;

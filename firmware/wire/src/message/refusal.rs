@@ -193,8 +193,11 @@ pub enum ConfigField {
     /// The power of the voltage with which the friction of an empirical law grows, below its first point or between
     /// two. Since protocol 1.4.
     LawExponent,
-    /// The voltage of a point of an empirical law, V rms: voltages and frictions must increase. Since protocol 1.4.
+    /// The voltage of a point of an empirical law, V rms: finite, above zero and above that of the point before. Since
+    /// protocol 1.4.
     LawPoint,
+    /// The electric friction of a point of an empirical law, or of the law at the largest voltage, N. Since protocol 1.4.
+    LawFriction,
 }
 
 impl ConfigField {
@@ -238,6 +241,7 @@ impl ConfigField {
             Self::ElectricFrictionMax => ("largest electric friction", " N"),
             Self::LawExponent => ("exponent of the finger's law", ""),
             Self::LawPoint => ("point of the finger's law", " V"),
+            Self::LawFriction => ("friction of the finger's law", " N"),
         }
     }
 }

@@ -176,7 +176,7 @@ fn messages() -> Vec<FromBoard> {
             outcome: Ok(Accepted::TickTimes(times)),
         })
     }));
-    messages.extend([ConfigField::LawExponent, ConfigField::LawPoint].map(|field| {
+    messages.extend([ConfigField::LawExponent, ConfigField::LawPoint, ConfigField::LawFriction].map(|field| {
         FromBoard::Answer(Answer {
             sequence: 201,
             received_bytes: 200_001,

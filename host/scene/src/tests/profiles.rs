@@ -4,6 +4,7 @@
 use super::*;
 use crate::{Elasticity, Evidence, FingerProfile, Origin, Screen, Warning, migrate};
 use frixel_layers::Header;
+use frixel_model::{Carrier, Waveform};
 use frixel_wire::hello::feature;
 
 /// All of a scene of version 2 but its layers: the example screen and finger.
@@ -257,4 +258,22 @@ fn an_empirical_finger_is_compiled_to_its_law() {
     let draft = compile::compile_draft(&parse(&text(200)).expect("it reads"), &LIMITS, TICK_HZ).expect("it is drawn");
     assert!(draft.is_draft());
     assert_eq!(draft.header.voltage_max_v_rms.to_bits(), 150.0_f32.to_bits());
+}
+
+/// The current is judged at the voltage where the law ends.
+#[test]
+fn the_drive_ends_with_the_law_before_its_current_is_judged() {
+    let text = format!("{SHORT}{EMPIRICAL}{LAYER}").replace("0.3\n", "0.22\n");
+    let text = text.replace("[150, 0.09]", "[110, 0.04]").replace("[0.08, 0.1]", "[0.03, 0.05]");
+    let at_law_end = Carrier {
+        waveform: Waveform::Square,
+        half_period_s: 5e-4,
+        half_period_ticks: 20,
+        edge_time_constant_s: LIMITS.edge_time_constant_s,
+    };
+    let current = at_law_end.electrode_current(LIMITS.electrode_capacitance_max_f, 120.0 * at_law_end.peak_per_rms());
+    let limits = BoardLimits { current_max_a_rms: current.a_rms, ..LIMITS };
+    let scene = parse(&text).expect("it reads");
+    let program = compile::compile(&scene, &limits, TICK_HZ).expect("it compiles");
+    assert_eq!(program.header.voltage_max_v_rms.to_bits(), 110.0_f32.to_bits());
 }
