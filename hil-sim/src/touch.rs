@@ -66,7 +66,29 @@ impl TouchConfig {
         step_m: 0.18e-3,
         ..Self::IDEAL
     };
+
+    /// The bundled source of a name. A name is the number of reports a second: `100`, 10 ms late, which is
+    /// [`Self::REALISTIC`]; `200`, 5 ms late; `500`, 3 ms late. Their jitter is 5 % of the period, their losses, noise
+    /// and steps are the same.
+    pub fn bundled(name: &str) -> Option<Self> {
+        let (_, rate_hz, latency_s) = BUNDLED.into_iter().find(|(bundled, ..)| *bundled == name)?;
+        Some(Self { rate_hz, latency_s, jitter_rms_s: 0.05 / rate_hz, ..Self::REALISTIC })
+    }
+
+    /// The names of the bundled sources.
+    pub fn bundled_names() -> impl Iterator<Item = &'static str> {
+        BUNDLED.into_iter().map(|(name, ..)| name)
+    }
+
+    /// The same source, as it would be if every report arrived and places had no steps.
+    #[must_use]
+    pub fn without_losses(self) -> Self {
+        Self { lost_share: 0.0, bunched_share: 0.0, pause_rate_hz: 0.0, pause_max_s: 0.0, step_m: 0.0, ..self }
+    }
 }
+
+/// Name, reports a second and latency in seconds of the bundled sources.
+const BUNDLED: [(&str, f64, f64); 3] = [("100", 100.0, 10e-3), ("200", 200.0, 5e-3), ("500", 500.0, 3e-3)];
 
 impl Default for TouchConfig {
     /// [`Self::IDEAL`].

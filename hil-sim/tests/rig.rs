@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use crate::script::{Script, constant, scene};
-use frixel_hil_sim::{LineFault, Point, RigConfig, Stroke, TickRecord};
+use frixel_hil_sim::{LineFault, Point, RigConfig, Stroke, TickRecord, TouchConfig};
 use frixel_layers::{FingerLaw, Header, LawPoint, Waveform};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
@@ -128,4 +128,32 @@ fn the_same_seed_gives_the_same_run_and_another_does_not() {
     };
     assert_eq!(run(1), run(1));
     assert_ne!(run(1), run(2));
+}
+
+/// A touch source that falls silent again and again, for up to half a second: whatever report period the board states,
+/// the output is zero 40 ms after the last report.
+#[test]
+fn a_silent_touch_source_ends_at_zero_within_40_ms_whatever_period_is_stated() {
+    const WITHOUT_REPORT_TICKS_MAX: u64 = 1_600;
+    for period_ms in [1.0, 2.0, 8.0, 10.0, 20.0, 50.0_f32] {
+        let mut config = RigConfig::default();
+        config.board.limits.touch_report_period_s = 1e-3 * period_ms;
+        let rate_hz = 1e3 / f64::from(period_ms);
+        config.world.touch = TouchConfig { rate_hz, pause_rate_hz: 4.0, pause_max_s: 0.5, ..TouchConfig::IDEAL };
+        let mut script = Script::new(&config, slide(), 1);
+        script.play(&scene(&HEADER, &[constant(0.01)]));
+        let (mut silent_ticks, mut longest_driven_ticks, mut silences) = (0, 0, 0);
+        for _ in 0..39_000 {
+            silent_ticks = if script.rig.world_mut().touch_report().is_some() { 0 } else { silent_ticks + 1 };
+            silences += u32::from(silent_ticks == 2 * WITHOUT_REPORT_TICKS_MAX);
+            if script.step().status.telemetry.dac_code != 0 {
+                longest_driven_ticks = silent_ticks.max(longest_driven_ticks);
+            }
+        }
+        assert!(silences > 0, "{period_ms} ms: the source was never silent");
+        assert!(
+            (150..=WITHOUT_REPORT_TICKS_MAX).contains(&longest_driven_ticks),
+            "{period_ms} ms: {longest_driven_ticks}"
+        );
+    }
 }

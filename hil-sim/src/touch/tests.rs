@@ -249,3 +249,18 @@ fn values_out_of_range_are_refused_by_name() {
         assert_eq!(TouchSource::new(&config, TICK_HZ, 1).unwrap_err().to_string(), message);
     }
 }
+
+#[test]
+fn the_bundled_sources_differ_in_rate_latency_and_jitter_alone() {
+    assert_eq!(TouchConfig::bundled("100"), Some(TouchConfig::REALISTIC));
+    assert_eq!(TouchConfig::REALISTIC.without_losses(), TouchConfig::IDEAL);
+    assert_eq!(TouchConfig::bundled("300"), None);
+    for name in TouchConfig::bundled_names() {
+        let TouchConfig { rate_hz, latency_s, jitter_rms_s, .. } = TouchConfig::bundled(name).unwrap();
+        assert_eq!(name.parse(), Ok(rate_hz));
+        assert_eq!(
+            TouchConfig::bundled(name),
+            Some(TouchConfig { rate_hz, latency_s, jitter_rms_s, ..TouchConfig::REALISTIC })
+        );
+    }
+}

@@ -142,6 +142,36 @@ pub(super) mod screen {
         number("slew_v_per_us", super::drive::SLEW, NO_LIMIT, "fastest change of the envelope");
 }
 
+/// A file of a touch source. The ranges are within those of the simulated source.
+pub(super) mod touch_source {
+    use super::*;
+
+    const SHARE: Range = Range::new(0.0, 1.0, "");
+    const TIME: Range = Range::new(0.0, 1_000.0, " ms");
+    const LENGTH: Range = Range::new(0.0, 10.0, " mm");
+    pub(crate) const REPORTS_PER_S: FieldSpec =
+        number("reports_per_s", Range::new(1.0, 40_000.0, " a second"), Mistake, "reports a second");
+    pub(crate) const LATENCY_MS: FieldSpec =
+        number("latency_ms", TIME, Mistake, "time from a sample to the arrival of its report, as the source states it");
+    pub(crate) const JITTER_MS: FieldSpec =
+        number("jitter_ms", TIME, Number(0.0), "standard deviation of that time, which the source does not state");
+    pub(crate) const NOISE_MM: FieldSpec =
+        number("noise_mm", LENGTH, Number(0.0), "rms noise of the place in each axis");
+    pub(crate) const STEP_MM: FieldSpec = number("step_mm", LENGTH, Number(0.0), "steps of the place in each axis");
+    pub(crate) const LOST_SHARE: FieldSpec =
+        number("lost_share", SHARE, Number(0.0), "part of the reports that are lost");
+    pub(crate) const BUNCHED_SHARE: FieldSpec =
+        number("bunched_share", SHARE, Number(0.0), "part of the reports that wait for the next one");
+    pub(crate) const PAUSES_PER_S: FieldSpec = number(
+        "pauses_per_s",
+        Range::new(0.0, 10.0, " a second"),
+        Number(0.0),
+        "pauses a second, in which every report is lost",
+    );
+    pub(crate) const PAUSE_MAX_MS: FieldSpec =
+        number("pause_max_ms", TIME, Number(0.0), "longest pause; all lengths up to it are as likely");
+}
+
 /// A slab of the coating.
 pub(super) mod coating {
     use super::*;

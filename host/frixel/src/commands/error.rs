@@ -146,8 +146,8 @@ pub(crate) enum CommandError {
     )]
     StrokeOnBoard { port: String },
     #[error(
-        "--ideal, --no-leakage and --finger-seed change the world of --port sim and --port qemu only; a board at {port} has its own: \
-         leave them out"
+        "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim and --port qemu only; a board at {port} has \
+         its own: leave them out"
     )]
     WorldOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]

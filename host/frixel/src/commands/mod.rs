@@ -107,6 +107,8 @@ struct SimArgs {
     /// The screen under that finger: a screen's file, or `example`, which it is without this.
     #[arg(long, value_name = "FILE", requires = "own_finger")]
     screen: Option<String>,
+    #[command(flatten)]
+    touch: profiles::TouchArgs,
     /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
     /// all of them are simulated.
     #[arg(long)]

@@ -25,7 +25,7 @@ use crate::output::{Effects, Report};
 
 use super::error::CommandError;
 use super::interrupt::Interrupt;
-use super::profiles::ProfileArgs;
+use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke::StrokeArgs;
 use super::terminal::{self, note, note_refusals, print_line};
 use super::{argument, waiting};
@@ -62,6 +62,8 @@ pub(super) struct PlayArgs {
     /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
+    #[command(flatten)]
+    touch: TouchArgs,
     /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
     /// all of them are simulated.
     #[arg(long)]
@@ -115,6 +117,7 @@ impl PlayArgs {
             overwrite: false,
             json: false,
             seed: 1,
+            touch: TouchArgs::default(),
             ideal: true,
             no_leakage: false,
             finger_seed: None,

@@ -1,7 +1,10 @@
-//! The options `--finger` and `--screen`.
+//! The options `--finger`, `--screen` and `--touch`.
 
-use crate::scene_file::ProfileNames;
+use std::path::Path;
+
+use crate::scene_file::{self, ProfileNames, SceneFileError};
 use clap::Args;
+use frixel_hil_sim::{TouchConfig, WorldConfig};
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct ProfileArgs {
@@ -16,5 +19,35 @@ pub(super) struct ProfileArgs {
 impl ProfileArgs {
     pub(super) fn names(&self) -> ProfileNames {
         ProfileNames { finger: self.finger.clone(), screen: self.screen.clone() }
+    }
+}
+
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct TouchArgs {
+    /// The simulated touch source: `100`, `200` or `500` reports a second, 10, 5 or 3 ms late, or a touch source's file
+    /// (docs/touch.md). Without it, 100.
+    #[arg(long, value_name = "NAME|FILE")]
+    touch: Option<String>,
+}
+
+impl TouchArgs {
+    pub(super) fn is_given(&self) -> bool {
+        self.touch.is_some()
+    }
+
+    /// The file of the source, if it is in one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.touch.as_deref().filter(|name| TouchConfig::bundled(name).is_none()).map(Path::new)
+    }
+
+    /// The source, if it is given. In an ideal world it loses nothing.
+    pub(super) fn source(&self, is_ideal: bool) -> Result<Option<TouchConfig>, SceneFileError> {
+        let source = self.touch.as_deref().map(scene_file::touch_source).transpose()?;
+        Ok(source.map(|source| if is_ideal { source.without_losses() } else { source }))
+    }
+
+    /// A world with this source, which is ideal or realistic already.
+    pub(super) fn applied_to(&self, world: WorldConfig, is_ideal: bool) -> Result<WorldConfig, SceneFileError> {
+        Ok(WorldConfig { touch: self.source(is_ideal)?.unwrap_or(world.touch), ..world })
     }
 }

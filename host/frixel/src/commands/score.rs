@@ -6,14 +6,14 @@ use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use crate::player::SimulationError;
 use crate::score::samples;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use frixel_hil_sim::{Person, RigConfig, Stroke};
 use frixel_lab::score::{Score, Trial, TrialFinger};
 use frixel_scene::{Program, Scene, compile};
 
 use super::argument::number;
 use super::error::CommandError;
-use super::profiles::ProfileArgs;
+use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke;
 use super::terminal::print_line;
 
@@ -43,9 +43,8 @@ pub(super) struct ScoreArgs {
     /// Median speed of human strokes. Without it, each person has their own.
     #[arg(long, value_name = "MM_PER_S", value_parser = median_speed, allow_negative_numbers = true)]
     median_speed_mm_per_s: Option<f64>,
-    /// Report rate of the touch source, in Hz.
-    #[arg(long, default_value = "100")]
-    touch: TouchSource,
+    #[command(flatten)]
+    touch: TouchArgs,
     /// Simulate a world without noise, load changes, losses and offsets.
     #[arg(long)]
     ideal: bool,
@@ -57,35 +56,10 @@ pub(super) struct ScoreArgs {
     json: bool,
 }
 
-/// Classes of touch sources.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum TouchSource {
-    /// 100 reports a second, 10 ms late.
-    #[value(name = "100")]
-    Hz100,
-    /// 200 reports a second, 5 ms late.
-    #[value(name = "200")]
-    Hz200,
-    /// 500 reports a second, 3 ms late.
-    #[value(name = "500")]
-    Hz500,
-}
-
-impl TouchSource {
-    /// Reports a second, and their latency in seconds.
-    fn rate_and_latency(self) -> (f64, f64) {
-        match self {
-            Self::Hz100 => (100.0, 10e-3),
-            Self::Hz200 => (200.0, 5e-3),
-            Self::Hz500 => (500.0, 3e-3),
-        }
-    }
-}
-
 pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
-    let rig = rig(args);
+    let rig = rig(args)?;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]));
+    let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]).chain(args.touch.file()));
     let file = |name: &str| OutputFile::new(&args.out.join(name), "--out", &inputs);
     let (csv, svg) = (file("score.csv")?, file("score.svg")?);
     let scene = scene?;
@@ -118,15 +92,15 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
 }
 
 /// The simulated board and its world.
-fn rig(args: &ScoreArgs) -> RigConfig {
+fn rig(args: &ScoreArgs) -> Result<RigConfig, CommandError> {
     let mut rig = RigConfig::default();
     if !args.ideal {
         rig.world = rig.world.realistic();
     }
-    (rig.world.touch.rate_hz, rig.world.touch.latency_s) = args.touch.rate_and_latency();
+    rig.world = args.touch.applied_to(rig.world, args.ideal)?;
     // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that
     // loses reports would otherwise turn the output off (docs/touch.md).
-    rig
+    Ok(rig)
 }
 
 /// The finger of a person on the screen of a scene. A scene of version 1 has none without its own finger's skin.

@@ -37,6 +37,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     let stroke = stroke.looped(PAUSE_S).map_err(CommandError::GeneratedStroke)?;
     let mut config = RigConfig::default();
     let own_finger = own_finger(args, &mut config)?;
+    config.world = args.touch.applied_to(config.world, args.ideal)?;
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     if let Some(contact) = own_finger {
@@ -44,7 +45,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
     }
     let tick_hz = config.board.tick_hz;
     let profiles = [&args.finger, &args.screen].into_iter().flatten().map(Path::new);
-    let inputs = Inputs::new(args.stroke.file().into_iter().chain(profiles));
+    let inputs = Inputs::new(args.stroke.file().into_iter().chain(profiles).chain(args.touch.file()));
     let server = Server::open(&args.out, &inputs, tick_hz, tick_hz / ROWS_HZ)?;
     print_line(format_args!("port: {}", server.path()))?;
     let path = server.path();

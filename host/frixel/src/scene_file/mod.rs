@@ -8,7 +8,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_scene::{CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE};
+use frixel_hil_sim::TouchConfig;
+use frixel_scene::{
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, parse_touch_source,
+};
 use thiserror::Error;
 
 use crate::input;
@@ -26,10 +29,10 @@ pub enum SceneFileError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// The file of a finger or a screen could not be read.
+    /// The file of a finger, a screen or a touch source could not be read.
     #[error("{file}: this {what} cannot be read ({source}): {}", profile_advice(.nearest, .file))]
     UnreadableProfile {
-        /// `finger` or `screen`.
+        /// `finger`, `screen` or `touch source`.
         what: &'static str,
         /// The name, as the caller gave it.
         file: String,
@@ -157,6 +160,11 @@ impl ProfileNames {
         }
         Ok(scene)
     }
+}
+
+/// The bundled touch source of a name, or that in the file of that name.
+pub(crate) fn touch_source(name: &str) -> Result<TouchConfig, SceneFileError> {
+    profile("touch source", name, TouchConfig::bundled, TouchConfig::bundled_names(), parse_touch_source)
 }
 
 /// The bundled profile of a name, or the profile in the file of that name.

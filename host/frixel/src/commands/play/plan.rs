@@ -58,7 +58,7 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         }
         Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
-        Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() => {
+        Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => {
             Err(CommandError::WorldOnBoard { port: port() })
         }
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {

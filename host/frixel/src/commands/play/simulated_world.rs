@@ -1,7 +1,7 @@
 //! The world around a simulated or emulated board: which effects it has, and whose finger is in it.
 
 use crate::output::{Effects, WorldReport};
-use frixel_hil_sim::{Person, Stroke, World, WorldConfig};
+use frixel_hil_sim::{Person, Stroke, TouchConfig, World, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::Scene;
 
@@ -12,6 +12,8 @@ use super::{CommandError, PlayArgs};
 pub(super) struct SimulatedWorld {
     effects: Effects,
     person: Option<DrawnPerson>,
+    /// The touch source, if it is not that of the effects.
+    touch: Option<TouchConfig>,
 }
 
 /// A person drawn from the population, with their contact with the scene's screen.
@@ -32,18 +34,20 @@ impl SimulatedWorld {
             let contact = person.contact(coating_gap_m).map_err(CommandError::Finger)?;
             Ok(DrawnPerson { seed, person, contact })
         };
-        Ok(Self { effects: args.effects(), person: args.finger_seed.map(draw).transpose()? })
+        let (effects, person) = (args.effects(), args.finger_seed.map(draw).transpose()?);
+        Ok(Self { effects, person, touch: args.touch.source(effects == Effects::None)? })
     }
 
     /// The configuration of this world; `config` has the rates of the board.
     pub(super) fn config(&self, config: WorldConfig) -> WorldConfig {
         if self.effects == Effects::None {
-            return config;
+            return WorldConfig { touch: self.touch.unwrap_or(config.touch), ..config };
         }
         let realistic = config.realistic();
+        let touch = self.touch.unwrap_or(realistic.touch);
         let fingertip = self.person.as_ref().map_or(realistic.fingertip, |drawn| drawn.person.fingertip);
         let leaks = self.effects == Effects::All;
-        WorldConfig { fingertip: if leaks { fingertip } else { fingertip.without_leakage() }, ..realistic }
+        WorldConfig { fingertip: if leaks { fingertip } else { fingertip.without_leakage() }, touch, ..realistic }
     }
 
     /// Puts the drawn person's finger into the world, if there is one.

@@ -1,0 +1,90 @@
+//! Reads the file of a touch source: how often, how late and how reliably a touchscreen reports the finger.
+
+use frixel_hil_sim::TouchConfig;
+
+use super::compile_error::CompileError;
+use super::fields::{Fields, read_text};
+use super::log::Log;
+use super::tables::touch_source as fields_of;
+
+/// Reads the text of a touch source's file. Messages call the file `name`.
+///
+/// ```
+/// let text = "reports_per_s = 120\nlatency_ms = 8\nlost_share = 0.05\n";
+/// let source = frixel_scene::parse_touch_source(text, "panel.toml")?;
+/// assert_eq!((source.rate_hz, source.latency_s, source.lost_share), (120.0, 8e-3, 0.05));
+/// # Ok::<(), frixel_scene::CompileError>(())
+/// ```
+pub fn parse_touch_source(text: &str, name: &str) -> Result<TouchConfig, CompileError> {
+    read_text(text, name, "this touch source", read)
+}
+
+fn read(mut fields: Fields, log: &mut Log) -> Option<TouchConfig> {
+    let reports_per_s = fields.number(log, &fields_of::REPORTS_PER_S);
+    let latency_ms = fields.number(log, &fields_of::LATENCY_MS);
+    let mut optional = |field| fields.number_or_default(log, field);
+    let jitter_ms = optional(&fields_of::JITTER_MS);
+    let noise_mm = optional(&fields_of::NOISE_MM);
+    let step_mm = optional(&fields_of::STEP_MM);
+    let lost_share = optional(&fields_of::LOST_SHARE);
+    let bunched_share = optional(&fields_of::BUNCHED_SHARE);
+    let pause_rate_hz = optional(&fields_of::PAUSES_PER_S);
+    let pause_max_ms = optional(&fields_of::PAUSE_MAX_MS);
+    fields.close(log);
+    Some(TouchConfig {
+        rate_hz: reports_per_s?,
+        latency_s: latency_ms? / 1e3,
+        noise_rms_m: noise_mm / 1e3,
+        jitter_rms_s: jitter_ms / 1e3,
+        lost_share,
+        bunched_share,
+        pause_rate_hz,
+        pause_max_s: pause_max_ms / 1e3,
+        step_m: step_mm / 1e3,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_is_read_in_its_unit() {
+        let text = "reports_per_s = 200\nlatency_ms = 5\njitter_ms = 0.25\nnoise_mm = 0.02\nstep_mm = 0.18\n\
+                    lost_share = 0.12\nbunched_share = 0.03\npauses_per_s = 0.1\npause_max_ms = 120\n";
+        let read = parse_touch_source(text, "touch.toml").expect("it reads");
+        let bundled = TouchConfig::bundled("200").expect("it is bundled");
+        let numbers = |source: TouchConfig| {
+            let TouchConfig { rate_hz, latency_s, noise_rms_m, jitter_rms_s, .. } = source;
+            let TouchConfig { lost_share, bunched_share, pause_rate_hz, pause_max_s, step_m, .. } = source;
+            let path = [rate_hz, latency_s, noise_rms_m, jitter_rms_s];
+            [path.as_slice(), &[lost_share, bunched_share, pause_rate_hz, pause_max_s, step_m]].concat()
+        };
+        for (found, expected) in numbers(read).into_iter().zip(numbers(bundled)) {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found}, expected {expected}");
+        }
+    }
+
+    /// The example of the documents reads, and has the losses of the bundled sources.
+    #[test]
+    fn the_file_in_the_documents_is_read() {
+        let page = include_str!("../../../docs/touch.md");
+        let text = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("it is there");
+        let source = parse_touch_source(text, "docs/touch.md").expect("it reads");
+        let TouchConfig { lost_share, bunched_share, pause_rate_hz, .. } = TouchConfig::REALISTIC;
+        assert_eq!(source.rate_hz.to_bits(), 120.0_f64.to_bits());
+        assert_eq!(
+            [source.lost_share, source.bunched_share, source.pause_rate_hz],
+            [lost_share, bunched_share, pause_rate_hz]
+        );
+    }
+
+    #[test]
+    fn a_wrong_file_is_refused_with_all_of_its_mistakes() {
+        let text = "reports_per_s = 0\nlost_share = 1.5\nlatencyms = 5\n";
+        let error = parse_touch_source(text, "touch.toml").expect_err("it has mistakes").to_string();
+        for part in ["touch.toml:1:", "reports_per_s", "lost_share", "latency_ms"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+    }
+}
