@@ -43,8 +43,8 @@ pub(crate) struct Draws {
 enum Expansion {
     /// The draws are of values: few of them vary less than they should.
     Values,
-    /// The draws are of means with stated errors, which have this many degrees of freedom; `None` if they are exact.
-    Errors(Option<f64>),
+    /// The draws are of errors, and vary as much as they should.
+    Errors,
 }
 
 impl Draws {
@@ -65,9 +65,9 @@ impl Draws {
         Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Values }
     }
 
-    /// For values that were drawn from stated errors with this many degrees of freedom.
-    pub(crate) fn of_errors(freedom: Option<f64>) -> Self {
-        Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0), expansion: Expansion::Errors(freedom) }
+    /// For values that were drawn from the distributions of their errors.
+    pub(crate) fn of_errors() -> Self {
+        Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0), expansion: Expansion::Errors }
     }
 
     /// Draws the indices of values, with replacement.
@@ -98,8 +98,7 @@ impl Draws {
     pub(crate) fn expanded(&self, z: f64) -> f64 {
         match self.expansion {
             Expansion::Values => {}
-            Expansion::Errors(None) => return z,
-            Expansion::Errors(Some(freedom)) => return student_quantile(z, freedom),
+            Expansion::Errors => return z,
         }
         let per_group = self.groups.iter().map(Vec::len).sum::<usize>() as f64 / self.groups.len() as f64;
         (per_group / (per_group - 1.0)).sqrt() * student_quantile(z, per_group - 1.0)

@@ -38,7 +38,8 @@ pub enum ReportError {
     },
     /// The finger of the scene has an empirical law.
     #[error(
-        "the report is about the contact model, and {title} is empirical: draw it for another one with --finger; `frixel scene check --board` says what a board needs for the scene"
+        "the report is about the contact model, and {title} is empirical: draw it for another one with --finger; `frixel \
+         scene check --board` says what a board needs for the scene"
     )]
     EmpiricalFinger {
         /// The finger, for a person.

@@ -9,7 +9,7 @@ use super::table::Row;
 use crate::statistics::mean;
 
 /// Voltages within this factor of the lowest one of a level are one level.
-const LEVEL_WIDTH: f64 = 1.05;
+pub(super) const LEVEL_WIDTH: f64 = 1.05;
 /// Below this share of the highest voltage the drive is off.
 const OFF_SHARE: f64 = 0.02;
 /// A change of this share of a stroke's highest voltage is none of noise.

@@ -4,16 +4,14 @@ use std::fmt::Write;
 
 use frixel_scene::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw};
 
+use super::contrast::LEVEL_WIDTH;
 use super::error::FitError;
-use super::law::Attraction;
 use super::least_squares::Solution;
 use super::profile::rounded;
 use super::{Data, Division, FittedData, HeldOut, Settings, StrokeResult, results, verdict};
 use crate::bootstrap::{Estimate, Z_999};
 use crate::statistics::{mean, student_quantile};
 
-/// Voltages within this factor of the lowest one of a level are one level.
-const LEVEL_WIDTH: f64 = 1.05;
 /// Least number of strokes at a voltage that tell whether a power law holds there.
 const STROKES_MIN: usize = 3;
 /// Difference from a power law that is allowed, as a part of electric friction: that of the contact model at the
@@ -54,7 +52,7 @@ pub fn fit_power_law(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
     };
     let fit = EmpiricalFit {
         friction_coefficient: data.friction_coefficient,
-        voltage_exponent: data.fitted.estimate(|replicate| exponent_of(&replicate.power))?,
+        voltage_exponent: data.fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?,
         voltage_max_v_rms,
         electric_friction_n: data.fitted.estimate(|replicate| electric_friction_n(&replicate.power))?,
         normal_load_n: data.normal_load_n,
@@ -75,13 +73,6 @@ pub fn fit_power_law(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
     Ok(EmpiricalFit { electric_friction_n, ..fit })
 }
 
-fn exponent_of(power: &Solution) -> Option<f64> {
-    match power.attraction {
-        Attraction::Power { voltage_exponent, .. } => Some(voltage_exponent),
-        Attraction::Contact(_) => None,
-    }
-}
-
 /// Fails if the means of the strokes at a voltage lie beside the law by more than their 99.9 % interval and 5 %. Returns
 /// how far those of the highest voltage lie beside it, in newtons; 0 if they are too few to tell.
 fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
@@ -89,6 +80,7 @@ fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
     let mut points: Vec<_> = strokes.iter().flat_map(|stroke| &stroke.points).collect();
     points.sort_by(|one, other| one.voltage_v_rms.total_cmp(&other.voltage_v_rms));
     for level in points.chunk_by(|one, next| next.voltage_v_rms <= LEVEL_WIDTH * one.voltage_v_rms) {
+        beside_n = 0.0;
         if level.len() < STROKES_MIN {
             continue;
         }

@@ -277,9 +277,9 @@ pub enum FitError {
     },
     /// The exponent of voltage or load contradicts the model.
     #[error(
-        "electric friction grows as {quantity} to the power {value:.2} (99.9 % interval {low:.2} to {high:.2}), and the \
-         model says {model:.2}: the contact model does not hold for these data, so no profile is fitted; check {}; see \
-         docs/truth.md",
+        "electric friction grows as {quantity} to the power {value:.2} ({low:.2} to {high:.2}, the 99.9 % interval and \
+         0.1 more on either side), and the model says {model:.2}: the contact model does not hold for these data, so no \
+         profile is fitted; check {}; see docs/truth.md",
         cure(.quantity)
     )]
     LawBroken {

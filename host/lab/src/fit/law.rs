@@ -60,6 +60,14 @@ pub(super) enum Attraction {
 }
 
 impl Attraction {
+    /// The power of the voltage with which a power law grows.
+    pub(super) fn voltage_exponent(&self) -> Option<f64> {
+        match *self {
+            Self::Power { voltage_exponent, .. } => Some(voltage_exponent),
+            Self::Contact(_) => None,
+        }
+    }
+
     /// The attraction at each pair of voltage (volts rms, above zero) and normal load (newtons, above zero); `None` if
     /// the parameters are outside of the model's range.
     pub(super) fn at(&self, points: impl Iterator<Item = (f64, f64)>) -> Option<Vec<f64>> {

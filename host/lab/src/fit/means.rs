@@ -3,7 +3,9 @@
 //! A row is the mean friction at one voltage and load, with its standard error, or with the standard deviation and the
 //! number of what was averaged. The rows are fitted as the means of strokes are, weighted by their errors. Intervals
 //! come from drawing each mean anew from its error (a parametric bootstrap), as if the means were independent: what
-//! strokes or people have in common cannot be told from means.
+//! strokes or people have in common cannot be told from means. An error that is known from `n` values is drawn from
+//! Student's distribution with `n - 1` degrees of freedom, row by row: one number for the whole table would be too many
+//! where few rows carry the estimate.
 
 use core::f64::consts::TAU;
 use std::io::Read;
@@ -128,12 +130,14 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, F
     let begin = start(&strokes, &observations)?;
     let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &begin };
     let best = search.run(&observations, &begin).ok_or(FitError::NotConverged)?;
-    let mut random = Normal(Pcg64::seed_from_u64(settings.seed));
-    let drawn = (0..DRAWS).map(|_| observations.iter().map(|one| random.draw(one)).collect::<Vec<_>>());
-    let replicates = drawn.filter_map(|drawn| search.run(&drawn, &best.contact)).collect();
-    let draws = Draws::of_errors(rows.iter().map(|row| row.count.map(|count| count - 1.0)).sum());
-    let fitted = Fitted::of_draws(best, replicates, draws)?;
-    check_scatter(&observations, &fitted)?;
+    let mut random = RandomErrors(Pcg64::seed_from_u64(settings.seed));
+    let freedoms: Vec<Option<f64>> = rows.iter().map(|row| row.count.map(|count| count - 1.0)).collect();
+    let mut drawn = || -> Vec<Observation> {
+        observations.iter().zip(&freedoms).map(|(one, freedom)| random.drawn(one, *freedom)).collect()
+    };
+    let replicates = (0..DRAWS).filter_map(|_| search.run(&drawn(), &best.contact)).collect();
+    let fitted = Fitted::of_draws(best, replicates, Draws::of_errors())?;
+    check_scatter(&observations, &freedoms, &fitted)?;
     Ok(FittedData {
         friction_coefficient: fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?,
         fitted,
@@ -189,10 +193,10 @@ fn stroke(row: &MeanRow, observation: Observation) -> StrokeMeans {
 
 /// Fails if the means lie further from the closest power law than their errors explain, in 1 of 1,000 tables. What the
 /// contact model says is judged apart.
-fn check_scatter(observations: &[Observation], fitted: &Fitted) -> Result<(), FitError> {
+fn check_scatter(observations: &[Observation], freedoms: &[Option<f64>], fitted: &Fitted) -> Result<(), FitError> {
     let residuals = residuals_n(&fitted.best.power, 1.0, observations).ok_or(FitError::NotConverged)?;
-    let chi_square: f64 =
-        residuals.iter().zip(observations).map(|(residual_n, one)| (residual_n * one.weight).powi(2)).sum();
+    let errors = residuals.iter().zip(observations).map(|(residual_n, one)| residual_n * one.weight);
+    let chi_square: f64 = errors.zip(freedoms).map(|(error, freedom)| gaussian_square(error, *freedom)).sum();
     // Friction coefficient, size and exponent are fitted. The quantile is Wilson and Hilferty's.
     let freedom = observations.len() as f64 - 3.0;
     let part = 2.0 / (9.0 * freedom);
@@ -202,22 +206,40 @@ fn check_scatter(observations: &[Observation], fitted: &Fitted) -> Result<(), Fi
     Ok(())
 }
 
+/// The square of the Gaussian number that is as probable as an error in units of its standard error with these degrees of
+/// freedom (Wallace 1959, doi:10.1214/aoms/1177706095).
+fn gaussian_square(error: f64, freedom: Option<f64>) -> f64 {
+    let Some(freedom) = freedom else { return error * error };
+    let scale = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
+    scale * scale * freedom * libm::log1p(error * error / freedom)
+}
+
 /// Gaussian quantile that 99.9 % lie below.
 const Z_ONE_SIDED_999: f64 = 3.090_232;
 
-/// Gaussian random numbers.
-struct Normal(Pcg64);
+/// Random errors of means.
+struct RandomErrors(Pcg64);
 
-impl Normal {
+impl RandomErrors {
     /// Above 0 and at most 1.
     fn uniform(&mut self) -> f64 {
         ((self.0.next_u64() >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 
+    /// An error in units of its standard error: Student's with these degrees of freedom, Gaussian for `None` (Bailey
+    /// 1994, doi:10.1090/S0025-5718-1994-1219701-3, in the form of Box and Muller).
+    fn error(&mut self, freedom: Option<f64>) -> f64 {
+        let logarithm = libm::log(self.uniform());
+        let square = match freedom {
+            Some(freedom) => freedom * libm::expm1(-2.0 * logarithm / freedom),
+            None => -2.0 * logarithm,
+        };
+        square.sqrt() * libm::cos(TAU * self.uniform())
+    }
+
     /// A mean drawn anew from its error.
-    fn draw(&mut self, mean: &Observation) -> Observation {
-        let size = (-2.0 * libm::log(self.uniform())).sqrt();
-        let error_n = size * libm::cos(TAU * self.uniform()) / mean.weight;
+    fn drawn(&mut self, mean: &Observation, freedom: Option<f64>) -> Observation {
+        let error_n = self.error(freedom) / mean.weight;
         let measured = match mean.measured {
             Measured::Friction(friction_n) => Measured::Friction(friction_n + error_n),
             Measured::Attraction(attraction_n) => Measured::Attraction(attraction_n + error_n),
@@ -234,7 +256,7 @@ mod tests {
     use rand_pcg::rand_core::SeedableRng;
 
     use super::super::{Coupling, Data, Fit, Settings, Verdict, data, fit_data, words};
-    use super::{FitError, Measured, Normal, Observation};
+    use super::{FitError, RandomErrors, gaussian_square};
     use crate::bootstrap::Estimate;
     use crate::fit::law::Attraction;
 
@@ -252,23 +274,25 @@ mod tests {
         COEFFICIENT * (load_n + attraction_n)
     }
 
-    /// A table of four voltages, with errors drawn from a seed or none, and times an error that is not stated.
-    fn table(seed: Option<u64>, scale: f64, loads_n: &[f64]) -> String {
-        let mut random = Normal(Pcg64::seed_from_u64(seed.unwrap_or_default()));
+    /// A table of four voltages, of means of `count` values that are drawn from a seed, or without an error. Its means
+    /// are off by `scale` times what the deviations of the values explain.
+    fn table(seed: Option<u64>, scale: f64, count: u32, loads_n: &[f64]) -> String {
+        let mut random = RandomErrors(Pcg64::seed_from_u64(seed.unwrap_or_default()));
+        let number = f64::from(count);
         let mut text = String::from("voltage_v_rms;normal_force_n;friction_mn;friction_sd_mn;n\n");
         for (voltage_v_rms, load_n) in
             [0.0, 75.0, 106.0, 150.0].into_iter().flat_map(|v| loads_n.iter().map(move |n| (v, *n)))
         {
-            let exact_n = truth_n(voltage_v_rms, load_n);
-            let exact = Observation {
-                voltage_v_rms,
-                normal_load_n: load_n,
-                measured: Measured::Friction(0.0),
-                weight: 1.0 / ERROR_N,
-            };
-            let Measured::Friction(error_n) = random.draw(&exact).measured else { panic!() };
-            let drawn_mn = 1e3 * (exact_n + if seed.is_some() { scale * error_n } else { 0.0 });
-            writeln!(text, "{voltage_v_rms};{load_n};{drawn_mn:.4};{:.1};16", 4e3 * ERROR_N).unwrap();
+            let deviation_n = ERROR_N * number.sqrt();
+            let (mut error_n, mut spread_n) = (0.0, deviation_n);
+            if seed.is_some() {
+                let values: Vec<f64> = (0..count).map(|_| deviation_n * random.error(None)).collect();
+                error_n = values.iter().sum::<f64>() / number;
+                let squares: f64 = values.iter().map(|value| (value - error_n).powi(2)).sum();
+                spread_n = (squares / (number - 1.0)).sqrt();
+            }
+            let mean_mn = 1e3 * (truth_n(voltage_v_rms, load_n) + scale * error_n);
+            writeln!(text, "{voltage_v_rms};{load_n};{mean_mn:.4};{:.4};{count}", 1e3 * spread_n).unwrap();
         }
         text.replace('.', ",")
     }
@@ -279,7 +303,7 @@ mod tests {
 
     #[test]
     fn means_without_an_error_give_the_finger_that_made_them() {
-        let text = table(None, 1.0, &[0.5]);
+        let text = table(None, 1.0, 16, &[0.5]);
         let reading = data(text.as_bytes()).unwrap();
         assert!(
             matches!(&reading.value, Data::Means(rows) if rows.len() == 4 && (rows[0].standard_error_n - ERROR_N).abs() < 1e-12)
@@ -299,39 +323,73 @@ mod tests {
     }
 
     /// How many of these tables are fitted, and how many of the intervals contain the truth.
-    fn covered(tables: u64) -> (u32, u32) {
+    fn covered(tables: u64, count: u32, loads_n: &[f64]) -> (u32, u32) {
         let electric_n = truth_n(150.0, 0.5) - truth_n(0.0, 0.5);
-        let fits = (0..tables).filter_map(|seed| fitted(&table(Some(seed), 1.0, &[0.4, 0.5, 0.6])).ok());
+        let fits = (0..tables).filter_map(|seed| fitted(&table(Some(seed), 1.0, count, loads_n)).ok());
         fits.map(|fit| fit.electric_friction_n).fold((0, 0), |(fits, covered), Estimate { low, high, .. }| {
             (fits + 1, covered + u32::from((low..=high).contains(&electric_n)))
         })
     }
 
     #[test]
-    #[ignore = "half a minute: cargo xtask soak people"]
+    #[ignore = "minutes: cargo xtask soak people"]
     fn intervals_of_600_tables_contain_the_truth() {
-        let (fits, covered) = covered(600);
-        println!("means: {covered} of {fits} intervals contain the truth");
-        let share = f64::from(covered) / f64::from(fits);
-        assert!(fits >= 588 && (0.93..=0.97).contains(&share), "{covered} of {fits}");
+        for (count, loads_n) in [(16, &[0.4, 0.5, 0.6][..]), (5, &[0.4, 0.5, 0.6]), (16, &[0.5]), (5, &[0.5])] {
+            let (fits, covered) = covered(600, count, loads_n);
+            let share = f64::from(covered) / f64::from(fits);
+            // Tables are independent.
+            let room = 1.96 * (share * (1.0 - share) / f64::from(fits)).sqrt();
+            println!(
+                "means of {count} at {} loads: {covered} of {fits} intervals contain the truth: {:.1} % ({:.1} to {:.1})",
+                loads_n.len(),
+                100.0 * share,
+                100.0 * (share - room),
+                100.0 * (share + room)
+            );
+            assert!(fits >= 588 && (0.93..=0.99).contains(&share), "{covered} of {fits}");
+        }
     }
 
     #[test]
     fn intervals_come_from_the_stated_errors() {
-        let (fits, covered) = covered(60);
+        let (fits, covered) = covered(60, 16, &[0.4, 0.5, 0.6]);
         assert!(fits >= 58, "{fits}");
         // 95 %, less 1.8 standard errors.
         assert!(covered * 100 >= 90 * fits, "{covered} of {fits}");
-        let wide = fitted(&table(None, 1.0, &[0.5])).unwrap().electric_friction_n;
-        let narrow = fitted(&table(None, 1.0, &[0.5, 0.5, 0.5, 0.5])).unwrap().electric_friction_n;
+        let wide = fitted(&table(None, 1.0, 16, &[0.5])).unwrap().electric_friction_n;
+        let narrow = fitted(&table(None, 1.0, 16, &[0.5, 0.5, 0.5, 0.5])).unwrap().electric_friction_n;
         let ratio = (wide.high - wide.low) / (narrow.high - narrow.low);
         assert!((1.8..2.2).contains(&ratio), "four tables in one have half the interval: {ratio}");
+    }
+
+    /// Student's quantiles for 1 to 60 degrees of freedom, from the printed tables (Abramowitz and Stegun, table 26.10).
+    #[test]
+    fn errors_of_few_values_are_students() {
+        for (freedom, quantile) in [(2.0, 4.303), (4.0, 2.776), (10.0, 2.228), (60.0, 2.000)] {
+            let mut random = RandomErrors(Pcg64::seed_from_u64(1));
+            let beyond = (0..40_000).filter(|_| random.error(Some(freedom)).abs() > quantile).count();
+            // 5 % of 40,000, and 4 standard deviations.
+            assert!((1826..=2174).contains(&beyond), "{freedom}: {beyond}");
+            let gaussian = gaussian_square(quantile, Some(freedom)).sqrt();
+            assert!((gaussian / 1.96 - 1.0).abs() < 0.03, "{freedom}: {gaussian}");
+        }
+    }
+
+    /// The interval rests on the rows without and with the highest voltage, not on all of the table.
+    #[test]
+    fn intervals_are_wider_where_errors_come_from_few_values() {
+        let width = |count| {
+            let Estimate { low, high, .. } = fitted(&table(None, 1.0, count, &[0.5])).unwrap().electric_friction_n;
+            high - low
+        };
+        let ratio = width(5) / width(100);
+        assert!((1.15..1.45).contains(&ratio), "{ratio}");
     }
 
     #[test]
     fn means_that_scatter_more_than_their_errors_are_refused() {
         let refused = (0..20).filter(|seed| {
-            matches!(fitted(&table(Some(*seed), 4.0, &[0.4, 0.5, 0.6])), Err(FitError::MeansScatter { times }) if times > 2.0)
+            matches!(fitted(&table(Some(*seed), 4.0, 16, &[0.4, 0.5, 0.6])), Err(FitError::MeansScatter { times }) if times > 2.0)
         });
         assert!(refused.count() >= 15);
     }

@@ -68,10 +68,7 @@ impl Judge<'_> {
         let load_exponent =
             load_exponent_of(&self.fitted.best.contact, reference_load_n).ok_or(FitError::NotConverged)?;
         let form = Form::Power { load_exponent, reference_load_n };
-        let voltage_exponent = |solution: &Solution| match solution.attraction {
-            Attraction::Power { voltage_exponent, .. } => Some(voltage_exponent),
-            Attraction::Contact(_) => None,
-        };
+        let voltage_exponent = |solution: &Solution| solution.attraction.voltage_exponent();
         let of = |replicate: &Replicate| voltage_exponent(&replicate.power);
         let exponent = self.exponent(form, &of, &voltage_exponent).ok_or(FitError::NotConverged)?;
         if max_v_rms < VERDICT_V_RMS {
