@@ -42,6 +42,22 @@ pub enum LiveError {
         /// The name or number that was given.
         layer: String,
     },
+    /// The layer is of a kind that a trigger does not play.
+    #[error("{layer:?} is {what}, so that a trigger may play nothing: trigger a `vibration` or a `constant`")]
+    TriggerNotFelt {
+        /// The name or number that was given.
+        layer: String,
+        /// What is played by something else than a trigger.
+        what: &'static str,
+    },
+    /// The layer plays samples, and none are streamed.
+    #[error(
+        "layer {layer:?} plays what is streamed, and nothing is, so that a trigger plays nothing: give `--stream FILE`"
+    )]
+    TriggerUnfed {
+        /// The name or number that was given.
+        layer: String,
+    },
     /// A gain leads out of reach.
     #[error("gain {gain} is refused: {clamped}{}", gain_advice(*.range))]
     GainOutOfReach {
@@ -147,11 +163,19 @@ impl LiveLayers {
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, one that is on, one that plays nothing because its gain is zero, and
-    /// one whose bursts the trigger may miss.
+    /// An unknown layer, one that cannot be changed, an edge or a curve of speed, one that is on, one that plays nothing
+    /// because its gain is zero, and one whose bursts the trigger may miss.
     pub fn trigger(&self, layer: &str, now: Duration, duration_s: f64) -> Result<LayerChange, LiveError> {
         let record = self.program.layers.record(layer)?;
         let played = self.program.records.get(usize::from(record));
+        let what = match played.map(|record| &record.layer) {
+            Some(Layer::Edge(_)) => Some("an edge, which is felt where a finger crosses it"),
+            Some(Layer::Speed(_)) => Some("a curve of speed, which changes what lies below it"),
+            _ => None,
+        };
+        if let Some(what) = what {
+            return Err(LiveError::TriggerNotFelt { layer: layer.to_owned(), what });
+        }
         let (changed, setting) = self.changed(record, Some(true), None);
         let was_on = self.setting(record).on;
         let triggered_until =
@@ -294,6 +318,24 @@ mod tests {
         assert!(!ended.setting.on && layers.0.next_end() == Some(ms(350)), "the board has not taken it");
         layers.0.apply(&ended);
         assert_eq!(layers.0.next_end(), None);
+    }
+
+    #[test]
+    fn a_trigger_of_a_layer_that_time_does_not_play_is_refused() {
+        let edge = "[[layer]]\nname = \"bump\"\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 4\nridge_n = 0.01\nlive = true\n";
+        let speed = "[[layer]]\nname = \"soft\"\nkind = \"speed\"\nspeeds_mm_per_s = [20, 150]\nfactors = [0.3, 1]\nlive = true\n";
+        let mut layers = Taking::new(&format!("{edge}{speed}"));
+        for (layer, what) in [
+            ("bump", "an edge, which is felt where a finger crosses it"),
+            ("soft", "a curve of speed, which changes what lies below it"),
+        ] {
+            layers.change(layer, Some(false), None).expect("it is live");
+            let refused = layers.trigger(layer, ms(0), 0.1).expect_err("nothing would be felt").to_string();
+            let sentence = format!(
+                "{layer:?} is {what}, so that a trigger may play nothing: trigger a `vibration` or a `constant`"
+            );
+            assert_eq!(refused, sentence);
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use frixel_wire::message::{Refusal, Telemetry};
 
 use crate::error::{PlayError, StopReason, is_refusal};
 use crate::feed::{Feed, FeedError};
-use crate::live_layers::{LayerChange, LiveLayers};
+use crate::live_layers::{LayerChange, LiveError, LiveLayers};
 use crate::recorded::Recorded;
 use crate::upload;
 
@@ -151,7 +151,12 @@ impl<L: Link + Recorded> Player<L> {
     /// Switches a layer that is off on, by its name or number, until `duration_s` seconds later.
     pub fn trigger(&mut self, layer: &str, duration_s: f64) -> Result<LayerChange, PlayError> {
         let now = self.device.now();
-        let change = self.layers()?.trigger(layer, now, duration_s)?;
+        let layers = self.layers()?;
+        let change = layers.trigger(layer, now, duration_s)?;
+        let played = layers.program().records.get(usize::from(change.record));
+        if self.feed.is_none() && played.is_some_and(|record| record.layer.is_streamed()) {
+            return Err(LiveError::TriggerUnfed { layer: layer.to_owned() }.into());
+        }
         self.send(&change)?;
         Ok(change)
     }

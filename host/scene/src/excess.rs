@@ -1,6 +1,6 @@
 //! Finds layers whose target friction is out of reach.
 
-use frixel_layers::{Blend, Interval, Record};
+use frixel_layers::{Blend, Interval, Layer as RecordLayer, Record};
 
 use super::cover::{Cell, PLACES_MAX, excesses};
 use super::digits::{digits, down, up};
@@ -38,7 +38,11 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
             .filter_map(|number| Some((*played.get(*number)?, program.records.get(*number)?)))
             .map(|(layer, record)| Played { layer, record })
             .collect();
-        let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise };
+        let ridges = added_ridges(program, &excess.layers);
+        let ridges = ridges_in_reach_as_largest(&reference, &excess.layers, &ridges, [width_m, height_m], within)
+            .then(|| ridges.iter().filter_map(|number| program.titles.get(*number)).collect::<Vec<_>>());
+        let largest_of = ridges.map(|titles| listed(&titles));
+        let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise, largest_of };
         log.set_layer(match &demand.layers[..] {
             [one] => Some(one.layer.number().table),
             _ => None,
@@ -67,6 +71,38 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
     log.set_layer(None);
 }
 
+/// The layers of `numbers` that add a ridge to what lies below, if there are several.
+fn added_ridges(program: &Program, numbers: &[usize]) -> Vec<usize> {
+    let is_added_ridge = |record: &Record| match record.layer {
+        RecordLayer::Edge(edge) => record.blend == Blend::Add && record.gain * edge.ridge_n > 0.0,
+        _ => false,
+    };
+    let ridges = numbers.iter().copied().filter(|number| program.records.get(*number).is_some_and(is_added_ridge));
+    Some(ridges.collect()).filter(|ridges: &Vec<usize>| ridges.len() > 1).unwrap_or_default()
+}
+
+/// Whether the layers of `numbers` stay in reach once `ridges`, some of them, count by `blend = "max"`.
+fn ridges_in_reach_as_largest(
+    reference: &Reference,
+    numbers: &[usize],
+    ridges: &[usize],
+    [width_m, height_m]: [f64; 2],
+    within: Interval<f64>,
+) -> bool {
+    if ridges.is_empty() {
+        return false;
+    }
+    let pieces: Vec<_> = numbers
+        .iter()
+        .filter_map(|number| {
+            let mut piece = reference.pieces().get(*number)?.clone();
+            piece.blend = if ridges.contains(number) { Blend::Max } else { piece.blend };
+            Some(piece)
+        })
+        .collect();
+    excesses(&pieces, width_m, height_m, within, PLACES_MAX).iter().all(|excess| excess.found.high <= within.high)
+}
+
 impl Program {
     /// The electric friction that can be reached, with a margin for rounding errors, N.
     pub(super) fn within_reach(&self) -> Interval<f64> {
@@ -89,6 +125,8 @@ struct Demand<'a> {
     within: Interval<f64>,
     reach: &'a Reach,
     raise: Raise<'a>,
+    /// The ridges that stay in reach with `blend = "max"`.
+    largest_of: Option<String>,
 }
 
 /// One side of the reach that layers exceed, and the place in the file to change.
@@ -125,7 +163,7 @@ impl Demand<'_> {
                 part_of_reach: (has_fraction && !has_newtons).then(|| digits(part_of_reach, up)),
                 voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
                 reach_n: digits(reach_n, f64::floor),
-                lower: if is_sum { "one of them" } else { "it" },
+                cure: self.cure_above(is_sum),
                 raise: if has_fraction { Vec::new() } else { (self.raise)(asked.high) },
                 may_be_millinewtons: !has_fraction
                     && asked_n > UNIT_MISTAKE_FACTOR * reach_n
@@ -144,6 +182,15 @@ impl Demand<'_> {
             sides.push(Side { offset: self.place(false), mistake });
         }
         sides
+    }
+
+    /// Advice for friction above what can be reached.
+    fn cure_above(&self, is_sum: bool) -> Box<str> {
+        let lower = if is_sum { "lower one of them" } else { "lower it" };
+        match &self.largest_of {
+            Some(ridges) => format!("write `blend = \"max\"` in {ridges}, {lower}").into(),
+            None => lower.into(),
+        }
     }
 
     /// Advice for friction below natural friction. Less load lowers natural friction.

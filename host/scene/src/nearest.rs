@@ -9,13 +9,13 @@ pub struct Nearest {
     pub suggestion: Option<String>,
     /// All known words.
     pub known: Vec<String>,
-    /// What belongs to the suggestion, with a comma before it; empty if nothing does.
+    /// What belongs to the suggestion, with a comma before it; without one, what to use instead. Empty if there is nothing.
     remark: &'static str,
 }
 
 /// Words of other trades for words of a scene, each with a remark. Of those with one word, the first one whose meaning
 /// is known where it is written counts.
-const SYNONYMS: [(&str, &str, &str); 14] = [
+const SYNONYMS: [(&str, &str, &str); 20] = [
     ("file", "picture", ""),
     ("image", "picture", ""),
     ("photo", "picture", ""),
@@ -30,7 +30,28 @@ const SYNONYMS: [(&str, &str, &str); 14] = [
     ("notification", "vibration", ", with `live = true`, so that a program can trigger it"),
     ("buzz", "vibration", ""),
     ("key", "button", ""),
+    ("switch", "button", ", with a click that a finger feels when it slides in"),
+    ("dial", "spokes", ", whose notches a finger counts as it goes round"),
+    ("knob", "spokes", ", whose notches a finger counts as it goes round"),
+    ("sound", "vibration", ", which is felt and not heard"),
+    ("text", "bitmap", ", with a picture of the text"),
+    ("icon", "bitmap", ", with a picture of the icon"),
 ];
+
+/// Words for what no kind of layer is, each with what to use instead. They count where [`A_KIND`] is known.
+const NO_KINDS: [(&str, &str); 2] = [
+    (
+        "direction",
+        "no kind depends on where a finger slides to: use one that depends on the place, such as `grating` or `bitmap`",
+    ),
+    (
+        "animation",
+        "no kind moves: use `vibration`, or layers with `live = true`, which a program switches by `--control`",
+    ),
+];
+
+/// A kind of layer: where it is known, the known words are kinds.
+const A_KIND: &str = "vibration";
 
 impl Nearest {
     /// Likeness (Jaro-Winkler, 0 to 1) from which a word is suggested.
@@ -45,6 +66,9 @@ impl Nearest {
         let synonym = SYNONYMS.iter().find(|(synonym, meant, _)| *synonym == found && is_known(meant));
         if let Some((_, meant, remark)) = synonym.filter(|_| !is_known(&found)) {
             return Self { suggestion: Some((*meant).to_owned()), known, remark };
+        }
+        if let Some((_, remark)) = NO_KINDS.iter().find(|(word, _)| *word == found && is_known(A_KIND)) {
+            return Self { suggestion: None, known, remark };
         }
         let suggestion = known
             .iter()
@@ -80,6 +104,7 @@ impl Display for Nearest {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.suggestion {
             Some(word) => write!(formatter, "did you mean `{word}`{}?", self.remark),
+            None if !self.remark.is_empty() => formatter.write_str(self.remark),
             None if self.known.is_empty() => write!(formatter, "nothing more is expected here"),
             None => write!(formatter, "expected one of `{}`", self.known.join("`, `")),
         }

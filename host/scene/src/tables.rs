@@ -59,7 +59,8 @@ pub(crate) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
 pub(crate) const PIXELS: Range = Range::new(-1e6, 1e6, " px");
 pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
 pub(crate) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
-pub(crate) const ANGLE_DEG: Range = Range::new(-360.0, 360.0, " degrees");
+/// Ten thousand turns either way.
+pub(crate) const ANGLE_DEG: Range = Range::new(-3_600_000.0, 3_600_000.0, " degrees");
 
 /// The two amounts that limit most kinds.
 pub(crate) const LOW: AmountFields = amount!("low", Mistake, "least friction");

@@ -164,6 +164,17 @@ fn the_recorder_is_told_what_plays() {
     assert_eq!(player.recorder_mut().0, told);
 }
 
+#[test]
+fn a_trigger_of_a_stream_without_samples_is_refused() {
+    let stream = "[[layer]]\nname = \"voice\"\nkind = \"stream\"\nlow_n = 0.002\nhigh_n = 0.018\nlive = true\n";
+    let mut player = playing(program(stream));
+    player.change_layer("voice", Some(false), None).unwrap();
+    let refused = player.trigger("voice", 0.05).unwrap_err();
+    assert!(refused.is_refusal() && refused.to_string().contains("give `--stream FILE`"), "{refused}");
+    player.stream(Feed::of(vec![0; 100], 4_000)).unwrap();
+    player.trigger("voice", 0.05).unwrap();
+}
+
 /// Disarmed by its host timeout, the board refuses to stop, and its output is zero all the same.
 #[test]
 fn a_board_that_has_left_the_play_by_itself_is_stopped_without_an_error() {

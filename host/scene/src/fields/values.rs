@@ -38,6 +38,12 @@ impl<'i> Fields<'i> {
         self.number(log, field).unwrap_or(field.default_number())
     }
 
+    /// An angle, in degrees, without its whole turns if it is more than one, or its default if it is absent or invalid.
+    pub(crate) fn angle_deg(&mut self, log: &mut Log, field: &FieldSpec) -> f64 {
+        let found_deg = self.number_or_default(log, field);
+        if found_deg.abs() > 360.0 { found_deg % 360.0 } else { found_deg }
+    }
+
     /// A number; `None` for `"auto"`, and if it is absent or invalid.
     pub(crate) fn number_or_auto(&mut self, log: &mut Log, field: &FieldSpec) -> Option<f64> {
         const AUTO: &str = "auto";

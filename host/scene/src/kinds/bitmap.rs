@@ -103,7 +103,7 @@ impl Words for Bitmap {
         let pitch_mm = fields.number_or_auto(log, &PITCH);
         let levels = [("full", Levels::Full), ("stretch", Levels::Stretch)];
         let levels = fields.choice(log, &LEVELS, &levels).unwrap_or(Levels::Full);
-        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let angle_deg = fields.angle_deg(log, &ANGLE);
         let tiled = fields.flag(log, &TILED);
         // Default colours of a friction image without numbers: black is bare glass, white the most that the drive
         // gives.

@@ -53,7 +53,7 @@ impl Words for Edge {
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let x_mm = fields.length_mm(log, &X);
         let y_mm = fields.length_mm(log, &Y);
-        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let angle_deg = fields.angle_deg(log, &ANGLE);
         let width_mm = fields.number(log, &WIDTH);
         let ridge = Amount::read(fields, &RIDGE, unit, log);
         let click = Click::read(fields, &CLICK, unit, log);

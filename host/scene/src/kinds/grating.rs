@@ -59,8 +59,8 @@ impl Words for Grating {
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let wave = wave::read(fields, log);
         let wavelength_mm = fields.number(log, &WAVELENGTH);
-        let angle_deg = fields.number_or_default(log, &ANGLE);
-        let phase_deg = fields.number_or_default(log, &PHASE);
+        let angle_deg = fields.angle_deg(log, &ANGLE);
+        let phase_deg = fields.angle_deg(log, &PHASE);
         let origins = [("screen", Origin::Screen), ("region", Origin::Region)];
         let origin = fields.choice(log, &ORIGIN, &origins).unwrap_or(Origin::Screen);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);

@@ -52,7 +52,7 @@ impl Words for Spokes {
         let x_mm = fields.length_mm(log, &X);
         let y_mm = fields.length_mm(log, &Y);
         let number = fields.number(log, &NUMBER);
-        let angle_deg = fields.number_or_default(log, &ANGLE);
+        let angle_deg = fields.angle_deg(log, &ANGLE);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         Some(Self { wave, x_mm: x_mm?, y_mm: y_mm?, number: number?, angle_deg, amounts: amounts? })
     }

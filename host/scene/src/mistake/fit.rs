@@ -47,7 +47,7 @@ pub enum FitMistake {
     /// The target friction of a layer is more than the drive can give.
     #[error(
         "{asking} up to {asked_n} N {reference}{}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
-         {reference}: {}lower {lower}, {}or write `saturate = true` under [drive] to have it clamped",
+         {reference}: {}{cure}, {}or write `saturate = true` under [drive] to have it clamped",
         .part_of_reach.map_or(String::new(), |part| format!(" ({part} of the reach)")),
         if *.may_be_millinewtons { "were mN meant? 1 mN is 0.001 N; " } else { "" },
         raised(.raise),
@@ -65,8 +65,8 @@ pub enum FitMistake {
         voltage_v_rms: f64,
         /// The largest friction that can be reached, rounded down, N.
         reach_n: f64,
-        /// What to lower.
-        lower: &'static str,
+        /// What to change in the layers.
+        cure: Box<str>,
         /// The limits of `[drive]` that reach the target if they are raised to these values, V; empty if other limits
         /// forbid that, or if the amounts are fractions, which more voltage does not change.
         raise: Vec<(&'static str, f64)>,

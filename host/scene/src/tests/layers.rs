@@ -154,6 +154,20 @@ fn natural_friction_in_total_is_no_drive() {
 }
 
 #[test]
+fn whole_turns_of_an_angle_change_nothing() {
+    let of = |angle_deg: i32, phase_deg: i32| {
+        let grating = format!(
+            "[[layer]]\nkind = \"grating\"\nwavelength_mm = 3\nangle_deg = {angle_deg}\nphase_deg = {phase_deg}\nlow_n = 0\n\
+             high_n = 0.01"
+        );
+        compile_layers(&grating).records
+    };
+    assert_eq!(of(390, -725), of(30, -5));
+    assert_eq!(of(30 - 3_600_000 + 360, 45), of(-330, 45));
+    assert_ne!(of(390, 0), of(31, 0));
+}
+
+#[test]
 fn gratings_against_their_formula() {
     let layers = |wave: &str, angle_deg: f64, phase_deg: f64| {
         format!(
