@@ -65,18 +65,6 @@ mod tests {
         }
     }
 
-    /// The example of the documents reads, and has the losses of the bundled sources.
-    #[test]
-    fn the_file_in_the_documents_is_read() {
-        let page = include_str!("../../../docs/touch.md");
-        let text = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("it is there");
-        let source = parse_touch_source(text, "docs/touch.md").expect("it reads");
-        let bits =
-            |source: TouchConfig| [source.lost_share, source.bunched_share, source.pause_rate_hz].map(f64::to_bits);
-        assert_eq!(source.rate_hz.to_bits(), 120.0_f64.to_bits());
-        assert_eq!(bits(source), bits(TouchConfig::REALISTIC));
-    }
-
     #[test]
     fn a_wrong_file_is_refused_with_all_of_its_mistakes() {
         let text = "reports_per_s = 0\nlost_share = 1.5\nlatencyms = 5\n";

@@ -1,18 +1,21 @@
-//! Tests that the examples in `docs/scene.md` compile, and that its tables of fields match the parser.
+//! Tests that the examples in `docs/scene.md` compile, that its tables of fields match the parser, and that the example
+//! in `docs/touch.md` is read.
 
 use std::fs;
 use std::path::PathBuf;
 
+use frixel_hil_sim::TouchConfig;
 use frixel_testkit::golden;
 
 use super::*;
-use crate::FingerProfile;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
 use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION, REPEAT};
+use crate::{FingerProfile, parse_touch_source};
 
 const DOCS: &str = include_str!("../../../../docs/scene.md");
+const TOUCH_DOCS: &str = include_str!("../../../../docs/touch.md");
 
 fn kinds() -> impl Iterator<Item = &'static str> {
     KindName::ALL.iter().map(|(word, _)| *word)
@@ -258,4 +261,14 @@ fn the_table_of_bundled_fingers_is_right() {
         );
         assert!(DOCS.contains(&row), "{row}");
     }
+}
+
+/// The touch source of the documents reads, and has the losses of the bundled sources.
+#[test]
+fn the_touch_source_in_the_documents_is_read() {
+    let text = TOUCH_DOCS.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("it is there");
+    let source = parse_touch_source(text, "docs/touch.md").expect("it reads");
+    let bits = |source: TouchConfig| [source.lost_share, source.bunched_share, source.pause_rate_hz].map(f64::to_bits);
+    assert_eq!(source.rate_hz.to_bits(), 120.0_f64.to_bits());
+    assert_eq!(bits(source), bits(TouchConfig::REALISTIC));
 }
