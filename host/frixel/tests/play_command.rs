@@ -299,6 +299,20 @@ fn an_interrupted_play_leaves_what_was_played() {
     }
 }
 
+#[test]
+fn a_play_never_overwrites_its_touch_source() {
+    let folder = TempDir::new().unwrap();
+    let touch = folder.path().join("summary.json");
+    let source = "reports_per_s = 100\nlatency_ms = 10\n";
+    fs::write(&touch, source).unwrap();
+    fs::write(folder.path().join("constant.toml"), CONSTANT).unwrap();
+    let arguments = ["play", "constant.toml", "--seconds", "0.1", "--touch", "summary.json", "--out", "."];
+    let output = run(folder.path(), &arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("summary.json is an input as well"), "{said}");
+    assert_eq!(fs::read_to_string(&touch).unwrap(), source);
+}
+
 /// A picture that a play would draw over, by another path; and one of a scene that comes later.
 #[test]
 fn a_play_never_overwrites_a_file_of_its_scene() {

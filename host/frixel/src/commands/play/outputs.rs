@@ -38,7 +38,7 @@ impl PlayFiles {
         // Without a finger that is simulated beside the board, what was felt is unknown.
         let is_felt = target.is_virtual_time() || args.with_log.is_some();
         let (svg, other_svg) = if is_felt { ("felt.svg", "commanded.svg") } else { ("commanded.svg", "felt.svg") };
-        let others = [args.stroke.file(), args.stream.as_deref(), args.with_log.as_deref()];
+        let others = [args.stroke.file(), args.stream.as_deref(), args.with_log.as_deref(), args.touch.file()];
         let inputs = Inputs::new(scene.paths().chain(others.into_iter().flatten()));
         let file = |name: &str| OutputFile::new(&args.out.join(name), OPTION, &inputs);
         let files = Self {
