@@ -51,6 +51,12 @@ const OFF: [Flags; 4] = [Flags::NO_FINGER, Flags::TOUCH_STALE, Flags::STILL, Fla
 /// One sample of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FidelitySample {
+    /// Time since the power-on of the board, s.
+    pub t_s: f64,
+    /// The finger's place from the left edge of the screen, m.
+    pub x_m: f64,
+    /// The finger's place from the top edge of the screen, m.
+    pub y_m: f64,
     /// Sliding speed in m/s, while the finger is on the screen and the board has had a report of it. Friction before the
     /// first report cannot be right and is not scored.
     pub speed_m_per_s: Option<f64>,
@@ -64,10 +70,14 @@ pub struct FidelitySample {
     pub is_driven: bool,
 }
 
-impl From<&FeltRow> for FidelitySample {
-    /// A row of a record with [`SAMPLE_HZ`] rows a second, whose reference goes through the simulated finger.
-    fn from(row: &FeltRow) -> Self {
+impl FidelitySample {
+    /// A row of a record with [`SAMPLE_HZ`] rows a second that began `start_s` after the power-on of the board, and
+    /// whose reference goes through the simulated finger.
+    pub fn of_row(row: &FeltRow, start_s: f64) -> Self {
         Self {
+            t_s: start_s + row.t_s,
+            x_m: 1e-3 * row.x_mm.unwrap_or(0.0),
+            y_m: 1e-3 * row.y_mm.unwrap_or(0.0),
             speed_m_per_s: row.speed_mm_s.filter(|_| row.is_tracked).map(|speed_mm_s| 1e-3 * speed_mm_s),
             reference_n: row.wanted_n.unwrap_or(0.0),
             felt_n: row.felt_n.unwrap_or(0.0),
@@ -75,16 +85,14 @@ impl From<&FeltRow> for FidelitySample {
             is_driven: row.flags.is_some_and(|flags| !OFF.into_iter().any(|off| flags.contains(off))),
         }
     }
-}
 
-impl FidelitySample {
     /// Electric part of the reference, N.
-    fn reference_electric_n(&self) -> f64 {
+    pub(crate) fn reference_electric_n(&self) -> f64 {
         self.reference_n - self.natural_n
     }
 
     /// Electric part of what the finger felt, N.
-    fn felt_electric_n(&self) -> f64 {
+    pub(crate) fn felt_electric_n(&self) -> f64 {
         self.felt_n - self.natural_n
     }
 }

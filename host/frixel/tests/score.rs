@@ -29,7 +29,7 @@ fn mean(program: &Program, key: &str) -> f64 {
             Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None }
         })
         .collect();
-    let score = Score::of(&trials, |trial| samples(program, &RigConfig::default(), trial)).unwrap();
+    let score = Score::of(program, &trials, |trial| samples(program, &RigConfig::default(), trial)).unwrap();
     score.metrics.iter().find(|metric| metric.key == key).unwrap().mean
 }
 
@@ -52,7 +52,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
     let trial = Trial { stroke_name: "human 1".to_owned(), stroke, seed: 1, finger: None };
     let rig = RigConfig { world: rig.world.realistic(), ..rig };
-    let score = Score::of(&[trial], |trial| samples(&program, &rig, trial)).unwrap();
+    let score = Score::of(&program, &[trial], |trial| samples(&program, &rig, trial)).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
     assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }

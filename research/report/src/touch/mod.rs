@@ -76,6 +76,7 @@ impl Recording {
             felt_n: texture(place_m),
             natural_n: 0.0,
             is_driven: true,
+            ..FidelitySample::default()
         });
         let fidelity = Fidelity::of(&compared.collect::<Vec<_>>());
         fidelity.and_then(|fidelity| fidelity.error_below_40_hz).unwrap_or(f64::NAN)
