@@ -45,6 +45,8 @@ const RATE_SAMPLES: usize = 10;
 const REFERENCE_MIN_RMS_N: f64 = 1.4e-4;
 /// Third octaves from [`BAND_BORDER_HZ`] to [`BAND_END_HZ`].
 const THIRD_OCTAVES: u32 = 10;
+/// Samples after the output came and before it goes in which it is on its way: 20 ms.
+const SETTLING: usize = 80;
 /// Outputs that are off, whatever the scene says.
 const OFF: [Flags; 4] = [Flags::NO_FINGER, Flags::TOUCH_STALE, Flags::STILL, Flags::HOST_SILENT];
 
@@ -147,7 +149,7 @@ impl Fidelity {
         let mean_n = mean(|sample| sample.reference_n);
         let speed_m_per_s = mean(|sample| sample.speed_m_per_s.unwrap_or(0.0));
         let natural_n = mean(|sample| sample.natural_n);
-        let driven = || scored.iter().filter(|sample| sample.is_driven);
+        let driven = || settled(&scored).flatten();
         let contrast = |electric_n: fn(&FidelitySample) -> f64| {
             percentiles(driven().map(electric_n).collect(), [5, 95])
                 .map(|[low_n, high_n]| weber_steps(natural_n + low_n, natural_n + high_n))
@@ -178,6 +180,30 @@ impl Fidelity {
             spurious_over_noise_db: powers.spurious_over_noise_db(),
         })
     }
+
+    /// The score without ratios to the changes of a reference that only load and skin change, not the scene.
+    #[must_use]
+    pub fn without_ratios(self) -> Self {
+        Self {
+            error: None,
+            correlation: None,
+            error_below_40_hz: None,
+            correlation_below_40_hz: None,
+            snr_below_40_hz_db: None,
+            snr_above_40_hz_db: None,
+            contrast_kept: None,
+            delay_ms: None,
+            delay_mm: None,
+            peak_rate_kept: None,
+            ..self
+        }
+    }
+}
+
+/// The stretches of a record in which the board drives the scene, without the time in which the output comes and goes.
+pub(crate) fn settled(samples: &[FidelitySample]) -> impl Iterator<Item = &[FidelitySample]> {
+    let driven = samples.split(|sample| !sample.is_driven || sample.speed_m_per_s.is_none());
+    driven.filter_map(|run| run.get(SETTLING..run.len().checked_sub(SETTLING)?))
 }
 
 fn decibels(ratio: f64) -> f64 {

@@ -122,7 +122,14 @@ fn what_faults_take_is_no_contrast_and_is_an_error() {
     let sample = |number: u32| {
         let is_driven = number % 800 >= 200;
         let felt_n = if is_driven { 0.35 } else { 0.3 };
-        FidelitySample { speed_m_per_s: Some(SPEED_M_PER_S), reference_n: 0.35, felt_n, natural_n: 0.3, is_driven, ..FidelitySample::default() }
+        FidelitySample {
+            speed_m_per_s: Some(SPEED_M_PER_S),
+            reference_n: 0.35,
+            felt_n,
+            natural_n: 0.3,
+            is_driven,
+            ..FidelitySample::default()
+        }
     };
     let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
     assert!(fidelity.contrast_weber_steps.abs() < 1e-12, "{fidelity:?}");

@@ -46,8 +46,7 @@ impl Crossings {
 
     /// Adds the borders that are crossed in a run.
     pub(super) fn add(&mut self, run: &[Moment]) {
-        let visible =
-            |moment: &Moment| visible_layers(&self.reference, moment.context.x_m, moment.context.y_m);
+        let visible = |moment: &Moment| visible_layers(&self.reference, moment.context.x_m, moment.context.y_m);
         let visible: Vec<u64> = run.iter().map(visible).collect();
         let same: Vec<&[u64]> = visible.chunk_by(|one, other| one == other).collect();
         let mut border = 0;
@@ -109,7 +108,6 @@ fn side<'m>(moments: impl Iterator<Item = &'m Moment>, same: usize) -> Option<Ra
         Some(*way_m)
     });
     let ways_m = ways_m.take(same.min(SIDE_MAX)).take_while(|way_m| *way_m < SIDE_MAX_M);
-    let (near, all) =
-        ways_m.fold((0, 0), |(near, all), way_m| (near + usize::from(way_m < FINGERTIP_M), all + 1));
+    let (near, all) = ways_m.fold((0, 0), |(near, all), way_m| (near + usize::from(way_m < FINGERTIP_M), all + 1));
     (all >= SIDE_MIN).then(|| near.min(all - SIDE_MIN)..all)
 }

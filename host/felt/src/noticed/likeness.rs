@@ -4,8 +4,7 @@ use super::moment::Moment;
 
 /// Delays at which felt friction is compared with the scene, in moments: up to 40 ms, which nobody notices
 /// (doi:10.1145/2611387), and 10 ms early, in steps of 2.5 ms.
-const DELAYS: [isize; 21] =
-    [-20, -15, -10, -5, 0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80];
+const DELAYS: [isize; 21] = [-20, -15, -10, -5, 0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80];
 
 /// Sums of the covariances of a signal with what was felt.
 #[derive(Clone, Copy, Debug, Default)]

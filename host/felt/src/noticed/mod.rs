@@ -18,19 +18,23 @@ use std::collections::BTreeMap;
 
 use frixel_layers::Layer;
 use frixel_scene::Program;
-use frixel_scene::reference::Reference;
+use frixel_scene::reference::{Context, Reference};
 use serde::Serialize;
 
 use crate::fidelity::FidelitySample;
 use crate::perception::{Step, Texture, Verdict, contrast_within, has_texture};
 use border::Crossings;
 use likeness::Likeness;
-use moment::{MOMENT_HZ, Moment, runs};
+use moment::{MOMENT_HZ, Moment, electric_n, runs};
 
 /// The longest way of which the contrast is taken, m: a change over a longer one is not noticed. Assumed.
 const WAY_MAX_M: f64 = 0.05;
 /// A shorter touch of a layer says nothing, in moments: 20 ms.
 const TOUCH_MIN: usize = 40;
+/// From one place at which a change of the scene is sought to the next, in samples: 1 ms.
+const PLACE_SAMPLES: usize = 4;
+/// A smaller change of the scene's friction is none, N: the least amplitude with a threshold is 0.2 mN.
+const CHANGE_MIN_N: f64 = 4e-4;
 /// A contrast of the reference below it, in Weber steps, is that of a flat layer.
 const FLAT_WEBER_STEPS: f64 = 0.1;
 
@@ -181,6 +185,18 @@ impl Noticing {
             let textures = texture::of_touch(on_layer, &own_n).chain(touches.texture);
             touches.texture = textures.max_by(|one, other| one.salience().total_cmp(&other.salience()));
         }
+    }
+
+    /// Whether the friction of the scene changes along the way of a play.
+    pub fn changes_along(&self, samples: &[FidelitySample]) -> bool {
+        let places = samples.iter().step_by(PLACE_SAMPLES).filter_map(|sample| {
+            let FidelitySample { t_s, x_m, y_m, .. } = *sample;
+            let context = Context { x_m, y_m, t_s, speed_m_per_s: sample.speed_m_per_s?, ..Context::default() };
+            Some(electric_n(&self.scene, &self.program, &context))
+        });
+        let (least_n, most_n) =
+            places.fold((f64::INFINITY, f64::NEG_INFINITY), |(least_n, most_n), n| (least_n.min(n), most_n.max(n)));
+        most_n - least_n > CHANGE_MIN_N
     }
 
     /// The layers that the finger touched, from bottom to top.

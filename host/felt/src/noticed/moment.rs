@@ -3,15 +3,13 @@
 use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference};
 
-use crate::fidelity::{self, FidelitySample};
+use crate::fidelity::{self, FidelitySample, settled};
 use crate::perception::{SAMPLE_HZ, visible_layers};
 
 /// Moments a second: as many as a program is judged with before it is played.
 pub(super) const MOMENT_HZ: f64 = SAMPLE_HZ;
 /// Samples of a moment.
 const SAMPLES: usize = (fidelity::SAMPLE_HZ / MOMENT_HZ) as usize;
-/// Moments at either end of a run in which the output comes or goes: 20 ms.
-const SETTLING: usize = 40;
 
 /// A moment of a play: means over half a millisecond. Frictions are electric parts, N.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +30,8 @@ impl Moment {
     /// `samples` are those of the moment; `None` without any, or with the finger off the screen.
     fn of(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Option<Self> {
         let last = samples.last()?;
-        let mean = |value: &dyn Fn(&FidelitySample) -> f64| samples.iter().map(value).sum::<f64>() / samples.len() as f64;
+        let mean =
+            |value: &dyn Fn(&FidelitySample) -> f64| samples.iter().map(value).sum::<f64>() / samples.len() as f64;
         let FidelitySample { t_s, x_m, y_m, .. } = *last;
         let context = Context { x_m, y_m, t_s, speed_m_per_s: last.speed_m_per_s?, ..Context::default() };
         Some(Self {
@@ -56,14 +55,15 @@ impl Moment {
     }
 }
 
-fn electric_n(reference: &Reference, program: &Program, context: &Context) -> f64 {
+/// Electric friction in a context, within reach, N.
+pub(super) fn electric_n(reference: &Reference, program: &Program, context: &Context) -> f64 {
     reference.electric_friction_at_n(context).clamp(0.0, program.reach.electric_friction_max_n)
 }
 
-/// The stretches of a play in which the board drives the scene, without the time in which the output comes and goes.
+/// The stretches of a play in which the board drives the scene.
 pub(super) fn runs(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Vec<Vec<Moment>> {
-    let driven = samples.split(|sample| !sample.is_driven || sample.speed_m_per_s.is_none());
-    let runs = driven.map(|run| run.chunks_exact(SAMPLES).collect::<Vec<_>>());
-    let settled = runs.filter_map(|run| Some(run.get(SETTLING..run.len().checked_sub(SETTLING)?)?.to_vec()));
-    settled.map(|run| run.into_iter().filter_map(|samples| Moment::of(samples, scene, program)).collect()).collect()
+    let moments = |run: &[FidelitySample]| {
+        run.chunks_exact(SAMPLES).filter_map(|samples| Moment::of(samples, scene, program)).collect()
+    };
+    settled(samples).map(moments).collect()
 }

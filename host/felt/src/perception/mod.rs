@@ -21,17 +21,17 @@ use serde::Serialize;
 use crate::percentile::percentiles;
 pub use alike::AlikeLayers;
 use click::ClickStep;
-pub(crate) use neighbours::{border_reference, border_sides};
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
+pub(crate) use neighbours::{border_reference, border_sides};
 use slide::Slide;
-pub(crate) use spectrum::component_power;
 pub(crate) use slide::{total_n, visible_layers};
+pub(crate) use spectrum::component_power;
 use thresholds::lag_gain;
-pub use thresholds::{NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text};
-pub(crate) use thresholds::{
-    NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n,
+pub use thresholds::{
+    NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text,
 };
+pub(crate) use thresholds::{NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n};
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
 const SPEEDS_M_PER_S: [f64; 3] = [0.02, USUAL_M_PER_S, 0.1];

@@ -141,7 +141,7 @@ fn layer_score(layer: usize, title: &LayerTitle, program: &Program, fingers: &[F
 }
 
 impl LayerScore {
-    /// The layer that the smallest share of the fingers that touched it notice: of copies, it stands for all of them.
+    /// The layer that the smallest share of the fingers that touched it notices: of copies, it stands for all of them.
     pub(super) fn least<'l>(layers: impl IntoIterator<Item = &'l Self>) -> Option<&'l Self> {
         let share = |layer: &Self| {
             let Verdicts { touched, felt, felt_by_some, .. } = layer.simulated_fingers;
@@ -189,9 +189,9 @@ pub(super) fn borders(program: &Program, fingers: &[Finger]) -> Vec<BorderScore>
     let score = |[from, to]: [Option<usize>; 2]| {
         let crossed = fingers.iter().flat_map(|finger| &finger.borders).filter(|border| border.sides == [from, to]);
         let steps = || crossed.clone().map(|border| border.step);
-        let layers = crossed.clone().fold([0, 0], |[before, after], border| {
-            [before | border.layers[0], after | border.layers[1]]
-        });
+        let layers = crossed
+            .clone()
+            .fold([0, 0], |[before, after], border| [before | border.layers[0], after | border.layers[1]]);
         BorderScore {
             layers,
             from: title(from),
@@ -214,9 +214,8 @@ pub(super) fn levels(program: &Program, fingers: &[Finger]) -> Vec<LevelScore> {
     };
     let mut flat: Vec<(usize, f64)> = (0..program.titles.len()).filter_map(level).collect();
     flat.sort_by(|(_, one_n), (_, other_n)| one_n.total_cmp(other_n));
-    let are_same = |(_, one_n): &(usize, f64), (_, other_n): &(usize, f64)| {
-        weber_steps(*one_n, *other_n) < SAME_WEBER_STEPS
-    };
+    let are_same =
+        |(_, one_n): &(usize, f64), (_, other_n): &(usize, f64)| weber_steps(*one_n, *other_n) < SAME_WEBER_STEPS;
     let groups = flat.chunk_by(are_same);
     let groups: Vec<Vec<usize>> = groups.map(|group| group.iter().map(|(layer, _)| *layer).collect()).collect();
     let titles = |group: &[usize]| group.iter().filter_map(|layer| program.titles.get(*layer).cloned()).collect();

@@ -70,7 +70,12 @@ pub struct TrialScore {
 /// The score of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// Number of simulated fingers, on which the score is a verdict.
+    /// What the score is a verdict on: simulated fingers.
+    pub simulated: String,
+    /// Which layers the simulated fingers notice, and which levels of friction they tell apart: a sentence that names
+    /// those that some fingers do not surely notice, and those of which the strokes say nothing.
+    pub verdict: String,
+    /// Number of simulated fingers.
     pub simulated_fingers: usize,
     /// Each number of [`Fidelity`] over all plays.
     pub metrics: Vec<MetricScore>,
@@ -95,26 +100,31 @@ impl Score {
         mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>,
     ) -> Result<Self, E> {
         let mut fingers: Vec<(Option<u64>, Noticing)> = Vec::new();
-        let score = |trial: &Trial| {
-            let person = trial.finger.map(|finger| finger.person);
-            let samples = play(trial)?;
-            match fingers.iter_mut().find(|(other, _)| *other == person) {
-                Some((_, noticing)) => noticing.add(&samples),
-                None => {
-                    let mut noticing = Noticing::new(program);
-                    noticing.add(&samples);
-                    fingers.push((person, noticing));
+        let score =
+            |trial: &Trial| {
+                let person = trial.finger.map(|finger| finger.person);
+                let samples = play(trial)?;
+                let finger = fingers.iter().position(|(other, _)| *other == person).unwrap_or(fingers.len());
+                if finger == fingers.len() {
+                    fingers.push((person, Noticing::new(program)));
                 }
-            }
-            let fidelity = Fidelity::of(&samples);
-            Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
-        };
+                let mut fidelity = Fidelity::of(&samples);
+                if let Some((_, noticing)) = fingers.get_mut(finger) {
+                    noticing.add(&samples);
+                    fidelity = fidelity.map(|fidelity| {
+                        if noticing.changes_along(&samples) { fidelity } else { fidelity.without_ratios() }
+                    });
+                }
+                Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
+            };
         let plays: Vec<TrialScore> = trials.iter().map(score).collect::<Result<_, E>>()?;
         let groups = independent(&plays);
         let fingers: Vec<Finger> = fingers.iter().map(|(_, noticing)| Finger::from(noticing)).collect();
         let layers = layers::layers(program, &fingers);
         let is_untouched = |title: &&LayerTitle| layers.iter().all(|layer| layer.layer != **title);
-        Ok(Self {
+        let score = Self {
+            simulated: String::new(),
+            verdict: String::new(),
             simulated_fingers: fingers.len(),
             metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
             borders: layers::borders(program, &fingers),
@@ -122,7 +132,8 @@ impl Score {
             untouched_layers: program.titles.iter().filter(is_untouched).cloned().collect(),
             layers,
             plays,
-        })
+        };
+        Ok(Self { simulated: score.simulated_words(), verdict: score.sentence(), ..score })
     }
 }
 

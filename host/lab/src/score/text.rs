@@ -3,8 +3,7 @@
 use std::fmt::Write;
 
 use frixel_felt::perception::weber_steps_text;
-use frixel_scene::{LayerNumber, LayerTitle, fold_copies};
-use serde_json::Value;
+use frixel_scene::{LayerTitle, fold_copies};
 
 use super::metric::{METRICS, Metric};
 use super::{Goal, LayerBorder, LayerScore, LevelScore, MetricScore, Score, Verdicts};
@@ -21,24 +20,30 @@ impl Score {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<NAME_WIDTH$} {value}");
         };
-        line("simulated", &self.simulated());
+        line("simulated", &self.simulated);
         for metric in &self.metrics {
             line(metric.title, &value_text(metric));
         }
-        for copies in self.layers.chunk_by(|one, other| are_copies(one.layer.number(), other.layer.number())) {
-            let Some(layer) = LayerScore::least(copies) else { continue };
-            let more = if copies.len() > 1 { format!(", the least of {} copies", copies.len()) } else { String::new() };
+        for (layer, copies) in self.layer_rows() {
+            let more = if copies > 1 { format!(", the least of {copies} copies") } else { String::new() };
             line(layer.layer.as_str(), &format!("{}{more}", layer_text(layer)));
         }
         for level in &self.levels {
             line("told apart", &level_text(level));
         }
-        line("verdict", &self.sentence());
+        line("verdict", &self.verdict);
         text
     }
 
+    /// A row for each layer, with the number of its copies: of these, the row is that of the copy that the smallest share of
+    /// the fingers notices.
+    pub fn layer_rows(&self) -> impl Iterator<Item = (&LayerScore, usize)> {
+        let tables = self.layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
+        tables.filter_map(|copies| Some((LayerScore::least(copies)?, copies.len())))
+    }
+
     /// What the score is a verdict on.
-    pub fn simulated(&self) -> String {
+    pub(super) fn simulated_words(&self) -> String {
         let plural = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
         let fingers = plural(self.simulated_fingers, "simulated finger");
         format!("a verdict on {fingers} in {}; people were not asked", plural(self.plays.len(), "play"))
@@ -47,12 +52,7 @@ impl Score {
     /// The score as one JSON object on one line.
     pub fn to_json(&self) -> String {
         // Numbers and strings always serialise.
-        let mut value = serde_json::to_value(self).unwrap_or_default();
-        if let Value::Object(score) = &mut value {
-            score.insert("simulated".to_owned(), self.simulated().into());
-            score.insert("verdict".to_owned(), self.sentence().into());
-        }
-        value.to_string()
+        serde_json::to_string(self).unwrap_or_default()
     }
 
     /// A row for each layer.
@@ -113,10 +113,6 @@ fn value_text(metric: &MetricScore) -> String {
     format!("{mean:.2}{interval}{space}{unit}{human}{goal}")
 }
 
-fn are_copies(one: LayerNumber, other: LayerNumber) -> bool {
-    one.table == other.table
-}
-
 /// A cell of a CSV file.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
@@ -130,9 +126,9 @@ fn side(border: &LayerBorder) -> &str {
 fn layer_text(layer: &LayerScore) -> String {
     let LayerScore { simulated_fingers, contrast_weber_steps, texture, border, .. } = layer;
     let contrast = format!("contrast {} Weber steps", weber_steps_text(*contrast_weber_steps));
-    let border = border.iter().map(|border| {
-        format!("step onto it from {} {}", side(border), weber_steps_text(border.weber_steps))
-    });
+    let border = border
+        .iter()
+        .map(|border| format!("step onto it from {} {}", side(border), weber_steps_text(border.weber_steps)));
     let texture = texture.iter().map(|texture| {
         let threshold = texture.threshold_n.map_or("no threshold known".to_owned(), |threshold_n| {
             format!("threshold about {:.1} mN", 1e3 * threshold_n)
