@@ -223,6 +223,22 @@ impl TouchSource {
         })
     }
 
+    /// A touch source that samples from `tick` on, in place of another: what the other had under way is lost. Its first
+    /// sample reports the finger, or that it was lifted.
+    pub(crate) fn from_tick(config: &TouchConfig, tick_hz: u32, seed: u64, tick: u64) -> Result<Self, OutOfRange> {
+        let mut source = Self::new(config, tick_hz, seed)?;
+        let passed = (tick as f64 - source.phase_ticks) / source.period_ticks;
+        source.samples = libm::ceil(passed).max(0.0) as u64;
+        source.next_sample_tick = source.sample_tick();
+        source.finger_was_down = true;
+        Ok(source)
+    }
+
+    /// The tick of the next sample.
+    fn sample_tick(&self) -> u64 {
+        (self.phase_ticks + self.samples as f64 * self.period_ticks) as u64
+    }
+
     /// Advances to `tick`, at which the finger is at `finger`. Must be called for every tick from 0.
     pub(crate) fn tick(&mut self, tick: u64, finger: Option<&FingerState>) {
         if tick >= self.next_sample_tick {
@@ -241,7 +257,7 @@ impl TouchSource {
 
     fn sample(&mut self, tick: u64, finger: Option<&FingerState>) {
         self.samples += 1;
-        self.next_sample_tick = (self.phase_ticks + self.samples as f64 * self.period_ticks) as u64;
+        self.next_sample_tick = self.sample_tick();
         // Drawn for every sample, so that lifts do not shift the noise of later samples.
         let x_noise_m = self.noise.gaussian() * self.noise_rms_m;
         let y_noise_m = self.noise.gaussian() * self.noise_rms_m;

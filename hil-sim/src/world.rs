@@ -125,6 +125,7 @@ impl ReferenceFriction {
 pub struct World {
     tick_hz: u32,
     tick: u64,
+    seed: u64,
     full_scale_v_peak: f64,
     amplifier: Amplifier,
     amplifier_faults: Vec<Range<u64>>,
@@ -159,6 +160,7 @@ impl World {
         Ok(Self {
             tick_hz,
             tick: 0,
+            seed,
             full_scale_v_peak,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
             amplifier_faults: Vec::new(),
@@ -182,6 +184,17 @@ impl World {
     pub fn set_own_finger(&mut self, law: impl Into<FrictionLaw>) {
         self.owns_finger = true;
         self.fingertip.set_law(law.into());
+    }
+
+    /// Replaces the touch source from now on. Reports that are under way are lost, and the new source reports the finger
+    /// at its first sample.
+    ///
+    /// # Errors
+    ///
+    /// [`OutOfRange`] names a number of the configuration that no source has; the source before stays.
+    pub fn set_touch_source(&mut self, config: &TouchConfig) -> Result<(), OutOfRange> {
+        self.touch_source = TouchSource::from_tick(config, self.tick_hz, self.seed, self.tick)?;
+        Ok(())
     }
 
     /// Steady friction of the finger on the screen.

@@ -231,6 +231,30 @@ fn a_lift_arrives_whatever_is_lost() {
     assert_eq!(seen, [Touch::Up]);
 }
 
+/// A source that takes another's place samples at the ticks at which it would have sampled anyway, and reports a finger
+/// that was lifted meanwhile.
+#[test]
+fn a_source_that_begins_later_samples_at_its_own_ticks() {
+    let config = TouchConfig { jitter_rms_s: 0.0, ..TouchConfig::IDEAL };
+    let arrivals = |mut source: TouchSource, from_tick: u64, finger: Option<FingerState>| {
+        (from_tick..from_tick + 4_000)
+            .filter_map(|tick| {
+                source.tick(tick, finger.as_ref());
+                source.arrived().map(|touch| (tick, matches!(touch, Touch::Up)))
+            })
+            .collect::<Vec<_>>()
+    };
+    let begun = |tick| TouchSource::from_tick(&config, TICK_HZ, 5, tick).unwrap();
+    let whole = arrivals(TouchSource::new(&config, TICK_HZ, 5).unwrap(), 0, Some(finger(0)));
+    for from_tick in [0, 1, 399, 400, 1_234] {
+        let found = arrivals(begun(from_tick), from_tick, Some(finger(0)));
+        let expected: Vec<_> = whole.iter().copied().filter(|(tick, _)| *tick >= from_tick + 400).collect();
+        assert_eq!(found[..expected.len()], expected, "from tick {from_tick}");
+        let [(_, is_up)] = arrivals(begun(from_tick), from_tick, None)[..] else { panic!("one report of the lift") };
+        assert!(is_up);
+    }
+}
+
 #[test]
 fn values_out_of_range_are_refused_by_name() {
     let default = TouchConfig::default();

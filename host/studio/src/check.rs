@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::answer::{problems, problems_of};
 use crate::host_error::HostError;
 use crate::layers::layers;
-use crate::program::{drafted, for_drafts};
+use crate::program::{drafted, for_drafts, touch_source};
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
@@ -31,6 +31,7 @@ fn checked(request: &Request) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
     let (scene, program) = drafted(request)?;
+    touch_source(request)?;
     let problems = problems_of(&program, &request.entry);
     let costs = match board_costs(&program, &RigConfig { board: for_drafts(config.board), ..config }) {
         // Not even the simulator plays it.

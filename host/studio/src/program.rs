@@ -1,7 +1,8 @@
 //! From a request to a compiled scene.
 
 use frixel_control::Board;
-use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile, compile_draft};
+use frixel_hil_sim::TouchConfig;
+use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile, compile_draft, parse_touch_source};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
@@ -35,6 +36,15 @@ pub(crate) fn drafted(request: &Request) -> Result<(Scene, Program), ProgramErro
 /// A simulated board that plays drafts: a tick may take longer than a board has time for.
 pub(crate) fn for_drafts(board: Board) -> Board {
     Board { limits: BoardLimits { tick_cycles_max: u32::MAX, ..board.limits }, ..board }
+}
+
+/// The simulated touch source of a request.
+pub(crate) fn touch_source(request: &Request) -> Result<TouchConfig, ProgramError> {
+    let Some(touch) = &request.touch else { return Ok(TouchConfig::REALISTIC) };
+    match TouchConfig::bundled(touch) {
+        Some(source) => Ok(source),
+        None => Ok(parse_touch_source(touch, "touch source")?),
+    }
 }
 
 /// The scene of a request, with its finger and its screen.

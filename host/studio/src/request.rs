@@ -19,6 +19,8 @@ pub struct Request {
     pub finger: Option<String>,
     /// The screen, likewise.
     pub screen: Option<String>,
+    /// The simulated touch source: the name of a bundled one or the text of one; `None` for 100 reports a second.
+    pub touch: Option<String>,
     /// Numbers of the request.
     pub numbers: Numbers,
 }
@@ -65,6 +67,7 @@ struct Head {
     files: Vec<FileHead>,
     finger: Option<String>,
     screen: Option<String>,
+    touch: Option<String>,
     #[serde(flatten)]
     numbers: Numbers,
 }
@@ -91,7 +94,8 @@ impl Request {
             rest = behind;
         }
         let entry = head.entry.strip_prefix(folder).unwrap_or(&head.entry).to_owned();
-        Ok(Self { entry, files, finger: head.finger, screen: head.screen, numbers: head.numbers })
+        let Head { finger, screen, touch, numbers, .. } = head;
+        Ok(Self { entry, files, finger, screen, touch, numbers })
     }
 
     /// The bytes of the scene file.

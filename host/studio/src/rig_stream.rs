@@ -32,8 +32,7 @@ impl<'a> RigStream<'a> {
         Ok(Self { rig, pointer: Pointer::default(), felt, last: None })
     }
 
-    /// The world, to inject faults.
-    #[cfg(test)]
+    /// The world, to change its touch source or to inject faults.
     pub(crate) fn world_mut(&mut self) -> &mut frixel_hil_sim::World {
         self.rig.world_mut()
     }
@@ -59,7 +58,7 @@ impl<'a> RigStream<'a> {
     pub(crate) fn step(&mut self) -> TickRecord {
         let tick_hz = f64::from(self.rig.tick_hz());
         let finger = self.pointer.at(self.rig.tick() as f64);
-        let world = self.rig.world_mut();
+        let world = self.world_mut();
         match finger {
             None => world.lift_finger(),
             Some(Finger { place_m: [x_m, y_m], speed_m_per_tick, normal_load_n }) => {

@@ -4,13 +4,14 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord};
+use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord, WorldConfig};
 use frixel_layers::Header;
 use frixel_play::Recorded;
 
 use crate::host::{connect, load, stream_mut};
 use crate::host_error::HostError;
 use crate::pointer::PointerSample;
+use crate::program::touch_source;
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
@@ -25,7 +26,8 @@ const SAMPLE_MS: u32 = 8;
 /// The finger moves from the left to the right of the screen and accelerates, and begins again.
 pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
     let config = RigConfig::default();
-    let config = RigConfig { world: config.world.realistic(), ..config };
+    let world = WorldConfig { touch: touch_source(request)?, ..config.world.realistic() };
+    let config = RigConfig { world, ..config };
     let mut memory = BoardMemory::new();
     let mut host = connect(Hashing::new(&mut memory, &config, request.numbers.seed)?)?;
     load(&mut host, request)?;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_driver::DeviceError;
-use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig};
 use frixel_play::PlayError;
 use frixel_wire::fault::{Fault, State};
 
@@ -11,7 +11,7 @@ use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
 use crate::host::{self, Host, stream_mut};
 use crate::host_error::HostError;
 use crate::pointer::{Pointer, PointerSample};
-use crate::program::{drafted, for_drafts};
+use crate::program::{drafted, for_drafts, touch_source};
 use crate::request::Request;
 use crate::rig_stream::RigStream;
 
@@ -28,6 +28,8 @@ pub(crate) struct Simulator {
     host: Host<RigStream<'static>>,
     /// Whether the page wants the scene to play.
     is_wanted: bool,
+    /// The world's touch source.
+    touch: TouchConfig,
 }
 
 impl Simulator {
@@ -37,8 +39,9 @@ impl Simulator {
     pub(crate) fn new(seed: u64) -> Result<Self, HostError> {
         let config = RigConfig::default();
         let config = RigConfig { world: config.world.realistic(), board: for_drafts(config.board), baud: BAUD };
+        let touch = config.world.touch;
         let stream = RigStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
-        Ok(Self { host: host::connect(stream)?, is_wanted: false })
+        Ok(Self { host: host::connect(stream)?, is_wanted: false, touch })
     }
 
     /// Ticks since power-on.
@@ -61,10 +64,16 @@ impl Simulator {
         &mut self.host
     }
 
-    /// Compiles a scene and plays it, as a draft if a board would refuse it. If it cannot be read, the one before plays
-    /// on.
+    /// Compiles a scene and plays it under the touch source of the request, as a draft if a board would refuse it. If one
+    /// of both cannot be read, the scene before plays on.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
         let (_, program) = drafted(request)?;
+        let touch = touch_source(request)?;
+        if touch != self.touch {
+            let world = stream_mut(&mut self.host).world_mut();
+            world.set_touch_source(&touch).map_err(|error| HostError::World(error.into()))?;
+            self.touch = touch;
+        }
         host::replace(&mut self.host, program)?;
         self.resume()?;
         Ok(())
@@ -180,6 +189,29 @@ mod tests {
                 assert_eq!(simulator.state().0, State::Active, "seed {seed}, round {round}");
             }
         }
+    }
+
+    #[test]
+    fn the_touch_source_of_a_request_is_that_of_the_world() {
+        let mut simulator = Simulator::new(1).unwrap();
+        let own = "reports_per_s = 60\nlatency_ms = 12\n";
+        // Of 100, 200 and 500 reports a second, one in eight is lost.
+        for (touch, expected) in [(Some("200"), 165..188), (Some("500"), 415..465), (Some(own), 59..62), (None, 80..95)]
+        {
+            simulator.play(&Request { touch: touch.map(str::to_owned), ..request() }).unwrap();
+            let sample = PointerSample { tick: 0.0, place_m: [0.03, 0.03], is_down: true, normal_load_n: None };
+            simulator.add_pointer_sample(sample);
+            let stream = stream_mut(&mut simulator.host);
+            let reports = (0..40_000).filter(|_| {
+                stream.step();
+                stream.world_mut().touch_report().is_some()
+            });
+            let reports = reports.count();
+            assert!(expected.contains(&reports), "{touch:?}: {reports} reports in a second");
+        }
+        let wrong = Request { touch: Some("reports_per_s = 0\n".to_owned()), ..request() };
+        let error = simulator.play(&wrong).unwrap_err().to_string();
+        assert!(error.contains("reports_per_s") && error.contains("touch source:1"), "{error}");
     }
 
     #[test]

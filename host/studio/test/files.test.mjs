@@ -85,6 +85,25 @@ test("a shared link and a saved zip bring the scene back", async () => {
   await opened.close();
 });
 
+test("a touch source is chosen, or dropped as a file, and stays with the work", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("#options summary");
+  await page.selectOption("#touch", "500");
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  assert.equal(await page.inputValue("#touch"), "500");
+  await give(page, ["panel.toml", "reports_per_s = 0\nlatency_ms = 8\n"]);
+  await page.locator("#problems", { hasText: "reports_per_s" }).waitFor();
+  assert.equal(await page.inputValue("#touch"), "panel");
+  await give(page, ["panel.toml", "reports_per_s = 120\nlatency_ms = 8\n"]);
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  assert.equal(await page.inputValue("#touch"), "panel");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
 test("a scene of several files goes into a link and a zip, and comes back", async () => {
   const { page, errors, close } = await openIncluding();
   const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save")]);

@@ -50,7 +50,7 @@ function engineOfAll() {
 }
 
 class FrixelScene extends HTMLElement {
-  static observedAttributes = ["scene", "src", "finger", "screen"];
+  static observedAttributes = ["scene", "src", "finger", "screen", "touch"];
 
   /**
    * What shows the scene, once it is near the window.
@@ -129,6 +129,7 @@ class FrixelScene extends HTMLElement {
     const profiles = {
       finger: this.getAttribute("finger") ?? undefined,
       screen: this.getAttribute("screen") ?? undefined,
+      touch: this.getAttribute("touch") ?? undefined,
     };
     const { files, entry } = await this.#read(engine);
     const check = await engine.check(files, entry, profiles);

@@ -3,7 +3,7 @@
 /** Files by the names that scenes use: texts, or bytes. */
 export type Files = Record<string, string | Uint8Array<ArrayBuffer>>;
 /** A name or TOML text each. */
-export type Profiles = { finger?: string; screen?: string };
+export type Profiles = { finger?: string; screen?: string; touch?: string };
 /** What identifies a scene for the engine. */
 export type Scene = { files: Files; entry: string } & Profiles;
 export type MapSize = { widthPx: number; heightPx: number };

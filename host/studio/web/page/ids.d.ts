@@ -6,7 +6,7 @@ export type Ids = {
     | "open-board" | "open-about" | "theme" | "real-size" | "replay" | "pause" | "save-csv" | "save-png"
     | "tab-pictures"]: HTMLButtonElement;
 } & { [id in "files" | "names" | "drag" | "pressure" | "loop" | "scene-name"]: HTMLInputElement } & {
-  [id in "finger" | "screen" | "look" | "mockup" | "slowness"]: HTMLSelectElement;
+  [id in "finger" | "screen" | "touch" | "look" | "mockup" | "slowness"]: HTMLSelectElement;
 } & { [id in "gallery" | "open" | "about" | "size" | "board-dialog"]: HTMLDialogElement } & {
   [id in "map-picture" | "map-finger"]: HTMLCanvasElement;
 };

@@ -6,6 +6,7 @@ import { byId, forgetNotice, notify, sentenceOf } from "./dom.js";
 import { isPicture } from "./project.js";
 
 /** @import { Files } from "../engine/types" */
+/** @import { Kind } from "./profiles.js" */
 /** @import { NamedFile, SavedScene } from "./project.js" */
 /** @typedef {(files?: Files, entry?: string) => Promise<{ names: string[] }>} UsedFiles */
 /** @typedef {{ name: string, text: string }} OwnProfile */
@@ -31,8 +32,7 @@ const PNG_END_BYTES = 64;
  * @property {[string, string][]} texts
  * @property {NamedFile[]} files
  * @property {SavedScene} [scene]
- * @property {OwnProfile} [finger]
- * @property {OwnProfile} [screen]
+ * @property {[Kind, OwnProfile][]} profiles
  */
 
 export class Incoming {
@@ -79,7 +79,7 @@ export class Incoming {
    */
   async take(list) {
     /** @type {Found} */
-    const found = { files: [], texts: [] };
+    const found = { files: [], texts: [], profiles: [] };
     /** @type {string[]} */
     const refused = [];
     forgetNotice();
@@ -92,14 +92,14 @@ export class Incoming {
     }
     try {
       await this.#sort(found, refused);
-      if (found.scene || found.finger || found.screen || found.files.length > 0) await this.onFiles(found);
+      if (found.scene || found.profiles.length > 0 || found.files.length > 0) await this.onFiles(found);
     } catch (error) {
       refused.push(sentenceOf(error));
     }
     if (refused.length > 0) notify(refused.join("\n"));
     else if (!found.scene) {
-      const profiles = [found.finger, found.screen].filter((profile) => profile !== undefined);
-      notify(`Added: ${[...found.files.map(([name]) => name), ...profiles.map(({ name }) => name)].join(", ")}.`);
+      const profiles = found.profiles.map(([, { name }]) => name);
+      notify(`Added: ${[...found.files.map(([name]) => name), ...profiles].join(", ")}.`);
     }
   }
 
@@ -120,7 +120,7 @@ export class Incoming {
       const name = fileName.replace(/\.toml$/i, "");
       const kind = kindOf(text);
       if (used.has(fileName)) found.files.push([fileName, text]);
-      else if (kind !== "scene") found[kind] = { name, text };
+      else if (kind !== "scene") found.profiles.push([kind, { name, text }]);
       else if (!found.scene) found.scene = { name, text, files: [] };
       else refused.push(`${fileName}: a scene, too, but ${found.scene.name} is opened; open one at a time`);
     }
@@ -164,9 +164,11 @@ function textOf(bytes) {
 /**
  * What a TOML text is meant as; one that nobody can tell is read as a scene, for its mistakes.
  * @param {string} text
+ * @returns {Kind | "scene"}
  */
 function kindOf(text) {
   if (/^\s*(\[|version\s*=)/m.test(text)) return "scene";
   if (/^\s*friction_coefficient\s*=/m.test(text)) return "finger";
+  if (/^\s*reports_per_s\s*=/m.test(text)) return "touch";
   return /^\s*width_mm\s*=/m.test(text) ? "screen" : "scene";
 }

@@ -113,10 +113,9 @@ export class OpenScene {
    * Takes what a person has dropped or chosen.
    * @param {Found} found
    */
-  take({ scene, files, finger, screen }) {
+  take({ scene, files, profiles }) {
     return this.#bringIn(async () => {
-      if (finger) this.#profiles.addFinger(finger);
-      if (screen) this.#profiles.addScreen(screen);
+      for (const [kind, profile] of profiles) this.#profiles.add(kind, profile);
       if (scene) await this.#replace(scene);
       else {
         for (const [name, content] of files) this.#project.add(name, content);

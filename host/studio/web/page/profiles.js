@@ -1,4 +1,4 @@
-// The finger and the screen to play with in place of the scene's own.
+// The finger and the screen to play with in place of the scene's own, and the simulated touch source.
 // @ts-check
 
 import { byId, element } from "./dom.js";
@@ -6,17 +6,19 @@ import { byId, element } from "./dom.js";
 /** @import { Profiles as Chosen } from "../engine/types" */
 /** @import { OwnProfile } from "./incoming.js" */
 /** @import { Project } from "./project.js" */
-/** @typedef {"finger" | "screen"} Kind */
+/** @typedef {keyof Chosen} Kind */
+
+const KINDS = /** @type {const} */ (["finger", "screen", "touch"]);
 
 export class Profiles {
   #project;
-  /** Another finger or screen was chosen. */
+  /** Another finger, screen or touch source was chosen. */
   onChange = () => {};
   /**
    * Profiles of one's own, by name: TOML text.
    * @type {Record<Kind, Map<string, string>>}
    */
-  #own = { finger: new Map(), screen: new Map() };
+  #own = { finger: new Map(), screen: new Map(), touch: new Map() };
 
   /**
    * @param {Project} project
@@ -24,21 +26,13 @@ export class Profiles {
    */
   constructor(project, fingers) {
     this.#project = project;
-    this.#fill("finger", ["scene's", ...fingers]);
-    this.#fill("screen", ["scene's", "example"]);
-  }
-
-  /**
-   * @param {Kind} kind
-   * @param {string[]} names
-   */
-  #fill(kind, names) {
-    const select = byId(kind);
-    select.append(...names.map((name, at) => element("option", { value: at === 0 ? "" : name }, name)));
-    select.onchange = () => {
-      this.#apply(kind, select.value);
-      this.onChange();
-    };
+    fill("finger", ["scene's", ...fingers]);
+    fill("screen", ["scene's", "example"]);
+    for (const kind of KINDS)
+      byId(kind).onchange = () => {
+        this.#apply(kind, byId(kind).value);
+        this.onChange();
+      };
   }
 
   /**
@@ -50,22 +44,12 @@ export class Profiles {
     else this.#project.profiles[kind] = this.#own[kind].get(name) ?? name;
   }
 
-  /** @param {OwnProfile} profile */
-  addFinger({ name, text }) {
-    this.#add("finger", name, text);
-  }
-
-  /** @param {OwnProfile} profile */
-  addScreen({ name, text }) {
-    this.#add("screen", name, text);
-  }
-
   /**
+   * Chooses a profile of one's own.
    * @param {Kind} kind
-   * @param {string} name
-   * @param {string} text
+   * @param {OwnProfile} profile
    */
-  #add(kind, name, text) {
+  add(kind, { name, text }) {
     if (!this.#own[kind].has(name)) byId(kind).append(element("option", { value: name }, name));
     this.#own[kind].set(name, text);
     byId(kind).value = name;
@@ -77,14 +61,22 @@ export class Profiles {
    * @param {Chosen} profiles
    */
   choose(profiles) {
-    for (const kind of /** @type {const} */ (["finger", "screen"])) {
+    for (const kind of KINDS) {
       const wanted = profiles[kind];
       const chosen = typeof wanted === "string" ? wanted : "";
-      if (chosen.includes("\n")) this.#add(kind, `saved ${kind}`, chosen);
+      if (chosen.includes("\n")) this.add(kind, { name: `saved ${kind}`, text: chosen });
       else {
         byId(kind).value = chosen;
         this.#apply(kind, byId(kind).value);
       }
     }
   }
+}
+
+/**
+ * @param {Kind} kind
+ * @param {string[]} names
+ */
+function fill(kind, names) {
+  byId(kind).append(...names.map((name, at) => element("option", { value: at === 0 ? "" : name }, name)));
 }

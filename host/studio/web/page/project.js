@@ -32,7 +32,7 @@ export class Project {
    */
   files = new Map();
   /**
-   * Finger and screen to play with in place of the scene's own; name or TOML text.
+   * Finger and screen to play with in place of the scene's own, and the simulated touch source; name or TOML text.
    * @type {Profiles}
    */
   profiles = {};
