@@ -7,7 +7,7 @@ use frixel_scene::reference::{Context, Reference};
 
 use super::likeness::Likeness;
 use super::moment::{MOMENT_HZ, Moment};
-use super::{BTreeMap, NoticedBorder, Sums};
+use super::{BTreeMap, NoticedBorder, Sums, starts_on};
 use crate::perception::{border_reference, border_sides, total_n, visible_layers};
 
 /// Longest way on either side of a border, m.
@@ -41,7 +41,11 @@ struct Crossed {
 
 impl Crossings {
     pub(super) fn new(program: &Program) -> Self {
-        Self { reference: border_reference(program), borders: BTreeMap::new(), program: program.clone() }
+        Self {
+            reference: border_reference(program, |layer| starts_on(program, layer)),
+            borders: BTreeMap::new(),
+            program: program.clone(),
+        }
     }
 
     /// Adds the borders that are crossed in a run.

@@ -134,10 +134,13 @@ impl Sums {
 impl Noticing {
     /// A finger that has touched nothing yet.
     pub fn new(program: &Program) -> Self {
-        let scene = Reference::new(program);
+        let scene = Reference::at_start(program);
         let layers = 0..scene.layer_count();
         Self {
-            uncovered: layers.clone().map(|layer| scene.clone().with_only(|other| other <= layer)).collect(),
+            uncovered: layers
+                .clone()
+                .map(|layer| scene.clone().with_only(|other| other <= layer && starts_on(program, other)))
+                .collect(),
             layers: layers.map(|_| Touches::default()).collect(),
             crossings: Crossings::new(program),
             program: program.clone(),
@@ -236,6 +239,11 @@ impl Touches {
             is_flat: Step::new(least_n, most_n).weber_steps < FLAT_WEBER_STEPS,
         }
     }
+}
+
+/// Whether a layer is on from the beginning; no host switches one on while a scene is scored.
+fn starts_on(program: &Program, layer: usize) -> bool {
+    program.start.get(layer).is_none_or(|setting| setting.on)
 }
 
 /// The stretches of a run of which all moments are wanted.

@@ -97,9 +97,10 @@ fn what_was_not_driven_is_not_judged() {
     let program = program(&[PLATE]);
     let mut noticing = Noticing::new(&program);
     let sample = FidelitySample { x_m: 0.05, y_m: 0.04, speed_m_per_s: Some(0.1), ..FidelitySample::default() };
-    noticing.add(&[sample; 4000]);
+    let samples = vec![sample; 4000];
+    noticing.add(&samples);
     assert!(noticing.layers().is_empty() && noticing.borders().is_empty());
-    assert!(!noticing.changes_along(&[sample; 4000]), "one place");
+    assert!(!noticing.changes_along(&samples), "one place");
     let outside = FidelitySample { x_m: 0.03, ..sample };
     assert!(noticing.changes_along(&[[sample; 10], [outside; 10]].concat()));
 }

@@ -29,18 +29,19 @@ struct Pairs {
 }
 
 /// What borders are judged by: vibrations at their largest, without clicks, streams, and ridges on what lies below: a
-/// ridge is felt by itself, and its region ends where nothing is felt.
-pub(crate) fn border_reference(program: &Program) -> Reference {
+/// ridge is felt by itself, and its region ends where nothing is felt. Only those layers are on for whose index `is_on` is
+/// true.
+pub(crate) fn border_reference(program: &Program, is_on: impl Fn(usize) -> bool) -> Reference {
     let is_ridge_on_ground = |layer: usize| {
         let record = program.records.get(layer);
         record.is_some_and(|record| matches!(record.layer, Layer::Edge(_)) && record.blend != Blend::Replace)
     };
-    Reference::new(program).with_vibrations_held().with_only(|layer| !is_ridge_on_ground(layer))
+    Reference::new(program).with_vibrations_held().with_only(|layer| is_on(layer) && !is_ridge_on_ground(layer))
 }
 
 /// The borders between the layers of a program, for a slow finger.
 pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
-    let reference = border_reference(program);
+    let reference = border_reference(program, |_| true);
     let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let pitch_m = width_m.max(height_m) / PLACES;
     let (columns, rows) = ((width_m / pitch_m) as usize, (height_m / pitch_m) as usize);
