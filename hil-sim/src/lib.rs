@@ -43,6 +43,6 @@ pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
 pub use rig::{BoardMemory, Rig, RigConfig, TickRecord};
-pub use stroke::{FingerState, Point, Stroke, StrokeError, StrokeRow};
+pub use stroke::{FingerState, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow};
 pub use touch::{TouchConfig, TouchReport};
 pub use world::{Felt, ReferenceFriction, World, WorldConfig};

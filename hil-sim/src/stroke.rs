@@ -8,6 +8,8 @@ mod sweep;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 pub use error::StrokeError;
+use human::Hand;
+pub use human::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS};
 use rows::Rows;
 use straight::Straight;
 use sweep::Sweep;
@@ -105,20 +107,24 @@ impl Stroke {
         Ok(Self::once(duration_s, Path::Sweep(sweep)))
     }
 
-    /// A stroke with the statistics of people recorded on a surface-haptic tablet, with the finger down for all of
-    /// `duration_s` seconds, 0.001 to 600: minimum-jerk submovements that overlap, reversals, pauses, and tremor at 8
-    /// to 12 Hz. Without a median speed it has that of the seed's person, 48 to 436 mm/s.
+    /// Touches with the statistics of people recorded on a surface-haptic tablet, for `duration_s` seconds, 0.001 to 600:
+    /// the finger lands, crosses a part of the screen with a speed and a heading that wander, lifts, and lands again;
+    /// few touches turn on the way. Without a median speed, above 0 and at most 10 m/s, the stroke has that of the seed's
+    /// person, 48 to 436 mm/s.
     ///
-    /// It was made to match the medians of about 1,300 strokes, whose recordings cannot be shipped; the shape of the
-    /// motion is that of the literature. Between milliseconds the finger goes straight.
+    /// Acceleration below 8 Hz, 95th percentile of speed and duration of the touches at each median speed are those of
+    /// about 1,300 strokes, whose recordings cannot be shipped, as they come out of a reconstruction that smooths
+    /// ([`Self::human_rough`] has another). A touch ends at the margin of the screen, so on a small screen fast touches are shorter than the
+    /// recorded ones. Between milliseconds the finger goes straight. There is tremor at 8 to 12 Hz, whose size is assumed.
     ///
-    /// [`Self::sweep`] is the even stroke of the same kind: it has no random part, and goes on for any time.
+    /// Tests judge on [`HUMAN_TEST_SEEDS`], and constants are tuned on [`HUMAN_TUNING_SEEDS`].
+    /// [`Self::sweep`] is an even stroke: it has no random part, and goes on for any time.
     ///
     /// ```
     /// use frixel_hil_sim::Stroke;
     ///
     /// let stroke = Stroke::human(0.12, 0.08, 10.0, Some(0.1), 1)?;
-    /// assert!(stroke.at(9.9).is_some());
+    /// assert!(stroke.at(0.2).is_some());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn human(
@@ -128,7 +134,22 @@ impl Stroke {
         median_speed_m_per_s: Option<f64>,
         seed: u64,
     ) -> Result<Self, StrokeError> {
-        let rows = human::rows([screen_width_m, screen_height_m], duration_s, median_speed_m_per_s, seed)?;
+        let screen_m = [screen_width_m, screen_height_m];
+        let rows = human::rows(Hand::Smooth, screen_m, duration_s, median_speed_m_per_s, seed)?;
+        Ok(Self::once(rows.end_s(), Path::Rows(rows)))
+    }
+
+    /// As [`Self::human`], with the acceleration that the recorded strokes have in a reconstruction that does not smooth,
+    /// whose noise of pixels and times is in it: 1.5 to 6 times as much. What fingers did lies between the two.
+    pub fn human_rough(
+        screen_width_m: f64,
+        screen_height_m: f64,
+        duration_s: f64,
+        median_speed_m_per_s: Option<f64>,
+        seed: u64,
+    ) -> Result<Self, StrokeError> {
+        let screen_m = [screen_width_m, screen_height_m];
+        let rows = human::rows(Hand::Rough, screen_m, duration_s, median_speed_m_per_s, seed)?;
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 

@@ -1,6 +1,11 @@
-//! Strokes with the statistics of recorded people.
+//! Strokes of people: touches with the statistics of recorded ones.
+//!
+//! A person lands, crosses a part of the screen, and lifts. The speed of a touch rises and falls as in a movement of
+//! minimum jerk, wanders around that, and so does the heading. Recorded strokes were reconstructed in two ways, which
+//! bracket what the fingers did: [`Hand::Smooth`] and [`Hand::Rough`].
 
 use core::f64::consts::TAU;
+use core::ops::RangeInclusive;
 
 use super::rows::Rows;
 use super::straight::minimum_jerk;
@@ -8,60 +13,123 @@ use super::{Point, StrokeError, StrokeRow};
 use crate::error::{OutOfRange, above_zero};
 use crate::random::{Purpose, Random};
 
+/// Seeds of [`Stroke::human`](super::Stroke::human) and [`Stroke::human_rough`](super::Stroke::human_rough) on which
+/// tests and tables judge. Nothing is tuned on them.
+pub const HUMAN_TEST_SEEDS: RangeInclusive<u64> = 1..=999;
+/// Seeds of the same strokes on which constants are tuned and predictors trained. Nothing is judged on them.
+pub const HUMAN_TUNING_SEEDS: RangeInclusive<u64> = 1001..=1999;
+
 /// Median speeds of about 1,300 strokes recorded on a surface-haptic tablet, m/s.
 const MEDIANS_M_PER_S: [f64; 2] = [0.048, 0.436];
+/// Largest median speed, m/s.
+const MEDIAN_MAX_M_PER_S: f64 = 10.0;
 /// Longest stroke, s: it is stored millisecond by millisecond.
 const DURATION_MAX_S: f64 = 600.0;
 /// Time between two stored places, s. Between them the finger goes straight, less than 1 um beside the true path.
 const ROW_S: f64 = 1e-3;
-/// Margin at each edge of the screen that targets keep, as a share of its size.
-const MARGIN: f64 = 0.08;
-/// Part of the movements that cross the screen; the others turn somewhere on the way.
-const CROSSING_SHARE: f64 = 0.7;
-/// Part of the turns at which the finger pauses, and how long, s (assumed).
-const PAUSE_SHARE: f64 = 0.2;
-const PAUSES_S: [f64; 2] = [0.1, 0.4];
-/// Largest number of minimum-jerk submovements of a movement (Flash and Henis, doi:10.1162/jocn.1991.3.3.220); each
-/// starts after this part of the one before.
-const SUBMOVEMENTS_MAX: usize = 3;
-const SUBMOVEMENT_STEP: f64 = 0.55;
-/// Spread of the durations of movements: the standard deviation of their logarithm (assumed).
-const DURATION_SPREAD: f64 = 0.25;
+/// Margin at each edge of the screen, as a share of its size. A touch that comes there ends.
+const MARGIN: f64 = 0.05;
+/// Spread of durations and of median speeds of a person's touches: the standard deviation of their logarithm
+/// (assumed).
+const DURATION_SPREAD: f64 = 0.2;
+const SPEED_SPREAD: f64 = 0.1;
+/// Fastest rate of a minimum-jerk movement over its mean.
+const PEAK_RATE: f64 = 1.875;
+/// Speed of landing and of lifting, as a share of the fastest (assumed).
+const LANDING_SHARE: f64 = 0.35;
+/// Largest slope of a touch against the width of the screen, rad (assumed).
+const SLOPE_MAX: f64 = 0.3;
+/// Time between two touches, s (assumed).
+const LIFTS_S: [f64; 2] = [0.15, 0.45];
+/// Part of the touches that turn on the way, the time that the turn takes, s, and when it is, as a share of the
+/// touch's duration (assumed).
+const TURN_SHARE: f64 = 0.08;
+const TURN_S: f64 = 0.2;
+const TURNS_AT: [f64; 2] = [0.3, 0.7];
+/// Band in which speed and heading wander, Hz (assumed).
+const WANDER_HZ: [f64; 2] = [1.0, 6.0];
+/// Band of what [`Hand::Rough`] has beside that, Hz: the uppermost below 8 Hz, so that the acceleration comes with the
+/// least speed.
+const ROUGH_HZ: [f64; 2] = [5.0, 8.0];
 /// Physiological tremor: its band in Hz, and its size in each axis in m rms (assumed).
 const TREMOR_HZ: [f64; 2] = [8.0, 12.0];
 const TREMOR_RMS_M: f64 = 0.1e-3;
-/// Sines that the tremor is a sum of.
-const TREMOR_SINES: usize = 3;
+/// Sines that a random motion is a sum of.
+const SINES: usize = 6;
+/// Steps of the bisection for a touch's median speed.
+const BISECTIONS: u32 = 20;
 
-/// A part of the motion with minimum jerk. Those that overlap are added.
+/// How a person's touches differ with their median speed. The numbers were chosen so that duration, acceleration below 8
+/// Hz and the 95th percentile of speed are those of recorded strokes, which `tests.rs` states.
 #[derive(Clone, Copy, Debug)]
-struct Submovement {
-    start_s: f64,
+struct Habits {
+    median_m_per_s: f64,
+    /// Median duration of a touch, s.
     duration_s: f64,
-    x_step_m: f64,
-    y_step_m: f64,
+    /// Root mean square of the logarithm of speed around its rise and fall, and of the heading around its mean, in rad.
+    wander: f64,
+    /// What [`Hand::Rough`] adds to the velocity in each axis, rms, m/s.
+    rough_m_per_s: f64,
 }
 
-/// The strokes of one person on a screen.
-struct Hand {
+const HABITS: [Habits; 4] = [
+    Habits { median_m_per_s: 0.05, duration_s: 1.03, wander: 0.36, rough_m_per_s: 0.02 },
+    Habits { median_m_per_s: 0.1, duration_s: 0.68, wander: 0.24, rough_m_per_s: 0.028 },
+    Habits { median_m_per_s: 0.2, duration_s: 0.80, wander: 0.20, rough_m_per_s: 0.122 },
+    Habits { median_m_per_s: 0.34, duration_s: 0.58, wander: 0.17, rough_m_per_s: 0.084 },
+];
+
+impl Habits {
+    /// Those of a median speed: in proportion to its logarithm between two of the table, constant beyond.
+    fn at(median_m_per_s: f64) -> Self {
+        let [first, .., last] = HABITS;
+        let pairs = HABITS.iter().zip(HABITS.iter().skip(1));
+        let mut between = pairs.filter(|(_, faster)| median_m_per_s < faster.median_m_per_s);
+        let Some((slower, faster)) = between.next() else { return Self { median_m_per_s, ..last } };
+        if median_m_per_s < first.median_m_per_s {
+            return Self { median_m_per_s, ..first };
+        }
+        let share = libm::log(median_m_per_s / slower.median_m_per_s)
+            / libm::log(faster.median_m_per_s / slower.median_m_per_s);
+        let mixed = |value: fn(&Self) -> f64| value(slower) + share * (value(faster) - value(slower));
+        Self {
+            median_m_per_s,
+            duration_s: mixed(|habits| habits.duration_s),
+            wander: mixed(|habits| habits.wander),
+            rough_m_per_s: mixed(|habits| habits.rough_m_per_s),
+        }
+    }
+}
+
+/// The reconstruction of recorded strokes whose statistics a hand has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Hand {
+    /// Smoothed.
+    Smooth,
+    /// With the noise of pixels and of the times of reports in it.
+    Rough,
+}
+
+/// The touches of one person on a screen.
+struct Person {
     random: Random,
-    screen_m: [f64; 2],
-    speed_m_per_s: f64,
-    place: Point,
-    /// The side of the screen that the next crossing goes to.
+    hand: Hand,
+    habits: Habits,
+    /// Width and height of the screen within its margins, m.
+    inner_m: [f64; 2],
+    tremor: [Wave; 2],
     goes_right: bool,
 }
 
 /// Rows of the stroke of a seed, at a median speed or, without one, at that of the seed's person.
 pub(super) fn rows(
-    screen_m: [f64; 2],
+    hand: Hand,
+    [width_m, height_m]: [f64; 2],
     duration_s: f64,
     median_speed_m_per_s: Option<f64>,
     seed: u64,
 ) -> Result<Rows, StrokeError> {
-    let [width_m, height_m] = screen_m;
-    above_zero("screen width in m", width_m)?;
-    above_zero("screen height in m", height_m)?;
+    let screen_m = [above_zero("screen width in m", width_m)?, above_zero("screen height in m", height_m)?];
     if !(duration_s > ROW_S && duration_s <= DURATION_MAX_S) {
         let expected = "above 0.001 and at most 600 for a human stroke";
         return Err(OutOfRange { name: "duration_s", expected, found: duration_s }.into());
@@ -69,137 +137,184 @@ pub(super) fn rows(
     let mut random = Random::new(seed, Purpose::HumanStroke);
     let [slowest, fastest] = MEDIANS_M_PER_S;
     let drawn_m_per_s = slowest * libm::pow(fastest / slowest, random.uniform());
-    let speed_m_per_s = above_zero("median speed in m/s", median_speed_m_per_s.unwrap_or(drawn_m_per_s))?;
-    let tremor = [(); 2].map(|()| Tremor::drawn(&mut random));
-    let place = Point { x_m: MARGIN * width_m, y_m: (0.2 + 0.6 * random.uniform()) * height_m };
-    let mut hand = Hand { random, screen_m, speed_m_per_s, place, goes_right: true };
-    let start = hand.place;
-    // The speed of movements is scaled so that its median is the given one; half again as much motion covers it.
-    let submovements = hand.moves(1.5 * duration_s + 2.0);
-    let nominal = places(start, &submovements, 1.0, duration_s);
-    let scale = (median_m_per_s(&nominal) / speed_m_per_s).clamp(0.5, 1.5);
-    let rows: Vec<StrokeRow> = places(start, &submovements, scale, duration_s)
-        .into_iter()
-        .enumerate()
-        .map(|(index, place)| {
+    let found = above_zero("median speed in m/s", median_speed_m_per_s.unwrap_or(drawn_m_per_s))?;
+    let too_fast = || StrokeError::from(OutOfRange { name: "median speed in m/s", expected: "at most 10", found });
+    if found > MEDIAN_MAX_M_PER_S {
+        return Err(too_fast());
+    }
+    let tremor = [(); 2].map(|()| Wave::drawn(&mut random, TREMOR_HZ));
+    let inner_m = screen_m.map(|side_m| (1.0 - 2.0 * MARGIN) * side_m);
+    let mut person = Person { random, hand, habits: Habits::at(found), inner_m, tremor, goes_right: true };
+    let margin_m = screen_m.map(|side_m| MARGIN * side_m);
+    Rows::new(&person.rows(margin_m, (duration_s / ROW_S) as usize)).ok_or_else(too_fast)
+}
+
+impl Person {
+    /// So many rows after the first one, each [`ROW_S`] after the one before, or fewer where the finger is up.
+    fn rows(&mut self, [left_m, top_m]: [f64; 2], count: usize) -> Vec<StrokeRow> {
+        let mut rows = Vec::with_capacity(count + 1);
+        let row =
+            |index: usize, place: Option<Point>| StrokeRow { t_s: ROW_S * index as f64, place, normal_load_n: None };
+        let mut index = 0;
+        while index < count {
+            for [x_m, y_m] in self.touch() {
+                let [x_tremor, y_tremor] = self.tremor.map(|wave| TREMOR_RMS_M * wave.at(ROW_S * index as f64));
+                let place = Point { x_m: left_m + x_m + x_tremor, y_m: top_m + y_m + y_tremor };
+                rows.push(row(index, Some(place)));
+                index += 1;
+            }
+            rows.push(row(index, None));
+            index += (self.within(LIFTS_S) / ROW_S) as usize;
+        }
+        rows.truncate(rows.partition_point(|row| row.t_s <= ROW_S * count as f64));
+        if rows.last().is_some_and(|last| last.t_s < ROW_S * (count as f64 - 0.5)) {
+            rows.push(row(count, None));
+        }
+        rows
+    }
+
+    /// Evenly spread between two values.
+    fn within(&mut self, [least, most]: [f64; 2]) -> f64 {
+        least + (most - least) * self.random.uniform()
+    }
+
+    /// Places of the next touch, one every [`ROW_S`], within the margins.
+    fn touch(&mut self) -> Vec<[f64; 2]> {
+        let median_m_per_s = self.habits.median_m_per_s * libm::exp(SPEED_SPREAD * self.random.gaussian());
+        let duration_s = self.habits.duration_s * libm::exp(DURATION_SPREAD * self.random.gaussian());
+        let slope = self.within([-SLOPE_MAX, SLOPE_MAX]);
+        let turns = self.random.uniform() < TURN_SHARE;
+        let turn_s = self.within(TURNS_AT) * duration_s;
+        let [speed, heading] = [(); 2].map(|()| Wave::drawn(&mut self.random, WANDER_HZ));
+        let rough = [(); 2].map(|()| Wave::drawn(&mut self.random, ROUGH_HZ));
+        let rough_m_per_s = if self.hand == Hand::Rough { self.habits.rough_m_per_s } else { 0.0 };
+        let wander = self.habits.wander;
+        let velocities = (0..(duration_s / ROW_S) as usize).map(|index| {
             let t_s = ROW_S * index as f64;
-            let [x, y] = &tremor;
-            let place = Some(Point { x_m: place.x_m + x.at(t_s), y_m: place.y_m + y.at(t_s) });
-            StrokeRow { t_s, place, normal_load_n: None }
-        })
-        .collect();
-    Rows::new(&rows).ok_or_else(|| {
-        OutOfRange { name: "median speed in m/s", expected: "a speed of a finger", found: speed_m_per_s }.into()
-    })
-}
-
-/// Places every [`ROW_S`], with all times of the motion multiplied by `scale`.
-fn places(start: Point, submovements: &[Submovement], scale: f64, duration_s: f64) -> Vec<Point> {
-    let count = libm::round(duration_s / ROW_S) as usize;
-    // Submovements are in the order of their starts, and only a few overlap.
-    let (mut done, mut place) = (0, start);
-    (0..=count)
-        .map(|index| {
-            let t_s = ROW_S * index as f64 / scale;
-            while let Some(ended) = submovements.get(done).filter(|ended| ended.start_s + ended.duration_s <= t_s) {
-                place = Point { x_m: place.x_m + ended.x_step_m, y_m: place.y_m + ended.y_step_m };
-                done += 1;
+            let direction = if turns { 1.0 - 2.0 * smooth_step((t_s - turn_s) / TURN_S + 0.5) } else { 1.0 };
+            let speed = direction * profile(t_s / duration_s) * libm::exp(wander * speed.at(t_s));
+            let angle = slope + wander * heading.at(t_s);
+            Velocity {
+                of_speed: [speed * libm::cos(angle), speed * libm::sin(angle)],
+                beside_m_per_s: rough.map(|wave| rough_m_per_s * wave.at(t_s)),
             }
-            let under_way = submovements.iter().skip(done).take_while(|submovement| submovement.start_s < t_s);
-            under_way.fold(place, |place, submovement| {
-                let (progress, _) = minimum_jerk(((t_s - submovement.start_s) / submovement.duration_s).min(1.0));
-                Point {
-                    x_m: place.x_m + progress * submovement.x_step_m,
-                    y_m: place.y_m + progress * submovement.y_step_m,
-                }
-            })
-        })
-        .collect()
-}
-
-fn median_m_per_s(places: &[Point]) -> f64 {
-    let mut speeds: Vec<f64> = places
-        .windows(2)
-        .filter_map(|pair| match pair {
-            [from, to] => Some(libm::hypot(to.x_m - from.x_m, to.y_m - from.y_m) / ROW_S),
-            _ => None,
-        })
-        .collect();
-    speeds.sort_by(f64::total_cmp);
-    speeds.get(speeds.len() / 2).copied().unwrap_or_default()
-}
-
-impl Hand {
-    /// The submovements of at least `seconds` seconds, in the order of their starts.
-    fn moves(&mut self, seconds: f64) -> Vec<Submovement> {
-        let mut submovements = Vec::new();
-        let mut start_s = 0.0;
-        while start_s < seconds {
-            start_s = self.movement(start_s, &mut submovements);
-            if self.random.uniform() < PAUSE_SHARE {
-                let [shortest_s, longest_s] = PAUSES_S;
-                start_s += shortest_s + (longest_s - shortest_s) * self.random.uniform();
-            }
-        }
-        submovements
-    }
-
-    /// Appends the submovements of one movement, and returns its end.
-    fn movement(&mut self, start_s: f64, submovements: &mut Vec<Submovement>) -> f64 {
-        let target = self.target();
-        let (x_m, y_m) = (target.x_m - self.place.x_m, target.y_m - self.place.y_m);
-        self.place = target;
-        let count = 1 + (self.random.uniform() * SUBMOVEMENTS_MAX as f64) as usize;
-        let parts: Vec<f64> = (0..count).map(|_| 0.5 + self.random.uniform()).collect();
-        let sum: f64 = parts.iter().sum();
-        // The whole takes as long as its length at the hand's speed; its parts overlap.
-        let whole_s = libm::hypot(x_m, y_m) / self.speed_m_per_s * libm::exp(DURATION_SPREAD * self.random.gaussian());
-        let duration_s = (whole_s / (1.0 + SUBMOVEMENT_STEP * (count - 1) as f64)).max(ROW_S);
-        for (index, part) in parts.iter().enumerate() {
-            submovements.push(Submovement {
-                start_s: start_s + SUBMOVEMENT_STEP * duration_s * index as f64,
-                duration_s,
-                x_step_m: x_m * part / sum,
-                y_step_m: y_m * part / sum,
-            });
-        }
-        start_s + duration_s * (1.0 + SUBMOVEMENT_STEP * (count - 1) as f64)
-    }
-
-    /// Where the next movement goes: to the other side of the screen, or to a place before it.
-    fn target(&mut self) -> Point {
-        let [width_m, height_m] = self.screen_m;
-        let crosses = self.random.uniform() < CROSSING_SHARE;
-        let far = if crosses { 0.02 + 0.15 * self.random.uniform() } else { 0.2 + 0.4 * self.random.uniform() };
-        let from_left = if self.goes_right { 1.0 - MARGIN - far } else { MARGIN + far };
-        self.goes_right = !self.goes_right;
-        // Slightly oblique.
-        let y_step_m = 0.12 * width_m * (2.0 * self.random.uniform() - 1.0);
-        let y_m = self.place.y_m + y_step_m;
-        let (top_m, bottom_m) = (MARGIN * height_m, (1.0 - MARGIN) * height_m);
-        let reflected_m = if y_m < top_m || y_m > bottom_m { self.place.y_m - y_step_m } else { y_m };
-        Point { x_m: from_left * width_m, y_m: reflected_m.clamp(top_m, bottom_m) }
+        });
+        let path = Path::of_median(&velocities.collect::<Vec<_>>(), median_m_per_s, self.inner_m);
+        let goes_right = self.goes_right;
+        self.goes_right = !goes_right;
+        let [[x_min, x_max], [y_min, y_max]] = path.spans_m;
+        let [width_m, height_m] = self.inner_m;
+        let left_m = self.random.uniform() * (width_m - (x_max - x_min)) - x_min;
+        let top_m = self.random.uniform() * (height_m - (y_max - y_min)) - y_min;
+        let place = |[x_m, y_m]: [f64; 2]| {
+            let x_m = left_m + x_m;
+            [if goes_right { x_m } else { width_m - x_m }, top_m + y_m]
+        };
+        path.places_m.into_iter().map(place).collect()
     }
 }
 
-/// Tremor along one axis: a few sines in its band.
+/// Speed of a touch over its fastest, from its start at 0 to its end at 1: the minimum-jerk movement, and
+/// [`LANDING_SHARE`] at both ends.
+fn profile(share: f64) -> f64 {
+    let (_, rate) = minimum_jerk(share);
+    LANDING_SHARE + (1.0 - LANDING_SHARE) * rate / PEAK_RATE
+}
+
+/// Rises from 0 to 1 while `share` does, without a step of its slope.
+fn smooth_step(share: f64) -> f64 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// The velocity at a moment of a touch, before its speed is known.
 #[derive(Clone, Copy, Debug)]
-struct Tremor {
-    /// Frequency in Hz and phase in rad.
-    sines: [(f64, f64); TREMOR_SINES],
+struct Velocity {
+    /// The part in proportion to the speed of the touch.
+    of_speed: [f64; 2],
+    /// The other part, m/s.
+    beside_m_per_s: [f64; 2],
 }
 
-impl Tremor {
-    fn drawn(random: &mut Random) -> Self {
-        let [lowest_hz, highest_hz] = TREMOR_HZ;
-        let sines = [(); TREMOR_SINES]
-            .map(|()| (lowest_hz + (highest_hz - lowest_hz) * random.uniform(), TAU * random.uniform()));
-        Self { sines }
+impl Velocity {
+    fn at_speed(&self, speed_m_per_s: f64) -> [f64; 2] {
+        let [x, y] = self.of_speed;
+        let [x_beside, y_beside] = self.beside_m_per_s;
+        [speed_m_per_s * x + x_beside, speed_m_per_s * y + y_beside]
+    }
+}
+
+/// A way from its start, with a place every [`ROW_S`].
+struct Path {
+    places_m: Vec<[f64; 2]>,
+    /// Least and largest place along each axis.
+    spans_m: [[f64; 2]; 2],
+    median_m_per_s: f64,
+}
+
+impl Path {
+    /// The path of velocities at the speed at which their median is the given one.
+    fn of_median(velocities: &[Velocity], median_m_per_s: f64, inner_m: [f64; 2]) -> Self {
+        // The median lies above 0.3 of the fastest, but a touch may be cut at its edge, and start slowly.
+        let (mut low, mut high) = (0.0, 8.0 * median_m_per_s);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            let is_slow = Self::at_speed(velocities, middle, inner_m).median_m_per_s < median_m_per_s;
+            (low, high) = if is_slow { (middle, high) } else { (low, middle) };
+        }
+        Self::at_speed(velocities, low, inner_m)
+    }
+
+    /// The path of velocities at a speed, up to where it would leave a screen on which it fits so far.
+    fn at_speed(velocities: &[Velocity], speed_m_per_s: f64, inner_m: [f64; 2]) -> Self {
+        let (mut place_m, mut spans_m) = ([0.0_f64; 2], [[0.0_f64; 2]; 2]);
+        let mut places_m = vec![place_m];
+        let mut speeds_m_per_s = Vec::with_capacity(velocities.len());
+        for velocity in velocities {
+            let [x_m_per_s, y_m_per_s] = velocity.at_speed(speed_m_per_s);
+            let [x_m, y_m] = place_m;
+            place_m = [x_m + ROW_S * x_m_per_s, y_m + ROW_S * y_m_per_s];
+            let mut grown_m = spans_m;
+            for ([least_m, most_m], m) in grown_m.iter_mut().zip(place_m) {
+                (*least_m, *most_m) = (least_m.min(m), most_m.max(m));
+            }
+            if grown_m.iter().zip(inner_m).any(|([least_m, most_m], side_m)| most_m - least_m > side_m) {
+                break;
+            }
+            spans_m = grown_m;
+            places_m.push(place_m);
+            speeds_m_per_s.push(libm::hypot(x_m_per_s, y_m_per_s));
+        }
+        let middle = speeds_m_per_s.len() / 2;
+        let median_m_per_s = if speeds_m_per_s.is_empty() {
+            // Nothing fits: too fast.
+            f64::INFINITY
+        } else {
+            *speeds_m_per_s.select_nth_unstable_by(middle, f64::total_cmp).1
+        };
+        Self { places_m, spans_m, median_m_per_s }
+    }
+}
+
+/// A random motion in a band of frequencies: a few sines, 1 rms together.
+#[derive(Clone, Copy, Debug)]
+struct Wave {
+    /// Frequency in Hz and phase in rad.
+    sines: [(f64, f64); SINES],
+}
+
+impl Wave {
+    fn drawn(random: &mut Random, [lowest_hz, highest_hz]: [f64; 2]) -> Self {
+        let hz = |share: f64| lowest_hz * libm::pow(highest_hz / lowest_hz, share);
+        Self { sines: [(); SINES].map(|()| (hz(random.uniform()), TAU * random.uniform())) }
     }
 
     fn at(&self, t_s: f64) -> f64 {
         let sum: f64 = self.sines.iter().map(|(hz, phase)| libm::sin(TAU * hz * t_s + phase)).sum();
         // Each sine has a mean square of a half.
-        sum * TREMOR_RMS_M * (2.0 / TREMOR_SINES as f64).sqrt()
+        sum * (2.0 / SINES as f64).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,6 @@
 use proptest::prelude::*;
 
 use super::{FingerState, Point, Stroke, StrokeError};
-use frixel_felt::band_rms;
 
 const LEFT: Point = Point { x_m: 0.01, y_m: 0.02 };
 const RIGHT: Point = Point { x_m: 0.09, y_m: 0.08 };
@@ -168,85 +167,6 @@ proptest! {
             prop_assert!((at(&stroke, t0).speed_m_per_s - speed_m_per_s).abs() <= 1e-9 * speed_m_per_s);
         }
     }
-}
-
-const HUMAN_S: f64 = 30.0;
-
-fn human(median_speed_m_per_s: Option<f64>, seed: u64) -> Vec<FingerState> {
-    let stroke = Stroke::human(0.12, 0.08, HUMAN_S, median_speed_m_per_s, seed).unwrap();
-    (0..30_000).map(|ms| at(&stroke, 1e-3 * f64::from(ms))).collect()
-}
-
-fn median_m_per_s(states: &[FingerState]) -> f64 {
-    let mut speeds: Vec<f64> = states.iter().map(|state| state.speed_m_per_s).collect();
-    speeds.sort_by(f64::total_cmp);
-    speeds[speeds.len() / 2]
-}
-
-#[test]
-fn human_strokes_have_the_medians_of_the_recorded_ones() {
-    let medians: Vec<f64> = (0..60).map(|seed| median_m_per_s(&human(None, seed))).collect();
-    let (least, most) = medians.iter().fold((f64::MAX, 0.0_f64), |(a, b), median| (a.min(*median), b.max(*median)));
-    assert!(least > 0.9 * 0.048 && least < 0.070, "{least}");
-    assert!(most < 1.1 * 0.436 && most > 0.35, "{most}");
-    for median in [0.05, 0.1, 0.2, 0.4] {
-        for seed in 0..5 {
-            let found = median_m_per_s(&human(Some(median), seed));
-            assert!((found / median - 1.0).abs() < 0.1, "{found}, expected {median}");
-        }
-    }
-}
-
-#[test]
-fn human_strokes_pause_turn_and_stay_on_the_screen() {
-    for (seed, median) in [(1, 0.05), (2, 0.1), (3, 0.2), (4, 0.4)] {
-        let states = human(Some(median), seed);
-        assert!(states.iter().all(|state| state.x_m > 0.0 && state.x_m < 0.12 && state.y_m > 0.0 && state.y_m < 0.08));
-        let span = |value: fn(&FingerState) -> f64| {
-            let values = states.iter().map(value);
-            values.clone().fold(0.0, f64::max) - values.fold(f64::MAX, f64::min)
-        };
-        assert!(span(|state| state.x_m) > 0.08, "{}", span(|state| state.x_m));
-        assert!(span(|state| state.y_m) > 0.015, "{}", span(|state| state.y_m));
-        // Turns between velocities of half the median, so that tremor is none.
-        let mut turns = 0;
-        let mut direction = 0.0;
-        for pair in states.windows(21) {
-            let velocity = (pair[20].x_m - pair[0].x_m) / 20e-3;
-            if velocity.abs() > 0.5 * median {
-                turns += u32::from(velocity * direction < 0.0);
-                direction = velocity;
-            }
-        }
-        let expected = HUMAN_S * median / 0.08;
-        assert!(f64::from(turns) > 0.5 * expected && f64::from(turns) < 4.0 * expected, "{turns} turns at {median}");
-        // In a pause, 50 ms pass within the tremor's reach.
-        let still = states.windows(51).filter(|pair| distance_m(pair[0], pair[50]) < 0.3e-3).count();
-        let share = still as f64 / states.len() as f64;
-        assert!((0.005..0.3).contains(&share), "{share} of the time at {median}");
-    }
-}
-
-#[test]
-fn human_strokes_have_tremor_at_8_to_12_hz() {
-    let states = human(Some(0.05), 3);
-    let places_m: Vec<f64> = states.iter().map(|state| state.y_m).collect();
-    let rms_m = |from_hz, to_hz| band_rms(&places_m, 1000, from_hz..to_hz);
-    assert!((rms_m(7.5, 12.5) / 0.1e-3 - 1.0).abs() < 0.3, "{}", rms_m(7.5, 12.5));
-    assert!(rms_m(14.0, 100.0) < 0.2 * rms_m(7.5, 12.5), "{}", rms_m(14.0, 100.0));
-}
-
-#[test]
-fn a_human_stroke_comes_from_its_seed_and_has_the_speed_of_its_places() {
-    let stroke = |seed| Stroke::human(0.12, 0.08, 5.0, Some(0.1), seed).unwrap();
-    assert_eq!(at(&stroke(1), 2.345), at(&stroke(1), 2.345));
-    assert_ne!(at(&stroke(1), 2.345), at(&stroke(2), 2.345));
-    let (before, after) = (at(&stroke(1), 2.345_2), at(&stroke(1), 2.345_7));
-    assert!((distance_m(before, after) / 0.5e-3 - before.speed_m_per_s).abs() < 1e-9);
-    let too_long = Stroke::human(0.12, 0.08, 601.0, None, 1).unwrap_err().to_string();
-    assert_eq!(too_long, "stroke: duration_s must be above 0.001 and at most 600 for a human stroke, found 601");
-    let backwards = Stroke::human(0.12, 0.08, 1.0, Some(-0.1), 1).unwrap_err().to_string();
-    assert_eq!(backwards, "stroke: median speed in m/s must be finite and above 0, found -0.1");
 }
 
 #[test]

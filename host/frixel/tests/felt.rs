@@ -6,17 +6,19 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::collections::BTreeMap;
+use std::iter::Take;
+use std::ops::RangeInclusive;
 
 use frixel::score::samples;
-use frixel_felt::fidelity::Fidelity;
-use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
+use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
+use frixel_hil_sim::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, RigConfig, Stroke, TouchConfig};
 use frixel_lab::score::Trial;
 use frixel_scene::{Program, Scene, compile};
 
-/// Error from 0 to 400 Hz over the rms of the reference's changes, landing and end of a touch included, correlation, and
-/// spurious force between 40 and 400 Hz: a finger's own noise, measured as 4.5 mN from 10 to 1000 Hz, of which a 1/f
-/// spectrum has 3.2 mN from 40 to 400 Hz. The goal is the larger, until the noise of that band is better known.
-const GOAL: Held = Held { ratio_max: 0.25, correlation_min: 0.9, spurious_max_n: 4.5e-3 };
+/// Error from 0 to 400 Hz over the rms of the reference's changes, landing and end of a touch included, at 50 and 100
+/// mm/s; correlation; and the third octave between 40 and 400 Hz that grew most, over the finger's own noise in it. At 200
+/// mm/s the goal of the error is 0.35.
+const GOAL: Held = Held { ratio_max: 0.25, correlation_min: 0.9, spurious_max_db: 6.0 };
 const SECONDS: f64 = 8.5;
 /// Swing of the texture: nearly all that the finger below has at 150 V.
 const SWING_N: f64 = 0.11;
@@ -25,14 +27,14 @@ const SWING_N: f64 = 0.11;
 struct Held {
     ratio_max: f64,
     correlation_min: f64,
-    spurious_max_n: f64,
+    spurious_max_db: f64,
 }
 
 impl Held {
     fn holds(&self, felt: &Felt) -> bool {
         felt.ratio <= self.ratio_max
             && felt.correlation >= self.correlation_min
-            && felt.spurious_n <= self.spurious_max_n
+            && felt.spurious_db <= self.spurious_max_db
     }
 }
 
@@ -42,63 +44,58 @@ struct Felt {
     ratio: f64,
     correlation: f64,
     spurious_n: f64,
+    /// Mean power of the worst third octave of each stroke, over the finger's own noise.
+    spurious_db: f64,
 }
 
 impl Felt {
     fn over(plays: &[Fidelity]) -> Self {
         let count = plays.len() as f64;
         let mean = |value: &dyn Fn(&Fidelity) -> f64| plays.iter().map(value).sum::<f64>() / count;
+        let power = |play: &Fidelity| play.spurious_over_noise_db.map_or(0.0, |db| 10_f64.powf(0.1 * db));
         Self {
             ratio: mean(&|play| play.error.unwrap().powi(2)).sqrt(),
             correlation: mean(&|play| play.correlation.unwrap()),
             spurious_n: mean(&|play| play.spurious_40_to_400_hz_n.powi(2)).sqrt(),
+            spurious_db: 10.0 * mean(&power).log10(),
         }
     }
 }
 
-/// A touch source, and the smallest feature that it is to be good for.
+/// Makes the stroke of a person, as [`Stroke::human`] does.
+type Hand = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, frixel_hil_sim::StrokeError>;
+
+const HANDS: [(&str, Hand); 2] = [("human", Stroke::human), ("human-rough", Stroke::human_rough)];
+
+/// A bundled touch source, and the smallest feature that it is to be good for.
 #[derive(Clone, Copy)]
 struct Class {
-    rate_hz: f64,
-    latency_s: f64,
+    source: &'static str,
     wavelength_mm: f64,
 }
 
-const SLOW: Class = Class { rate_hz: 100.0, latency_s: 10e-3, wavelength_mm: 10.0 };
-const MEDIUM: Class = Class { rate_hz: 200.0, latency_s: 5e-3, wavelength_mm: 5.0 };
-const FAST: Class = Class { rate_hz: 500.0, latency_s: 3e-3, wavelength_mm: 2.0 };
+const SLOW: Class = Class { source: "100", wavelength_mm: 10.0 };
+const MEDIUM: Class = Class { source: "200", wavelength_mm: 5.0 };
+const FAST: Class = Class { source: "500", wavelength_mm: 2.0 };
 
-/// Class, median speed of the stroke in mm/s, and what is held: the goal, or how far it is missed.
-///
-/// What misses it is latency: at a median of 200 mm/s a hand turns within 50 ms with accelerations of 3 m/s^2, and 20
-/// ms of these are 0.6 mm. At 100 mm/s on an ideal plant, `frixel report` has an error of 0.22 for the board's filter
-/// with 100 reports a second, 0.19 for the best of 15 tunings chosen with hindsight, and 0.06 for a smoother that sees
-/// later reports. No bound has been computed at 200 mm/s.
+/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed.
 const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 50.0, GOAL),
-    (SLOW, 100.0, Held { ratio_max: 0.32, spurious_max_n: 5e-3, ..GOAL }),
-    (SLOW, 200.0, Held { ratio_max: 0.70, correlation_min: 0.74, spurious_max_n: 10e-3 }),
-    (MEDIUM, 50.0, GOAL),
-    (MEDIUM, 100.0, GOAL),
-    (MEDIUM, 200.0, Held { ratio_max: 0.55, correlation_min: 0.84, spurious_max_n: 6e-3 }),
-    (FAST, 50.0, GOAL),
-    (FAST, 100.0, GOAL),
-    (FAST, 200.0, Held { ratio_max: 0.47, correlation_min: 0.88, ..GOAL }),
+    (SLOW, 100.0, Held { ratio_max: 0.33, spurious_max_db: 9.5, ..GOAL }),
+    (SLOW, 200.0, Held { ratio_max: 0.45, spurious_max_db: 13.5, ..GOAL }),
+    (MEDIUM, 50.0, Held { spurious_max_db: 6.5, ..GOAL }),
+    (MEDIUM, 100.0, Held { ratio_max: 0.30, spurious_max_db: 10.5, ..GOAL }),
+    (MEDIUM, 200.0, Held { ratio_max: 0.40, spurious_max_db: 13.0, ..GOAL }),
+    (FAST, 50.0, Held { spurious_max_db: 7.0, ..GOAL }),
+    (FAST, 100.0, Held { ratio_max: 0.30, spurious_max_db: 8.0, ..GOAL }),
+    (FAST, 200.0, Held { ratio_max: 0.36, spurious_max_db: 9.5, ..GOAL }),
 ];
 
-/// Every effect of the plant, with a touch source of a class that loses one report in eight and bunches one in thirty.
+/// Every effect of the plant, with the touch source of a class.
 fn rig(class: &Class) -> RigConfig {
     let mut rig = RigConfig::default();
     rig.world = rig.world.realistic();
-    rig.world.touch = TouchConfig {
-        rate_hz: class.rate_hz,
-        latency_s: class.latency_s,
-        jitter_rms_s: 0.05 / class.rate_hz,
-        step_m: 0.0,
-        pause_rate_hz: 0.0,
-        pause_max_s: 0.0,
-        ..TouchConfig::REALISTIC
-    };
+    rig.world.touch = TouchConfig::bundled(class.source).unwrap();
     rig
 }
 
@@ -114,54 +111,60 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
     compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap()
 }
 
-fn play(rig: &RigConfig, program: &Program, speed_mm_s: f64, seed: u64) -> Fidelity {
-    let stroke = Stroke::human(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
+fn record(rig: &RigConfig, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
+    let stroke = hand(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
     let trial = Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None };
-    Fidelity::of(&samples(program, rig, &trial).unwrap()).unwrap()
+    samples(program, rig, &trial).unwrap()
 }
 
 fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> Felt {
     let rig = rig(class);
     let mut program = program(&rig, class.wavelength_mm);
     change(&mut program);
-    Felt::over(&[play(&rig, &program, speed_mm_s, seed)])
+    Felt::over(&[Fidelity::of(&record(&rig, &program, Stroke::human, speed_mm_s, seed)).unwrap()])
 }
 
-fn mean(class: &Class, speed_mm_s: f64, seeds: std::ops::RangeInclusive<u64>) -> Felt {
-    let rig = rig(class);
-    let program = program(&rig, class.wavelength_mm);
-    Felt::over(&seeds.map(|seed| play(&rig, &program, speed_mm_s, seed)).collect::<Vec<_>>())
+type Seeds = Take<RangeInclusive<u64>>;
+
+fn mean(rig: &RigConfig, class: &Class, hand: Hand, speed_mm_s: f64, seeds: &Seeds) -> Felt {
+    let program = program(rig, class.wavelength_mm);
+    let play = |seed| Fidelity::of(&record(rig, &program, hand, speed_mm_s, seed)).unwrap();
+    Felt::over(&seeds.clone().map(play).collect::<Vec<_>>())
 }
 
-fn hold(seeds: &std::ops::RangeInclusive<u64>) {
-    let mut failed = Vec::new();
+/// Plays every case with a hand, and returns a line for each that does not hold.
+fn missed(hand: Hand, seeds: &Seeds) -> Vec<String> {
+    let mut missed = Vec::new();
     for (class, speed_mm_s, held) in CASES {
-        let found = mean(&class, speed_mm_s, seeds.clone());
+        let found = mean(&rig(&class), &class, hand, speed_mm_s, seeds);
         let line = format!(
-            "{} Hz, {} mm at {speed_mm_s} mm/s: error {:.2}, correlation {:.3}, spurious {:.1} mN",
-            class.rate_hz,
+            "{} Hz, {} mm at {speed_mm_s} mm/s: error {:.2}, correlation {:.3}, spurious {:.1} mN, {:.1} dB",
+            class.source,
             class.wavelength_mm,
             found.ratio,
             found.correlation,
-            1e3 * found.spurious_n
+            1e3 * found.spurious_n,
+            found.spurious_db
         );
         println!("{line}");
         if !held.holds(&found) {
-            failed.push(line);
+            missed.push(line);
         }
     }
-    assert!(failed.is_empty(), "{failed:#?}");
+    missed
 }
 
 #[test]
 fn textures_are_felt_within_the_goals() {
-    hold(&(1..=4));
+    let missed = missed(Stroke::human, &HUMAN_TEST_SEEDS.take(4));
+    assert!(missed.is_empty(), "{missed:#?}");
 }
 
 #[test]
 #[ignore = "takes minutes: cargo xtask soak strokes"]
 fn textures_are_felt_within_the_goals_on_many_strokes() {
-    hold(&(1..=24));
+    let missed = missed(Stroke::human, &HUMAN_TEST_SEEDS.take(24));
+    assert!(missed.is_empty(), "{missed:#?}");
 }
 
 /// Makes a touch source another one.
@@ -171,32 +174,106 @@ type Change = fn(&mut TouchConfig);
 #[test]
 #[ignore = "takes minutes: cargo xtask soak strokes"]
 fn tables_of_source_and_feature_size() {
-    for class in [SLOW, MEDIUM, FAST] {
-        for wavelength_mm in [2.0, 5.0, 10.0, 20.0] {
-            let cells = [50.0, 100.0, 200.0].map(|speed_mm_s| {
-                let found = mean(&Class { wavelength_mm, ..class }, speed_mm_s, 1..=6);
-                // A mean over seeds is no better than its worst would be good: every number is one.
-                assert!(found.ratio.is_finite() && found.correlation.abs() <= 1.0, "{found:?}");
-                format!("{:.2} / {:.2}, {:.1} mN", found.ratio, found.correlation, 1e3 * found.spurious_n)
-            });
-            println!("| {} Hz | {wavelength_mm} mm | {} |", class.rate_hz, cells.join(" | "));
+    let seeds = HUMAN_TEST_SEEDS.take(6);
+    for (name, hand) in HANDS {
+        println!("{name}:");
+        for class in [SLOW, MEDIUM, FAST] {
+            for wavelength_mm in [2.0, 5.0, 10.0, 20.0] {
+                let cells = [50.0, 100.0, 200.0].map(|speed_mm_s| {
+                    let class = Class { wavelength_mm, ..class };
+                    let found = mean(&rig(&class), &class, hand, speed_mm_s, &seeds);
+                    // A mean over seeds is no better than its worst would be good: every number is one.
+                    assert!(found.ratio.is_finite() && found.correlation.abs() <= 1.0, "{found:?}");
+                    format!("{:.2} / {:.2}, {:.1} mN", found.ratio, found.correlation, 1e3 * found.spurious_n)
+                });
+                println!("| {} Hz | {wavelength_mm} mm | {} |", class.source, cells.join(" | "));
+            }
         }
     }
-    let changes: [(&str, Change); 4] = [
+    let changes: [(&str, Change); 5] = [
         ("as above", |_| {}),
-        ("nothing lost", |touch| (touch.lost_share, touch.bunched_share) = (0.0, 0.0)),
-        ("pixel steps of 0.18 mm", |touch| touch.step_m = 0.18e-3),
-        ("a pause in ten seconds", |touch| (touch.pause_rate_hz, touch.pause_max_s) = (0.1, 0.12)),
+        ("nothing lost, no steps", |touch| *touch = touch.without_losses()),
+        ("nothing lost", |touch| (touch.lost_share, touch.bunched_share, touch.pause_rate_hz) = (0.0, 0.0, 0.0)),
+        ("no pauses", |touch| touch.pause_rate_hz = 0.0),
+        ("no steps of 0.18 mm", |touch| touch.step_m = 0.0),
     ];
     for (name, change) in changes {
         let ratios = [SLOW, MEDIUM, FAST].map(|class| {
             let mut rig = rig(&class);
             change(&mut rig.world.touch);
-            let program = program(&rig, class.wavelength_mm);
-            let plays: Vec<Fidelity> = (1..=6).map(|seed| play(&rig, &program, 100.0, seed)).collect();
-            format!("{:.2}", Felt::over(&plays).ratio)
+            format!("{:.2}", mean(&rig, &class, Stroke::human, 100.0, &seeds).ratio)
         });
         println!("| {name} | {} |", ratios.join(" | "));
+    }
+}
+
+/// A part of the time of touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// The output is off though the finger slides at more than 10 mm/s: touch data is stale, or it was still.
+    OffWhileSliding,
+    /// The output is off under a slower finger.
+    OffWhileSlow,
+    /// The first 100 ms after the first report of a touch.
+    Landing,
+    /// Slower than a third of the median speed.
+    Slow,
+    Rest,
+}
+
+impl Phase {
+    const ALL: [Self; 5] = [Self::OffWhileSliding, Self::OffWhileSlow, Self::Landing, Self::Slow, Self::Rest];
+
+    fn of(sample: &FidelitySample, since_landing: usize, median_m_per_s: f64) -> Self {
+        let speed_m_per_s = sample.speed_m_per_s.unwrap_or(0.0);
+        match sample {
+            FidelitySample { is_driven: false, .. } if speed_m_per_s > 10e-3 => Self::OffWhileSliding,
+            FidelitySample { is_driven: false, .. } => Self::OffWhileSlow,
+            _ if (since_landing as f64) < 0.1 * SAMPLE_HZ => Self::Landing,
+            _ if speed_m_per_s < median_m_per_s / 3.0 => Self::Slow,
+            _ => Self::Rest,
+        }
+    }
+}
+
+/// Prints in which part of the time the error is: the share of its energy, and of the time.
+#[test]
+#[ignore = "takes minutes: where the error of the cases is, for whoever tunes the filter"]
+fn phases_of_the_error() {
+    for (name, hand) in HANDS {
+        println!("{name}: error; share of its energy / of the time: {:?}", Phase::ALL);
+        for (class, speed_mm_s, _) in CASES {
+            let rig = rig(&class);
+            let program = program(&rig, class.wavelength_mm);
+            let mut energy = [(0.0, 0_u32); Phase::ALL.len()];
+            let mut plays = Vec::new();
+            for seed in HUMAN_TUNING_SEEDS.take(6) {
+                let record = record(&rig, &program, hand, speed_mm_s, seed);
+                plays.push(Fidelity::of(&record).unwrap());
+                for touch in record.split(|sample| sample.speed_m_per_s.is_none()) {
+                    for (index, sample) in touch.iter().enumerate() {
+                        let phase = Phase::of(sample, index, 1e-3 * speed_mm_s) as usize;
+                        energy[phase].0 += (sample.felt_n - sample.reference_n).powi(2);
+                        energy[phase].1 += 1;
+                    }
+                }
+            }
+            let (sum, time) = energy.iter().fold((0.0, 0), |(sum, time), (energy, count)| (sum + energy, time + count));
+            let share = |(energy, count): (f64, u32)| {
+                format!("{:3.0} / {:2.0} %", 100.0 * energy / sum, 100.0 * f64::from(count) / f64::from(time))
+            };
+            let found = Felt::over(&plays);
+            println!(
+                "| {} Hz, {} mm, {speed_mm_s} mm/s | {:.3} ({:.3}, {:.1} mN, {:.1} dB) | {} |",
+                class.source,
+                class.wavelength_mm,
+                found.ratio,
+                found.correlation,
+                1e3 * found.spurious_n,
+                found.spurious_db,
+                energy.map(share).join(" | ")
+            );
+        }
     }
 }
 

@@ -32,23 +32,28 @@ fn without_a_command_it_is_the_demo() {
     succeed(folder.path(), &["play", "copy.toml", "--seconds", "0.1"]);
 }
 
-/// Places of the finger in mm, a row a millisecond, in a play with the stroke of a person.
-fn human_places(folder: &Path, seed: &str) -> Vec<(f64, f64)> {
-    succeed(folder, &["play", &brick(), "--stroke", "human", "--seconds", "2", "--seed", seed]);
+/// Places of the finger in mm, a row a millisecond, in a play with the stroke of a person; `None` while it is up.
+fn human_places(folder: &Path, hand: &str, seed: &str) -> Vec<Option<(f64, f64)>> {
+    succeed(folder, &["play", &brick(), "--stroke", hand, "--seconds", "2", "--seed", seed]);
     let mut reader = csv::Reader::from_path(folder.join("frixel-out/felt.csv")).unwrap();
     let columns = ["x_mm", "y_mm"].map(|name| reader.headers().unwrap().iter().position(|cell| cell == name).unwrap());
-    let place = |row: csv::StringRecord| columns.map(|column| row[column].parse::<f64>().unwrap());
-    reader.records().map(|row| place(row.unwrap())).map(|[x, y]| (x, y)).collect()
+    let place = |row: csv::StringRecord| {
+        let [x, y] = columns.map(|column| (!row[column].is_empty()).then(|| row[column].parse::<f64>().unwrap()));
+        x.zip(y)
+    };
+    reader.records().map(|row| place(row.unwrap())).collect()
 }
 
 #[test]
 fn a_persons_stroke_stays_on_the_screen_and_every_seed_is_a_person() {
     let folder = TempDir::new().unwrap();
-    let first = human_places(folder.path(), "1");
+    let first = human_places(folder.path(), "human", "1");
     assert_eq!(first.len(), 2000);
-    assert!(first.iter().all(|(x_mm, y_mm)| (0.0..120.0).contains(x_mm) && (0.0..80.0).contains(y_mm)));
-    assert_eq!(first, human_places(folder.path(), "1"));
-    assert_ne!(first, human_places(folder.path(), "2"));
+    assert!(first.iter().flatten().all(|(x_mm, y_mm)| (0.0..120.0).contains(x_mm) && (0.0..110.0).contains(y_mm)));
+    assert!(first.iter().flatten().count() > 1000, "the finger touches most of the time");
+    assert_eq!(first, human_places(folder.path(), "human", "1"));
+    assert_ne!(first, human_places(folder.path(), "human", "2"));
+    assert_ne!(first, human_places(folder.path(), "human-rough", "1"));
 }
 
 #[test]

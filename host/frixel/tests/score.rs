@@ -93,7 +93,7 @@ fn people_differ_and_come_again() {
         let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
             .arg("score")
             .arg(scene())
-            .args(["--people", "3", "--strokes", "1", "--seeds", "2", "--seconds", "0.6", "--json", "--out"])
+            .args(["--people", "3", "--strokes", "1", "--seeds", "2", "--seconds", "2", "--json", "--out"])
             .arg(out.path())
             .output()
             .unwrap();

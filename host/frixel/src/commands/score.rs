@@ -23,9 +23,10 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Where the finger goes: `human` for randomly generated people, `sweep` for an even sweep over the screen, or a
-    /// CSV file with the columns `t_s,x_mm,y_mm`.
-    #[arg(long, default_value = "human", value_name = "human|sweep|FILE.csv")]
+    /// Where the finger goes: `human` for randomly generated people with the accelerations of recorded ones after
+    /// smoothing, `human-rough` for those before smoothing, `sweep` for an even sweep over the screen, or a CSV file
+    /// with the columns `t_s,x_mm,y_mm`.
+    #[arg(long, default_value = "human", value_name = "human|human-rough|sweep|FILE.csv")]
     stroke: String,
     /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each
     /// makes strokes of their own. Without it, the finger is the scene's.
@@ -115,16 +116,16 @@ fn finger(args: &ScoreArgs, scene: &Scene, person: u64) -> Result<TrialFinger, C
 fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, CommandError> {
     let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * args.strokes);
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-    let strokes: Vec<(String, Stroke)> = match args.stroke.as_str() {
-        "human" => (first_stroke..first_stroke + args.strokes)
-            .map(|seed| human(args, screen_m, seed))
+    let strokes: Vec<(String, Stroke)> = match (args.stroke.as_str(), stroke::human(Path::new(&args.stroke))) {
+        (_, Some(human)) => (first_stroke..first_stroke + args.strokes)
+            .map(|seed| human_stroke(args, human, screen_m, seed))
             .collect::<Result<_, _>>()?,
         // The name that it had before.
-        "sweep" | "natural" => {
+        ("sweep" | "natural", None) => {
             let stroke = Stroke::sweep(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::GeneratedStroke)?;
             vec![("sweep".to_owned(), stroke)]
         }
-        file => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
+        (file, None) => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
     };
     let trials = strokes.into_iter().flat_map(|(stroke_name, stroke)| {
         (1..=args.seeds).map(move |seed| Trial {
@@ -137,10 +138,15 @@ fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> R
     Ok(trials.collect())
 }
 
-fn human(args: &ScoreArgs, (width_m, height_m): (f64, f64), seed: u64) -> Result<(String, Stroke), CommandError> {
+fn human_stroke(
+    args: &ScoreArgs,
+    human: stroke::Human,
+    (width_m, height_m): (f64, f64),
+    seed: u64,
+) -> Result<(String, Stroke), CommandError> {
     let median_speed_m_per_s = args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s);
-    let stroke = Stroke::human(width_m, height_m, args.seconds, median_speed_m_per_s, seed);
-    Ok((format!("human {seed}"), stroke.map_err(CommandError::GeneratedStroke)?))
+    let stroke = human(width_m, height_m, args.seconds, median_speed_m_per_s, seed);
+    Ok((format!("{} {seed}", args.stroke), stroke.map_err(CommandError::GeneratedStroke)?))
 }
 
 /// Parses the median speed of a stroke.

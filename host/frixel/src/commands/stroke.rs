@@ -19,17 +19,19 @@ const CHECK_PERIOD_S: f64 = 1e-3;
 const CHECKS_MAX: f64 = 1e6;
 /// Time between two places of a minimum-jerk stroke that goes back and forth, s.
 const SAMPLE_PERIOD_S: f64 = 1e-3;
-/// Name of the stroke of a person in place of a file.
+/// Names of the strokes of a person in place of a file.
 const HUMAN: &str = "human";
+const HUMAN_ROUGH: &str = "human-rough";
 /// Duration of a person's stroke unless another is given, s, and the longest.
 const HUMAN_S: f64 = 10.0;
 const HUMAN_MAX_S: f64 = 600.0;
+
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
     /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
-    /// normal load, for example a felt.csv; or `human`: the stroke of a person, another for every --seed. Default: a
-    /// sweep over the screen; `play` then visits each layer whose middle the sweep missed, unless --seconds or --stream
+    /// normal load, for example a felt.csv; or `human`: the touches of a person, others for every --seed, with the
+    /// accelerations of recorded ones after smoothing (`human-rough`: before smoothing). Default: a sweep over the screen; `play` then visits each layer whose middle the sweep missed, unless --seconds or --stream
     /// is given.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
     stroke: Option<PathBuf>,
@@ -58,7 +60,7 @@ impl StrokeArgs {
 
     /// The file of the stroke.
     pub(super) fn file(&self) -> Option<&Path> {
-        self.stroke.as_deref().filter(|path| *path != Path::new(HUMAN))
+        self.stroke.as_deref().filter(|path| human(path).is_none())
     }
 
     /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width
@@ -70,13 +72,14 @@ impl StrokeArgs {
         seed: u64,
     ) -> Result<Option<Stroke>, CommandError> {
         match (&self.stroke, self.from, self.to) {
-            (Some(path), ..) if path == Path::new(HUMAN) => {
-                let [width_m, height_m] = screen_m;
-                let seconds = seconds.unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
-                let stroke = Stroke::human(width_m, height_m, seconds, None, seed);
-                stroke.map(Some).map_err(CommandError::GeneratedStroke)
-            }
-            (Some(path), ..) => from_file(path).map(Some),
+            (Some(path), ..) => match human(path) {
+                Some(human) => {
+                    let [width_m, height_m] = screen_m;
+                    let seconds = seconds.unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
+                    human(width_m, height_m, seconds, None, seed).map(Some).map_err(CommandError::GeneratedStroke)
+                }
+                None => from_file(path).map(Some),
+            },
             (None, Some(from), Some(to)) => self.straight(from, to).map(Some),
             _ => Ok(None),
         }
@@ -101,6 +104,20 @@ impl StrokeArgs {
         let once =
             if self.minimum_jerk { Stroke::minimum_jerk(from, to, once_s).map_err(straight_error)? } else { once };
         if times == 1 { Ok(once) } else { back_and_forth(&once, times, self.minimum_jerk).map_err(straight_error) }
+    }
+}
+
+/// Makes the stroke of a person, as [`Stroke::human`] does.
+pub(super) type Human = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
+
+/// The strokes of a person with this name, if it is not that of a file.
+pub(super) fn human(name: &Path) -> Option<Human> {
+    if name == Path::new(HUMAN) {
+        Some(Stroke::human)
+    } else if name == Path::new(HUMAN_ROUGH) {
+        Some(Stroke::human_rough)
+    } else {
+        None
     }
 }
 

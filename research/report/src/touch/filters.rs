@@ -72,9 +72,9 @@ pub(in super::super) fn methods() -> [Method; 6] {
 }
 
 /// Filters with fixed tunings, of which the best is chosen with hindsight.
-pub(in super::super) fn best_of_grid() -> impl Iterator<Item = Box<dyn Filter>> {
+pub(in super::super) fn best_of_grid() -> impl Iterator<Item = impl Fn() -> Box<dyn Filter>> {
     [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().flat_map(|deviation| {
-        [0.02, 0.05, 0.1].map(|time_s| Box::new(Kalman::fixed(time_s, deviation)) as Box<dyn Filter>)
+        [0.02, 0.05, 0.1].map(|time_s| move || -> Box<dyn Filter> { Box::new(Kalman::fixed(time_s, deviation)) })
     })
 }
 
