@@ -240,6 +240,12 @@ pub enum FieldMistake {
         /// The field of their distance.
         step: &'static str,
     },
+    /// A layer that is off at the start can never be switched on.
+    #[error("{layer} is off at the start, and nothing could switch it on: write `live = true`, or leave `start` out")]
+    OffForGood {
+        /// The layer.
+        layer: String,
+    },
     /// The friction of a layer with `blend = "add"` is given in total.
     #[error(
         "{layer} is added to what lies below it, so its friction is a difference and cannot be given in total: \
