@@ -361,9 +361,9 @@ fn a_live_layer_is_found_whatever_was_left_out_below_it() {
          [[layer]]\nname = \"rain\"\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.002\nlive = true\n",
     );
     assert_eq!(program.records.len(), 2, "the first is covered");
-    assert_eq!(program.layers.record("rain"), Ok(1));
-    assert_eq!(program.layers.record("3"), Ok(1));
-    assert!(program.layers.record("rest").unwrap_err().to_string().contains("live = true"));
+    assert_eq!(program.layers.records("rain"), Ok(vec![1]));
+    assert_eq!(program.layers.records("3"), Ok(vec![1]));
+    assert!(program.layers.records("rest").unwrap_err().to_string().contains("live = true"));
 }
 
 #[test]
