@@ -99,7 +99,12 @@ impl LayerMap {
 
     fn not_found(&self, layer: &str) -> LayerError {
         let known = self.0.iter().flat_map(|entry| [entry.family.as_deref(), entry.name.as_deref()]).flatten();
-        let nearest = Nearest::new(layer, known).suggestion;
+        // A copy is meant by a name with a number.
+        let family_of = |name: String| {
+            let named = self.0.iter().find(|entry| entry.name.as_ref() == Some(&name));
+            named.and_then(|entry| entry.family.clone()).filter(|_| !layer.contains(char::is_numeric)).unwrap_or(name)
+        };
+        let nearest = Nearest::new(layer, known).suggestion.map(family_of);
         let numbers = ends(self.0.iter().map(|entry| entry.number.to_string()));
         LayerError::Unknown { found: layer.to_owned(), nearest, numbers }
     }

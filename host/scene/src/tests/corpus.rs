@@ -74,7 +74,7 @@ macro_rules! variants {
 
 variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Misplaced MissingField WrongType NotATable NotTables
     OutOfRange TooLong UnknownChoice NoDefault NoDesign LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
-    Unprintable NameTooLong Count SpeedsDoNotRise ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
+    Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
 variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version VersionOneProfile NothingToMigrate
     UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooManyFiles IncludedTwice IncludedMissing
     IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
