@@ -48,7 +48,7 @@ mod tests {
         let mut switches = Vec::new();
         while let Some(now) = trigger {
             let (next, is_on) = now.switched(&pattern);
-            switches.push(((now.next_at - begin).as_millis(), is_on));
+            switches.push((now.next_at.saturating_sub(begin).as_millis(), is_on));
             trigger = next;
         }
         switches
