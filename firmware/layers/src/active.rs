@@ -83,10 +83,14 @@ impl ActiveLayers {
         self.layers.iter().any(ActiveLayer::is_streamed)
     }
 
-    /// Enables or disables a layer, and sets its gain. Unknown layer numbers are ignored.
-    pub fn set(&mut self, number: u8, on: bool, gain: f32) {
+    /// Enables or disables a layer, and sets its gain, from `tick` on. Unknown layer numbers are ignored.
+    pub fn set(&mut self, number: u8, on: bool, gain: f32, tick: u32) {
+        let was_on = self.is_on(number);
         if let Some(layer) = self.layers.get_mut(usize::from(number)) {
             layer.gain = gain;
+            if on && !was_on {
+                layer.coefficients.begin(tick);
+            }
             self.put(number, on);
         }
     }
@@ -120,6 +124,12 @@ impl ActiveLayers {
             }
         }
         electric_friction_n
+    }
+
+    fn is_on(&self, number: u8) -> bool {
+        let [first, others] = self.on;
+        let word = if u32::from(number) < u32::BITS { first } else { others };
+        word & (1 << (u32::from(number) % u32::BITS)) != 0
     }
 
     fn put(&mut self, number: u8, on: bool) {

@@ -91,6 +91,12 @@ pub(crate) trait Evaluate: Copy {
 
     /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
     fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32;
+
+    /// The host has switched the layer on; `tick` is the first one with it.
+    #[inline]
+    fn begin(&mut self, tick: u32) {
+        let _ = tick;
+    }
 }
 
 /// Evaluates one kind without inlining: otherwise a loop over layers would first load the constants of all kinds.

@@ -30,7 +30,7 @@ use frixel_wire::scene::SceneError;
 use crate::click::Click;
 use crate::context::Context;
 use crate::interval::Interval;
-use crate::kind::{Kind, evaluate};
+use crate::kind::{Evaluate, Kind, evaluate};
 use crate::layout::{FORM_AT, RecordBytes};
 use crate::parameters::{Parameters, UnknownForm};
 use crate::point::Point;
@@ -133,6 +133,12 @@ macro_rules! kinds {
             #[inline]
             pub(crate) fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32 {
                 match self { $( $(#[cfg(feature = $feature)])? Self::$kind(kind) => evaluate(kind, region, context), )* }
+            }
+
+            /// The host has switched the layer on; `tick` is the first one with it.
+            #[inline]
+            pub(crate) fn begin(&mut self, tick: u32) {
+                match self { $( $(#[cfg(feature = $feature)])? Self::$kind(kind) => Evaluate::begin(kind, tick), )* }
             }
         }
 

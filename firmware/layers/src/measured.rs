@@ -40,6 +40,6 @@ pub(crate) const LAYERS: &[(&str, u32)] = &[
     ("square", 145),
     ("stream", 97),
     ("triangle", 123),
-    ("vibration_sine", 180),
-    ("vibration_square", 147),
+    ("vibration_sine", 183),
+    ("vibration_square", 150),
 ];

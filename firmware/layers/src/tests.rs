@@ -458,6 +458,37 @@ fn a_vibration_keeps_time() {
     }
 }
 
+/// Also when the tick count wraps within a burst.
+#[cfg(feature = "vibration")]
+#[test]
+fn bursts_begin_when_their_layer_is_switched_on() {
+    use crate::{ActiveLayers, Beat, Burst};
+    let burst = Burst { period_s: 0.1, on_s: 0.05, ramp_s: 0.0 };
+    let vibration = crate::Vibration { beat: Beat::Square, frequency_hz: 100.0, low_n: 0.25, high_n: 1.25, burst };
+    let record =
+        Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer: Layer::Vibration(vibration) };
+    let pool = Box::new(BitmapPool::new());
+    let mut layers = Box::new(ActiveLayers::EMPTY);
+    layers.push(&record, 40_000, &|_| None).unwrap();
+    let friction_n = |layers: &ActiveLayers, tick| {
+        let mut clicks = Clicks::NONE;
+        layers.electric_friction_n(&Inputs { tick, ..Inputs::default() }, &pool, &mut clicks)
+    };
+    // At all these ticks the wave is high.
+    assert_close(friction_n(&layers, 1_650), 1.25);
+    assert_close(friction_n(&layers, 2_050), 0.25);
+    // A layer that is on goes on.
+    layers.set(0, true, 1.0, 500);
+    assert_close(friction_n(&layers, 2_050), 0.25);
+    for begin in [2_850, 0_u32.wrapping_sub(1_100)] {
+        layers.set(0, false, 1.0, 7);
+        layers.set(0, true, 1.0, begin);
+        for (passed, expected) in [(0, 1.25), (1_999, 1.25), (2_000, 0.25), (3_999, 0.25), (4_000, 1.25)] {
+            assert_close(friction_n(&layers, begin.wrapping_add(passed)), expected);
+        }
+    }
+}
+
 #[cfg(feature = "speed")]
 #[test]
 fn a_curve_is_straight_between_its_points_and_held_outside() {

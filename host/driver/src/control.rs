@@ -4,8 +4,8 @@
 //! A line is one of
 //!
 //! - `layer NAME on`, `layer NAME off`, `layer NAME gain X`, or several of these words: changes a layer;
-//! - `trigger NAME [MS]`: switches on a layer that is off, and switches it off again after MS milliseconds, 100 by
-//!   default;
+//! - `trigger NAME [MS]`: switches on a layer that is off, and switches it off again after MS milliseconds; without
+//!   them, after its pattern or its burst, or else after 100;
 //! - `replace FILE`: plays another scene, or the same one anew;
 //! - `wait S`: carries out the following lines S seconds later;
 //! - `quit`: ends the play.
@@ -15,8 +15,6 @@
 
 use thiserror::Error;
 
-/// Duration of a trigger without one, s.
-const TRIGGER_S: f64 = 0.1;
 /// Longest duration of a trigger or a wait: one hour, s.
 const DURATION_MAX_S: f64 = 3_600.0;
 /// Largest magnitude of a gain (PROTOCOL, `SetLayer`).
@@ -38,8 +36,8 @@ pub enum ControlLine {
     Trigger {
         /// Its name, or its number: `3`, or `3.2` for a copy.
         layer: String,
-        /// How long, in s.
-        duration_s: f64,
+        /// How long, in s; `None` for as long as its pattern or its burst lasts.
+        duration_s: Option<f64>,
     },
     /// Plays another scene.
     Replace {
@@ -108,7 +106,7 @@ impl ControlLine {
             "trigger" => {
                 let layer = words.next(LAYER)?;
                 let number = words.words.next();
-                let duration_s = number.map_or(Ok(TRIGGER_S), |found| duration_s(&found, 1e-3, MILLISECONDS))?;
+                let duration_s = number.map(|found| duration_s(&found, 1e-3, MILLISECONDS)).transpose()?;
                 Self::Trigger { layer, duration_s }
             }
             "replace" => Self::Replace { file: words.next(FILE)? },
@@ -190,8 +188,8 @@ mod tests {
             ("layer OK off", layer(Some(false), None)),
             ("  layer \"OK\" on gain -0.5", layer(Some(true), Some(-0.5))),
             ("layer OK gain 2 # louder", layer(None, Some(2.0))),
-            ("trigger OK", trigger(0.1)),
-            ("trigger OK 250", trigger(0.25)),
+            ("trigger OK", trigger(None)),
+            ("trigger OK 250", trigger(Some(0.25))),
             ("replace \"my scene.toml\"", Some(ControlLine::Replace { file: "my scene.toml".into() })),
             ("wait 1.5", Some(ControlLine::Wait { duration_s: 1.5 })),
             ("quit", Some(ControlLine::Quit)),

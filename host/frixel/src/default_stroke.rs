@@ -1,6 +1,7 @@
 //! The stroke of a play without a stroke of its own.
 
 use frixel_hil_sim::{Point, Stroke, StrokeError};
+use frixel_layers::Layer;
 use frixel_scene::{LayerMiddle, Program, TouchedLayers};
 
 /// Duration of the sweep over the screen unless another is given, s.
@@ -17,10 +18,12 @@ const VISIT_MIN_M: f64 = 0.03;
 const VISIT_M_PER_S: f64 = 0.1;
 /// A finger has crossed the middle of a layer if it was this near to it along both sides, in parts of the sides.
 const MIDDLE_PART: f64 = 0.2;
+/// A finger crosses stripes if this part of its way, at least, goes across them.
+const ACROSS_PART: f64 = 0.5;
 
 /// An even stroke over the screen of a program, for `seconds`, or for as long as it takes to cross the middle of every
-/// layer: first a sweep over the screen, and then a stroke over each layer whose middle the sweep misses, across the
-/// shorter side of the layer.
+/// layer: first a sweep over the screen, and then a stroke over each layer whose middle the sweep misses, across its
+/// stripes or, without stripes, its shorter side.
 pub fn default_stroke(program: &Program, seconds: Option<f64>) -> Result<Stroke, StrokeError> {
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let sweep = Stroke::sweep(screen_m.0, screen_m.1, seconds.unwrap_or(SWEEP_S))?;
@@ -34,23 +37,26 @@ pub fn default_stroke(program: &Program, seconds: Option<f64>) -> Result<Stroke,
         return Ok(sweep);
     }
     let mut t_s = sweep.duration_s();
-    while let Some(middle) = middles.missed() {
+    while let Some(missed) = middles.missed() {
         places.push((t_s + 0.5 * PAUSE_S, None));
         t_s += PAUSE_S;
-        let visit = visit(&middle, screen_m)?;
+        let visit = visit(&missed, screen_m)?;
         middles.add(&mut places, &visit, t_s);
         // The layer may be narrower than the distance between two samples.
-        middles.cross(middle.x_m, middle.y_m);
+        middles.cross(missed.middle.x_m, missed.middle.y_m, missed.way());
         t_s += visit.duration_s();
     }
     Stroke::through(&places)
 }
 
-/// A stroke through the middle of a layer, across its shorter side.
-fn visit(middle: &LayerMiddle, (width_m, height_m): (f64, f64)) -> Result<Stroke, StrokeError> {
-    let half_m = |side_m: f64| 0.5 * (side_m + 2.0 * VISIT_MARGIN_M).max(VISIT_MIN_M);
-    let (half_x_m, half_y_m) =
-        if middle.width_m <= middle.height_m { (half_m(middle.width_m), 0.0) } else { (0.0, half_m(middle.height_m)) };
+/// A stroke through the middle of a layer.
+fn visit(layer: &Missed, (width_m, height_m): (f64, f64)) -> Result<Stroke, StrokeError> {
+    let middle = &layer.middle;
+    let (way_x, way_y) = layer.way();
+    // From one side of the layer to the other, along the way.
+    let chord_m = (middle.width_m / way_x.abs()).min(middle.height_m / way_y.abs());
+    let half_m = 0.5 * (chord_m + 2.0 * VISIT_MARGIN_M).max(VISIT_MIN_M);
+    let (half_x_m, half_y_m) = (half_m * way_x, half_m * way_y);
     let place = |sign: f64| Point {
         x_m: (middle.x_m + sign * half_x_m).clamp(0.0, width_m),
         y_m: (middle.y_m + sign * half_y_m).clamp(0.0, height_m),
@@ -60,33 +66,68 @@ fn visit(middle: &LayerMiddle, (width_m, height_m): (f64, f64)) -> Result<Stroke
     Stroke::minimum_jerk(from, to, length_m / VISIT_M_PER_S)
 }
 
+/// A layer that is to be crossed.
+#[derive(Clone, Copy)]
+struct Missed {
+    middle: LayerMiddle,
+    /// The unit vector across its stripes; `None` without stripes.
+    across: Option<(f64, f64)>,
+}
+
+impl Missed {
+    /// The direction of the stroke over the layer, a unit vector.
+    fn way(&self) -> (f64, f64) {
+        let is_narrow = self.middle.width_m <= self.middle.height_m;
+        self.across.unwrap_or(if is_narrow { (1.0, 0.0) } else { (0.0, 1.0) })
+    }
+
+    /// Whether a finger that moves by `(x_m, y_m)` crosses the layer's stripes.
+    fn is_crossed_by(&self, (x_m, y_m): (f64, f64)) -> bool {
+        self.across.is_none_or(|(x, y)| (x * x_m + y * y_m).abs() > ACROSS_PART * x_m.hypot(y_m))
+    }
+}
+
+/// The unit vector across the stripes of a layer; `None` without stripes.
+fn across(layer: &Layer) -> Option<(f64, f64)> {
+    let Layer::Grating(grating) = layer else { return None };
+    let (x, y) = (f64::from(grating.cycles_per_m_x), f64::from(grating.cycles_per_m_y));
+    let cycles_per_m = x.hypot(y);
+    (cycles_per_m > 0.0).then(|| (x / cycles_per_m, y / cycles_per_m))
+}
+
 /// The layers whose middle a finger has crossed.
 struct Middles {
     layers: TouchedLayers,
-    /// The middle of each layer that is to be crossed; `None` for one that was, or that cannot be touched.
-    missed: Vec<Option<LayerMiddle>>,
+    /// Each layer that is to be crossed; `None` for one that was, or that cannot be touched.
+    missed: Vec<Option<Missed>>,
 }
 
 impl Middles {
     fn new(program: &Program) -> Self {
         let layers = TouchedLayers::new(program);
-        let missed = (0..layers.layer_count()).map(|layer| layers.middle(layer)).collect();
+        let missed =
+            program.records.iter().enumerate().map(|(layer, record)| {
+                layers.middle(layer).map(|middle| Missed { middle, across: across(&record.layer) })
+            });
+        let missed = missed.collect();
         Self { layers, missed }
     }
 
-    /// The first middle that was not crossed.
-    fn missed(&self) -> Option<LayerMiddle> {
-        self.missed.iter().find_map(|middle| *middle)
+    /// The first layer that was not crossed.
+    fn missed(&self) -> Option<Missed> {
+        self.missed.iter().find_map(|missed| *missed)
     }
 
-    /// Adds a place of the finger.
-    fn cross(&mut self, x_m: f64, y_m: f64) {
+    /// Adds a place of the finger, and how it moves there: any vector of that direction.
+    fn cross(&mut self, x_m: f64, y_m: f64, way: (f64, f64)) {
         for (layer, missed) in self.missed.iter_mut().enumerate() {
-            let is_near = |middle: &mut LayerMiddle| {
+            let is_crossed = |missed: &mut Missed| {
+                let middle = &missed.middle;
                 (x_m - middle.x_m).abs() <= MIDDLE_PART * middle.width_m
                     && (y_m - middle.y_m).abs() <= MIDDLE_PART * middle.height_m
+                    && missed.is_crossed_by(way)
             };
-            if missed.as_mut().is_some_and(is_near) && self.layers.is_touched_at(layer, x_m, y_m) {
+            if missed.as_mut().is_some_and(is_crossed) && self.layers.is_touched_at(layer, x_m, y_m) {
                 *missed = None;
             }
         }
@@ -96,12 +137,14 @@ impl Middles {
     fn add(&mut self, places: &mut Vec<(f64, Option<Point>)>, stroke: &Stroke, start_s: f64) {
         let seconds = stroke.duration_s();
         let steps = (seconds / SAMPLE_PERIOD_S).ceil().max(1.0);
+        let mut last: Option<Point> = None;
         for step in 0..=steps as u32 {
             let t_s = seconds * f64::from(step) / steps;
             let place = stroke.at(t_s).map(|finger| Point { x_m: finger.x_m, y_m: finger.y_m });
-            if let Some(Point { x_m, y_m }) = place {
-                self.cross(x_m, y_m);
+            if let Some((Point { x_m, y_m }, last)) = place.zip(last) {
+                self.cross(x_m, y_m, (x_m - last.x_m, y_m - last.y_m));
             }
+            last = place;
             places.push((start_s + t_s, place));
         }
     }
@@ -147,6 +190,32 @@ mod tests {
             let (missed, seconds) = missed(&scene);
             assert!(missed.is_empty(), "{region}: {missed:?}");
             assert_eq!(seconds > SWEEP_S, is_visited, "{region}");
+        }
+    }
+
+    /// The sweep goes along x, and would feel a flat plate.
+    #[test]
+    fn the_default_stroke_crosses_stripes() {
+        for region in ["", "region = { x_mm = 30, y_mm = 30, width_mm = 30, height_mm = 40 }\n"] {
+            for (angle_deg, is_visited) in [(0, false), (30, false), (90, true), (-100, true)] {
+                let text = format!(
+                    "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nangle_deg = {angle_deg}\n\
+                     low_fraction = 0\nhigh_fraction = 0.9\n{region}"
+                );
+                let scene = Scene::parse(&text, "stripes.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+                let board = RigConfig::default().board;
+                let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
+                let stroke = default_stroke(&program, None).unwrap();
+                assert_eq!(stroke.duration_s() > SWEEP_S, is_visited, "{angle_deg} {region}");
+                if is_visited {
+                    let end = stroke.duration_s();
+                    let [from, to] = [end - 0.25, end - 0.05].map(|t_s| stroke.at(t_s).unwrap());
+                    let way = ((to.x_m - from.x_m), (to.y_m - from.y_m));
+                    let across = f64::from(angle_deg).to_radians();
+                    let part = (way.0 * across.cos() + way.1 * across.sin()).abs() / way.0.hypot(way.1);
+                    assert!(part > 0.99, "{angle_deg}: {part} of its way goes across the stripes");
+                }
+            }
         }
     }
 

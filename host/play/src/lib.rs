@@ -18,6 +18,7 @@ mod feed;
 mod live_layers;
 mod player;
 mod recorded;
+mod trigger;
 mod upload;
 
 pub use error::{PlayError, StopReason};

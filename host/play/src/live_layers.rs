@@ -6,6 +6,11 @@ use frixel_layers::{Blend, Layer, Vibration};
 use frixel_scene::{Clamped, LayerError, LayerSetting, LayerTitle, Program};
 use thiserror::Error;
 
+use crate::trigger::Trigger;
+
+/// Duration of a trigger without one, of a layer without pattern and bursts.
+const TRIGGER: Duration = Duration::from_millis(100);
+
 /// Why layers are not changed as a host asks.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum LiveError {
@@ -19,19 +24,6 @@ pub enum LiveError {
     TriggerOn {
         /// The name or number that was given.
         layer: String,
-    },
-    /// The layer may be silent for the whole trigger.
-    #[error(
-        "layer {layer:?} comes in bursts, one every {period_ms:.0} ms, so that a trigger of {duration_ms:.0} ms may be \
-         silent: leave `burst` out in the file, or trigger it for {period_ms:.0} ms or more"
-    )]
-    TriggerBetweenBursts {
-        /// The name or number that was given.
-        layer: String,
-        /// From one burst to the next, ms.
-        period_ms: f64,
-        /// Of the trigger, ms.
-        duration_ms: f64,
     },
     /// The layer has a gain of zero, and its blend leaves the layers below as they are then.
     #[error(
@@ -74,13 +66,11 @@ fn gain_advice(range: Option<(f32, f32)>) -> String {
     range.map_or(String::new(), |(least, most)| format!("; give a gain from {least} to {most}"))
 }
 
-/// A change of a layer that the board has to take before it counts; see [`LiveLayers::apply`].
+/// A change of layers that the board has to take before it counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerChange {
-    /// Number of the record, from zero.
-    pub record: u8,
-    /// Its setting from then on.
-    pub setting: LayerSetting,
+    /// Numbers of records, from zero, each with its setting from then on.
+    pub settings: Vec<(u8, LayerSetting)>,
     /// What the board clamps from then on, if it did not before.
     pub clamped: Option<Clamped>,
     trigger: TriggerChange,
@@ -100,8 +90,10 @@ struct Chosen {
 enum TriggerChange {
     Keep,
     End,
-    /// The layer is switched off at this time.
-    Until(Duration),
+    /// One begins at the first time, with the layer on, and ends at the second one.
+    Begin(Duration, Duration),
+    /// It has switched its layer, and goes on.
+    GoOn(Trigger),
 }
 
 impl LayerChange {
@@ -115,7 +107,7 @@ impl LayerChange {
 /// forward.
 ///
 /// A method that changes a layer returns the change for the board, and the settings stay as they are until
-/// [`Self::apply`] is told that the board has taken it.
+/// the player says that the board has taken it.
 #[derive(Clone, Debug)]
 pub struct LiveLayers {
     program: Program,
@@ -123,15 +115,14 @@ pub struct LiveLayers {
     settings: Vec<LayerSetting>,
     /// One for each record.
     chosen: Vec<Chosen>,
-    /// Records to switch off, and when.
-    triggered: Vec<(u8, Duration)>,
+    triggers: Vec<Trigger>,
 }
 
 impl LiveLayers {
     /// A program that has just begun: its layers are as the file sets them.
     pub fn new(program: Program) -> Self {
         let chosen = vec![Chosen::default(); program.records.len()];
-        Self { settings: program.start.clone(), chosen, triggered: Vec::new(), program }
+        Self { settings: program.start.clone(), chosen, triggers: Vec::new(), program }
     }
 
     /// A program that follows this one. Of its live layers, those that this program has, too, keep what the host has set
@@ -158,14 +149,11 @@ impl LiveLayers {
             if had.gain {
                 setting.gain = was.gain;
             }
-            let trigger = self.triggered.iter().find(|(triggered, _)| usize::from(*triggered) == before);
-            match trigger {
-                Some((_, ends_at)) if had.on || !setting.on => {
-                    setting.on = true;
-                    next.triggered.push((record, *ends_at));
-                }
-                _ if had.on => setting.on = was.on,
-                _ => {}
+            let trigger = self.triggers.iter().find(|trigger| usize::from(trigger.record) == before);
+            let trigger = trigger.filter(|_| had.on || !setting.on);
+            next.triggers.extend(trigger.map(|trigger| Trigger { record, ..*trigger }));
+            if had.on || trigger.is_some() {
+                setting.on = was.on;
             }
         }
         let dropped = next.clamped_once_all_are_on(&next.settings).filter(|_| next.chosen.iter().any(|had| had.gain));
@@ -182,7 +170,8 @@ impl LiveLayers {
         &self.program
     }
 
-    /// Switches a layer, or changes its gain; `None` leaves as it is.
+    /// Switches a layer, or changes its gain; `None` leaves as it is. The name of a layer with `repeat` is that of all its
+    /// copies.
     ///
     /// # Errors
     ///
@@ -190,30 +179,49 @@ impl LiveLayers {
     /// in a scene that does not saturate and is no draft.
     pub fn change(&self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, LiveError> {
         let program = &self.program;
-        let record = program.layers.record(layer)?;
-        let (changed, setting) = self.changed(record, on, gain);
+        let records = program.layers.records(layer)?;
+        let changed = self.changed(&records, on, gain);
         let clamped = self.newly_clamped(&changed);
         if let Some(gain) = gain
             && let Some(clamped) = self.clamped_once_all_are_on(&changed)
         {
-            let range = program.gains_in_reach(record, &all_on(&changed));
+            let range = program.gains_in_reach(&records, &all_on(&changed));
             return Err(LiveError::GainOutOfReach { gain, clamped, range });
         }
         // A layer that is switched by hand stays as it is when its trigger ends.
         let trigger = if on.is_some() { TriggerChange::End } else { TriggerChange::Keep };
         let sets = Chosen { on: on.is_some(), gain: gain.is_some() };
-        Ok(LayerChange { record, setting, clamped, trigger, sets })
+        Ok(LayerChange { settings: of_records(&records, &changed), clamped, trigger, sets })
     }
 
-    /// Switches a layer that is off on at the time `now`, until `duration_s` seconds later. If it is triggered already,
-    /// it is switched off at the later of both ends.
+    /// Switches a layer that is off on at the time `now`, in its pattern if it has one, and off again `duration_s` seconds
+    /// later; without a duration, when its pattern or its first burst is over, or else after 0.1 s. If it is triggered
+    /// already, its pattern or its bursts begin anew, and it ends at the later of both ends. The name of a layer with `repeat` is that
+    /// of all its copies.
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, an edge or a curve of speed, one that is on, one that plays nothing
-    /// because its gain is zero, and one whose bursts the trigger may miss.
-    pub fn trigger(&self, layer: &str, now: Duration, duration_s: f64) -> Result<LayerChange, LiveError> {
-        let record = self.program.layers.record(layer)?;
+    /// An unknown layer, one that cannot be changed, an edge or a curve of speed, one that is on, and one that plays
+    /// nothing because its gain is zero.
+    pub fn trigger(&self, layer: &str, now: Duration, duration_s: Option<f64>) -> Result<LayerChange, LiveError> {
+        let records = self.program.layers.records(layer)?;
+        for record in &records {
+            self.check_trigger(layer, *record)?;
+        }
+        let changed = self.changed(&records, Some(true), None);
+        let given = duration_s.map(|duration_s| Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX));
+        let own = || records.first().map_or(TRIGGER, |first| self.own_duration(*first));
+        let trigger = TriggerChange::Begin(now, now.saturating_add(given.unwrap_or_else(own)));
+        let clamped = self.newly_clamped(&changed);
+        // Bursts begin when their layer is switched on.
+        let again = of_records(&records, &self.settings).into_iter().filter(|(_, setting)| setting.on);
+        let off = again.map(|(record, setting)| (record, LayerSetting { on: false, ..setting }));
+        let settings = off.chain(of_records(&records, &changed)).collect();
+        Ok(LayerChange { settings, clamped, trigger, sets: Chosen::default() })
+    }
+
+    fn check_trigger(&self, layer: &str, record: u8) -> Result<(), LiveError> {
+        let layer = || layer.to_owned();
         let played = self.program.records.get(usize::from(record));
         let what = match played.map(|record| &record.layer) {
             Some(Layer::Edge(_)) => Some("an edge, which is felt where a finger crosses it"),
@@ -221,60 +229,73 @@ impl LiveLayers {
             _ => None,
         };
         if let Some(what) = what {
-            return Err(LiveError::TriggerNotFelt { layer: layer.to_owned(), what });
+            return Err(LiveError::TriggerNotFelt { layer: layer(), what });
         }
-        let (changed, setting) = self.changed(record, Some(true), None);
-        let was_on = self.setting(record).on;
-        let triggered_until =
-            self.triggered.iter().find(|(triggered, _)| *triggered == record).map(|(_, ends_at)| *ends_at);
-        if was_on && triggered_until.is_none() {
-            return Err(LiveError::TriggerOn { layer: layer.to_owned() });
+        let setting = self.setting(record);
+        if setting.on && !self.triggers.iter().any(|trigger| trigger.record == record) {
+            return Err(LiveError::TriggerOn { layer: layer() });
         }
         let adds = played.is_some_and(|record| matches!(record.blend, Blend::Add | Blend::Max));
         if adds && setting.gain.abs() <= 0.0 {
-            return Err(LiveError::TriggerSilent { layer: layer.to_owned() });
+            return Err(LiveError::TriggerSilent { layer: layer() });
         }
-        if let Some(Layer::Vibration(Vibration { burst, .. })) = played.map(|record| &record.layer)
-            && duration_s <= f64::from(burst.period_s - burst.on_s)
-        {
-            let (period_ms, duration_ms) = (1e3 * f64::from(burst.period_s), 1e3 * duration_s);
-            return Err(LiveError::TriggerBetweenBursts { layer: layer.to_owned(), period_ms, duration_ms });
-        }
-        let duration = Duration::try_from_secs_f64(duration_s).unwrap_or(Duration::MAX);
-        let ends_at = now.saturating_add(duration);
-        let trigger = TriggerChange::Until(triggered_until.map_or(ends_at, |until| until.max(ends_at)));
-        let clamped = self.newly_clamped(&changed);
-        Ok(LayerChange { record, setting, clamped, trigger, sets: Chosen::default() })
+        Ok(())
     }
 
-    /// Switches off the layer of a trigger that has ended by `now`; `None` if no trigger has ended. The change carries no
-    /// notice: the board clamps what it clamped before the trigger.
-    pub(crate) fn end_trigger(&self, now: Duration) -> Option<LayerChange> {
-        let (record, _) = *self.triggered.iter().find(|(_, ends_at)| *ends_at <= now)?;
-        let setting = LayerSetting { on: false, ..self.setting(record) };
-        Some(LayerChange { record, setting, clamped: None, trigger: TriggerChange::End, sets: Chosen::default() })
+    /// How long a trigger without a duration lasts.
+    fn own_duration(&self, record: u8) -> Duration {
+        let pattern = self.pattern(record);
+        if !pattern.is_empty() {
+            return pattern.iter().sum();
+        }
+        match self.program.records.get(usize::from(record)).map(|record| &record.layer) {
+            Some(Layer::Vibration(Vibration { burst, .. })) if burst.on_s > 0.0 => {
+                Duration::from_micros((1e6 * f64::from(burst.on_s)).round() as u64)
+            }
+            _ => TRIGGER,
+        }
     }
 
-    /// Takes over a change that the board has taken.
-    pub fn apply(&mut self, change: &LayerChange) {
-        let LayerChange { record, setting, trigger, sets, .. } = *change;
+    /// The next change, and its record, that a trigger makes by `now`; `None` if there is none. The change carries no
+    /// notice: the board clamps what it clamped before or at the trigger's begin.
+    pub(crate) fn next_switch(&self, now: Duration) -> Option<(u8, LayerChange)> {
+        let trigger = *self.triggers.iter().find(|trigger| trigger.next_at <= now)?;
+        let (next, on) = trigger.switched(self.pattern(trigger.record));
+        let settings = vec![(trigger.record, LayerSetting { on, ..self.setting(trigger.record) })];
+        let change = next.map_or(TriggerChange::End, TriggerChange::GoOn);
+        Some((trigger.record, LayerChange { settings, clamped: None, trigger: change, sets: Chosen::default() }))
+    }
+
+    /// Takes over the setting of a record in a change, once the board has taken it.
+    pub(crate) fn apply(&mut self, record: u8, setting: LayerSetting, change: &LayerChange) {
+        let LayerChange { trigger, sets, .. } = change;
         if let Some(current) = self.settings.get_mut(usize::from(record)) {
             *current = setting;
         }
         if let Some(chosen) = self.chosen.get_mut(usize::from(record)) {
             *chosen = Chosen { on: chosen.on || sets.on, gain: chosen.gain || sets.gain };
         }
-        if trigger != TriggerChange::Keep {
-            self.forget_trigger(record);
-        }
-        if let TriggerChange::Until(ends_at) = trigger {
-            self.triggered.push((record, ends_at));
-        }
+        let next = match *trigger {
+            TriggerChange::Keep => return,
+            TriggerChange::End => None,
+            TriggerChange::GoOn(next) => Some(next),
+            TriggerChange::Begin(now, ends_at) => {
+                let running = self.triggers.iter().find(|trigger| trigger.record == record);
+                let ends_at = running.map_or(ends_at, |running| running.ends_at.max(ends_at));
+                Some(Trigger::new(record, now, ends_at, self.pattern(record)))
+            }
+        };
+        self.forget_trigger(record);
+        self.triggers.extend(next);
     }
 
-    /// Ends a trigger whose end the board refuses.
+    /// Ends a trigger without a change, because the board refuses it.
     pub(crate) fn forget_trigger(&mut self, record: u8) {
-        self.triggered.retain(|(triggered, _)| *triggered != record);
+        self.triggers.retain(|trigger| trigger.record != record);
+    }
+
+    fn pattern(&self, record: u8) -> &[Duration] {
+        self.program.patterns.get(usize::from(record)).map_or(&[], Vec::as_slice)
     }
 
     /// The setting of a record of the program.
@@ -292,20 +313,20 @@ impl LiveLayers {
         self.settings.iter().enumerate().filter(|(_, setting)| !setting.on).map(|(layer, _)| layer).collect()
     }
 
-    /// When the next trigger ends.
-    pub(crate) fn next_end(&self) -> Option<Duration> {
-        self.triggered.iter().map(|(_, ends_at)| *ends_at).min()
+    /// When a trigger switches its layer next.
+    pub(crate) fn next_switch_at(&self) -> Option<Duration> {
+        self.triggers.iter().map(|trigger| trigger.next_at).min()
     }
 
-    /// Returns a copy of all settings in which a record has another one, and that one.
-    fn changed(&self, record: u8, on: Option<bool>, gain: Option<f32>) -> (Vec<LayerSetting>, LayerSetting) {
-        let before = self.setting(record);
-        let setting = LayerSetting { on: on.unwrap_or(before.on), gain: gain.unwrap_or(before.gain) };
+    /// Returns a copy of all settings in which some records have another one.
+    fn changed(&self, records: &[u8], on: Option<bool>, gain: Option<f32>) -> Vec<LayerSetting> {
         let mut changed = self.settings.clone();
-        if let Some(before) = changed.get_mut(usize::from(record)) {
-            *before = setting;
+        for record in records {
+            if let Some(setting) = changed.get_mut(usize::from(*record)) {
+                *setting = LayerSetting { on: on.unwrap_or(setting.on), gain: gain.unwrap_or(setting.gain) };
+            }
         }
-        (changed, setting)
+        changed
     }
 
     /// The layers that would be clamped once all are on, since a layer that is off may be switched on later; `None` if
@@ -320,6 +341,11 @@ impl LiveLayers {
         let clamped = self.program.clamped_with(changed)?;
         (self.program.clamped_with(&self.settings).as_ref() != Some(&clamped)).then_some(clamped)
     }
+}
+
+/// Some records with their settings of all.
+fn of_records(records: &[u8], settings: &[LayerSetting]) -> Vec<(u8, LayerSetting)> {
+    records.iter().filter_map(|record| Some((*record, *settings.get(usize::from(*record))?))).collect()
 }
 
 fn all_on(settings: &[LayerSetting]) -> Vec<LayerSetting> {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use frixel_driver::{Device, DeviceError, Event, Link, Progress};
 use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
-use frixel_scene::{Clamped, Program};
+use frixel_scene::{Clamped, LayerSetting, Program};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::{Refusal, Telemetry};
 
@@ -180,13 +180,16 @@ impl<L: Link + Recorded> Player<L> {
         Ok(change)
     }
 
-    /// Switches a layer that is off on, by its name or number, until `duration_s` seconds later.
-    pub fn trigger(&mut self, layer: &str, duration_s: f64) -> Result<LayerChange, PlayError> {
+    /// Switches a layer that is off on, by its name or number, and off again `duration_s` seconds later; see
+    /// [`LiveLayers::trigger`].
+    pub fn trigger(&mut self, layer: &str, duration_s: Option<f64>) -> Result<LayerChange, PlayError> {
         let now = self.device.now();
         let layers = self.layers()?;
         let change = layers.trigger(layer, now, duration_s)?;
-        let played = layers.program().records.get(usize::from(change.record));
-        if self.feed.is_none() && played.is_some_and(|record| record.layer.is_streamed()) {
+        let is_streamed = |(number, _): &(u8, LayerSetting)| {
+            layers.program().records.get(usize::from(*number)).is_some_and(|record| record.layer.is_streamed())
+        };
+        if self.feed.is_none() && change.settings.iter().any(is_streamed) {
             return Err(LiveError::TriggerUnfed { layer: layer.to_owned() }.into());
         }
         self.send(&change)?;
@@ -197,31 +200,34 @@ impl<L: Link + Recorded> Player<L> {
         self.playing.as_ref().ok_or(PlayError::NothingPlays)
     }
 
-    /// Sends a change to the board, and takes it over once the board has.
+    /// Sends a change to the board, and takes over what the board has taken of it.
     fn send(&mut self, change: &LayerChange) -> Result<(), DeviceError> {
         let Self { device, playing, .. } = self;
         let Some(layers) = playing else { return Ok(()) };
-        let LayerChange { record, setting, .. } = *change;
-        device.link_mut().recorder_mut().layer_changed(record, setting);
-        let sent = device.set_layer(record, setting.on, setting.gain);
-        match sent {
-            Ok(()) => layers.apply(change),
-            Err(_) => device.link_mut().recorder_mut().layer_changed(record, layers.setting(record)),
+        for (record, setting) in &change.settings {
+            device.link_mut().recorder_mut().layer_changed(*record, *setting);
+            let sent = device.set_layer(*record, setting.on, setting.gain);
+            if sent.is_err() {
+                device.link_mut().recorder_mut().layer_changed(*record, layers.setting(*record));
+                return sent;
+            }
+            layers.apply(*record, *setting, change);
         }
-        sent
+        Ok(())
     }
 
-    /// Switches off the layers whose triggers have ended. [`Self::step`] and [`Self::wait`] do it too.
+    /// Switches the layers that are triggered as their patterns say, and off at the end. [`Self::step`] and
+    /// [`Self::wait`] do it too.
     pub fn end_triggers(&mut self) -> Result<(), PlayError> {
         let now = self.device.now();
-        while let Some(change) = self.playing.as_ref().and_then(|layers| layers.end_trigger(now)) {
+        while let Some((record, change)) = self.playing.as_ref().and_then(|layers| layers.next_switch(now)) {
             if let Err(refused) = self.send(&change) {
                 let Some(layers) = &mut self.playing else { return Ok(()) };
-                layers.forget_trigger(change.record);
+                layers.forget_trigger(record);
                 if !is_refusal(&refused) {
                     return Err(refused.into());
                 }
-                let title = layers.program().titles.get(usize::from(change.record));
+                let title = layers.program().titles.get(usize::from(record));
                 return Err(PlayError::TriggerEnd {
                     layer: title.map(ToString::to_string).unwrap_or_default(),
                     refused,
@@ -241,7 +247,7 @@ impl<L: Link + Recorded> Player<L> {
         self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
     }
 
-    /// Lets at most `time_max` pass on the board, until the next trigger ends; records the ticks, and sends samples.
+    /// Lets at most `time_max` pass on the board, until a trigger switches its layer next; records the ticks, and sends samples.
     ///
     /// Returns how much time has passed. Fails when the connection is lost or when the board stopped without a stop
     /// command; what happened until then has been recorded.
@@ -273,8 +279,8 @@ impl<L: Link + Recorded> Player<L> {
     /// Longest time until the player has something to send.
     fn step_max(&self) -> Duration {
         let step_max = if self.feed.is_some() { STREAM_STEP_MAX } else { STEP_MAX };
-        let next_end = self.playing.as_ref().and_then(LiveLayers::next_end);
-        next_end.map_or(step_max, |next_end| step_max.min(next_end.saturating_sub(self.device.now())))
+        let next_switch_at = self.playing.as_ref().and_then(LiveLayers::next_switch_at);
+        next_switch_at.map_or(step_max, |at| step_max.min(at.saturating_sub(self.device.now())))
     }
 
     /// Time to the end of the record, plus [`MARGIN`].

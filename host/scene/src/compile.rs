@@ -160,6 +160,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         bitmaps,
         titles,
         start: Vec::new(),
+        patterns: Vec::new(),
         layers: LayerMap::default(),
         reach,
         half_period_ticks,

@@ -23,22 +23,14 @@ struct Entry {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LayerError {
     /// No layer has this name or number.
-    #[error("the scene has no layer {found:?}: {}", advice(.nearest, .numbers))]
+    #[error("the scene has no layer {found:?}: {}", advice(.nearest.as_deref(), .numbers))]
     Unknown {
         /// The name or number that was given.
         found: String,
-        /// The nearest name, if one is near enough: that of a layer, or the first and the last of its copies.
-        nearest: Vec<String>,
+        /// The nearest name, if one is near enough: that of a layer, of a copy, or of all copies.
+        nearest: Option<String>,
         /// The first and the last number.
         numbers: Vec<String>,
-    },
-    /// The layer is one of several copies.
-    #[error("{layer:?} is repeated: give one of its copies, {}", range(.copies))]
-    Repeated {
-        /// The name or number that was given.
-        layer: String,
-        /// Name or number of the first and of the last copy.
-        copies: Vec<String>,
     },
     /// The layer may have no record of its own.
     #[error("layer {layer:?} may be merged with others: write `live = true` in the file to change it while it plays")]
@@ -48,22 +40,12 @@ pub enum LayerError {
     },
 }
 
-fn advice(nearest: &[String], numbers: &[String]) -> String {
+fn advice(nearest: Option<&str>, numbers: &[String]) -> String {
     match (nearest, numbers) {
-        ([], []) => "it has no layers".to_owned(),
-        ([], numbers) => format!("give the name of a layer, or its number, {}", range(numbers)),
-        ([name], _) => format!("did you mean {name:?}?"),
-        (copies, _) => format!("did you mean one of {}?", range(copies)),
-    }
-}
-
-/// The first and the last of a list, as a sentence names them.
-fn range(names: &[String]) -> String {
-    let quoted = |name: &String| if name.parse::<f64>().is_ok() { name.clone() } else { format!("{name:?}") };
-    match names {
-        [] => String::new(),
-        [only] => quoted(only),
-        [first, .., last] => format!("{} to {}", quoted(first), quoted(last)),
+        (Some(name), _) => format!("did you mean {name:?}?"),
+        (None, []) => "it has no layers".to_owned(),
+        (None, [only]) => format!("give the name of a layer, or its number, {only}"),
+        (None, [first, .., last]) => format!("give the name of a layer, or its number, {first} to {last}"),
     }
 }
 
@@ -86,20 +68,28 @@ impl LayerMap {
         Self(layers.into_iter().map(entry).collect())
     }
 
-    /// Number of the record, from zero, of the layer with the name `layer`, or with the number `layer` as messages have
-    /// it: `3`, or `3.2` for a copy. If several layers have the same name, the lowest one counts.
-    /// `Device::set_layer` of the driver takes the record's number.
+    /// Numbers of the records, from zero, of the layer with the name `layer`, or with the number `layer` as messages have
+    /// it: `3`, or `3.2` for a copy. The name or the number of a layer with `repeat` is that of all its copies. If several
+    /// layers have the same name, the lowest one counts. `Device::set_layer` of the driver takes a record's number.
     ///
     /// # Errors
     ///
-    /// There is no such layer, it is a family of copies, or it cannot be changed while it plays.
-    pub fn record(&self, layer: &str) -> Result<u8, LayerError> {
-        let named = self.0.iter().find(|entry| entry.name.as_deref() == Some(layer));
-        let numbered = || self.0.iter().find(|entry| entry.number.to_string() == layer);
-        match named.or_else(numbered) {
-            Some(entry) => entry.record.ok_or_else(|| LayerError::NotLive { layer: layer.to_owned() }),
-            None => Err(self.not_found(layer)),
+    /// There is no such layer, or it cannot be changed while it plays.
+    pub fn records(&self, layer: &str) -> Result<Vec<u8>, LayerError> {
+        let all = |is_meant: &dyn Fn(&Entry) -> bool| -> Vec<&Entry> {
+            self.0.iter().filter(|entry| is_meant(entry)).collect()
+        };
+        let named = self.0.iter().find(|entry| entry.name.as_deref() == Some(layer)).map(|entry| vec![entry]);
+        let number = |entry: &Entry| entry.number.to_string() == layer || entry.number.table.to_string() == layer;
+        let meant = named.unwrap_or_else(|| {
+            let copies = all(&|entry| entry.family.as_deref() == Some(layer));
+            if copies.is_empty() { all(&number) } else { copies }
+        });
+        if meant.is_empty() {
+            return Err(self.not_found(layer));
         }
+        let records: Option<Vec<u8>> = meant.iter().map(|entry| entry.record).collect();
+        records.ok_or_else(|| LayerError::NotLive { layer: layer.to_owned() })
     }
 
     /// Whether the host may change the layer of a record.
@@ -108,26 +98,13 @@ impl LayerMap {
     }
 
     fn not_found(&self, layer: &str) -> LayerError {
-        let names = |entries: Vec<&Entry>| ends(entries.into_iter().filter_map(|entry| entry.name.clone()));
-        let copies: Vec<&Entry> = self.0.iter().filter(|entry| entry.family.as_deref() == Some(layer)).collect();
-        let numbered: Vec<&Entry> = self.0.iter().filter(|entry| entry.number.table.to_string() == layer).collect();
-        if !copies.is_empty() {
-            return LayerError::Repeated { layer: layer.to_owned(), copies: names(copies) };
-        }
-        if !numbered.is_empty() {
-            let copies = ends(numbered.iter().map(|entry| entry.number.to_string()));
-            return LayerError::Repeated { layer: layer.to_owned(), copies };
-        }
         let known = self.0.iter().flat_map(|entry| [entry.family.as_deref(), entry.name.as_deref()]).flatten();
-        let nearest = Nearest::new(layer, known).suggestion.map_or(Vec::new(), |nearest| {
-            // The name of a copy stands for all copies, unless it differs in its capitals only.
-            let is_same = nearest.to_lowercase() == layer.to_lowercase();
-            let named = self.0.iter().find(|entry| entry.name.as_ref() == Some(&nearest));
-            let family = named.and_then(|entry| entry.family.clone()).filter(|_| !is_same);
-            let family = Some(family.unwrap_or_else(|| nearest.clone()));
-            let copies = names(self.0.iter().filter(|entry| entry.family == family).collect());
-            if copies.is_empty() { vec![nearest] } else { copies }
-        });
+        // A copy is meant by a name with a number.
+        let family_of = |name: String| {
+            let named = self.0.iter().find(|entry| entry.name.as_ref() == Some(&name));
+            named.and_then(|entry| entry.family.clone()).filter(|_| !layer.contains(char::is_numeric)).unwrap_or(name)
+        };
+        let nearest = Nearest::new(layer, known).suggestion.map(family_of);
         let numbers = ends(self.0.iter().map(|entry| entry.number.to_string()));
         LayerError::Unknown { found: layer.to_owned(), nearest, numbers }
     }
@@ -159,27 +136,27 @@ mod tests {
     #[test]
     fn a_layer_is_found_by_name_or_by_the_number_of_messages() {
         for (layer, record) in [("rain 2", 2), ("3.2", 2), ("5.1", 5), ("1", 4), ("4", 4)] {
-            assert_eq!(map().record(layer), Ok(record), "{layer}");
+            assert_eq!(map().records(layer), Ok(vec![record]), "{layer}");
         }
-        assert_eq!(map().record("bricks"), Err(LayerError::NotLive { layer: "bricks".into() }));
+        for (layer, records) in [("rain", [1, 2, 3].as_slice()), ("3", &[1, 2, 3]), ("5", &[5, 6])] {
+            assert_eq!(map().records(layer), Ok(records.to_vec()), "{layer}");
+        }
+        assert_eq!(map().records("bricks"), Err(LayerError::NotLive { layer: "bricks".into() }));
     }
 
     #[test]
     fn a_layer_that_is_not_found_is_missed_in_a_sentence() {
         for (layer, sentence) in [
             ("Bricks", "the scene has no layer \"Bricks\": did you mean \"bricks\"?"),
-            ("rain", "\"rain\" is repeated: give one of its copies, \"rain 1\" to \"rain 3\""),
-            ("Rain", "the scene has no layer \"Rain\": did you mean one of \"rain 1\" to \"rain 3\"?"),
-            ("rian", "the scene has no layer \"rian\": did you mean one of \"rain 1\" to \"rain 3\"?"),
+            ("Rain", "the scene has no layer \"Rain\": did you mean \"rain\"?"),
+            ("rian", "the scene has no layer \"rian\": did you mean \"rain\"?"),
             ("RAIN 2", "the scene has no layer \"RAIN 2\": did you mean \"rain 2\"?"),
-            ("3", "\"3\" is repeated: give one of its copies, 3.1 to 3.3"),
-            ("5", "\"5\" is repeated: give one of its copies, 5.1 to 5.2"),
             ("6", "the scene has no layer \"6\": give the name of a layer, or its number, 1 to 5.2"),
             ("", "the scene has no layer \"\": give the name of a layer, or its number, 1 to 5.2"),
         ] {
-            assert_eq!(map().record(layer).unwrap_err().to_string(), sentence);
+            assert_eq!(map().records(layer).unwrap_err().to_string(), sentence);
         }
-        let nothing = LayerMap::default().record("x").unwrap_err().to_string();
+        let nothing = LayerMap::default().records("x").unwrap_err().to_string();
         assert_eq!(nothing, "the scene has no layer \"x\": it has no layers");
     }
 }

@@ -23,7 +23,7 @@ pub struct LayerTable {
     pub gain: f64,
     /// Whether it is on when the scene begins to play.
     pub starts_on: bool,
-    /// The numbers of its layers that [`LayerMap::record`](crate::LayerMap::record) takes: `3`, or `3.1`, `3.2` and so
+    /// The numbers of its layers that [`LayerMap::records`](crate::LayerMap::records) takes: `3`, or `3.1`, `3.2` and so
     /// on for copies.
     pub layers: Vec<String>,
     /// The name of the file in messages.

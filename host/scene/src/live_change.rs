@@ -59,18 +59,20 @@ impl Program {
         })
     }
 
-    /// The least and the largest gain of a record with which the board clamps nothing, while all other settings stay as
-    /// they are; `None` if it clamps with every gain. The search starts from the record's gain in `settings`.
-    pub fn gains_in_reach(&self, record: u8, settings: &[LayerSetting]) -> Option<(f32, f32)> {
+    /// The least and the largest gain of some records together with which the board clamps nothing, while all other
+    /// settings stay as they are; `None` if it clamps with every gain. The search starts from the gain of the first of
+    /// them in `settings`.
+    pub fn gains_in_reach(&self, records: &[u8], settings: &[LayerSetting]) -> Option<(f32, f32)> {
         let mut pieces = pieces(&Reference::new(self), settings);
-        let number = usize::from(record);
         let mut is_in_reach = |gain: f64| {
-            if let Some(piece) = pieces.get_mut(number) {
-                piece.gain = gain;
+            for record in records {
+                if let Some(piece) = pieces.get_mut(usize::from(*record)) {
+                    piece.gain = gain;
+                }
             }
             self.worst_with(&pieces).is_none()
         };
-        let start = f64::from(settings.get(number)?.gain);
+        let start = f64::from(settings.get(usize::from(*records.first()?))?.gain);
         let start = [start, 1.0, 0.0].into_iter().find(|gain| is_in_reach(*gain))?;
         let [least, most] = [range::GAIN.min, range::GAIN.max].map(|limit| {
             if is_in_reach(limit) {

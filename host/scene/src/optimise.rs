@@ -2,6 +2,7 @@
 //! become constants, constants over constants are merged, and points and pictures that no layer names are dropped.
 
 use std::collections::BTreeSet;
+use std::time::Duration;
 
 use frixel_layers::{Blend, Constant, Header, Interval, Layer, Point, Record, Region, Speed};
 
@@ -32,6 +33,8 @@ pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut 
     fold(&mut items, log);
     let setting = |item: &Played| LayerSetting { on: item.layer.starts_on, gain: item.record.gain };
     program.start = items.iter().map(setting).collect();
+    let pattern = |item: &Played| item.layer.pattern_ms.iter().map(|ms| Duration::from_secs_f64(1e-3 * ms)).collect();
+    program.patterns = items.iter().map(pattern).collect();
     (program.titles, program.records) = items.into_iter().map(|item| (item.layer.title.clone(), item.record)).unzip();
     compact_points(program);
     drop_bitmaps(program, &bitmaps, log);

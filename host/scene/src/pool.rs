@@ -59,6 +59,8 @@ pub(crate) struct Placed {
     pub(crate) tiled: bool,
     /// The picture's outline; `None` for a tiled picture, which is not bounded.
     pub(crate) outline: Option<Region>,
+    /// Whether it is of one grey, and transparent, so that another ground would show its shape.
+    pub(crate) is_hidden: bool,
     /// Its height over its width, relative to that of its pixels.
     pub(crate) height_factor: f64,
     /// The height that its width demands.
@@ -72,7 +74,7 @@ impl Placed {
         whole: Rectangle,
         pitch_mm: f64,
         (across, down): (Axis, Axis),
-        crc32: u32,
+        (crc32, is_hidden): (u32, bool),
     ) -> Self {
         // A picture is turned about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
@@ -105,7 +107,7 @@ impl Placed {
         let height_kept_mm = whole.width_mm * height_per_width(picture);
         let height_factor = whole.height_mm / height_kept_mm;
         let tiled = bitmap.tiled;
-        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled, outline, height_factor, height_kept_mm }
+        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled, outline, is_hidden, height_factor, height_kept_mm }
     }
 }
 
@@ -187,7 +189,8 @@ fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
         let mut grids = Vec::new();
         for (bitmap, picture, region, whole) in &bitmaps {
             let pitch_mm = pitch_mm(bitmap, picture, *whole, f64::from(hundredths) / 100.0);
-            let grid = ((&bitmap.picture, bitmap.levels), axes(bitmap, pitch_mm, picture, *whole, *region, screen_mm));
+            let content = (&bitmap.picture, bitmap.levels, bitmap.ground, bitmap.is_inverted);
+            let grid = (content, axes(bitmap, pitch_mm, picture, *whole, *region, screen_mm));
             if !grids.contains(&grid) {
                 grids.push(grid);
             }
@@ -212,15 +215,21 @@ fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
     f64::from(high) / 100.0
 }
 
-/// The picture at the levels of its layer, which are those of its samples, so that a picture of more pixels is felt as
+/// The opaque picture at the levels of its layer, which are those of its samples, so that a picture of more pixels is felt as
 /// one of few.
 fn levelled<'p>(bitmap: &BitmapLayer, picture: &'p Picture, across: Axis, down: Axis) -> Cow<'p, Picture> {
+    let is_changed = bitmap.is_inverted || !picture.white_below.is_empty();
+    let picture = if is_changed {
+        Cow::Owned(picture.clone().laid_over(bitmap.ground, bitmap.is_inverted))
+    } else {
+        Cow::Borrowed(picture)
+    };
     if bitmap.levels == Levels::Full {
-        return Cow::Borrowed(picture);
+        return picture;
     }
     let (across, down) = (across.whole_in_pixels(picture.width), down.whole_in_pixels(picture.height));
     let samples = resample(&picture.grey, picture.width, across, down);
-    Cow::Owned(picture.clone().stretched(samples))
+    Cow::Owned(picture.into_owned().stretched(samples))
 }
 
 /// Decodes the pictures of a scene, each one once.
@@ -288,9 +297,11 @@ impl Pool {
         let (Ok(width), Ok(height)) = (u16::try_from(across.samples), u16::try_from(down.samples)) else {
             return Err(self.too_small(pitch_mm, bytes));
         };
+        let is_transparent = !picture.white_below.is_empty();
         let picture = levelled(bitmap, picture, across, down);
         let compiled = Bitmap::new(width, height, resample(&picture.grey, picture.width, across, down));
-        let crc32 = compiled.crc32;
+        let is_hidden = is_transparent && compiled.samples.windows(2).all(|pair| pair[0] == pair[1]);
+        let name = (compiled.crc32, is_hidden);
         let (picture_name, kept) = (printable(file_name(&bitmap.picture)).into_owned(), across.samples * down.samples);
         if kept < across.whole * down.whole {
             let whole = across.whole * down.whole;
@@ -306,7 +317,7 @@ impl Pool {
         if let Some(note) = self.note(bitmap, &picture, pitch_mm, across, down) {
             log.note(layer.places.field("picture"), note);
         }
-        Ok(Placed::new(bitmap, &picture, whole, pitch_mm, (across, down), crc32))
+        Ok(Placed::new(bitmap, &picture, whole, pitch_mm, (across, down), name))
     }
 
     fn check_room(&self, pitch_mm: f64, needed_bytes: u64) -> Result<(), Unplaced> {

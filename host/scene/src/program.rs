@@ -1,5 +1,7 @@
 //! The compiled scene.
 
+use std::time::Duration;
+
 use frixel_layers::{FingerLaw, Header, Point, Record, features_of};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
@@ -27,6 +29,9 @@ pub struct Program {
     pub records: Vec<Record>,
     /// The setting of each record when the program begins to play.
     pub start: Vec<LayerSetting>,
+    /// What a trigger of each record plays: how long it is on, off, on, and so on; empty for a record that is on all the
+    /// time.
+    pub patterns: Vec<Vec<Duration>>,
     /// The points that records name.
     pub points: Vec<Point>,
     /// The pictures that records name, each one once.
@@ -89,8 +94,8 @@ impl Program {
     #[must_use]
     pub fn without_layers(&self) -> Self {
         let header = Header { electric_friction_max_n: None, ..self.header };
-        let (records, start, points, bitmaps, titles) = Default::default();
-        Self { header, records, start, points, bitmaps, titles, ..self.clone() }
+        let (records, start, patterns, points, bitmaps, titles) = Default::default();
+        Self { header, records, start, patterns, points, bitmaps, titles, ..self.clone() }
     }
 
     /// The scene's bytes for a board of this protocol version.

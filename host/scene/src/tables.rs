@@ -385,6 +385,13 @@ pub(super) mod layer {
         "`true`: the host puts it on and off or changes its gain while it plays, so that it is never \
          [left out](#what-is-left-out), and hides nothing for good",
     );
+    pub(crate) const PATTERN_MS: FieldSpec = FieldSpec::new(
+        "pattern_ms",
+        Holds::Numbers(Range::new(1.0, 60_000.0, " ms")),
+        Means("on"),
+        "what a `trigger` of the layer plays, see [while it plays](#while-it-plays): how long it is on, off, on, and so \
+         on, 1 to 64 times; it needs `live = true`",
+    );
     pub(crate) const START: FieldSpec = word(
         "start",
         Means("`\"on\"`"),

@@ -94,6 +94,17 @@ pub enum Warning {
         /// The height that its width demands, mm.
         height_mm: f64,
     },
+    /// A picture is of one grey over what shows through it.
+    #[error(
+        "{layer}: the picture is of one grey where it is transparent and where it is not, so that nobody feels its shape: \
+         write {cure}"
+    )]
+    PictureHidden {
+        /// The layer.
+        layer: String,
+        /// What to write.
+        cure: &'static str,
+    },
     /// The line of an edge without a region crosses a scene of layers with regions.
     #[error("{layer} has no `region`, so that its line crosses the whole screen: give it one to end the line there")]
     EdgeAcrossScreen {

@@ -43,7 +43,7 @@ pub(crate) struct FileLayer {
 pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
-        let live = layers.iter().try_for_each(|layer| program.layers.record(layer).map(drop));
+        let live = layers.iter().try_for_each(|layer| program.layers.records(layer).map(drop));
         FileLayer {
             index: number,
             name: name.unwrap_or_else(|| kind.to_owned()),

@@ -36,7 +36,7 @@ impl<'a> Ticker<'a> {
             Order::Load(next) => spare = Some(self.load(next)),
             Order::Unload => self.active.unload(),
             Order::SetLayer { layer, on, gain } => {
-                self.active.set_layer(layer, on, gain);
+                self.active.set_layer(layer, on, gain, self.tick.wrapping_add(1));
                 // A layer that is enabled under the finger must not click: the finger did not slide into it.
                 self.clicks.lift();
             }

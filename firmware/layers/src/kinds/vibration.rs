@@ -57,7 +57,8 @@ impl Parameter for Beat {
     }
 }
 
-/// Bursts of a vibration: in each period, its envelope rises over the ramp, stays at 1, and falls over the ramp.
+/// Bursts of a vibration: in each period, its envelope rises over the ramp, stays at 1, and falls over the ramp. The first
+/// period begins when the host switches the layer on, or at power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Burst {
     /// Period of the bursts, s; 0 for a continuous vibration.
@@ -131,6 +132,8 @@ struct BurstCoefficients {
     on_ticks: u32,
     per_tick: f32,
     offset: f32,
+    /// The tick at which the first burst begins.
+    begin_tick: u32,
 }
 
 impl Evaluate for VibrationCoefficients {
@@ -155,6 +158,13 @@ impl Evaluate for VibrationCoefficients {
         };
         self.low_n + span_n * (1.0 + height)
     }
+
+    #[inline]
+    fn begin(&mut self, tick: u32) {
+        if let Some(burst) = &mut self.burst {
+            burst.begin_tick = tick;
+        }
+    }
 }
 
 impl BurstCoefficients {
@@ -162,12 +172,12 @@ impl BurstCoefficients {
         let ramp_ticks = ticks(burst.ramp_s, tick_hz);
         let (per_tick, offset) = if ramp_ticks > 0 { (1.0 / ramp_ticks as f32, 0.0) } else { (0.0, 1.0) };
         let period_ticks = NonZeroU32::new(ticks(burst.period_s, tick_hz))?;
-        Some(Self { period_ticks, on_ticks: ticks(burst.on_s, tick_hz), per_tick, offset })
+        Some(Self { period_ticks, on_ticks: ticks(burst.on_s, tick_hz), per_tick, offset, begin_tick: 0 })
     }
 
     #[inline]
     fn envelope(&self, tick: u32) -> f32 {
-        let since_ticks = tick % self.period_ticks;
+        let since_ticks = tick.wrapping_sub(self.begin_tick) % self.period_ticks;
         if since_ticks >= self.on_ticks {
             return 0.0;
         }

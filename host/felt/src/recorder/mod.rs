@@ -198,8 +198,9 @@ impl PlayListener for Recorder {
     }
 
     fn layer_changed(&mut self, record: u8, setting: LayerSetting) {
+        let t_s = self.last_tick as f64 * self.tick_period_s;
         if let Some(comparison) = &mut self.comparison {
-            comparison.reference.set_layer(record.into(), setting.on, setting.gain.into());
+            comparison.reference.set_layer(record.into(), setting.on, setting.gain.into(), t_s);
         }
     }
 
@@ -275,7 +276,7 @@ impl Comparison {
             self.reference.lift();
             return None;
         };
-        let context = Context { x_m, y_m, t_s, speed_m_per_s, stream, stream_weight };
+        let context = Context { x_m, y_m, t_s, speed_m_per_s, stream, stream_weight, ..Context::default() };
         Some(self.reference.electric_friction_n(&context))
     }
 }

@@ -76,6 +76,29 @@ fn a_layer_that_starts_off_waits_for_its_trigger_and_stays_as_it_was_switched() 
     assert!(svg.lines().any(|line| line == "ping off") && svg.lines().any(|line| line == "ping"));
 }
 
+/// Whatever the time since the board's power-on, the first beat comes with the trigger, and the last one is whole.
+#[test]
+fn a_trigger_plays_its_burst_or_its_pattern_from_the_beginning() {
+    let ping = "version = 2\n[[layer]]\nname = \"ping\"\nlive = true\nstart = \"off\"\n";
+    let burst = "kind = \"vibration\"\nwave = \"square\"\nfrequency_hz = 0.01\nlow_fraction = 0\nhigh_fraction = 0.5\n\
+                 burst = { period_ms = 330, on_ms = 80 }\n";
+    let pattern = "kind = \"constant\"\nfriction_fraction = 0.5\npattern_ms = [60, 40, 120]\n";
+    for (kind, edges_ms) in [(burst, vec![0, 80]), (pattern, vec![0, 60, 100, 220])] {
+        let folder = TempDir::new().unwrap();
+        fs::write(folder.path().join("scene.toml"), format!("{ping}{kind}")).unwrap();
+        let output = control(folder.path(), "wait 0.2\ntrigger ping\nwait 0.5\ntrigger ping\n");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let is_on: Vec<bool> = (1..1_150).map(|t_ms| friction_mn(folder.path(), t_ms).1 > 280.0).collect();
+        let edges = is_on.windows(2).zip(2_usize..).filter(|(pair, _)| pair[0] != pair[1]).map(|(_, t_ms)| t_ms);
+        let edges: Vec<usize> = edges.collect();
+        let expected: Vec<usize> =
+            [200, 700].iter().flat_map(|at| edges_ms.iter().map(move |edge| at + edge)).collect();
+        assert_eq!(edges.len(), expected.len(), "{edges:?}");
+        let are_near = edges.iter().zip(&expected).all(|(found, expected)| found.abs_diff(*expected) <= 3);
+        assert!(are_near, "{edges:?} are not {expected:?}");
+    }
+}
+
 #[test]
 fn a_scene_is_replaced_and_the_play_ended() {
     let folder = TempDir::new().unwrap();

@@ -143,6 +143,14 @@ fn wait(what: &str, mut done: impl FnMut() -> bool) {
     }
 }
 
+/// The last scene has all of the others, and a board plays it: what it says is no draft.
+fn expect_playable(folder: &Path) {
+    let checked = command(folder, &["scene", "check", "all.toml"]).output().unwrap();
+    let said = String::from_utf8(checked.stdout).unwrap() + &String::from_utf8(checked.stderr).unwrap();
+    assert!(checked.status.success(), "a board refuses all.toml: {said}");
+    assert!(said.contains("\"notification\"") && said.contains("\"picture\""), "{said}");
+}
+
 #[test]
 fn every_command_of_the_tutorial_runs() {
     let page = File::open(scenes().join("../docs/tutorial.md")).unwrap();
@@ -184,6 +192,7 @@ fn every_command_of_the_tutorial_runs() {
         }
         paragraph.clear();
     }
+    expect_playable(reader.path());
     assert!(reader.commands >= 14 && reader.edits >= 3, "{} commands, {} edits", reader.commands, reader.edits);
     for name in ["map.png", "all.png", "frixel-out/felt.svg"] {
         assert!(reader.path().join(name).metadata().unwrap().len() > 1_000, "{name}");

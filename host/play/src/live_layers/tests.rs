@@ -28,11 +28,30 @@ impl Taking {
     }
 
     fn change(&mut self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, LiveError> {
-        self.0.change(layer, on, gain).inspect(|change| self.0.apply(change))
+        let change = self.0.change(layer, on, gain)?;
+        Ok(self.take(change))
     }
 
     fn trigger(&mut self, layer: &str, now: Duration, duration_s: f64) -> Result<LayerChange, LiveError> {
-        self.0.trigger(layer, now, duration_s).inspect(|change| self.0.apply(change))
+        let change = self.0.trigger(layer, now, Some(duration_s))?;
+        Ok(self.take(change))
+    }
+
+    fn take(&mut self, change: LayerChange) -> LayerChange {
+        for (record, setting) in &change.settings {
+            self.0.apply(*record, *setting, &change);
+        }
+        change
+    }
+
+    /// What triggers switch by a time: each record, and whether it is on from then on.
+    fn switch(&mut self, now: Duration) -> Vec<(u8, bool)> {
+        let mut switched = Vec::new();
+        while let Some((record, change)) = self.0.next_switch(now) {
+            let change = self.take(change);
+            switched.extend(change.settings.iter().map(|(_, setting)| (record, setting.on)));
+        }
+        switched
     }
 }
 
@@ -46,14 +65,14 @@ fn a_second_trigger_does_not_shorten_the_first() {
     layers.change("ping", Some(false), None).expect("it is live");
     layers.trigger("ping", ms(0), 0.3).expect("it is off");
     layers.trigger("ping", ms(50), 0.1).expect("it is triggered");
-    assert_eq!(layers.0.next_end(), Some(ms(300)));
+    assert_eq!(layers.0.next_switch_at(), Some(ms(300)));
     layers.trigger("ping", ms(250), 0.1).expect("it is triggered");
-    assert_eq!(layers.0.next_end(), Some(ms(350)));
-    assert_eq!(layers.0.end_trigger(ms(340)), None);
-    let ended = layers.0.end_trigger(ms(350)).expect("it has ended");
-    assert!(!ended.setting.on && layers.0.next_end() == Some(ms(350)), "the board has not taken it");
-    layers.0.apply(&ended);
-    assert_eq!(layers.0.next_end(), None);
+    assert_eq!(layers.0.next_switch_at(), Some(ms(350)));
+    assert_eq!(layers.0.next_switch(ms(340)), None);
+    let (_, ended) = layers.0.next_switch(ms(350)).expect("it has ended");
+    assert!(!ended.settings[0].1.on && layers.0.next_switch_at() == Some(ms(350)), "the board has not taken it");
+    assert_eq!(layers.switch(ms(350)), [(0, false)]);
+    assert_eq!(layers.0.next_switch_at(), None);
 }
 
 #[test]
@@ -92,7 +111,7 @@ fn a_trigger_of_no_gain_is_refused() {
         let mut layers = Taking::new(&format!("{}{mask}", layer("wood", "")));
         layers.change("mask", Some(false), Some(0.0)).expect("it is in reach");
         let trigger = layers.trigger("mask", ms(0), 0.1);
-        assert!(trigger.is_ok_and(|change| change.setting.on), "{blend}");
+        assert!(trigger.is_ok_and(|change| change.settings[0].1.on), "{blend}");
     }
 }
 
@@ -150,12 +169,11 @@ fn a_program_that_follows_keeps_what_was_set() {
     let (after, dropped) = before.0.followed_by(next);
     assert_eq!((after.off(), dropped), (vec![0, 2], None), "only what was switched, and what starts off, is off");
     assert!((after.setting(1).gain - 0.5).abs() < 1e-6);
-    assert_eq!(after.end_trigger(ms(300)).map(|ended| ended.record), Some(3));
+    assert_eq!(after.next_switch(ms(300)).map(|(record, _)| record), Some(3));
     // A trigger is no switch: what it played starts as the file says once another program follows.
     let (ended, _) = {
         let mut before = before;
-        let end = before.0.end_trigger(ms(300)).expect("it has ended");
-        before.0.apply(&end);
+        assert_eq!(before.switch(ms(300)), [(1, false)]);
         before.0.followed_by(program_of(&low("A", "")))
     };
     assert_eq!(ended.off(), Vec::<usize>::new());
@@ -168,4 +186,49 @@ fn gains_that_lead_out_of_reach_in_the_next_program_are_dropped_and_said() {
     let (after, dropped) = before.0.followed_by(program_of(&layer("A", "").replace("0.05", "0.1")));
     assert_eq!(after.setting(0), LayerSetting { on: false, gain: 1.0 }, "it is off all the same");
     assert!(dropped.is_some_and(|clamped| clamped.to_string().contains("up to 0.2 N")));
+}
+
+#[test]
+fn a_trigger_without_a_time_lasts_its_pattern_or_its_burst() {
+    let off = "start = \"off\"\n";
+    let buzz = "[[layer]]\nname = \"buzz\"\nkind = \"vibration\"\nfrequency_hz = 90\nlow_n = 0\nhigh_n = 0.01\nblend = \"add\"\n\
+                live = true\nburst = { period_ms = 900, on_ms = 400 }\n";
+    let mut layers = Taking::new(&format!(
+        "{}{buzz}{off}{}",
+        layer("beats", &format!("pattern_ms = [100, 50, 200]\n{off}")),
+        layer("ping", off)
+    ));
+    for (layer, lasts) in [("beats", 350), ("buzz", 400), ("ping", 100)] {
+        let change = layers.0.trigger(layer, ms(1_000), None).expect("it is off");
+        assert_eq!(change.trigger, TriggerChange::Begin(ms(1_000), ms(1_000 + lasts)), "{layer}");
+    }
+    let change = layers.0.trigger("beats", ms(0), None).expect("it is off");
+    layers.take(change);
+    for (at, on) in [(100, false), (150, true)] {
+        assert_eq!((layers.switch(ms(at - 1)), layers.switch(ms(at))), (vec![], vec![(0, on)]), "{at}");
+    }
+    // Another one begins the pattern anew, and the whole of it is played.
+    layers.trigger("beats", ms(160), 0.35).expect("it is triggered");
+    for (at, on) in [(260, false), (310, true), (510, false)] {
+        assert_eq!((layers.switch(ms(at - 1)), layers.switch(ms(at))), (vec![], vec![(0, on)]), "{at}");
+    }
+    assert_eq!(layers.0.next_switch_at(), None);
+}
+
+#[test]
+fn the_name_of_a_repeated_layer_is_that_of_all_its_copies() {
+    let keys = "region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\nrepeat = { columns = 3, dx_mm = 20 }\n";
+    let mut layers = Taking::new(&layer("key", keys));
+    layers.change("key", Some(false), None).expect("they are live");
+    assert_eq!(layers.0.off(), [0, 1, 2]);
+    layers.change("key 2", Some(true), Some(0.5)).expect("it is live");
+    assert_eq!(layers.0.off(), [0, 2]);
+    let refused = layers.trigger("key", ms(0), 0.1).expect_err("one of them is on").to_string();
+    assert!(refused.starts_with("layer \"key\" is on"), "{refused}");
+    layers.change("1.2", Some(false), None).expect("it is live");
+    layers.trigger("1", ms(0), 0.1).expect("all are off");
+    assert_eq!((layers.0.off(), layers.0.setting(1).gain), (vec![], 0.5));
+    assert_eq!(layers.switch(ms(100)), [(0, false), (1, false), (2, false)]);
+    let refused = layers.change("key", None, Some(9.0)).expect_err("it is out of reach").to_string();
+    assert!(refused.ends_with("give a gain from 0 to 2.6") || refused.contains("give a gain from"), "{refused}");
 }

@@ -145,7 +145,7 @@ fn a_change_that_the_board_refuses_is_not_kept() {
 fn the_end_of_a_trigger_that_the_board_refuses_is_reported_once_with_its_layer() {
     let mut player = playing(ping(true));
     player.change_layer("ping", Some(false), None).unwrap();
-    player.trigger("ping", 0.05).unwrap();
+    player.trigger("ping", Some(0.05)).unwrap();
     refuse_changes(&mut player);
     let refused = player.wait(100 * MS).unwrap_err().to_string();
     assert!(refused.starts_with("the end of the trigger of layer 1 \"ping\": "), "{refused}");
@@ -156,7 +156,7 @@ fn the_end_of_a_trigger_that_the_board_refuses_is_reported_once_with_its_layer()
 fn a_trigger_ends_at_its_time_on_the_clock_of_the_link() {
     let mut player = playing(ping(true));
     player.change_layer("ping", Some(false), None).unwrap();
-    player.trigger("ping", 0.05).unwrap();
+    player.trigger("ping", Some(0.05)).unwrap();
     let triggered = player.device().now();
     while player.playing().unwrap().off().is_empty() {
         player.step(MS).unwrap();
@@ -198,7 +198,7 @@ fn a_layer_that_starts_off_is_never_played_until_it_is_switched_on() {
         player.wait(20 * MS).unwrap();
         let asked = asked_max(&mut player);
         assert!((asked - 0.2).abs() < 1e-3, "{blend}: {asked}");
-        player.trigger("ping", 0.05).unwrap();
+        player.trigger("ping", Some(0.05)).unwrap();
         player.wait(20 * MS).unwrap();
         let asked = asked_max(&mut player);
         assert!((asked - on).abs() < 1e-3, "{blend}: {asked}");
@@ -240,10 +240,10 @@ fn a_trigger_of_a_stream_without_samples_is_refused() {
     let stream = "[[layer]]\nname = \"voice\"\nkind = \"stream\"\nlow_n = 0.002\nhigh_n = 0.018\nlive = true\n";
     let mut player = playing(program(stream));
     player.change_layer("voice", Some(false), None).unwrap();
-    let refused = player.trigger("voice", 0.05).unwrap_err();
+    let refused = player.trigger("voice", Some(0.05)).unwrap_err();
     assert!(refused.is_refusal() && refused.to_string().contains("give `--stream FILE`"), "{refused}");
     player.stream(Feed::of(vec![0; 100], 4_000)).unwrap();
-    player.trigger("voice", 0.05).unwrap();
+    player.trigger("voice", Some(0.05)).unwrap();
 }
 
 /// Disarmed by its host timeout, the board refuses to stop, and its output is zero all the same.

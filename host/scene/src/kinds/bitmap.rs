@@ -15,6 +15,7 @@ use crate::grammar::{AmountFields, FieldSpec, Holds, LengthFields, Range};
 use crate::layer::{Amount, Layer, Region, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
+use crate::picture::Ground;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
@@ -56,6 +57,12 @@ const LEVELS: FieldSpec = word(
     "`\"full\"`: black and white are those of the file; `\"stretch\"`: the darkest and the lightest hundredth of the \
      picture become black and white",
 );
+const TRANSPARENT: FieldSpec = word(
+    "transparent",
+    Means("`\"black\"`"),
+    "`\"black\"` or `\"white\"`: what shows through where the picture is transparent",
+);
+const INVERT: FieldSpec = flag("invert", false, "`true`: black and white are exchanged, also those of `transparent`");
 const BLACK: AmountFields = amount!("black", Means("0"), "friction of black");
 const WHITE: AmountFields = amount!("white", Means("all that can be reached; a factor of 1"), "friction of white");
 
@@ -80,6 +87,8 @@ pub(crate) struct Bitmap {
     /// `None` for the finest pitch that fits.
     pub(crate) pitch_mm: Option<f64>,
     pub(crate) levels: Levels,
+    pub(crate) ground: Ground,
+    pub(crate) is_inverted: bool,
     pub(crate) angle_deg: f64,
     pub(crate) tiled: bool,
     black: Amount,
@@ -103,6 +112,9 @@ impl Words for Bitmap {
         let pitch_mm = fields.number_or_auto(log, &PITCH);
         let levels = [("full", Levels::Full), ("stretch", Levels::Stretch)];
         let levels = fields.choice(log, &LEVELS, &levels).unwrap_or(Levels::Full);
+        let grounds = [("black", Ground::Black), ("white", Ground::White)];
+        let ground = fields.choice(log, &TRANSPARENT, &grounds).unwrap_or_default();
+        let is_inverted = fields.flag(log, &INVERT);
         let angle_deg = fields.angle_deg(log, &ANGLE);
         let tiled = fields.flag(log, &TILED);
         // Default colours of a friction image without numbers: black is bare glass, white the most that the drive
@@ -114,7 +126,21 @@ impl Words for Bitmap {
         let black = Amount::read(fields, &BLACK, unit, log).unwrap_or(black);
         let white = Amount::read(fields, &WHITE, unit, log).unwrap_or(white);
         let picture = picture?;
-        Some(Self { picture, x_mm, y_mm, width_mm, height_mm, pitch_mm, levels, angle_deg, tiled, black, white })
+        Some(Self {
+            picture,
+            x_mm,
+            y_mm,
+            width_mm,
+            height_mm,
+            pitch_mm,
+            levels,
+            ground,
+            is_inverted,
+            angle_deg,
+            tiled,
+            black,
+            white,
+        })
     }
 
     fn fills_screen(&self) -> bool {
@@ -139,6 +165,16 @@ impl Words for Bitmap {
         let warning =
             Warning::of_stretch(layer.title.as_str(), placed.height_factor, placed.height_kept_mm, has_own_height);
         lowering.warn(layer, warning);
+        let hidden = placed.is_hidden.then(|| Warning::PictureHidden {
+            layer: layer.title.as_str().to_owned(),
+            cure: match self.ground {
+                Ground::Black if self.is_inverted => "`transparent = \"white\"`",
+                Ground::Black => "`transparent = \"white\"` and `invert = true`",
+                Ground::White if self.is_inverted => "`transparent = \"black\"` and `invert = false`",
+                Ground::White => "`transparent = \"black\"`",
+            },
+        });
+        lowering.warn(layer, hidden);
         let record = Record {
             crc32: placed.crc32,
             x_m: (placed.corner_mm.0 * MM) as f32,

@@ -152,7 +152,7 @@ impl Field for VibrationField {
             Beat::Sine => 0.5 + 0.5 * libm::sin(TAU * turn),
             Beat::Square => f64::from(u8::from(turn < 0.5)),
         };
-        self.low_n + (self.high_n - self.low_n) * self.envelope(context.t_s) * wave
+        self.low_n + (self.high_n - self.low_n) * self.envelope(context.t_s - context.begun_s) * wave
     }
 
     fn interval_at(&self, _x_m: f64, _y_m: f64) -> Interval<f64> {

@@ -18,6 +18,9 @@ use super::source::Places;
 use super::tables;
 use super::titles::{LayerNumber, LayerTitle};
 
+/// Most durations of a pattern.
+const PATTERN_MAX: usize = 64;
+
 /// One layer as written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layer {
@@ -35,6 +38,8 @@ pub(crate) struct Layer {
     pub(crate) live: bool,
     /// Whether the layer is on when the scene begins to play.
     pub(crate) starts_on: bool,
+    /// What a trigger plays, ms on, off, on, and so on; empty: on.
+    pub(crate) pattern_ms: Vec<f64>,
     pub(crate) kind: Kind,
     pub(crate) places: Places,
 }
@@ -62,15 +67,17 @@ impl Layer {
         let number = LayerNumber { table: number, copy: None };
         let title = LayerTitle::new(number, name.as_deref(), kind_name.word());
         fields.rename(title.to_string());
-        let Common { region, repeat, blend, gain, live, starts_on, unit, above } =
+        let Common { region, repeat, blend, gain, live, starts_on, pattern_ms, unit, above } =
             Common::read(&mut fields, kind_name, log);
         let kind = kind_name.read(&mut fields, unit, log);
         let places = fields.close(log);
         if blend == Blend::Add && above == Some(Above::Zero) {
             log.add(places.field("above"), FieldMistake::AddedTotal { layer: title.to_string() });
         }
-        if !starts_on && !live {
-            log.add(places.field("start"), FieldMistake::OffForGood { layer: title.to_string() });
+        let needs_live =
+            [(!starts_on, "start", "is off at the start"), (!pattern_ms.is_empty(), "pattern_ms", "has a pattern")];
+        for (_, field, what) in needs_live.into_iter().filter(|(is_asked, ..)| *is_asked && !live) {
+            log.add(places.field(field), FieldMistake::NeedsLive { layer: title.to_string(), field, what });
         }
         let is_total = kind_name.has_totals() && blend == Blend::Replace;
         let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
@@ -78,7 +85,21 @@ impl Layer {
         let kind = kind?;
         kind.check(&places, log);
         let (family, is_copy) = (None, false);
-        let layer = Self { title, name, family, is_copy, region, blend, gain, above, live, starts_on, kind, places };
+        let layer = Self {
+            title,
+            name,
+            family,
+            is_copy,
+            region,
+            blend,
+            gain,
+            above,
+            live,
+            starts_on,
+            pattern_ms,
+            kind,
+            places,
+        };
         Some(repeat.of(&layer, kind_name))
     }
 
@@ -101,6 +122,7 @@ struct Common {
     gain: f64,
     live: bool,
     starts_on: bool,
+    pattern_ms: Vec<f64>,
     unit: Unit,
     above: Option<Above>,
 }
@@ -114,6 +136,7 @@ impl Common {
         let gain = fields.number_or_default(log, &tables::layer::GAIN);
         let live = fields.flag(log, &tables::layer::LIVE);
         let starts_on = fields.choice(log, &tables::layer::START, &[("on", true), ("off", false)]).unwrap_or(true);
+        let pattern_ms = pattern_ms(fields, log);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
         // The zero point of a layer that multiplies is zero.
         let above = match unit {
@@ -122,6 +145,17 @@ impl Common {
             }
             Unit::Factor => None,
         };
-        Self { region, repeat, blend, gain, live, starts_on, unit, above }
+        Self { region, repeat, blend, gain, live, starts_on, pattern_ms, unit, above }
     }
+}
+
+fn pattern_ms(fields: &mut Fields, log: &mut Log) -> Vec<f64> {
+    let field = tables::layer::PATTERN_MS;
+    let place = fields.place(field.name);
+    let Some(pattern_ms) = fields.numbers(log, &field) else { return Vec::new() };
+    let (found, min, max) = (pattern_ms.len(), 1, PATTERN_MAX);
+    if !(min..=max).contains(&found) {
+        log.add(place, FieldMistake::Count { field: field.name, found, min, max });
+    }
+    pattern_ms
 }

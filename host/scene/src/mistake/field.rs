@@ -240,11 +240,15 @@ pub enum FieldMistake {
         /// The field of their distance.
         step: &'static str,
     },
-    /// A layer that is off at the start can never be switched on.
-    #[error("{layer} is off at the start, and nothing could switch it on: write `live = true`, or leave `start` out")]
-    OffForGood {
+    /// A layer has a field for when it is switched, and can never be switched.
+    #[error("{layer} {what}, and nothing could switch it on: write `live = true`, or leave `{field}` out")]
+    NeedsLive {
         /// The layer.
         layer: String,
+        /// The field.
+        field: &'static str,
+        /// What the field says, with a verb.
+        what: &'static str,
     },
     /// The friction of a layer with `blend = "add"` is given in total.
     #[error(

@@ -48,5 +48,5 @@ pub(super) fn decode(jpeg: &[u8]) -> Result<Picture, PictureError> {
         return Err(PictureError::Damaged("pixels are missing".to_owned()));
     }
     let conversions = if coloured { vec![COLOUR.to_owned()] } else { Vec::new() };
-    Ok(orientation.upright(Picture { width, height, grey, conversions }))
+    Ok(orientation.upright(Picture { width, height, grey, white_below: Vec::new(), conversions }))
 }

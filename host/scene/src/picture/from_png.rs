@@ -37,6 +37,7 @@ fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {
     let mut coloured = false;
     let mut transparent = false;
     let mut grey = Vec::with_capacity(frame.width as usize * frame.height as usize);
+    let mut white_below = Vec::new();
     for pixel in bytes.chunks_exact(if wide { 2 * channels } else { channels }) {
         let at = |channel: usize| sample(pixel, channel, wide);
         let (value, alpha) = match frame.color_type {
@@ -46,13 +47,19 @@ fn grey(bytes: &[u8], frame: &OutputInfo) -> Picture {
             ColorType::Rgba => (luma([at(0), at(1), at(2)]), at(3)),
         };
         coloured |= channels > 2 && (at(0) != at(1) || at(1) != at(2));
-        transparent |= alpha < WHITE;
-        grey.push(value / STEP * (f32::from(alpha) / f32::from(WHITE)));
+        let opacity = f32::from(alpha) / f32::from(WHITE);
+        if alpha < WHITE && !transparent {
+            transparent = true;
+            white_below.resize(grey.len(), 0.0);
+        }
+        if transparent {
+            white_below.push(f32::from(u8::MAX) * (1.0 - opacity));
+        }
+        grey.push(value / STEP * opacity);
     }
-    let said =
-        [(coloured, COLOUR), (transparent, "transparency laid over black"), (wide, "16 bits a sample rounded to 8")];
+    let said = [(coloured, COLOUR), (wide, "16 bits a sample rounded to 8")];
     let conversions = said.iter().filter(|(done, _)| *done).map(|(_, text)| (*text).to_owned()).collect();
-    Picture { width: frame.width as usize, height: frame.height as usize, grey, conversions }
+    Picture { width: frame.width as usize, height: frame.height as usize, grey, white_below, conversions }
 }
 
 /// A channel of a pixel, in 16 bits.

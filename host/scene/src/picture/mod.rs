@@ -27,8 +27,19 @@ pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) grey: Vec<f32>,
+    /// What white below the picture adds to each grey value; empty for an opaque picture. The grey values are those over
+    /// black.
+    pub(super) white_below: Vec<f32>,
     /// The conversions to grey, as text for a person.
     pub(super) conversions: Vec<String>,
+}
+
+/// What shows through a transparent picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Ground {
+    #[default]
+    Black,
+    White,
 }
 
 /// The reason why a picture cannot be used.
@@ -64,6 +75,30 @@ impl Picture {
         } else {
             Err(PictureError::UnknownFormat)
         }
+    }
+
+    /// The opaque picture: over black or white, and then with black and white exchanged.
+    pub(super) fn laid_over(mut self, ground: Ground, is_inverted: bool) -> Self {
+        if !self.white_below.is_empty() {
+            let word = match ground {
+                Ground::Black => "black",
+                Ground::White => "white",
+            };
+            self.conversions.push(format!("transparency laid over {word}"));
+        }
+        let white_below = std::mem::take(&mut self.white_below);
+        if ground == Ground::White {
+            for (grey, added) in self.grey.iter_mut().zip(white_below) {
+                *grey += added;
+            }
+        }
+        if is_inverted {
+            for grey in &mut self.grey {
+                *grey = f32::from(u8::MAX) - *grey;
+            }
+            self.conversions.push("black and white exchanged".to_owned());
+        }
+        self
     }
 
     /// The picture with its levels stretched as its samples on a board demand: of these, a hundredth is then black or

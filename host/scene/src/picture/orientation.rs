@@ -54,6 +54,7 @@ impl Orientation {
         };
         let grey = (0..width * height).map(pixel).collect();
         let conversions = picture.conversions.iter().cloned().chain([UPRIGHT.to_owned()]).collect();
-        Picture { width, height, grey, conversions }
+        // A photograph is opaque.
+        Picture { width, height, grey, white_below: Vec::new(), conversions }
     }
 }

@@ -61,14 +61,14 @@ fn the_darkest_and_the_lightest_hundredth_become_black_and_white() {
     let mut grey = vec![0.0; 9];
     grey.extend((0..982).map(|pixel| 50.0 + (pixel % 100) as f32));
     grey.extend([255.0; 9]);
-    let picture = Picture { width: 100, height: 10, grey, conversions: Vec::new() };
+    let picture = Picture { width: 100, height: 10, grey, white_below: Vec::new(), conversions: Vec::new() };
     let stretched = picture.clone().stretched(picture.grey.iter().map(|grey| *grey as u8).collect());
     assert_eq!(stretched.conversions, ["levels 50 to 149 stretched to 0 to 255"]);
     for (before, after) in picture.grey.iter().zip(&stretched.grey) {
         let expected = (before - 50.0) / 99.0 * 255.0;
         assert!((after - expected).abs() < 1e-3, "{before}: {after} and not {expected}");
     }
-    let flat = Picture { width: 2, height: 1, grey: vec![7.0, 7.0], conversions: Vec::new() };
+    let flat = Picture { width: 2, height: 1, grey: vec![7.0, 7.0], white_below: Vec::new(), conversions: Vec::new() };
     let flat = flat.stretched(vec![7, 7]);
     assert_eq!((flat.grey, flat.conversions.len()), (vec![7.0, 7.0], 1));
 }

@@ -31,6 +31,8 @@ pub(crate) struct Piece {
     pub(crate) gain: f64,
     /// A layer that is off is as if it were not there.
     pub(crate) is_on: bool,
+    /// [`Context::begun_s`] of the layer.
+    begun_s: f64,
     pub(crate) field: Arc<dyn Field>,
     /// Whether the layer fades with the host's stream.
     pub(crate) is_streamed: bool,
@@ -100,7 +102,8 @@ impl Reference {
         let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
         let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
         above.fold(0.0, |below_n, (number, piece)| {
-            let own_n = piece.gain * (piece.field.at(context) + click_n(number));
+            let own_n =
+                piece.gain * (piece.field.at(&Context { begun_s: piece.begun_s, ..*context }) + click_n(number));
             let blended_n = match piece.blend {
                 Blend::Replace => own_n,
                 Blend::Add => below_n + own_n,
@@ -162,6 +165,6 @@ impl Piece {
         let shape = Shape::new(record.region, &program.points);
         let field = kinds::field(&record.layer, record.region, program);
         let is_streamed = record.layer.is_streamed();
-        Self { shape, blend: record.blend, gain: f64::from(record.gain), is_on: true, field, is_streamed }
+        Self { shape, blend: record.blend, gain: f64::from(record.gain), is_on: true, begun_s: 0.0, field, is_streamed }
     }
 }

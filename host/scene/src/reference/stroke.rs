@@ -11,6 +11,8 @@ pub struct Context {
     pub y_m: f64,
     /// Time of the tick since the board's power-on, s.
     pub t_s: f64,
+    /// Time at which the host switched the layer on that is evaluated, since the board's power-on, s; 0 if it has not.
+    pub begun_s: f64,
     /// Sliding speed, m/s.
     pub speed_m_per_s: f64,
     /// The stream's sample, from 0 to 1.
@@ -72,9 +74,13 @@ impl StrokeReference {
         self.reference.at(context, click_n)
     }
 
-    /// Switches a layer on or off, by its index from the bottom, and sets its gain.
-    pub fn set_layer(&mut self, layer: usize, on: bool, gain: f64) {
+    /// Switches a layer on or off at a time since the board's power-on, s, by its index from the bottom, and sets its
+    /// gain.
+    pub fn set_layer(&mut self, layer: usize, on: bool, gain: f64, t_s: f64) {
         if let Some(piece) = self.reference.pieces.get_mut(layer) {
+            if on && !piece.is_on {
+                piece.begun_s = t_s;
+            }
             (piece.is_on, piece.gain) = (on, gain);
         }
     }

@@ -25,6 +25,7 @@ impl Inputs {
         let beside = |name: &String| name.strip_prefix(folder).unwrap_or(name).to_owned();
         let mut files = PICTURES.clone();
         let brick = &PICTURES["textures/brick.png"];
+        files.insert("textures/icon.png".to_owned(), super::pictures::icon());
         files.insert("textures/cut.png".to_owned(), brick[..brick.len() / 2].to_vec());
         files.extend((1..=64).map(|number| (format!("parts/{number}.toml"), b"version = 2\n".to_vec())));
         files.extend(case.files.iter().map(|(name, text)| (beside(name), bytes(text))));
@@ -74,14 +75,14 @@ macro_rules! variants {
 
 variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Misplaced MissingField WrongType NotATable NotTables
     OutOfRange TooLong UnknownChoice NoDefault NoDesign LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
-    Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal OffForGood);
+    Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
 variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version VersionOneProfile NothingToMigrate
     UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooManyFiles IncludedTwice IncludedMissing
     IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
 variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong OffWithoutHost
     PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger BeyondLaw Model);
 variants!(warning_name, WARNINGS, Warning: ElectricAboveNatural BeyondMeasuredVoltage BeyondMeasuredLoad
-    RimWiderThanButton PictureStretched EdgeAcrossScreen EdgeOutsideRegion HidesAllBelow NameTwice);
+    RimWiderThanButton PictureStretched PictureHidden EdgeAcrossScreen EdgeOutsideRegion HidesAllBelow NameTwice);
 variants!(optimisation_name, OPTIMISATIONS, Optimisation: Covered Idle Flat Folded Cropped Shared Bitmap);
 
 impl Met {

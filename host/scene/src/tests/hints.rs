@@ -18,7 +18,7 @@ fn two_layers_of_one_name_are_pointed_out_with_the_one_that_counts() {
     };
     let twice = format!("{}{}{}", at(0, "a"), at(10, "b"), at(20, "a"));
     let program = compile_text(&format!("version = 2\n{twice}")).expect("it compiles");
-    assert_eq!((program.layers.record("a"), program.layers.record("3")), (Ok(0), Ok(2)));
+    assert_eq!((program.layers.records("a"), program.layers.records("3")), (Ok(vec![0]), Ok(vec![2])));
     let keys = |y_mm: u32| {
         at(0, "key").replace("y_mm = 0", &format!("y_mm = {y_mm}")) + "repeat = { columns = 3, dx_mm = 10 }\n"
     };
@@ -39,7 +39,7 @@ fn a_layer_has_one_number() {
     let program = compile_text(&format!("version = 2\n{text}{TRACK}live = true\n")).expect("it compiles");
     assert_eq!(program.titles.len(), 8);
     for (record, title) in (0..).zip(&program.titles) {
-        assert_eq!(program.layers.record(&title.number().to_string()), Ok(record), "{title}");
+        assert_eq!(program.layers.records(&title.number().to_string()), Ok(vec![record]), "{title}");
     }
     let titles: Vec<&str> = program.titles.iter().map(LayerTitle::as_str).collect();
     assert_eq!(
@@ -97,8 +97,8 @@ fn gains_that_lead_out_of_reach_are_known_with_their_range() {
         [LayerSetting { on: true, gain: track }, LayerSetting { on: is_edge_on, gain: 1.0 }]
     };
     assert_eq!(program.clamped_with(&settings(1.0, true)), None);
-    assert_eq!(program.gains_in_reach(0, &settings(1.0, false)), Some((0.0, 5.0)));
-    let (least, most) = program.gains_in_reach(0, &settings(6.0, true)).expect("there are some");
+    assert_eq!(program.gains_in_reach(&[0], &settings(1.0, false)), Some((0.0, 5.0)));
+    let (least, most) = program.gains_in_reach(&[0], &settings(6.0, true)).expect("there are some");
     assert!(
         least.abs() < 1e-6 && (3.4..=3.6).contains(&most),
         "0.2 of the reach, and an edge of 0.3: {least} to {most}"

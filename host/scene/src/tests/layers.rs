@@ -2,7 +2,8 @@
 
 use frixel_layers::{Constant, Grating, Layer, Leader, Region, Scene as WireScene, Waveform};
 
-use super::super::{picture::Picture, resample};
+use super::super::picture::{Ground, Picture};
+use super::super::resample;
 use super::*;
 use crate::reference::Reference;
 
@@ -292,7 +293,13 @@ fn any_colour_type_becomes_grey_and_says_what_was_done() {
         [0.2126 * 255.0, 0.7152 * 100.0 + 0.0722 * 200.0],
         &["colour turned to grey by luminance"],
     );
-    check(&read_png(GrayscaleAlpha, Eight, &[100, 255, 100, 51]), [100.0, 20.0], &["transparency laid over black"]);
+    let half = || read_png(GrayscaleAlpha, Eight, &[100, 255, 100, 51]);
+    check(&half().laid_over(Ground::Black, false), [100.0, 20.0], &["transparency laid over black"]);
+    check(
+        &half().laid_over(Ground::White, true),
+        [155.0, 31.0],
+        &["transparency laid over white", "black and white exchanged"],
+    );
     check(&read_png(Rgba, Eight, &[9, 9, 9, 255, 100, 100, 100, 255]), [9.0, 100.0], &[]);
     check(
         &read_png(Grayscale, Sixteen, &[0x80, 0x00, 0xff, 0xff]),
@@ -361,9 +368,9 @@ fn a_live_layer_is_found_whatever_was_left_out_below_it() {
          [[layer]]\nname = \"rain\"\nkind = \"constant\"\nblend = \"add\"\nfriction_n = 0.002\nlive = true\n",
     );
     assert_eq!(program.records.len(), 2, "the first is covered");
-    assert_eq!(program.layers.record("rain"), Ok(1));
-    assert_eq!(program.layers.record("3"), Ok(1));
-    assert!(program.layers.record("rest").unwrap_err().to_string().contains("live = true"));
+    assert_eq!(program.layers.records("rain"), Ok(vec![1]));
+    assert_eq!(program.layers.records("3"), Ok(vec![1]));
+    assert!(program.layers.records("rest").unwrap_err().to_string().contains("live = true"));
 }
 
 #[test]

@@ -26,6 +26,7 @@ fn check(layers: &str, expected: &[&str], records: usize) {
             speed_m_per_s: 0.1,
             stream: 0.5,
             stream_weight: 1.0,
+            begun_s: 0.0,
         };
         let (found, expected) = (small.electric_friction_n(&context), whole.electric_friction_n(&context));
         assert!((found - expected).abs() < 1e-9, "{context:?}: {found} is not {expected}");

@@ -112,3 +112,44 @@ fn stretched_levels_use_the_whole_range() {
         "wood.jpg: colour turned to grey by luminance, levels ",
     );
 }
+
+/// A black square in the middle of a transparent ground.
+pub(super) fn icon() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 8, 8);
+    encoder.set_color(png::ColorType::GrayscaleAlpha);
+    let alpha = |pixel: u8| if (2..6).contains(&(pixel % 8)) && (16..48).contains(&pixel) { 255 } else { 0 };
+    let data: Vec<u8> = (0..64).flat_map(|pixel| [0, alpha(pixel)]).collect();
+    encoder.write_header().expect("a header").write_image_data(&data).expect("pixels");
+    bytes
+}
+
+#[test]
+fn a_black_icon_on_a_transparent_ground_is_felt_over_white() {
+    let friction_n = |fields: &str, x_mm: f64| {
+        let text = format!(
+            "{SHORT}[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.3\n{}",
+            layer("icon.png", 0, 8, fields)
+        );
+        let pictures = BTreeMap::from([("textures/icon.png".to_owned(), icon())]);
+        let scene = Scene::parse(&text, "icon.toml", &pictures).expect("it is a scene");
+        let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
+        let is_hidden = program.warnings().any(|warning| warning.to_string().contains("nobody feels its shape"));
+        let friction_n = crate::reference::Reference::new(&program).electric_friction_n(1e-3 * x_mm, 4.5e-3);
+        ((10.0 * friction_n / program.reach.electric_friction_max_n).round() as i64, is_hidden)
+    };
+    // In the icon, beside it, and in the constant layer.
+    for (fields, inside, beside, is_hidden) in [
+        ("", 0, 0, true),
+        ("invert = true", 10, 10, true),
+        ("transparent = \"white\"", 0, 10, false),
+        ("transparent = \"white\"\ninvert = true", 10, 0, false),
+        // Black leaves what is below.
+        ("transparent = \"white\"\ninvert = true\nblend = \"max\"", 10, 3, false),
+        ("transparent = \"white\"\ninvert = true\nblend = \"add\"\nwhite_fraction = 0.5", 8, 3, false),
+    ] {
+        for (x_mm, expected) in [(4.5, inside), (0.5, beside), (20.0, 3)] {
+            assert_eq!(friction_n(fields, x_mm), (expected, is_hidden), "{fields} at {x_mm} mm");
+        }
+    }
+}
