@@ -26,14 +26,21 @@ impl Score {
             0 => every.to_owned(),
             but => format!("{every} but {but}"),
         };
+        // A finger notices nothing of a layer that it did not touch.
+        let by_all = layers.iter().filter(|layer| layer.simulated_fingers.is_felt_by_all());
+        let all = if by_all.into_iter().all(|layer| layer.simulated_fingers.touched == fingers) {
+            format!("{fingers} of {fingers} simulated fingers notice")
+        } else {
+            format!("of {fingers} simulated fingers, those that touched it notice")
+        };
         let named = || named(&below, fingers);
         match (layers.len(), below.len(), fingers) {
             (0, ..) => "no stroke was on a layer, driven, for long enough to say what is noticed".to_owned(),
             (_, 0, 1) => format!("the simulated finger notices {every}"),
-            (_, 0, _) => format!("{fingers} of {fingers} simulated fingers notice {every}"),
-            (all, but, 1) if but < all => format!("the simulated finger notices {every}: {}", named()),
-            (all, but, _) if but < all => {
-                format!("{fingers} of {fingers} simulated fingers notice {every}: {}", named())
+            (_, 0, _) => format!("{all} {every}"),
+            (count, but, 1) if but < count => format!("the simulated finger notices {every}: {}", named()),
+            (count, but, _) if but < count => {
+                format!("{all} {every}: {}", named())
             }
             (.., 1) => format!("there is no layer that the simulated finger surely notices: {}", named()),
             _ => format!("there is no layer that {fingers} of {fingers} simulated fingers notice: {}", named()),
@@ -166,6 +173,8 @@ mod tests {
         let sentence = |felt| score(1, bars(1, felt), Vec::new()).sentence();
         assert_eq!(sentence([1, 1]), "the simulated finger notices every layer");
         assert_eq!(sentence([1, 0]), "the simulated finger notices every layer but 1: not layer 2 \"bar 2\"");
+        let seldom = score(8, bars(7, [7, 7]), Vec::new()).sentence();
+        assert_eq!(seldom, "of 8 simulated fingers, those that touched it notice every layer");
         let none = "there is no layer that the simulated finger surely notices: ";
         assert_eq!(sentence([0, 0]), format!("{none}not layer 1 \"bar 1\" and not layer 2 \"bar 2\""));
     }
