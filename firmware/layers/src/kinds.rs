@@ -5,13 +5,15 @@ pub(crate) mod bitmap;
 #[cfg(feature = "edge")]
 pub(crate) mod button;
 pub(crate) mod constant;
+#[cfg(feature = "drift")]
+pub(crate) mod drift;
 #[cfg(feature = "edge")]
 pub(crate) mod edge;
-#[cfg(feature = "grating")]
+#[cfg(any(feature = "grating", feature = "drift"))]
 pub(crate) mod grating;
 #[cfg(feature = "noise")]
 pub(crate) mod noise;
-#[cfg(feature = "rings")]
+#[cfg(any(feature = "rings", feature = "drift"))]
 pub(crate) mod rings;
 #[cfg(feature = "speed")]
 pub(crate) mod speed;
@@ -171,6 +173,10 @@ kinds! {
     10 => Rings in rings, feature "rings" bit 11;
     /// Spokes around a middle.
     11 => Spokes in spokes, feature "spokes" bit 12;
+    /// Parallel stripes that move.
+    12 => DriftingGrating in drift, feature "drift" bit 14;
+    /// Rings that move outwards.
+    13 => DriftingRings in drift, feature "drift" bit 14;
 }
 
 // The session answers for streams, too.

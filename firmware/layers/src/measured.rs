@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: u32 = 843;
+pub(crate) const EMPTY: u32 = 863;
 
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: u32 = 37;
@@ -19,7 +19,7 @@ pub(crate) const STREAM_ELSEWHERE: u32 = 158;
 pub(crate) const ELLIPSE: u32 = 8;
 
 // A polygon, each of its edges, and what each of those adds that are level with the finger.
-pub(crate) const POLYGON: u32 = 33;
+pub(crate) const POLYGON: u32 = 36;
 pub(crate) const POLYGON_EDGE: u32 = 19;
 pub(crate) const POLYGON_EDGE_LEVEL: u32 = 26;
 
@@ -29,6 +29,8 @@ pub(crate) const LAYERS: &[(&str, u32)] = &[
     ("bitmap_tiled", 292),
     ("button", 281),
     ("constant", 72),
+    ("drift", 14),
+    ("drifting_rings", 56),
     ("edge", 253),
     ("noise", 402),
     ("rings", 58),

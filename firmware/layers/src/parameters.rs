@@ -240,6 +240,8 @@ pub mod range {
     pub const BURST_S: Range = Range::new(ConfigField::Duration, 0.0, 60.0);
     /// Frequency of a vibration, Hz.
     pub const FREQUENCY_HZ: Range = Range::new(ConfigField::VibrationFrequency, 0.01, 1000.0);
+    /// Frequency at which the waves of a moving grating or moving rings pass a place, Hz.
+    pub const DRIFT_HZ: Range = Range::new(ConfigField::VibrationFrequency, -1000.0, 1000.0);
     /// Sliding speed of a curve's point, m/s.
     pub const SPEED_M_PER_S: Range = Range::new(ConfigField::CurveSpeed, 0.0, 10.0);
     /// Least distance of a curve's speeds, m/s.

@@ -21,6 +21,17 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
     (time_s * tick_hz as f32 + 0.5) as u32
 }
 
+/// How much a phase of this frequency grows in a tick: steps of 2^-32 turns, modulo a turn. The frequency is less than
+/// half of the tick rate, and may be negative.
+#[cfg_attr(
+    not(any(feature = "vibration", feature = "drift")),
+    allow(dead_code, reason = "only these change with time")
+)]
+pub(crate) fn steps_per_tick(frequency_hz: f32, tick_hz: u32) -> u32 {
+    let steps = f64::from(frequency_hz) / f64::from(tick_hz) * (1u64 << 32) as f64;
+    (if steps < 0.0 { steps - 0.5 } else { steps + 0.5 }) as i32 as u32
+}
+
 /// The refusal of a layer if the scene already has the most layers of its kind that a board accepts.
 pub(crate) fn no_room(field: ConfigField, max: usize, layer: u8) -> Refusal {
     let max = max as f32;

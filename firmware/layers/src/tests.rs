@@ -255,6 +255,34 @@ fn a_grating_swings_between_trough_and_crest() {
     }
 }
 
+/// Around 2^31 and 2^32 ticks, too, the phase is a tick number times the step, and nothing jumps.
+#[cfg(feature = "drift")]
+#[test]
+fn what_drifts_is_exact_after_any_number_of_ticks() {
+    use crate::{DriftingGrating, DriftingRings, Grating, Rings, Wave};
+    let (wave, trough_n, crest_n) = (Wave::Sine, 0.0, 1.0);
+    let grating = Grating { wave, cycles_per_m_x: 100.0, cycles_per_m_y: 0.0, phase_turns: 0.125, trough_n, crest_n };
+    let rings = Rings { wave, x_m: 0.0, y_m: 0.0, cycles_per_m: 100.0, trough_n, crest_n };
+    for drift_hz in [2.5_f32, -0.01, 333.3] {
+        let steps = (f64::from(drift_hz) / 40_000.0 * 2_f64.powi(32)).round();
+        let kinds = [
+            (Layer::DriftingGrating(DriftingGrating { grating, drift_hz }), 0.125),
+            (Layer::DriftingRings(DriftingRings { rings, drift_hz }), 0.0),
+        ];
+        for (kind, phase_turns) in kinds {
+            let mut bench = Bench::new();
+            let layer = bench.kind(kind);
+            for ticks in [0_u64, 1, 40_000, (1 << 31) - 1, 1 << 31, (1 << 32) - 1, 1 << 32, (1 << 32) + 1, 3 << 33] {
+                let mut inputs = at(0.0125, 0.0);
+                inputs.set_place([0.0125, 0.0], ticks as u32);
+                let drifted_turns = (ticks as f64 * steps / 2_f64.powi(32)).rem_euclid(1.0);
+                let expected = 0.5 + 0.5 * (core::f64::consts::TAU * (1.25 + phase_turns - drifted_turns)).sin();
+                assert_close(bench.over(&layer, 0.0, inputs), expected as f32);
+            }
+        }
+    }
+}
+
 #[cfg(feature = "noise")]
 #[test]
 fn noise_stays_within_its_range_and_is_its_seeds() {

@@ -8,6 +8,12 @@ use crate::kind::core_cycles;
 use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, form, put_form, range};
 
+/// 2^-32: converts a phase in integer steps to turns.
+pub(crate) const TURNS_PER_STEP: f32 = 1.0 / (1u64 << 32) as f32;
+
+/// Bytes of a record that a grating or rings take.
+pub(crate) const GRATING_LEN: usize = 24;
+
 const SINE: u8 = 0;
 const SQUARE: u8 = 1;
 const TRIANGLE: u8 = 2;

@@ -44,11 +44,18 @@ fn kinds_have_the_numbers_that_the_tables_say() {
     let row = table("\nA record:\n").into_iter().find(|row| row[2].starts_with("kind: ")).unwrap();
     let listed = row[2].strip_prefix("kind: ").unwrap().split(", ");
     let numbered = |kind: &str| {
-        let mut words = kind.split(' ');
-        (words.next().unwrap().parse().unwrap(), words.next().unwrap().to_owned())
+        let (number, name) = kind.split_once(' ').unwrap();
+        (number.parse().unwrap(), name.split(" (").next().unwrap().to_owned())
+    };
+    // `DriftingRings` is "drifting rings".
+    let words = |name: &str| {
+        let lowered = name
+            .chars()
+            .map(|letter| format!("{}{}", if letter.is_uppercase() { " " } else { "" }, letter.to_lowercase()));
+        lowered.collect::<String>().trim().to_owned()
     };
     let page: Vec<(u8, String)> = listed.map(numbered).collect();
-    let code: Vec<(u8, String)> = kind_names().map(|(number, name)| (number, name.to_lowercase())).collect();
+    let code: Vec<(u8, String)> = kind_names().map(|(number, name)| (number, words(name))).collect();
     assert_eq!(page, code);
     let rows = table("The parameters of each kind are `f32`").into_iter().map(|row| row[0].to_owned());
     assert_eq!(rows.collect::<Vec<_>>(), page.into_iter().map(|(_, name)| name).collect::<Vec<_>>());
@@ -101,7 +108,7 @@ fn numbers_of_the_header() {
 
 #[test]
 fn numbers_of_records_and_points() {
-    let ranges: [(&str, Range); 18] = [
+    let ranges: [(&str, Range); 19] = [
         ("gain, also of `SetLayer`", range::GAIN),
         ("friction or factor, also of a curve's point", range::FRICTION_N),
         ("region: left and top end", range::REGION_PLACE_M),
@@ -119,6 +126,7 @@ fn numbers_of_records_and_points() {
         ("click: time", range::CLICK_S),
         ("burst: period", range::BURST_S),
         ("vibration: frequency", range::FREQUENCY_HZ),
+        ("drifting grating and rings: waves a second", range::DRIFT_HZ),
         ("curve: speed", range::SPEED_M_PER_S),
     ];
     for (name, range) in ranges {

@@ -45,12 +45,20 @@ const RATE_SAMPLES: usize = 10;
 const REFERENCE_MIN_RMS_N: f64 = 1.4e-4;
 /// Third octaves from [`BAND_BORDER_HZ`] to [`BAND_END_HZ`].
 const THIRD_OCTAVES: u32 = 10;
+/// Samples after the output came and before it goes in which it is on its way: 20 ms.
+const SETTLING: usize = 80;
 /// Outputs that are off, whatever the scene says.
 const OFF: [Flags; 4] = [Flags::NO_FINGER, Flags::TOUCH_STALE, Flags::STILL, Flags::HOST_SILENT];
 
 /// One sample of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FidelitySample {
+    /// Time since the power-on of the board, s.
+    pub t_s: f64,
+    /// The finger's place from the left edge of the screen, m.
+    pub x_m: f64,
+    /// The finger's place from the top edge of the screen, m.
+    pub y_m: f64,
     /// Sliding speed in m/s, while the finger is on the screen and the board has had a report of it. Friction before the
     /// first report cannot be right and is not scored.
     pub speed_m_per_s: Option<f64>,
@@ -64,10 +72,14 @@ pub struct FidelitySample {
     pub is_driven: bool,
 }
 
-impl From<&FeltRow> for FidelitySample {
-    /// A row of a record with [`SAMPLE_HZ`] rows a second, whose reference goes through the simulated finger.
-    fn from(row: &FeltRow) -> Self {
+impl FidelitySample {
+    /// A row of a record with [`SAMPLE_HZ`] rows a second that began `start_s` after the power-on of the board, and
+    /// whose reference goes through the simulated finger.
+    pub fn of_row(row: &FeltRow, start_s: f64) -> Self {
         Self {
+            t_s: start_s + row.t_s,
+            x_m: 1e-3 * row.x_mm.unwrap_or(0.0),
+            y_m: 1e-3 * row.y_mm.unwrap_or(0.0),
             speed_m_per_s: row.speed_mm_s.filter(|_| row.is_tracked).map(|speed_mm_s| 1e-3 * speed_mm_s),
             reference_n: row.wanted_n.unwrap_or(0.0),
             felt_n: row.felt_n.unwrap_or(0.0),
@@ -75,16 +87,14 @@ impl From<&FeltRow> for FidelitySample {
             is_driven: row.flags.is_some_and(|flags| !OFF.into_iter().any(|off| flags.contains(off))),
         }
     }
-}
 
-impl FidelitySample {
     /// Electric part of the reference, N.
-    fn reference_electric_n(&self) -> f64 {
+    pub(crate) fn reference_electric_n(&self) -> f64 {
         self.reference_n - self.natural_n
     }
 
     /// Electric part of what the finger felt, N.
-    fn felt_electric_n(&self) -> f64 {
+    pub(crate) fn felt_electric_n(&self) -> f64 {
         self.felt_n - self.natural_n
     }
 }
@@ -139,7 +149,7 @@ impl Fidelity {
         let mean_n = mean(|sample| sample.reference_n);
         let speed_m_per_s = mean(|sample| sample.speed_m_per_s.unwrap_or(0.0));
         let natural_n = mean(|sample| sample.natural_n);
-        let driven = || scored.iter().filter(|sample| sample.is_driven);
+        let driven = || settled(&scored).flatten();
         let contrast = |electric_n: fn(&FidelitySample) -> f64| {
             percentiles(driven().map(electric_n).collect(), [5, 95])
                 .map(|[low_n, high_n]| weber_steps(natural_n + low_n, natural_n + high_n))
@@ -170,6 +180,30 @@ impl Fidelity {
             spurious_over_noise_db: powers.spurious_over_noise_db(),
         })
     }
+
+    /// The score without ratios to the changes of a reference that only load and skin change, not the scene.
+    #[must_use]
+    pub fn without_ratios(self) -> Self {
+        Self {
+            error: None,
+            correlation: None,
+            error_below_40_hz: None,
+            correlation_below_40_hz: None,
+            snr_below_40_hz_db: None,
+            snr_above_40_hz_db: None,
+            contrast_kept: None,
+            delay_ms: None,
+            delay_mm: None,
+            peak_rate_kept: None,
+            ..self
+        }
+    }
+}
+
+/// The stretches of a record in which the board drives the scene, without the time in which the output comes and goes.
+pub(crate) fn settled(samples: &[FidelitySample]) -> impl Iterator<Item = &[FidelitySample]> {
+    let driven = samples.split(|sample| !sample.is_driven || sample.speed_m_per_s.is_none());
+    driven.filter_map(|run| run.get(SETTLING..run.len().checked_sub(SETTLING)?))
 }
 
 fn decibels(ratio: f64) -> f64 {

@@ -108,7 +108,7 @@ impl FrictionMap {
     /// ```
     pub fn new(program: &Program, preview: &Preview) -> Self {
         let grid = MapGrid::new(program, preview.map_max);
-        let reference = Reference::new(program).with_vibrations_held();
+        let reference = Reference::at_start(program).with_vibrations_held();
         let part = |(x_m, y_m): (f64, f64)| {
             let speed_m_per_s = preview.speed_m_per_s;
             let context = Context { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Context::default() };

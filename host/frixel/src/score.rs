@@ -19,5 +19,6 @@ pub fn samples(program: &Program, rig: &RigConfig, trial: &Trial) -> Result<Vec<
     };
     let own_finger = trial.finger.map(|finger| finger.contact);
     let mut recorder = simulate_through_finger(program, &simulation, own_finger.map(Into::into))?.recorder;
-    Ok(recorder.take_rows().iter().map(FidelitySample::from).collect())
+    let start_s = recorder.start_s().unwrap_or(0.0);
+    Ok(recorder.take_rows().iter().map(|row| FidelitySample::of_row(row, start_s)).collect())
 }

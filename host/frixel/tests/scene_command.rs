@@ -221,8 +221,11 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
     let empirical = "version = 2\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
         \"2026-11-23\", method = \"load cell\", screen = \"example\", exponent = 2, points = [[150, 0.09]], intervals_n = \
         [[0.08, 0.1]] }\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.21\n";
+    let drift = "version = 2\n[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 10\ndrift_mm_per_s = 20\n\
+        low_n = 0\nhigh_n = 0.02\nabove = \"natural\"\n";
     let mut found: Vec<String> = Vec::new();
-    for scene in every.chain([files.scene(stream), files.write("empirical.toml", empirical)]) {
+    let written = [files.scene(stream), files.write("empirical.toml", empirical), files.write("drift.toml", drift)];
+    for scene in every.chain(written) {
         let check: Value =
             serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json", "--board"])).unwrap();
         let names: Vec<String> = serde_json::from_value(check["board"]["features"].clone()).unwrap();

@@ -29,7 +29,7 @@ fn mean(program: &Program, key: &str) -> f64 {
             Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None }
         })
         .collect();
-    let score = Score::of(&trials, |trial| samples(program, &RigConfig::default(), trial)).unwrap();
+    let score = Score::of(program, &trials, |trial| samples(program, &RigConfig::default(), trial)).unwrap();
     score.metrics.iter().find(|metric| metric.key == key).unwrap().mean
 }
 
@@ -52,7 +52,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
     let trial = Trial { stroke_name: "human 1".to_owned(), stroke, seed: 1, finger: None };
     let rig = RigConfig { world: rig.world.realistic(), ..rig };
-    let score = Score::of(&[trial], |trial| samples(&program, &rig, trial)).unwrap();
+    let score = Score::of(&program, &[trial], |trial| samples(&program, &rig, trial)).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
     assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }
@@ -82,7 +82,68 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
     let csv = std::fs::read_to_string(out.path().join("score.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
     assert!(csv.starts_with("simulated_person,stroke,seed,error,correlation,"));
-    assert!(std::fs::read_to_string(out.path().join("score.svg")).unwrap().contains("simulated"));
+    assert_eq!((json["simulated_fingers"].as_u64(), json["layers"].as_array().unwrap().len()), (Some(1), 1));
+    let svg = std::fs::read_to_string(out.path().join("score.svg")).unwrap();
+    let layers = std::fs::read_to_string(out.path().join("score-layers.csv")).unwrap();
+    assert!(
+        layers.starts_with("layer,simulated_fingers,felt,") && layers.contains("\n\"layer 1 \"\"stripes\"\"\",1,1,")
+    );
+    let said = "a verdict on 1 simulated finger in 4 plays";
+    assert!(svg.contains(said) && json["simulated"].as_str().unwrap().starts_with(said), "{json}");
+    assert_eq!(json["verdict"], "the simulated finger notices every layer");
+}
+
+/// The lines of a score of a scene by two people, each with its name.
+fn lines(scene: &str, more: &[&str]) -> Vec<(String, String)> {
+    let out = tempfile::tempdir().unwrap();
+    let file = out.path().join("scene.toml");
+    std::fs::write(&file, scene).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
+        .arg("score")
+        .arg(&file)
+        .args(["--strokes", "1", "--seeds", "1", "--out"])
+        .arg(out.path())
+        .args(more)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let line = |line: &str| (line[2..32].trim_end().to_owned(), line[32..].trim_start().to_owned());
+    text.lines().map(line).collect()
+}
+
+/// A plate is one friction everywhere: there are no ratios to its changes, and nothing to notice.
+#[test]
+fn a_plate_has_no_ratios_and_is_not_noticed() {
+    let lines = lines("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n", &["--people", "2"]);
+    let names: Vec<&str> = lines.iter().map(|(name, _)| name.as_str()).collect();
+    for ratio in ["error, 0 to 400 Hz", "correlation, 0 to 400 Hz", "contrast kept", "delay", "peak dF/dt kept"] {
+        assert!(!names.contains(&ratio), "{lines:?}");
+    }
+    let (_, row) = lines.iter().find(|(name, _)| name == "layer 1 (constant)").unwrap();
+    assert_eq!(row, "felt by 0 of 2; contrast 0.0 Weber steps");
+    let (_, verdict) = lines.iter().find(|(name, _)| name == "verdict").unwrap();
+    assert_eq!(verdict, "there is no layer that 2 of 2 simulated fingers notice: layer 1 (constant) by 0");
+}
+
+/// Two plates beside one another are noticed, and their levels are told apart as far as these differ.
+#[test]
+fn levels_are_told_apart_as_far_as_they_differ() {
+    let plates = |fraction: f64| {
+        format!(
+            "version = 2\n[[layer]]\nname = \"left\"\nkind = \"constant\"\n\
+             region = {{ x_mm = 0, y_mm = 0, width_mm = 60, height_mm = 80 }}\nfriction_fraction = {fraction}\n\
+             [[layer]]\nname = \"right\"\nkind = \"constant\"\n\
+             region = {{ x_mm = 60, y_mm = 0, width_mm = 60, height_mm = 80 }}\nfriction_fraction = 1\n"
+        )
+    };
+    let apart = |fraction: f64| {
+        let lines = lines(&plates(fraction), &["--stroke", "sweep"]);
+        lines.iter().find(|(name, _)| name == "told apart").map(|(_, text)| text.clone()).unwrap()
+    };
+    let pair = "layer 1 \"left\" and layer 2 \"right\"";
+    assert!(apart(0.1).starts_with(&format!("{pair}: felt by 1 of 1; ")), "{}", apart(0.1));
+    assert!(apart(0.9).starts_with(&format!("{pair}: felt by 0 of 1; ")), "{}", apart(0.9));
 }
 
 /// Each person has a finger and strokes of their own, and the same people come again.

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use frixel_layers::{Blend, Layer, Record, Vibration};
-use frixel_scene::{Clamped, LayerError, LayerSetting, Program};
+use frixel_layers::{Blend, Layer, Vibration};
+use frixel_scene::{Clamped, LayerError, LayerSetting, LayerTitle, Program};
 use thiserror::Error;
 
 /// Why layers are not changed as a host asks.
@@ -84,6 +84,15 @@ pub struct LayerChange {
     /// What the board clamps from then on, if it did not before.
     pub clamped: Option<Clamped>,
     trigger: TriggerChange,
+    /// What the host sets, and keeps when another program follows.
+    sets: Chosen,
+}
+
+/// Which parts of a layer's setting the host has set, so that they do not follow the file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Chosen {
+    on: bool,
+    gain: bool,
 }
 
 /// What a change does to the trigger of its layer.
@@ -112,25 +121,65 @@ pub struct LiveLayers {
     program: Program,
     /// One for each record.
     settings: Vec<LayerSetting>,
+    /// One for each record.
+    chosen: Vec<Chosen>,
     /// Records to switch off, and when.
     triggered: Vec<(u8, Duration)>,
 }
 
 impl LiveLayers {
-    /// A program that has just begun: all layers are on, with their gains in the file.
+    /// A program that has just begun: its layers are as the file sets them.
     pub fn new(program: Program) -> Self {
-        let setting = |record: &Record| LayerSetting { on: true, gain: record.gain };
-        Self { settings: program.records.iter().map(setting).collect(), triggered: Vec::new(), program }
+        let chosen = vec![Chosen::default(); program.records.len()];
+        Self { settings: program.start.clone(), chosen, triggered: Vec::new(), program }
+    }
+
+    /// A program that follows this one. Of its live layers, those that this program has, too, keep what the host has set
+    /// of them, and their triggers; all others are as the file sets them. A layer without a name is the same if it has
+    /// the same number and kind.
+    ///
+    /// If the drive cannot give what the gains ask for that the host has set, all are those of the file: the second value
+    /// says so.
+    pub(crate) fn followed_by(&self, program: Program) -> (Self, Option<Clamped>) {
+        let mut next = Self::new(program);
+        let titles = (0..).zip(&next.program.titles).filter(|(record, _)| next.program.layers.is_live(*record));
+        for (record, title) in titles {
+            let is_same = |other: &LayerTitle| other.name_or_title() == title.name_or_title();
+            let Some(before) = self.program.titles.iter().position(is_same) else { continue };
+            let (Some(setting), Some(chosen), Some(was), Some(had)) = (
+                next.settings.get_mut(usize::from(record)),
+                next.chosen.get_mut(usize::from(record)),
+                self.settings.get(before),
+                self.chosen.get(before),
+            ) else {
+                continue;
+            };
+            *chosen = *had;
+            if had.gain {
+                setting.gain = was.gain;
+            }
+            let trigger = self.triggered.iter().find(|(triggered, _)| usize::from(*triggered) == before);
+            match trigger {
+                Some((_, ends_at)) if had.on || !setting.on => {
+                    setting.on = true;
+                    next.triggered.push((record, *ends_at));
+                }
+                _ if had.on => setting.on = was.on,
+                _ => {}
+            }
+        }
+        let dropped = next.clamped_once_all_are_on(&next.settings).filter(|_| next.chosen.iter().any(|had| had.gain));
+        if dropped.is_some() {
+            for ((setting, chosen), start) in next.settings.iter_mut().zip(&mut next.chosen).zip(&next.program.start) {
+                (setting.gain, chosen.gain) = (start.gain, false);
+            }
+        }
+        (next, dropped)
     }
 
     /// The program.
     pub fn program(&self) -> &Program {
         &self.program
-    }
-
-    /// The program, whose layers are in any setting.
-    pub(crate) fn into_program(self) -> Program {
-        self.program
     }
 
     /// Switches a layer, or changes its gain; `None` leaves as it is.
@@ -144,18 +193,16 @@ impl LiveLayers {
         let record = program.layers.record(layer)?;
         let (changed, setting) = self.changed(record, on, gain);
         let clamped = self.newly_clamped(&changed);
-        if let Some(gain) = gain.filter(|_| !program.saturates && !program.is_draft()) {
-            // A layer that is off may be switched on later.
-            let all_on: Vec<LayerSetting> =
-                changed.iter().map(|setting| LayerSetting { on: true, ..*setting }).collect();
-            if let Some(clamped) = program.clamped_with(&all_on) {
-                let range = program.gains_in_reach(record, &all_on);
-                return Err(LiveError::GainOutOfReach { gain, clamped, range });
-            }
+        if let Some(gain) = gain
+            && let Some(clamped) = self.clamped_once_all_are_on(&changed)
+        {
+            let range = program.gains_in_reach(record, &all_on(&changed));
+            return Err(LiveError::GainOutOfReach { gain, clamped, range });
         }
         // A layer that is switched by hand stays as it is when its trigger ends.
         let trigger = if on.is_some() { TriggerChange::End } else { TriggerChange::Keep };
-        Ok(LayerChange { record, setting, clamped, trigger })
+        let sets = Chosen { on: on.is_some(), gain: gain.is_some() };
+        Ok(LayerChange { record, setting, clamped, trigger, sets })
     }
 
     /// Switches a layer that is off on at the time `now`, until `duration_s` seconds later. If it is triggered already,
@@ -197,7 +244,7 @@ impl LiveLayers {
         let ends_at = now.saturating_add(duration);
         let trigger = TriggerChange::Until(triggered_until.map_or(ends_at, |until| until.max(ends_at)));
         let clamped = self.newly_clamped(&changed);
-        Ok(LayerChange { record, setting, clamped, trigger })
+        Ok(LayerChange { record, setting, clamped, trigger, sets: Chosen::default() })
     }
 
     /// Switches off the layer of a trigger that has ended by `now`; `None` if no trigger has ended. The change carries no
@@ -205,14 +252,17 @@ impl LiveLayers {
     pub(crate) fn end_trigger(&self, now: Duration) -> Option<LayerChange> {
         let (record, _) = *self.triggered.iter().find(|(_, ends_at)| *ends_at <= now)?;
         let setting = LayerSetting { on: false, ..self.setting(record) };
-        Some(LayerChange { record, setting, clamped: None, trigger: TriggerChange::End })
+        Some(LayerChange { record, setting, clamped: None, trigger: TriggerChange::End, sets: Chosen::default() })
     }
 
     /// Takes over a change that the board has taken.
     pub fn apply(&mut self, change: &LayerChange) {
-        let LayerChange { record, setting, trigger, .. } = *change;
+        let LayerChange { record, setting, trigger, sets, .. } = *change;
         if let Some(current) = self.settings.get_mut(usize::from(record)) {
             *current = setting;
+        }
+        if let Some(chosen) = self.chosen.get_mut(usize::from(record)) {
+            *chosen = Chosen { on: chosen.on || sets.on, gain: chosen.gain || sets.gain };
         }
         if trigger != TriggerChange::Keep {
             self.forget_trigger(record);
@@ -230,6 +280,11 @@ impl LiveLayers {
     /// The setting of a record of the program.
     pub(crate) fn setting(&self, record: u8) -> LayerSetting {
         self.settings.get(usize::from(record)).copied().unwrap_or(LayerSetting { on: true, gain: 1.0 })
+    }
+
+    /// The settings of all records of the program.
+    pub(crate) fn settings(&self) -> &[LayerSetting] {
+        &self.settings
     }
 
     /// The layers that are off, by their index from the bottom.
@@ -253,6 +308,13 @@ impl LiveLayers {
         (changed, setting)
     }
 
+    /// The layers that would be clamped once all are on, since a layer that is off may be switched on later; `None` if
+    /// the program may be clamped.
+    fn clamped_once_all_are_on(&self, settings: &[LayerSetting]) -> Option<Clamped> {
+        let may_clamp = self.program.saturates || self.program.is_draft();
+        if may_clamp { None } else { self.program.clamped_with(&all_on(settings)) }
+    }
+
     /// The layers that the board clamps with these settings; `None` if it already clamps the same ones in the same way.
     fn newly_clamped(&self, changed: &[LayerSetting]) -> Option<Clamped> {
         let clamped = self.program.clamped_with(changed)?;
@@ -260,147 +322,9 @@ impl LiveLayers {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-
-    use frixel_control::Board;
-    use frixel_scene::{Scene, compile};
-
-    use super::*;
-
-    /// The simulator's board, with a drive that adds some 0.13 N.
-    fn program_of(text: &str) -> Program {
-        let text = format!("version = 2\n{text}");
-        let scene = Scene::parse(&text, "live.toml", &BTreeMap::new()).expect("it is a scene");
-        compile(&scene, &Board::SIMULATOR.limits, 40_000).expect("it compiles")
-    }
-
-    fn layer(name: &str, more: &str) -> String {
-        format!(
-            "[[layer]]\nname = \"{name}\"\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\nblend = \"add\"\n\
-             live = true\n{more}"
-        )
-    }
-
-    /// The layers of a scene on a board that takes every change.
-    struct Taking(LiveLayers);
-
-    impl Taking {
-        fn new(text: &str) -> Self {
-            Self(LiveLayers::new(program_of(text)))
-        }
-
-        fn change(&mut self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, LiveError> {
-            self.0.change(layer, on, gain).inspect(|change| self.0.apply(change))
-        }
-
-        fn trigger(&mut self, layer: &str, now: Duration, duration_s: f64) -> Result<LayerChange, LiveError> {
-            self.0.trigger(layer, now, duration_s).inspect(|change| self.0.apply(change))
-        }
-    }
-
-    fn ms(ms: u64) -> Duration {
-        Duration::from_millis(ms)
-    }
-
-    #[test]
-    fn a_second_trigger_does_not_shorten_the_first() {
-        let mut layers = Taking::new(&layer("ping", ""));
-        layers.change("ping", Some(false), None).expect("it is live");
-        layers.trigger("ping", ms(0), 0.3).expect("it is off");
-        layers.trigger("ping", ms(50), 0.1).expect("it is triggered");
-        assert_eq!(layers.0.next_end(), Some(ms(300)));
-        layers.trigger("ping", ms(250), 0.1).expect("it is triggered");
-        assert_eq!(layers.0.next_end(), Some(ms(350)));
-        assert_eq!(layers.0.end_trigger(ms(340)), None);
-        let ended = layers.0.end_trigger(ms(350)).expect("it has ended");
-        assert!(!ended.setting.on && layers.0.next_end() == Some(ms(350)), "the board has not taken it");
-        layers.0.apply(&ended);
-        assert_eq!(layers.0.next_end(), None);
-    }
-
-    #[test]
-    fn a_trigger_of_a_layer_that_time_does_not_play_is_refused() {
-        let edge = "[[layer]]\nname = \"bump\"\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 4\nridge_n = 0.01\nlive = true\n";
-        let speed = "[[layer]]\nname = \"soft\"\nkind = \"speed\"\nspeeds_mm_per_s = [20, 150]\nfactors = [0.3, 1]\nlive = true\n";
-        let mut layers = Taking::new(&format!("{edge}{speed}"));
-        for (layer, what) in [
-            ("bump", "an edge, which is felt where a finger crosses it"),
-            ("soft", "a curve of speed, which changes what lies below it"),
-        ] {
-            layers.change(layer, Some(false), None).expect("it is live");
-            let refused = layers.trigger(layer, ms(0), 0.1).expect_err("nothing would be felt").to_string();
-            let sentence = format!(
-                "{layer:?} is {what}, so that a trigger may play nothing: trigger a `vibration` or a `constant`"
-            );
-            assert_eq!(refused, sentence);
-        }
-    }
-
-    #[test]
-    fn a_trigger_of_no_gain_is_refused() {
-        let mut layers = Taking::new(&layer("ping", ""));
-        layers.change("ping", Some(false), Some(0.0)).expect("it is in reach");
-        let refused = layers.trigger("ping", ms(0), 0.1).expect_err("nothing would be felt");
-        assert_eq!(
-            refused.to_string(),
-            "layer \"ping\" has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
-             `layer \"ping\" gain 1`"
-        );
-        // Other blends cut the layers below out, or silence them.
-        for blend in ["replace", "multiply"] {
-            let mask =
-                if blend == "replace" { "above = \"natural\"\nfriction_n = 0.05" } else { "friction_factor = 0.5" };
-            let mask =
-                format!("[[layer]]\nname = \"mask\"\nkind = \"constant\"\nblend = \"{blend}\"\nlive = true\n{mask}\n");
-            let mut layers = Taking::new(&format!("{}{mask}", layer("wood", "")));
-            layers.change("mask", Some(false), Some(0.0)).expect("it is in reach");
-            let trigger = layers.trigger("mask", ms(0), 0.1);
-            assert!(trigger.is_ok_and(|change| change.setting.on), "{blend}");
-        }
-    }
-
-    /// Outlines cut the screen into many cells, each of which is searched.
-    #[test]
-    fn the_gain_of_a_texture_in_an_outline_is_judged() {
-        let circles = "[[layer]]\nname = \"wood\"\nkind = \"grating\"\nabove = \"natural\"\nwavelength_mm = 1.3\n\
-             low_n = 0.0\nhigh_n = 0.05\nlive = true\n\
-             region = { shape = \"ellipse\", x_mm = 5, y_mm = 10, width_mm = 30, height_mm = 30 }\n\
-             repeat = { columns = 3, dx_mm = 32 }\n";
-        let mut layers = Taking::new(circles);
-        layers.change("1.2", None, Some(2.0)).expect("it is in reach");
-        let refused = layers.change("1.2", None, Some(4.0)).expect_err("it is out of reach").to_string();
-        assert!(refused.starts_with("gain 4 is refused: layer 1.2 \"wood 2\" would ask for up to 0.2"), "{refused}");
-    }
-
-    /// A layer that is off is not clamped, but may be switched on.
-    #[test]
-    fn a_gain_is_judged_as_if_all_layers_were_on() {
-        let text = format!("{}{}", layer("A", ""), layer("B", ""));
-        let mut layers = Taking::new(&text);
-        layers.change("A", Some(false), None).expect("it is live");
-        layers.change("B", Some(false), None).expect("it is live");
-        let before = layers.0.settings.clone();
-        let refused = layers.change("B", None, Some(2.0)).expect_err("with A it is out of reach");
-        assert!(
-            refused.to_string().starts_with("gain 2 is refused: layer 1 \"A\" and layer 2 \"B\" would"),
-            "{refused}"
-        );
-        assert!(refused.to_string().ends_with("give a gain from -1 to 1.59"), "{refused}");
-        assert_eq!(layers.0.settings, before);
-        for layer in ["A", "B"] {
-            let on = layers.change(layer, Some(true), None).expect("it is live");
-            assert_eq!(on.notice(), None);
-        }
-        // With `saturate` it is taken, and the notice comes when it is felt.
-        let mut layers = Taking::new(&format!("[drive]\nsaturate = true\n{text}"));
-        let change = layers.change("B", Some(false), Some(5.0)).expect("it is clamped");
-        assert_eq!(change.notice(), None);
-        let on = layers.change("B", Some(true), None).expect("it is clamped");
-        assert!(on.notice().is_some_and(|notice| notice.ends_with("it is clamped there")));
-        layers.change("B", Some(false), None).expect("it is live");
-        let triggered = layers.trigger("B", ms(0), 0.1).expect("it is off");
-        assert_eq!(triggered.notice(), on.notice());
-    }
+fn all_on(settings: &[LayerSetting]) -> Vec<LayerSetting> {
+    settings.iter().map(|setting| LayerSetting { on: true, ..*setting }).collect()
 }
+
+#[cfg(test)]
+mod tests;

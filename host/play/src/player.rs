@@ -6,7 +6,7 @@ use std::time::Duration;
 use frixel_driver::{Device, DeviceError, Event, Link, Progress};
 use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
-use frixel_scene::Program;
+use frixel_scene::{Clamped, Program};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::{Refusal, Telemetry};
 
@@ -26,13 +26,14 @@ const MARGIN: Duration = Duration::from_millis(5);
 const NEVER: Duration = Duration::from_hours(1);
 
 /// How one program has replaced another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Replaced {
-    /// Between two ticks.
-    AtOnce,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replaced {
     /// The pictures of both did not fit on the board together: an empty scene played until the new one was there, so
-    /// that the output faded out meanwhile.
-    AfterFadeOut,
+    /// that the output faded out meanwhile. Otherwise the change was made between two ticks.
+    pub faded_out: bool,
+    /// What the drive could not give with the gains that were set before, so that all gains are those of the new
+    /// program; `None` if they were kept, or none was set.
+    pub dropped_gains: Option<Clamped>,
 }
 
 /// A board, the program that plays on it, and the feed of streamed samples.
@@ -81,6 +82,8 @@ impl<L: Link + Recorded> Player<L> {
         }
         if self.state == State::Armed {
             self.device.play()?;
+            self.state = State::Active;
+            self.switch_off()?;
             self.begin()?;
         }
         Ok(())
@@ -95,44 +98,73 @@ impl<L: Link + Recorded> Player<L> {
     /// Puts another program on the board, which plays it from now on if it plays. The change is made between two ticks,
     /// unless the pictures of both do not fit on the board together.
     ///
+    /// Layers of both programs keep what was set of them while they played: whether they are on, their gain, and a
+    /// trigger. The gains are kept while the drive can give what they ask for.
+    ///
     /// If the board refuses the program, the one before plays on. After any other error while the empty scene plays, it
     /// stays.
     pub fn replace(&mut self, program: Program) -> Result<Replaced, PlayError> {
-        let replaced = match self.upload(&program) {
-            Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => {
-                self.replace_alone(&program)?;
-                Replaced::AfterFadeOut
-            }
-            uploaded => uploaded.map(|()| Replaced::AtOnce)?,
+        let (layers, dropped_gains) = match &self.playing {
+            Some(before) => before.followed_by(program),
+            None => (LiveLayers::new(program), None),
         };
-        self.set_playing(program)?;
-        Ok(replaced)
+        Ok(Replaced { dropped_gains, ..self.replace_layers(layers)? })
+    }
+
+    /// As [`Self::replace`], with all layers as the program's file sets them.
+    pub fn replace_anew(&mut self, program: Program) -> Result<Replaced, PlayError> {
+        self.replace_layers(LiveLayers::new(program))
+    }
+
+    fn replace_layers(&mut self, layers: LiveLayers) -> Result<Replaced, PlayError> {
+        let faded_out = match self.upload(&layers) {
+            Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => {
+                self.replace_alone(&layers)?;
+                true
+            }
+            uploaded => uploaded.map(|()| false)?,
+        };
+        self.set_playing(layers)?;
+        Ok(Replaced { faded_out, dropped_gains: None })
     }
 
     /// Puts a program on the board after its pictures were removed. Puts the one before back if the board refuses it.
-    fn replace_alone(&mut self, program: &Program) -> Result<(), PlayError> {
-        let empty = program.without_layers();
+    fn replace_alone(&mut self, layers: &LiveLayers) -> Result<(), PlayError> {
+        let empty = LiveLayers::new(layers.program().without_layers());
         self.upload(&empty)?;
-        self.tell_replaced(&empty)?;
+        self.tell_replaced(empty.program())?;
         let before = self.playing.take();
-        let uploaded = self.upload(program);
+        let uploaded = self.upload(layers);
         if let Some(before) = before.filter(|_| uploaded.as_ref().is_err_and(is_refusal)) {
-            let before = before.into_program();
             self.upload(&before)?;
             self.set_playing(before)?;
         }
         Ok(uploaded?)
     }
 
-    fn upload(&mut self, program: &Program) -> Result<(), DeviceError> {
-        upload::upload(&mut self.device, program, &mut |_| ControlFlow::Continue(()))
+    fn upload(&mut self, layers: &LiveLayers) -> Result<(), DeviceError> {
+        let progress = &mut |_| ControlFlow::Continue(());
+        upload::upload(&mut self.device, layers.program(), layers.settings(), progress)
     }
 
-    /// The board has this program from now on, its layers as the scene sets them.
-    fn set_playing(&mut self, program: Program) -> Result<(), ParameterError> {
-        self.tell_replaced(&program)?;
-        self.playing = Some(LiveLayers::new(program));
+    /// The board has this program from now on.
+    fn set_playing(&mut self, layers: LiveLayers) -> Result<(), PlayError> {
+        self.tell_replaced(layers.program())?;
+        let changed = (0..).zip(layers.settings().iter().zip(&layers.program().start));
+        for (record, (setting, _)) in changed.filter(|(_, (setting, start))| setting != start) {
+            self.recorder_mut().layer_changed(record, *setting);
+        }
+        self.playing = Some(layers);
+        if self.state == State::Active {
+            self.switch_off()?;
+        }
         Ok(())
+    }
+
+    /// Switches off the layers of the board that are off in the program that plays.
+    fn switch_off(&mut self) -> Result<(), DeviceError> {
+        let Self { device, playing, .. } = self;
+        playing.as_ref().map_or(Ok(()), |layers| upload::switch_off(device, layers.settings()))
     }
 
     fn tell_replaced(&mut self, program: &Program) -> Result<(), ParameterError> {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use frixel_driver::{Bitmap, Device, DeviceError, Link, Progress, Upload};
-use frixel_scene::Program;
+use frixel_scene::{LayerSetting, Program};
 
 /// Disarms a board, whatever state an earlier client left it in, then uploads the program, arms the board and plays.
 /// `progress` may break the upload off.
@@ -14,7 +14,15 @@ pub fn start<L: Link>(
 ) -> Result<(), DeviceError> {
     load(device, program, progress)?;
     device.arm()?;
-    device.play()
+    device.play()?;
+    switch_off(device, &program.start)
+}
+
+/// Switches off the layers of the board that are off in these settings, one for each record of its program. They were
+/// uploaded with a gain of 0.
+pub(crate) fn switch_off<L: Link>(device: &mut Device<L>, settings: &[LayerSetting]) -> Result<(), DeviceError> {
+    let off = (0..).zip(settings).filter(|(_, setting)| !setting.on);
+    off.into_iter().try_for_each(|(record, setting)| device.set_layer(record, false, setting.gain))
 }
 
 /// Disarms a board, whatever state an earlier client left it in, then uploads the program without playing it. Returns
@@ -26,17 +34,19 @@ pub fn load<L: Link>(
 ) -> Result<u64, DeviceError> {
     let before = device.counters().wire_bytes;
     device.disarm()?;
-    upload(device, program, progress)?;
+    upload(device, program, &program.start, progress)?;
     Ok(device.counters().wire_bytes - before)
 }
 
-/// Uploads a program and commits it, in any state of the board.
+/// Uploads a program with these settings of its records and commits it, in any state of the board. The layers that are
+/// off ask for nothing, and are yet to be [switched off](switch_off) once the board plays.
 pub(crate) fn upload<L: Link>(
     device: &mut Device<L>,
     program: &Program,
+    settings: &[LayerSetting],
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
-    let scene = program.scene_bytes_for(device.hello().protocol);
+    let scene = program.scene_bytes_with(device.hello().protocol, settings);
     let bitmaps = program.bitmaps.iter().map(|bitmap| Bitmap {
         crc32: bitmap.crc32,
         width: bitmap.width,

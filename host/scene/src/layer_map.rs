@@ -102,6 +102,11 @@ impl LayerMap {
         }
     }
 
+    /// Whether the host may change the layer of a record.
+    pub fn is_live(&self, record: u8) -> bool {
+        self.0.iter().any(|entry| entry.record == Some(record))
+    }
+
     fn not_found(&self, layer: &str) -> LayerError {
         let names = |entries: Vec<&Entry>| ends(entries.into_iter().filter_map(|entry| entry.name.clone()));
         let copies: Vec<&Entry> = self.0.iter().filter(|entry| entry.family.as_deref() == Some(layer)).collect();

@@ -21,6 +21,8 @@ pub struct LayerTable {
     pub kind: &'static str,
     /// The gain in the file.
     pub gain: f64,
+    /// Whether it is on when the scene begins to play.
+    pub starts_on: bool,
     /// The numbers of its layers that [`LayerMap::record`](crate::LayerMap::record) takes: `3`, or `3.1`, `3.2` and so
     /// on for copies.
     pub layers: Vec<String>,
@@ -61,6 +63,7 @@ impl Scene {
             name: text.and_then(|table| table.name.clone()),
             kind: layer.kind.word(),
             gain: layer.gain,
+            starts_on: layer.starts_on,
             layers: Vec::new(),
             file: self.source.name_at(start).to_owned(),
             lines: (line(start), line(end)),

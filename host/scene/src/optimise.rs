@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use frixel_layers::{Blend, Constant, Header, Interval, Layer, Point, Record, Region, Speed};
 
+use super::LayerSetting;
 use super::layer::Layer as SceneLayer;
 use super::log::Log;
 use super::optimisation::Optimisation;
@@ -29,6 +30,8 @@ pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut 
     drop_covered(&mut items, &program.header, log);
     drop_idle(&mut items, log);
     fold(&mut items, log);
+    let setting = |item: &Played| LayerSetting { on: item.layer.starts_on, gain: item.record.gain };
+    program.start = items.iter().map(setting).collect();
     (program.titles, program.records) = items.into_iter().map(|item| (item.layer.title.clone(), item.record)).unzip();
     compact_points(program);
     drop_bitmaps(program, &bitmaps, log);

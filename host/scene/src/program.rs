@@ -4,6 +4,7 @@ use frixel_layers::{FingerLaw, Header, Point, Record, features_of};
 use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
+use super::LayerSetting;
 use super::diagnostic::{Diagnostic, DiagnosticKind, Message};
 use super::layer_map::LayerMap;
 use super::optimisation::Optimisation;
@@ -24,6 +25,8 @@ pub struct Program {
     pub header: Header,
     /// The layers from bottom to top, in the order of the file. Some may be optimised away.
     pub records: Vec<Record>,
+    /// The setting of each record when the program begins to play.
+    pub start: Vec<LayerSetting>,
     /// The points that records name.
     pub points: Vec<Point>,
     /// The pictures that records name, each one once.
@@ -86,8 +89,8 @@ impl Program {
     #[must_use]
     pub fn without_layers(&self) -> Self {
         let header = Header { electric_friction_max_n: None, ..self.header };
-        let (records, points, bitmaps, titles) = Default::default();
-        Self { header, records, points, bitmaps, titles, ..self.clone() }
+        let (records, start, points, bitmaps, titles) = Default::default();
+        Self { header, records, start, points, bitmaps, titles, ..self.clone() }
     }
 
     /// The scene's bytes for a board of this protocol version.
@@ -98,13 +101,22 @@ impl Program {
     /// The scene's bytes for a board of a protocol version, major and minor, without the flags that an older board does
     /// not know.
     pub fn scene_bytes_for(&self, protocol: (u8, u8)) -> Vec<u8> {
+        self.scene_bytes_with(protocol, &self.start)
+    }
+
+    /// As [`Self::scene_bytes_for`], with the gains of these settings, one for each record.
+    ///
+    /// On a board, every layer is on from the commit until the host switches it off. A layer that is off has the gain 0,
+    /// so that it asks for nothing meanwhile.
+    pub fn scene_bytes_with(&self, protocol: (u8, u8), settings: &[LayerSetting]) -> Vec<u8> {
         let layers_fixed = self.header.layers_fixed && protocol >= LAYERS_FIXED_SINCE;
         let electric_friction_max_n =
             self.header.electric_friction_max_n.filter(|_| protocol >= ELECTRIC_FRICTION_MAX_SINCE);
         let header = Header { layers_fixed, electric_friction_max_n, ..self.header };
         // The compiler has checked the numbers of records and points.
         let mut bytes = header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
-        bytes.extend(self.records.iter().flat_map(Record::write));
+        let gains = settings.iter().map(|setting| if setting.on { setting.gain } else { 0.0 });
+        bytes.extend(self.records.iter().zip(gains).flat_map(|(record, gain)| Record { gain, ..*record }.write()));
         bytes.extend(self.points.iter().flat_map(Point::write));
         bytes.extend(header.law.iter().flat_map(FingerLaw::write_points));
         bytes

@@ -385,6 +385,11 @@ pub(super) mod layer {
         "`true`: the host puts it on and off or changes its gain while it plays, so that it is never \
          [left out](#what-is-left-out), and hides nothing for good",
     );
+    pub(crate) const START: FieldSpec = word(
+        "start",
+        Means("`\"on\"`"),
+        "`\"off\"`: the layer is as if it were not there until the host switches it on; it needs `live = true`",
+    );
 }
 
 /// `repeat` of a layer.

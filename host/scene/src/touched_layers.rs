@@ -7,13 +7,16 @@ use crate::reference::Reference;
 /// Places that are tried along each side of a layer's region.
 const PLACES: u32 = 40;
 
-/// Records which layers a finger has touched on its way. A layer under one that replaces it is not touched there.
+/// Records which layers a finger has touched on its way. A layer under one that is on and replaces it is not touched
+/// there.
 #[derive(Clone, Debug)]
 pub struct TouchedLayers {
     reference: Reference,
     screen_m: (f64, f64),
     titles: Vec<LayerTitle>,
     touched: Vec<bool>,
+    /// The layers that are off, by their index from the bottom: they hide nothing.
+    off: Vec<usize>,
 }
 
 /// The middle of a layer, from the top left corner of the screen, and the sides of the rectangle around the layer, as far
@@ -34,8 +37,9 @@ impl TouchedLayers {
     /// Creates a record in which no layer of the program is touched.
     pub fn new(program: &Program) -> Self {
         let reference = Reference::new(program);
+        let off = (0..).zip(&program.start).filter(|(_, setting)| !setting.on).map(|(layer, _)| layer).collect();
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        Self { touched: vec![false; reference.layer_count()], reference, screen_m, titles: program.titles.clone() }
+        Self { touched: vec![false; reference.layer_count()], reference, screen_m, titles: program.titles.clone(), off }
     }
 
     /// Adds a place of the finger, from the top left corner of the screen, m. Returns the topmost layer there, by its
@@ -48,6 +52,13 @@ impl TouchedLayers {
             }
         }
         layers.first().copied()
+    }
+
+    /// The layers that are off from now on, by their index from the bottom.
+    pub fn switch(&mut self, off: &[usize]) {
+        if self.off != off {
+            off.clone_into(&mut self.off);
+        }
     }
 
     /// The name of a layer in messages.
@@ -91,7 +102,7 @@ impl TouchedLayers {
     /// The layers that a finger touches at a place, from the topmost down.
     fn layers_at(&self, x_m: f64, y_m: f64) -> Vec<usize> {
         let is_on_screen = (0.0..=self.screen_m.0).contains(&x_m) && (0.0..=self.screen_m.1).contains(&y_m);
-        self.reference.visible_at(x_m, y_m).filter(|_| is_on_screen).collect()
+        self.reference.covering_at(x_m, y_m, &self.off).filter(|_| is_on_screen).collect()
     }
 }
 

@@ -40,9 +40,9 @@ pub(crate) fn load<S: ByteStream + Recorded>(host: &mut Host<S>, request: &Reque
     replace(host, program)
 }
 
-/// Puts a program on the board, as [`load`] does.
+/// Puts a program on the board, as [`load`] does. Its layers are as its file sets them, as the page shows them.
 pub(crate) fn replace<S: ByteStream + Recorded>(host: &mut Host<S>, program: Program) -> Result<(), HostError> {
-    match host.replace(program) {
+    match host.replace_anew(program) {
         Ok(_) => Ok(()),
         Err(error) if error.is_refusal() => Err(HostError::Refused(error)),
         Err(error) => Err(error.into()),

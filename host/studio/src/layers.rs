@@ -24,6 +24,8 @@ pub(crate) struct FileLayer {
     is_live: bool,
     /// Why they cannot, one sentence; empty if they can.
     why_not_live: String,
+    /// Whether they are on when the scene begins to play.
+    starts_on: bool,
     /// The gain in the file, and the least and the largest that a board takes.
     gain: f64,
     gain_min: f64,
@@ -40,7 +42,7 @@ pub(crate) struct FileLayer {
 /// The layers of a scene, called `entry`, that was compiled to `program`.
 pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
     let describe = |table: LayerTable| {
-        let LayerTable { number, name, kind, gain, layers, file, lines, bounds_mm } = table;
+        let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
         let live = layers.iter().try_for_each(|layer| program.layers.record(layer).map(drop));
         FileLayer {
             index: number,
@@ -50,6 +52,7 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
             controls: layers,
             is_live: live.is_ok(),
             why_not_live: live.err().map_or(String::new(), |error| error.to_string()),
+            starts_on,
             gain,
             gain_min: range::GAIN.min,
             gain_max: range::GAIN.max,

@@ -72,3 +72,11 @@ impl Evaluate for GratingCoefficients {
         self.middle_n + self.swing_n * self.wave.at(turns)
     }
 }
+
+#[cfg(feature = "drift")]
+impl super::drift::Shift for GratingCoefficients {
+    #[inline]
+    fn shifted(self, turns: f32) -> Self {
+        Self { phase_turns: self.phase_turns + turns, ..self }
+    }
+}

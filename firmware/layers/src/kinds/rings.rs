@@ -77,3 +77,11 @@ impl Evaluate for RingsCoefficients {
         self.middle_n + self.swing_n * self.wave.at(distance_m * self.cycles_per_m + self.zero_turns)
     }
 }
+
+#[cfg(feature = "drift")]
+impl super::drift::Shift for RingsCoefficients {
+    #[inline]
+    fn shifted(self, turns: f32) -> Self {
+        Self { zero_turns: self.zero_turns + turns, ..self }
+    }
+}

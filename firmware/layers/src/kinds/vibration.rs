@@ -11,11 +11,9 @@ use crate::kind::{Evaluate, Kind, core_cycles};
 use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, form, parameters, put_form, range, within};
 use crate::point::Point;
-use crate::prepare::{Preparation, ticks};
+use crate::prepare::{Preparation, steps_per_tick, ticks};
 use crate::region::ActiveRegion;
-
-/// 2^-32: converts a phase in integer steps to turns.
-const TURNS_PER_STEP: f32 = 1.0 / (1u64 << 32) as f32;
+use crate::wave::TURNS_PER_STEP;
 
 parameters! {
     /// Friction that changes with time: `low + (high - low) e w(f t)`, with the burst's envelope `e`.
@@ -106,10 +104,9 @@ impl Kind for Vibration {
     }
 
     fn prepare(&self, _layer: u8, preparation: &mut Preparation) -> Result<VibrationCoefficients, Refusal> {
-        let turns_per_tick = f64::from(self.frequency_hz) / f64::from(preparation.tick_hz);
         Ok(VibrationCoefficients {
             beat: self.beat,
-            step: (turns_per_tick * (1u64 << 32) as f64 + 0.5) as u32,
+            step: steps_per_tick(self.frequency_hz, preparation.tick_hz),
             low_n: self.low_n,
             half_span_n: 0.5 * (self.high_n - self.low_n),
             burst: BurstCoefficients::new(&self.burst, preparation.tick_hz),

@@ -15,7 +15,7 @@ use super::bitmap_directory::Directory;
 /// Cells of the grid whose cost a step of loading finds.
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table that a step of loading computes.
-const ROWS_PER_STEP: usize = 4;
+const ROWS_PER_STEP: usize = 3;
 /// The same of an empirical law.
 const LAW_ROWS_PER_STEP: usize = 2;
 

@@ -14,6 +14,7 @@ fn scored(felt_n: impl Fn(f64) -> f64) -> Fidelity {
             felt_n: felt_n(t_s),
             natural_n: 0.3,
             is_driven: true,
+            ..FidelitySample::default()
         }
     };
     Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap()
@@ -74,6 +75,7 @@ fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
         felt_n: 0.3 + texture(number, 0.25),
         natural_n: 0.3,
         is_driven: true,
+        ..FidelitySample::default()
     };
     let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
     assert!(fidelity.spurious_40_to_400_hz_n < 1e-4, "{fidelity:?}");
@@ -93,6 +95,7 @@ fn natural_friction_makes_no_display_look_faithful() {
             felt_n: natural_n,
             natural_n,
             is_driven: true,
+            ..FidelitySample::default()
         }
     };
     let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
@@ -119,7 +122,14 @@ fn what_faults_take_is_no_contrast_and_is_an_error() {
     let sample = |number: u32| {
         let is_driven = number % 800 >= 200;
         let felt_n = if is_driven { 0.35 } else { 0.3 };
-        FidelitySample { speed_m_per_s: Some(SPEED_M_PER_S), reference_n: 0.35, felt_n, natural_n: 0.3, is_driven }
+        FidelitySample {
+            speed_m_per_s: Some(SPEED_M_PER_S),
+            reference_n: 0.35,
+            felt_n,
+            natural_n: 0.3,
+            is_driven,
+            ..FidelitySample::default()
+        }
     };
     let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
     assert!(fidelity.contrast_weber_steps.abs() < 1e-12, "{fidelity:?}");
@@ -136,6 +146,7 @@ fn a_ratio_without_a_denominator_is_absent() {
         felt_n: 0.35,
         natural_n: 0.3,
         is_driven: true,
+        ..FidelitySample::default()
     };
     let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
     let Fidelity { error, correlation, contrast_kept, delay_ms, peak_rate_kept, snr_below_40_hz_db, .. } = fidelity;
@@ -163,6 +174,7 @@ fn a_third_octave_that_lost_power_makes_up_for_none_that_grew() {
             felt_n: 0.3 + wave(t_s, 60.0),
             natural_n: 0.3,
             is_driven: true,
+            ..FidelitySample::default()
         }
     };
     let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();

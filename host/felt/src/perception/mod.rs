@@ -23,19 +23,22 @@ pub use alike::AlikeLayers;
 use click::ClickStep;
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
+pub(crate) use neighbours::{border_reference, border_sides};
 use slide::Slide;
+pub(crate) use slide::{total_n, visible_layers};
+pub(crate) use spectrum::component_power;
 use thresholds::lag_gain;
-pub use thresholds::{NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe};
-pub(crate) use thresholds::{
-    NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n, weber_steps_text,
+pub use thresholds::{
+    NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text,
 };
+pub(crate) use thresholds::{NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n};
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
 const SPEEDS_M_PER_S: [f64; 3] = [0.02, USUAL_M_PER_S, 0.1];
 /// The speed at which contrasts are judged, m/s.
 const USUAL_M_PER_S: f64 = 0.05;
 /// Samples a second of the friction along a slide: four times the highest frequency with a threshold.
-const SAMPLE_HZ: f64 = 2000.0;
+pub(crate) const SAMPLE_HZ: f64 = 2000.0;
 /// A texture of a smaller amplitude is not mentioned, N: a tenth of the smallest threshold.
 const AMPLITUDE_MIN_N: f64 = 2e-5;
 /// Frictions of the copies of a layer that differ by less are the same, N: a slide meets the top of a narrow ridge only
@@ -266,7 +269,7 @@ impl JudgedLayer {
 }
 
 /// The contrast along a slide, and whether only a narrow place makes it; `None` without any friction.
-fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step, bool)> {
+pub(crate) fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step, bool)> {
     let [least_n, low_n, high_n, most_n] = percentiles(friction_n.to_vec(), [0, 5, 95, 100])?;
     let is_narrow = high_n - low_n < NARROW_PART * (most_n - least_n);
     let is_whole = is_edge || is_narrow;
@@ -275,7 +278,7 @@ fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step, bool)> {
 
 /// Whether any of these layers repeats or changes by itself. The others have steps and lone ridges, whose spectrum is
 /// not a texture.
-fn has_texture(layers: u64, program: &Program) -> bool {
+pub(crate) fn has_texture(layers: u64, program: &Program) -> bool {
     let mut records = program.records.iter().enumerate().filter(|(number, _)| layers >> number & 1 == 1);
     records.any(|(_, record)| {
         !matches!(record.layer, Layer::Constant(_) | Layer::Button(_) | Layer::Edge(_) | Layer::Speed(_))
@@ -295,16 +298,19 @@ fn burst(layers: u64, program: &Program) -> Option<BurstTimes> {
 }
 
 impl Texture {
-    /// How far it is above the threshold.
-    fn salience(&self) -> f64 {
+    /// How far it is above the threshold, to compare textures by.
+    pub fn salience(&self) -> f64 {
         spectrum::salience_of(self.amplitude_n, self.threshold_n)
     }
 
     fn of(friction_n: &[f64], speed_m_per_s: f64) -> Option<Self> {
         let speed_mm_per_s = 1e3 * speed_m_per_s;
-        let behind_lag = |frequency_hz: f64| lag_gain(speed_mm_per_s / frequency_hz);
-        let component = spectrum::most_noticeable(friction_n, SAMPLE_HZ, behind_lag)?;
-        let (frequency_hz, amplitude_n) = (component.frequency_hz, component.amplitude);
+        let (frequency_hz, amplitude_n) = texture_component(friction_n, speed_mm_per_s)?;
+        Self::new(speed_mm_per_s, frequency_hz, lag_gain(speed_mm_per_s / frequency_hz) * amplitude_n)
+    }
+
+    /// Judges a felt amplitude in newtons at a frequency; `None` for one that is not mentioned.
+    pub(crate) fn new(speed_mm_per_s: f64, frequency_hz: f64, amplitude_n: f64) -> Option<Self> {
         (amplitude_n >= AMPLITUDE_MIN_N).then(|| Self {
             speed_mm_per_s,
             frequency_hz,
@@ -314,6 +320,14 @@ impl Texture {
             verdict: Verdict::of_texture(amplitude_n, frequency_hz),
         })
     }
+}
+
+/// Frequency in Hz and amplitude in newtons, before the lag of friction, of the component of the friction along a slide
+/// that is the most noticeable one behind that lag.
+pub(crate) fn texture_component(friction_n: &[f64], speed_mm_per_s: f64) -> Option<(f64, f64)> {
+    let behind_lag = |frequency_hz: f64| lag_gain(speed_mm_per_s / frequency_hz);
+    let component = spectrum::most_noticeable(friction_n, SAMPLE_HZ, behind_lag)?;
+    Some((component.frequency_hz, component.amplitude / behind_lag(component.frequency_hz)))
 }
 
 fn notes(reference: &Reference) -> Vec<String> {

@@ -28,14 +28,20 @@ struct Pairs {
     sums_n: [f64; 2],
 }
 
-/// The borders between the layers of a program, for a slow finger, with vibrations at their largest and without clicks,
-/// streams, and ridges on what lies below: a ridge is felt by itself, and its region ends where nothing is felt.
-pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
+/// What borders are judged by: vibrations at their largest, without clicks, streams, and ridges on what lies below: a
+/// ridge is felt by itself, and its region ends where nothing is felt. Only those layers are on for whose index `is_on` is
+/// true.
+pub(crate) fn border_reference(program: &Program, is_on: impl Fn(usize) -> bool) -> Reference {
     let is_ridge_on_ground = |layer: usize| {
         let record = program.records.get(layer);
         record.is_some_and(|record| matches!(record.layer, Layer::Edge(_)) && record.blend != Blend::Replace)
     };
-    let reference = Reference::new(program).with_vibrations_held().with_only(|layer| !is_ridge_on_ground(layer));
+    Reference::new(program).with_vibrations_held().with_only(|layer| is_on(layer) && !is_ridge_on_ground(layer))
+}
+
+/// The borders between the layers of a program, for a slow finger.
+pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
+    let reference = border_reference(program, |_| true);
     let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let pitch_m = width_m.max(height_m) / PLACES;
     let (columns, rows) = ((width_m / pitch_m) as usize, (height_m / pitch_m) as usize);
@@ -63,14 +69,19 @@ pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
 
 /// Counts a pair of places, with the lower layer first.
 fn add(found: &mut BTreeMap<[Option<usize>; 2], Pairs>, one: (u64, f64), other: (u64, f64)) {
-    let (mut low, mut high) = ((own_layer(one.0, other.0), one.1), (own_layer(other.0, one.0), other.1));
-    if high.0 < low.0 {
-        (low, high) = (high, low);
-    }
-    let pairs = found.entry([low.0, high.0]).or_default();
+    let (sides, is_turned) = border_sides(one.0, other.0);
+    let (low, high) = if is_turned { (other, one) } else { (one, other) };
+    let pairs = found.entry(sides).or_default();
     pairs.count += 1;
     pairs.sums_n[0] += low.1;
     pairs.sums_n[1] += high.1;
+}
+
+/// What a person would call two places beside one another by, the lower layer first, and whether that is the second
+/// place. A place has a set of layers, a bit each.
+pub(crate) fn border_sides(one: u64, other: u64) -> ([Option<usize>; 2], bool) {
+    let (one, other) = (own_layer(one, other), own_layer(other, one));
+    if other < one { ([other, one], true) } else { ([one, other], false) }
 }
 
 /// The layer by which a person would call a place: the uppermost that the other place does not have, or the uppermost.

@@ -108,11 +108,11 @@ impl Slide {
 }
 
 /// Total friction, in newtons, with the electric friction clamped to what the drive can give.
-pub(super) fn total_n(program: &Program, electric_n: f64) -> f64 {
+pub(crate) fn total_n(program: &Program, electric_n: f64) -> f64 {
     program.reach.natural_friction_n + electric_n.clamp(0.0, program.reach.electric_friction_max_n)
 }
 
 /// The layers that have an effect at a place, a bit each.
-pub(super) fn visible_layers(reference: &Reference, x_m: f64, y_m: f64) -> u64 {
+pub(crate) fn visible_layers(reference: &Reference, x_m: f64, y_m: f64) -> u64 {
     reference.visible_at(x_m, y_m).fold(0, |visible, layer| visible | 1 << layer)
 }

@@ -46,6 +46,13 @@ pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64
     components.max_by(|one, other| salience(one).total_cmp(&salience(other)))
 }
 
+/// Mean square of the signal in the component around a frequency.
+pub(crate) fn component_power(spectrum: &Spectrum, frequency_hz: f64) -> f64 {
+    let power = spectrum.power();
+    let bin = (frequency_hz / spectrum.bin_hz).round() as usize;
+    power.get(around(bin, power.len())).unwrap_or_default().iter().sum()
+}
+
 /// The bins of a component whose largest bin this is.
 fn around(bin: usize, bins: usize) -> Range<usize> {
     let low = ((bin as f64 / SIXTH_OF_OCTAVE).ceil() as usize).min(bin.saturating_sub(SPREAD_BINS));

@@ -87,6 +87,17 @@ impl Verdict {
         }
     }
 
+    /// The verdict on what is felt in several ways: the surest of them, of which *not felt* is the last.
+    pub fn of_any(verdicts: impl IntoIterator<Item = Self>) -> Self {
+        let sureness = |verdict: &Self| match verdict {
+            Self::Felt => 3,
+            Self::NearThreshold => 2,
+            Self::Unknown => 1,
+            Self::NotFelt => 0,
+        };
+        verdicts.into_iter().max_by_key(sureness).unwrap_or(Self::NotFelt)
+    }
+
     /// The verdict in words that follow "is".
     pub fn words(self) -> &'static str {
         match self {
@@ -112,7 +123,7 @@ pub fn weber_steps(from_n: f64, to_n: f64) -> f64 {
 
 /// A number of Weber steps with one digit after the point, or with as many more as its verdict needs: 2.3 is felt, and
 /// 2.28 is near the threshold.
-pub(crate) fn weber_steps_text(weber_steps: f64) -> String {
+pub fn weber_steps_text(weber_steps: f64) -> String {
     let rounded = |digits: i32| (weber_steps * 10f64.powi(digits)).round() / 10f64.powi(digits);
     let is_faithful = |digits: &i32| Verdict::of_step(rounded(*digits)) == Verdict::of_step(weber_steps);
     let digits = (1..=3).find(is_faithful).unwrap_or(3);

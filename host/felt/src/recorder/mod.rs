@@ -184,7 +184,7 @@ impl PlayListener for Recorder {
         if self.ticks_max == 0 {
             return Ok(());
         }
-        let reference = Reference::new(program).along_stroke();
+        let reference = Reference::at_start(program).along_stroke();
         let inversion = Inversion::new(program, limits, self.tick_hz)?;
         if let Some(comparison) = &mut self.comparison {
             (comparison.reference, comparison.inversion) = (reference, inversion);

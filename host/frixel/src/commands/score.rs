@@ -49,7 +49,7 @@ pub(super) struct ScoreArgs {
     /// Simulate a world without noise, load changes, losses and offsets.
     #[arg(long)]
     ideal: bool,
-    /// Folder for score.csv and score.svg.
+    /// Folder for score.csv, score-layers.csv and score.svg.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
     /// Print one JSON object in place of the table.
@@ -62,7 +62,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]).chain(args.touch.file()));
     let file = |name: &str| OutputFile::new(&args.out.join(name), "--out", &inputs);
-    let (csv, svg) = (file("score.csv")?, file("score.svg")?);
+    let (csv, layers, svg) = (file("score.csv")?, file("score-layers.csv")?, file("score.svg")?);
     let scene = scene?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let trials = match args.people {
@@ -73,20 +73,22 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
         }
     };
     let _folder = OutputFolder::open(&args.out)?;
-    let score = Score::of(&trials, |trial| samples(&program, &rig, trial)).map_err(|error| match error {
+    let score = Score::of(&program, &trials, |trial| samples(&program, &rig, trial)).map_err(|error| match error {
         SimulationError::Play(error) => CommandError::of_play("sim", error),
         SimulationError::World(error) => error.into(),
     })?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
-    commit_all(vec![csv.filled(score.to_csv().as_bytes())?, svg.filled(drawn.as_bytes())?], &[])?;
+    let filled = [(&csv, score.to_csv()), (&layers, score.layers_csv()), (&svg, drawn)]
+        .map(|(file, text)| file.filled(text.as_bytes()));
+    commit_all(filled.into_iter().collect::<Result<_, _>>()?, &[])?;
     if args.json {
         return print_line(format_args!("{}", score.to_json()));
     }
     for line in score.summary().lines() {
         print_line(format_args!("{line}"))?;
     }
-    for file in [csv, svg] {
+    for file in [csv, layers, svg] {
         print_line(format_args!("  {:<30} {}", "wrote", file.path().display()))?;
     }
     Ok(())

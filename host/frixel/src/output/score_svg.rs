@@ -1,9 +1,12 @@
 //! The picture of a score.
 
-use frixel_lab::score::{Human, MetricScore, Score};
+use frixel_lab::score::{Human, LayerScore, MetricScore, Score, Verdicts};
 
 use super::{DrawingError, svg};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+
+/// Least height of the row of a layer, in pixels.
+const ROW_HEIGHT: u32 = 30;
 
 /// Draws a picture of the numbers that a person notices, each over the value from which it is noticed.
 pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, DrawingError> {
@@ -31,7 +34,30 @@ pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, Drawi
         ));
     }
     panel.add("mean over the plays, simulated", mean, means);
-    let mut chart = Chart::new(vec![panel], 1);
+    let mut chart = Chart::new(vec![panel, layers(score)], 1);
     title.clone_into(&mut chart.title);
+    chart.caption = vec![format!("This is {}.", score.simulated), format!("Verdict: {}.", score.verdict)];
     svg(&chart)
+}
+
+/// The share of the simulated fingers that notice each layer.
+fn layers(score: &Score) -> Panel {
+    let rows: Vec<&LayerScore> = score.layer_rows().map(|(layer, _)| layer).collect();
+    let axis = Axis::linear("share of the simulated fingers that notice the layer", 0.0..1.0);
+    let mut panel = Panel::new("", axis, Axis::linear("", (rows.len() as f64).max(1.0)..0.0).with_labels(0.0));
+    panel.height = panel.height.max(ROW_HEIGHT * rows.len() as u32);
+    let (felt, maybe) = (Look::mark(PALETTE[0], Mark::Disc), Look::line(PALETTE[0], Line::Thick));
+    let mut shares = Vec::new();
+    for (number, layer) in rows.into_iter().enumerate() {
+        let y = number as f64 + 0.6;
+        let Verdicts { touched, felt, felt_by_some, .. } = layer.simulated_fingers;
+        let share = |fingers: usize| fingers as f64 / touched.max(1) as f64;
+        shares.push((share(felt), y));
+        if felt_by_some > 0 {
+            panel.add("", maybe, vec![(share(felt), y), (share(felt + felt_by_some), y)]);
+        }
+        panel.notes.push((0.005, y - 0.35, layer.layer.to_string()));
+    }
+    panel.add("felt; line: maybe", felt, shares);
+    panel
 }

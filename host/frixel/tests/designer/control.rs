@@ -52,6 +52,30 @@ fn layers_are_switched_turned_down_and_triggered() {
     assert_eq!(names, [3, 2], "a tenth of a second has no room for a name");
 }
 
+/// A layer that starts off is off in the felt friction and in the drawing, and what lies below it is touched.
+#[test]
+fn a_layer_that_starts_off_waits_for_its_trigger_and_stays_as_it_was_switched() {
+    let folder = TempDir::new().unwrap();
+    let ground = "version = 2\n[[layer]]\nname = \"ground\"\nkind = \"constant\"\nfriction_n = 0.26\n";
+    let ping = "[[layer]]\nname = \"ping\"\nkind = \"constant\"\nfriction_n = 0.35\nlive = true\nstart = \"off\"\n";
+    fs::write(folder.path().join("scene.toml"), format!("{ground}{ping}")).unwrap();
+    let lines = "wait 0.2\ntrigger ping 200\nwait 0.4\nreplace scene.toml\nwait 0.1\nlayer ping on gain 0.9\nwait 0.1\n\
+                 replace scene.toml\nwait 0.1\nlayer ping gain 1 off\n";
+    let output = control(folder.path(), lines);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let rows =
+        [(20, 260.0), (190, 260.0), (390, 350.0), (590, 260.0), (690, 260.0), (790, 340.0), (890, 340.0), (990, 260.0)];
+    for (t_ms, expected_mn) in rows {
+        let (wanted_mn, felt_mn) = friction_mn(folder.path(), t_ms);
+        assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
+        assert!((felt_mn - expected_mn).abs() < 1.5, "{t_ms} ms: {felt_mn} mN felt");
+    }
+    assert!(!String::from_utf8_lossy(&output.stdout).contains("never touched"));
+    let svg = fs::read_to_string(folder.path().join("frixel-out/felt.svg")).unwrap();
+    assert!(svg.lines().any(|line| line == "ping off") && svg.lines().any(|line| line == "ping"));
+}
+
 #[test]
 fn a_scene_is_replaced_and_the_play_ended() {
     let folder = TempDir::new().unwrap();

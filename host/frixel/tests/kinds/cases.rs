@@ -199,6 +199,27 @@ fn in_time() -> Vec<Case> {
             ..CASE
         },
         Case {
+            // 20 waves a second, along the finger's way: it passes 20 waves less than of a grating at rest.
+            name: "drifting grating",
+            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\ndrift_mm_per_s = 100\nangle_deg = 30\n\
+                     low_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| 2.0 + 20.0 * sine((along_deg(at.x, at.y, 30.0) - 100.0 * at.t) / 5.0),
+            agreement_mn: 1e-3,
+            bound: 0.034,
+            repeats_after_ticks: 2_000,
+            ..CASE
+        },
+        Case {
+            name: "drifting rings, inwards",
+            layers: "[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 5\ndrift_mm_per_s = -50\n\
+                     low_n = 0.002\nhigh_n = 0.022",
+            expected: |_, at| 2.0 + 20.0 * sine(((at.x - 50.0).hypot(at.y - 20.0) + 50.0 * at.t) / 5.0),
+            agreement_mn: 1e-3,
+            bound: 0.0283,
+            repeats_after_ticks: 4_000,
+            ..CASE
+        },
+        Case {
             name: "speed",
             layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.02\n[[layer]]\n\
                      kind = \"speed\"\n\

@@ -59,7 +59,7 @@ pub(crate) const OUTPUTS: [Output; 15] = [
         "score out",
         "score scene.toml --stroke IN --seeds 1 --out OUT",
         "stroke.csv",
-        &["OUT/score.csv", "OUT/score.svg"],
+        &["OUT/score.csv", "OUT/score-layers.csv", "OUT/score.svg"],
     ),
     Output {
         // It ends with a signal only.

@@ -1,16 +1,23 @@
-//! Scores a scene: how faithfully simulated fingers feel it, over strokes and seeds.
+//! Scores a scene: how faithfully simulated fingers feel it, and what they notice of it, over strokes and seeds.
 //!
 //! The input is strokes with their seeds, and what the finger felt on each. The output is the [`Fidelity`] of each play,
-//! and of each of its numbers the mean, the interval, and what a person notices.
+//! of each of its numbers the mean, the interval, and what a person notices, and how many of the simulated fingers
+//! notice each layer.
 
+mod layers;
 mod metric;
+mod sentence;
 mod text;
 
 use frixel_felt::fidelity::{Fidelity, FidelitySample};
+use frixel_felt::noticed::Noticing;
 use frixel_hil_sim::{FingertipConfig, Stroke, WorldConfig};
 use frixel_model::LoadedContact;
+use frixel_scene::{LayerTitle, Program};
 use serde::Serialize;
 
+use layers::Finger;
+pub use layers::{BorderScore, LayerBorder, LayerScore, LevelScore, Verdicts};
 use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
 
@@ -63,23 +70,70 @@ pub struct TrialScore {
 /// The score of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
+    /// What the score is a verdict on: simulated fingers.
+    pub simulated: String,
+    /// Which layers the simulated fingers notice, and which levels of friction they tell apart: a sentence that names
+    /// those that some fingers do not surely notice, and those of which the strokes say nothing.
+    pub verdict: String,
+    /// Number of simulated fingers.
+    pub simulated_fingers: usize,
     /// Each number of [`Fidelity`] over all plays.
     pub metrics: Vec<MetricScore>,
+    /// The layers that a finger touched for long enough, while the board drove the scene, from bottom to top.
+    pub layers: Vec<LayerScore>,
+    /// The borders that a finger crossed.
+    pub borders: Vec<BorderScore>,
+    /// Levels of friction that are next to one another.
+    pub levels: Vec<LevelScore>,
+    /// The layers without a row.
+    pub untouched_layers: Vec<LayerTitle>,
     /// The plays.
     pub plays: Vec<TrialScore>,
 }
 
 impl Score {
-    /// Scores trials. `play` plays one, and returns what was felt and the reference for every quarter of a millisecond.
-    pub fn of<E>(trials: &[Trial], mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>) -> Result<Self, E> {
-        let score = |trial: &Trial| {
-            let person = trial.finger.map(|finger| finger.person);
-            let fidelity = Fidelity::of(&play(trial)?);
-            Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
-        };
+    /// Scores trials of a program. `play` plays one, and returns what was felt and the reference for every quarter of a
+    /// millisecond.
+    pub fn of<E>(
+        program: &Program,
+        trials: &[Trial],
+        mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>,
+    ) -> Result<Self, E> {
+        let mut fingers: Vec<(Option<u64>, Noticing)> = Vec::new();
+        let score =
+            |trial: &Trial| {
+                let person = trial.finger.map(|finger| finger.person);
+                let samples = play(trial)?;
+                let finger = fingers.iter().position(|(other, _)| *other == person).unwrap_or(fingers.len());
+                if finger == fingers.len() {
+                    fingers.push((person, Noticing::new(program)));
+                }
+                let mut fidelity = Fidelity::of(&samples);
+                if let Some((_, noticing)) = fingers.get_mut(finger) {
+                    noticing.add(&samples);
+                    fidelity = fidelity.map(|fidelity| {
+                        if noticing.changes_along(&samples) { fidelity } else { fidelity.without_ratios() }
+                    });
+                }
+                Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
+            };
         let plays: Vec<TrialScore> = trials.iter().map(score).collect::<Result<_, E>>()?;
         let groups = independent(&plays);
-        Ok(Self { metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(), plays })
+        let fingers: Vec<Finger> = fingers.iter().map(|(_, noticing)| Finger::from(noticing)).collect();
+        let layers = layers::layers(program, &fingers);
+        let is_untouched = |title: &&LayerTitle| layers.iter().all(|layer| layer.layer != **title);
+        let score = Self {
+            simulated: String::new(),
+            verdict: String::new(),
+            simulated_fingers: fingers.len(),
+            metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
+            borders: layers::borders(program, &fingers),
+            levels: layers::levels(program, &fingers),
+            untouched_layers: program.titles.iter().filter(is_untouched).cloned().collect(),
+            layers,
+            plays,
+        };
+        Ok(Self { simulated: score.simulated_words(), verdict: score.sentence(), ..score })
     }
 }
 

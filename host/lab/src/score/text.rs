@@ -2,24 +2,82 @@
 
 use std::fmt::Write;
 
+use frixel_felt::perception::weber_steps_text;
+use frixel_scene::{LayerTitle, fold_copies};
+
 use super::metric::{METRICS, Metric};
-use super::{Goal, MetricScore, Score};
+use super::{Goal, LayerBorder, LayerScore, LevelScore, MetricScore, Score, Verdicts};
+
+/// Most characters of a line's first column.
+const NAME_WIDTH: usize = 30;
 
 impl Score {
-    /// The score as a table, a line for each number.
+    /// The score as a table, a line for each number, for each layer with its copies and for each two levels, and a last
+    /// sentence.
     pub fn summary(&self) -> String {
         let mut text = String::new();
-        for metric in &self.metrics {
+        let mut line = |name: &str, value: &str| {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {:<30} {}", metric.title, value_text(metric));
+            let _ = writeln!(text, "  {name:<NAME_WIDTH$} {value}");
+        };
+        line("simulated", &self.simulated);
+        for metric in &self.metrics {
+            line(metric.title, &value_text(metric));
         }
+        for (layer, copies) in self.layer_rows() {
+            let more = if copies > 1 { format!(", the least of {copies} copies") } else { String::new() };
+            line(layer.layer.as_str(), &format!("{}{more}", layer_text(layer)));
+        }
+        for level in &self.levels {
+            line("told apart", &level_text(level));
+        }
+        line("verdict", &self.verdict);
         text
+    }
+
+    /// A row for each layer, with the number of its copies: of these, the row is that of the copy that the smallest share of
+    /// the fingers notices.
+    pub fn layer_rows(&self) -> impl Iterator<Item = (&LayerScore, usize)> {
+        let tables = self.layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
+        tables.filter_map(|copies| Some((LayerScore::least(copies)?, copies.len())))
+    }
+
+    /// What the score is a verdict on.
+    pub(super) fn simulated_words(&self) -> String {
+        let plural = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
+        let fingers = plural(self.simulated_fingers, "simulated finger");
+        format!("a verdict on {fingers} in {}; people were not asked", plural(self.plays.len(), "play"))
     }
 
     /// The score as one JSON object on one line.
     pub fn to_json(&self) -> String {
         // Numbers and strings always serialise.
         serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// A row for each layer.
+    pub fn layers_csv(&self) -> String {
+        let mut text = "layer,simulated_fingers,felt,felt_by_some,not_felt,unknown,contrast_weber_steps,border_with,\
+                        border_weber_steps,texture_mn,texture_hz,texture_threshold_mn\n"
+            .to_owned();
+        for LayerScore { layer, simulated_fingers, contrast_weber_steps, texture, border } in &self.layers {
+            let Verdicts { touched, felt, felt_by_some, not_felt, unknown } = simulated_fingers;
+            let with = border.as_ref().map_or(String::new(), |border| quoted(side(border)));
+            let step = border.as_ref().map(|border| border.weber_steps);
+            let newtons = texture.map(|texture| 1e3 * texture.amplitude_n);
+            let threshold = texture.and_then(|texture| texture.threshold_n).map(|threshold_n| 1e3 * threshold_n);
+            let [step, newtons, hertz, threshold] =
+                [step, newtons, texture.map(|texture| texture.frequency_hz), threshold]
+                    .map(|value| value.map_or(String::new(), |value| value.to_string()));
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{},{touched},{felt},{felt_by_some},{not_felt},{unknown},{contrast_weber_steps},{with},{step},\
+                 {newtons},{hertz},{threshold}",
+                quoted(layer.as_str())
+            );
+        }
+        text
     }
 
     /// A row for each play, with the numbers in the units of the table.
@@ -53,4 +111,44 @@ fn value_text(metric: &MetricScore) -> String {
     });
     let space = if unit.is_empty() { "" } else { " " };
     format!("{mean:.2}{interval}{space}{unit}{human}{goal}")
+}
+
+/// A cell of a CSV file.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}
+
+fn side(border: &LayerBorder) -> &str {
+    border.from.as_ref().map_or("the bare screen", LayerTitle::as_str)
+}
+
+/// How many fingers notice a layer, and of what size it is for the one in the middle.
+fn layer_text(layer: &LayerScore) -> String {
+    let LayerScore { simulated_fingers, contrast_weber_steps, texture, border, .. } = layer;
+    let contrast = format!("contrast {} Weber steps", weber_steps_text(*contrast_weber_steps));
+    let border = border
+        .iter()
+        .map(|border| format!("step onto it from {} {}", side(border), weber_steps_text(border.weber_steps)));
+    let texture = texture.iter().map(|texture| {
+        let threshold = texture.threshold_n.map_or("no threshold known".to_owned(), |threshold_n| {
+            format!("threshold about {:.1} mN", 1e3 * threshold_n)
+        });
+        format!("texture {:.1} mN at {:.0} Hz, {threshold}", 1e3 * texture.amplitude_n, texture.frequency_hz)
+    });
+    let sizes: Vec<String> = std::iter::once(contrast).chain(border).chain(texture).collect();
+    format!("{}; {}", felt_by(simulated_fingers), sizes.join(", "))
+}
+
+fn level_text(level: &LevelScore) -> String {
+    let titles = |titles: &[LayerTitle]| fold_copies(&titles.iter().collect::<Vec<_>>()).join(", ");
+    let LevelScore { lower, higher, simulated_fingers, weber_steps } = level;
+    let steps = weber_steps_text(*weber_steps);
+    format!("{} and {}: {}; {steps} Weber steps", titles(lower), titles(higher), felt_by(simulated_fingers))
+}
+
+fn felt_by(verdicts: &Verdicts) -> String {
+    let Verdicts { touched, felt, felt_by_some, unknown, .. } = verdicts;
+    let maybe = (*felt_by_some > 0).then(|| format!(", maybe by {felt_by_some}"));
+    let unknown = (*unknown > 0).then(|| format!(", unknown for {unknown}"));
+    format!("felt by {felt} of {touched}{}{}", maybe.unwrap_or_default(), unknown.unwrap_or_default())
 }

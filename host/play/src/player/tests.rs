@@ -14,6 +14,8 @@ use super::*;
 struct Line {
     rig: Rig<'static>,
     told: Told,
+    /// The largest electric friction that a tick has asked for, N.
+    asked_max_n: f32,
 }
 
 /// What a listener is told, a word each.
@@ -56,7 +58,8 @@ impl ByteStream for Line {
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let end = self.now() + wait;
         while !self.rig.has_received() && self.now() < end {
-            self.rig.step();
+            let asked_n = self.rig.step().status.telemetry.asked_electric_friction_n;
+            self.asked_max_n = self.asked_max_n.max(asked_n);
         }
         self.rig.receive(buffer);
         Ok(())
@@ -98,9 +101,11 @@ fn playing(program: Program) -> Playing {
 
 /// A line to a board whose memory lives as long as the program.
 fn line() -> Line {
-    let stroke = Stroke::sweep(0.12, 0.08, 1.0).unwrap();
+    let stroke = Stroke::sweep(0.12, 0.08, 60.0).unwrap();
     let memory = Box::leak(BoardMemory::new());
-    Line { rig: Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap(), told: Told::default() }
+    let mut rig = Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap();
+    rig.world_mut().start_stroke();
+    Line { rig, told: Told::default(), asked_max_n: 0.0 }
 }
 
 fn start<L: Link + Recorded>(link: L, program: Program) -> Player<L> {
@@ -109,9 +114,19 @@ fn start<L: Link + Recorded>(link: L, program: Program) -> Player<L> {
     player
 }
 
+/// A layer of more friction that begins off, beside the whole screen's in the ways that a blend can join it.
+fn off_at_start(blend: &str) -> Program {
+    let amount = if blend == "multiply" { "factor = 2" } else { "fraction = 0.5" };
+    program(&format!(
+        "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.2\n\
+         [[layer]]\nname = \"ping\"\nkind = \"constant\"\nblend = \"{blend}\"\nfriction_{amount}\nlive = true\n\
+         start = \"off\"\n"
+    ))
+}
+
 /// Puts a program on the board behind the player's back, whose layers refuse every change.
 fn refuse_changes(player: &mut Playing) {
-    player.upload(&ping(false)).unwrap();
+    player.upload(&LiveLayers::new(ping(false))).unwrap();
 }
 
 const MS: Duration = Duration::from_millis(1);
@@ -154,7 +169,7 @@ fn a_trigger_ends_at_its_time_on_the_clock_of_the_link() {
 fn the_recorder_is_told_what_plays() {
     let stream = "[[layer]]\nkind = \"stream\"\nlow_n = 0.002\nhigh_n = 0.018\nlive = true\n";
     let mut player = playing(ping(true));
-    assert_eq!(player.replace(program(stream)).unwrap(), Replaced::AtOnce);
+    assert_eq!(player.replace(program(stream)).unwrap(), Replaced { faded_out: false, dropped_gains: None });
     player.change_layer("1", None, Some(0.5)).unwrap();
     player.stream(Feed::of(vec![0; 100], 4_000)).unwrap();
     player.wait(200 * MS).unwrap();
@@ -162,6 +177,62 @@ fn the_recorder_is_told_what_plays() {
     player.stop().unwrap();
     let told = ["scene of 1", "layer 0 true 0.5", "stream 4000", "100 samples", "end", "stop"];
     assert_eq!(player.recorder_mut().0, told);
+}
+
+/// The largest electric friction asked for since the last call, as a part of the reach.
+fn asked_max(player: &mut Playing) -> f64 {
+    let reach_n = player.playing().unwrap().program().reach.electric_friction_max_n;
+    let line = player.device_mut().link_mut().stream_mut();
+    f64::from(std::mem::take(&mut line.asked_max_n)) / reach_n
+}
+
+/// It is off before a tick can play it, at the first play and after every replacement, whatever its blend.
+#[test]
+fn a_layer_that_starts_off_is_never_played_until_it_is_switched_on() {
+    for (blend, on) in [("replace", 0.5), ("add", 0.7), ("multiply", 0.4), ("max", 0.5)] {
+        let mut player = playing(off_at_start(blend));
+        player.wait(200 * MS).unwrap();
+        let asked = asked_max(&mut player);
+        assert!((asked - 0.2).abs() < 1e-3, "{blend}: {asked}");
+        player.replace(off_at_start(blend)).unwrap();
+        player.wait(20 * MS).unwrap();
+        let asked = asked_max(&mut player);
+        assert!((asked - 0.2).abs() < 1e-3, "{blend}: {asked}");
+        player.trigger("ping", 0.05).unwrap();
+        player.wait(20 * MS).unwrap();
+        let asked = asked_max(&mut player);
+        assert!((asked - on).abs() < 1e-3, "{blend}: {asked}");
+        assert!(player.playing().unwrap().off().is_empty());
+        player.wait(40 * MS).unwrap();
+        assert_eq!(player.playing().unwrap().off(), [1]);
+    }
+}
+
+#[test]
+fn what_was_set_of_a_layer_is_kept_when_the_program_is_replaced() {
+    let mut player = playing(off_at_start("add"));
+    player.change_layer("ping", Some(true), Some(0.5)).unwrap();
+    player.replace(off_at_start("add")).unwrap();
+    asked_max(&mut player);
+    player.wait(20 * MS).unwrap();
+    let asked = asked_max(&mut player);
+    assert!((asked - 0.45).abs() < 1e-3, "{asked}");
+    assert_eq!(player.recorder_mut().0, ["layer 1 true 0.5", "scene of 2", "layer 1 true 0.5"]);
+    // The page shows a scene as it is written.
+    player.replace_anew(off_at_start("add")).unwrap();
+    assert_eq!(player.playing().unwrap().off(), [1]);
+}
+
+#[test]
+fn a_board_that_is_armed_by_hand_plays_nothing_of_a_layer_that_starts_off() {
+    let mut player = Player::new(Device::connect(PollingLink::new(line())).unwrap());
+    player.stop().unwrap();
+    player.replace(off_at_start("replace")).unwrap();
+    player.arm_and_play().unwrap();
+    player.wait(200 * MS).unwrap();
+    let asked = asked_max(&mut player);
+    assert!((asked - 0.2).abs() < 1e-3, "{asked}");
+    assert_eq!(player.playing().unwrap().off(), [1]);
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
+use frixel_layers::{DriftingGrating, Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words, drift};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -50,6 +50,8 @@ pub(crate) struct Grating {
     angle_deg: f64,
     phase_deg: f64,
     origin: Origin,
+    /// 0 for stripes that do not move.
+    drift_mm_per_s: f64,
     amounts: LowHigh,
 }
 
@@ -63,11 +65,14 @@ impl Words for Grating {
         let phase_deg = fields.angle_deg(log, &PHASE);
         let origins = [("screen", Origin::Screen), ("region", Origin::Region)];
         let origin = fields.choice(log, &ORIGIN, &origins).unwrap_or(Origin::Screen);
+        let drift_mm_per_s = drift::read(fields, log);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
-        Some(Self { wave, wavelength_mm: wavelength_mm?, angle_deg, phase_deg, origin, amounts: amounts? })
+        let (wavelength_mm, amounts) = (wavelength_mm?, amounts?);
+        Some(Self { wave, wavelength_mm, angle_deg, phase_deg, origin, drift_mm_per_s, amounts })
     }
 
     fn check(&self, places: &Places, log: &mut Log) {
+        drift::check(self.drift_mm_per_s, self.wavelength_mm, places, log);
         self.amounts.check(places, log);
     }
 
@@ -82,7 +87,7 @@ impl Words for Grating {
             _ => (0.0, 0.0),
         };
         let origin_turns = f64::from(cycles_per_m_x) * x_m + f64::from(cycles_per_m_y) * y_m;
-        let record = Record {
+        let grating = Record {
             wave: self.wave,
             cycles_per_m_x,
             cycles_per_m_y,
@@ -90,22 +95,33 @@ impl Words for Grating {
             trough_n: lowering.amount(layer, self.amounts.low),
             crest_n: lowering.amount(layer, self.amounts.high),
         };
-        Some(RecordLayer::Grating(record).into())
+        let layer = if self.drift_mm_per_s == 0.0 {
+            RecordLayer::Grating(grating)
+        } else {
+            let drift_hz = drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32;
+            RecordLayer::DriftingGrating(DriftingGrating { grating, drift_hz })
+        };
+        Some(layer.into())
     }
 }
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(GratingField {
-            cycles_per_m_x: f64::from(self.cycles_per_m_x),
-            cycles_per_m_y: f64::from(self.cycles_per_m_y),
-            phase_turns: f64::from(self.phase_turns),
-            wave: WaveField { wave: self.wave, trough_n: f64::from(self.trough_n), crest_n: f64::from(self.crest_n) },
-        })
+        Arc::new(GratingField::new(self, 0.0))
     }
 
     fn without_place(self) -> Self {
         Self { phase_turns: 0.0, ..self }
+    }
+}
+
+impl IntoField for DriftingGrating {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(GratingField::new(&self.grating, f64::from(self.drift_hz)))
+    }
+
+    fn without_place(self) -> Self {
+        Self { grating: self.grating.without_place(), ..self }
     }
 }
 
@@ -114,11 +130,24 @@ struct GratingField {
     cycles_per_m_x: f64,
     cycles_per_m_y: f64,
     phase_turns: f64,
+    /// Stripes that pass a place in a second.
+    drift_hz: f64,
     wave: WaveField,
 }
 
 impl GratingField {
-    /// Phase at a place, in turns.
+    fn new(grating: &Record, drift_hz: f64) -> Self {
+        let Record { wave, trough_n, crest_n, .. } = *grating;
+        Self {
+            cycles_per_m_x: f64::from(grating.cycles_per_m_x),
+            cycles_per_m_y: f64::from(grating.cycles_per_m_y),
+            phase_turns: f64::from(grating.phase_turns),
+            drift_hz,
+            wave: WaveField { wave, trough_n: f64::from(trough_n), crest_n: f64::from(crest_n) },
+        }
+    }
+
+    /// Phase at a place and the time 0, in turns.
     fn turns(&self, x_m: f64, y_m: f64) -> f64 {
         self.cycles_per_m_x * x_m + self.cycles_per_m_y * y_m + self.phase_turns
     }
@@ -126,11 +155,18 @@ impl GratingField {
 
 impl Field for GratingField {
     fn at(&self, context: &Context) -> f64 {
-        self.wave.at_turns(self.turns(context.x_m, context.y_m))
+        self.wave.at_turns(self.turns(context.x_m, context.y_m) - self.drift_hz * context.t_s)
     }
 
-    /// Over a rectangle the phase takes every value between its least and its largest.
+    fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
+        self.wave.interval_over_time(self.turns(x_m, y_m), self.drift_hz)
+    }
+
+    /// Over a rectangle the phase takes every value between its least and its largest; where stripes pass, every value.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        if self.drift_hz != 0.0 {
+            return self.wave.whole_interval();
+        }
         self.wave.interval(Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.turns(x_m, y_m))))
     }
 

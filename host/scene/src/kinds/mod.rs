@@ -6,6 +6,7 @@ mod bitmap;
 mod button;
 mod click;
 mod constant;
+mod drift;
 mod edge;
 mod grating;
 mod noise;
@@ -178,9 +179,9 @@ fn click_interval(click: Option<Click>) -> Interval<f64> {
     Interval::of([0.0, click.map_or(0.0, |click| f64::from(click.height_n))])
 }
 
-/// Makes the types of all kinds from one list.
+/// Makes the types of all kinds from one list. Behind it stand the kinds of record that have no word of their own.
 macro_rules! kinds {
-    ($( $kind:ident in $module:ident, )*) => {
+    ($( $kind:ident in $module:ident, )* ; $( $record:ident, )*) => {
         /// The fields of a layer's kind, as a person wrote them.
         #[derive(Clone, Debug, PartialEq)]
         pub(crate) enum Kind {
@@ -256,12 +257,18 @@ macro_rules! kinds {
 
         /// The reference of a record's layer.
         pub(crate) fn field(layer: &Record, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
-            match layer { $( Record::$kind(layer) => IntoField::field(layer, region, program), )* }
+            match layer {
+                $( Record::$kind(layer) => IntoField::field(layer, region, program), )*
+                $( Record::$record(layer) => IntoField::field(layer, region, program), )*
+            }
         }
 
         /// The layer of a record without its place: the same for a layer and its copies.
         pub fn without_place(layer: Record) -> Record {
-            match layer { $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )* }
+            match layer {
+                $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )*
+                $( Record::$record(layer) => Record::$record(IntoField::without_place(layer)), )*
+            }
         }
     };
 }
@@ -278,4 +285,7 @@ kinds! {
     Stream in stream,
     Rings in rings,
     Spokes in spokes,
+    ;
+    DriftingGrating,
+    DriftingRings,
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
+use frixel_layers::{DriftingRings, Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, Lowered, Words, drift};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
@@ -29,6 +29,8 @@ pub(crate) struct Rings {
     x_mm: f64,
     y_mm: f64,
     wavelength_mm: f64,
+    /// 0 for rings that do not move.
+    drift_mm_per_s: f64,
     amounts: LowHigh,
 }
 
@@ -40,11 +42,14 @@ impl Words for Rings {
         let x_mm = fields.length_mm(log, &X);
         let y_mm = fields.length_mm(log, &Y);
         let wavelength_mm = fields.number(log, &WAVELENGTH);
+        let drift_mm_per_s = drift::read(fields, log);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
-        Some(Self { wave, x_mm: x_mm?, y_mm: y_mm?, wavelength_mm: wavelength_mm?, amounts: amounts? })
+        let (x_mm, y_mm, wavelength_mm) = (x_mm?, y_mm?, wavelength_mm?);
+        Some(Self { wave, x_mm, y_mm, wavelength_mm, drift_mm_per_s, amounts: amounts? })
     }
 
     fn check(&self, places: &Places, log: &mut Log) {
+        drift::check(self.drift_mm_per_s, self.wavelength_mm, places, log);
         self.amounts.check(places, log);
     }
 
@@ -58,7 +63,7 @@ impl Words for Rings {
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
-        let record = Record {
+        let rings = Record {
             wave: self.wave,
             x_m: (self.x_mm * MM) as f32,
             y_m: (self.y_mm * MM) as f32,
@@ -66,17 +71,19 @@ impl Words for Rings {
             trough_n: lowering.amount(layer, self.amounts.low),
             crest_n: lowering.amount(layer, self.amounts.high),
         };
-        Some(RecordLayer::Rings(record).into())
+        let layer = if self.drift_mm_per_s == 0.0 {
+            RecordLayer::Rings(rings)
+        } else {
+            let drift_hz = drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32;
+            RecordLayer::DriftingRings(DriftingRings { rings, drift_hz })
+        };
+        Some(layer.into())
     }
 }
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(RingsField {
-            middle_m: (f64::from(self.x_m), f64::from(self.y_m)),
-            cycles_per_m: f64::from(self.cycles_per_m),
-            wave: WaveField { wave: self.wave, trough_n: f64::from(self.trough_n), crest_n: f64::from(self.crest_n) },
-        })
+        Arc::new(RingsField::new(self, 0.0))
     }
 
     fn without_place(self) -> Self {
@@ -84,15 +91,37 @@ impl IntoField for Record {
     }
 }
 
+impl IntoField for DriftingRings {
+    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
+        Arc::new(RingsField::new(&self.rings, f64::from(self.drift_hz)))
+    }
+
+    fn without_place(self) -> Self {
+        Self { rings: self.rings.without_place(), ..self }
+    }
+}
+
 #[derive(Debug)]
 struct RingsField {
     middle_m: (f64, f64),
     cycles_per_m: f64,
+    /// Rings that pass a place in a second.
+    drift_hz: f64,
     wave: WaveField,
 }
 
 impl RingsField {
-    /// Phase at a place, in turns.
+    fn new(rings: &Record, drift_hz: f64) -> Self {
+        let Record { wave, trough_n, crest_n, .. } = *rings;
+        Self {
+            middle_m: (f64::from(rings.x_m), f64::from(rings.y_m)),
+            cycles_per_m: f64::from(rings.cycles_per_m),
+            drift_hz,
+            wave: WaveField { wave, trough_n: f64::from(trough_n), crest_n: f64::from(crest_n) },
+        }
+    }
+
+    /// Phase at a place and the time 0, in turns.
     fn turns(&self, x_m: f64, y_m: f64) -> f64 {
         self.cycles_per_m * libm::hypot(x_m - self.middle_m.0, y_m - self.middle_m.1)
     }
@@ -100,12 +129,19 @@ impl RingsField {
 
 impl Field for RingsField {
     fn at(&self, context: &Context) -> f64 {
-        self.wave.at_turns(self.turns(context.x_m, context.y_m))
+        self.wave.at_turns(self.turns(context.x_m, context.y_m) - self.drift_hz * context.t_s)
+    }
+
+    fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
+        self.wave.interval_over_time(self.turns(x_m, y_m), self.drift_hz)
     }
 
     /// The nearest place of a cell is the centre or lies on the cell's border, and the farthest is a corner. The
-    /// distance takes every value between the two.
+    /// distance takes every value between the two; where rings pass, the phase takes every value.
     fn interval_in(&self, cell: Cell) -> Interval<f64> {
+        if self.drift_hz != 0.0 {
+            return self.wave.whole_interval();
+        }
         let nearest =
             (self.middle_m.0.clamp(cell.left_m, cell.right_m), self.middle_m.1.clamp(cell.top_m, cell.bottom_m));
         let places = cell.corners().into_iter().chain([nearest]);

@@ -33,6 +33,8 @@ pub(crate) struct Layer {
     pub(crate) above: Above,
     /// Whether the host changes the layer while it plays.
     pub(crate) live: bool,
+    /// Whether the layer is on when the scene begins to play.
+    pub(crate) starts_on: bool,
     pub(crate) kind: Kind,
     pub(crate) places: Places,
 }
@@ -60,11 +62,15 @@ impl Layer {
         let number = LayerNumber { table: number, copy: None };
         let title = LayerTitle::new(number, name.as_deref(), kind_name.word());
         fields.rename(title.to_string());
-        let Common { region, repeat, blend, gain, live, unit, above } = Common::read(&mut fields, kind_name, log);
+        let Common { region, repeat, blend, gain, live, starts_on, unit, above } =
+            Common::read(&mut fields, kind_name, log);
         let kind = kind_name.read(&mut fields, unit, log);
         let places = fields.close(log);
         if blend == Blend::Add && above == Some(Above::Zero) {
             log.add(places.field("above"), FieldMistake::AddedTotal { layer: title.to_string() });
+        }
+        if !starts_on && !live {
+            log.add(places.field("start"), FieldMistake::OffForGood { layer: title.to_string() });
         }
         let is_total = kind_name.has_totals() && blend == Blend::Replace;
         let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
@@ -72,7 +78,7 @@ impl Layer {
         let kind = kind?;
         kind.check(&places, log);
         let (family, is_copy) = (None, false);
-        let layer = Self { title, name, family, is_copy, region, blend, gain, above, live, kind, places };
+        let layer = Self { title, name, family, is_copy, region, blend, gain, above, live, starts_on, kind, places };
         Some(repeat.of(&layer, kind_name))
     }
 
@@ -94,6 +100,7 @@ struct Common {
     blend: Blend,
     gain: f64,
     live: bool,
+    starts_on: bool,
     unit: Unit,
     above: Option<Above>,
 }
@@ -106,6 +113,7 @@ impl Common {
         let blend = fields.choice(log, &tables::layer::BLEND, blends).unwrap_or(blend);
         let gain = fields.number_or_default(log, &tables::layer::GAIN);
         let live = fields.flag(log, &tables::layer::LIVE);
+        let starts_on = fields.choice(log, &tables::layer::START, &[("on", true), ("off", false)]).unwrap_or(true);
         let unit = if blend == Blend::Multiply { Unit::Factor } else { Unit::Friction };
         // The zero point of a layer that multiplies is zero.
         let above = match unit {
@@ -114,6 +122,6 @@ impl Common {
             }
             Unit::Factor => None,
         };
-        Self { region, repeat, blend, gain, live, unit, above }
+        Self { region, repeat, blend, gain, live, starts_on, unit, above }
     }
 }

@@ -214,6 +214,21 @@ pub enum FieldMistake {
         /// The one after it, mm/s.
         after: f64,
     },
+    /// Stripes or rings move so fast that more of them pass a place than a board accepts.
+    #[error(
+        "at {found_mm_per_s} mm/s and a wavelength of {wavelength_mm} mm, more than {max_hz} waves pass a place in a second: \
+         write at most {max_mm_per_s} mm/s, either way"
+    )]
+    DriftsTooFast {
+        /// Speed of the waves, mm/s.
+        found_mm_per_s: f64,
+        /// From wave to wave, mm.
+        wavelength_mm: f64,
+        /// Most waves a second that pass a place.
+        max_hz: f64,
+        /// Fastest that waves of this length may move, mm/s.
+        max_mm_per_s: f64,
+    },
     /// The region of a button is a polygon.
     #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
     ButtonPolygon,
@@ -224,6 +239,12 @@ pub enum FieldMistake {
         what: &'static str,
         /// The field of their distance.
         step: &'static str,
+    },
+    /// A layer that is off at the start can never be switched on.
+    #[error("{layer} is off at the start, and nothing could switch it on: write `live = true`, or leave `start` out")]
+    OffForGood {
+        /// The layer.
+        layer: String,
     },
     /// The friction of a layer with `blend = "add"` is given in total.
     #[error(

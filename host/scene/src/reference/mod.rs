@@ -37,12 +37,17 @@ pub(crate) struct Piece {
 }
 
 impl Reference {
-    /// Prepares a program for evaluation.
+    /// Prepares a program for evaluation, with all layers on.
     pub fn new(program: &Program) -> Self {
         let pieces = program.records.iter().map(|record| Piece::new(record, program)).collect();
         let natural_friction_n =
             f64::from(program.header.friction_coefficient) * f64::from(program.header.normal_load_n);
         Self { natural_friction_n, pieces }
+    }
+
+    /// The program as it begins to play: layers with `start = "off"` are off.
+    pub fn at_start(program: &Program) -> Self {
+        Self::new(program).with_only(|layer| program.start.get(layer).is_none_or(|setting| setting.on))
     }
 
     /// Friction at no voltage, `mu F_N`, in newtons.
@@ -113,6 +118,16 @@ impl Reference {
         let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
         let visible = self.pieces.iter().enumerate().skip(lowest).rev().filter(move |(_, piece)| covers(piece));
         visible.map(|(number, _)| number)
+    }
+
+    /// The layers that cover a place in metres, by their index from the bottom, from the topmost down, as far as none
+    /// that is not in `off` replaces them.
+    pub(crate) fn covering_at(&self, x_m: f64, y_m: f64, off: &[usize]) -> impl Iterator<Item = usize> {
+        let covers = move |piece: &Piece| piece.shape.covers(x_m, y_m);
+        let pieces = || self.pieces.iter().enumerate();
+        let hides = |(layer, piece): (usize, &Piece)| !off.contains(&layer) && piece.hides_below() && covers(piece);
+        let lowest = pieces().rposition(hides).unwrap_or(0);
+        pieces().skip(lowest).rev().filter(move |(_, piece)| covers(piece)).map(|(layer, _)| layer)
     }
 
     /// Left, top, right and bottom of the smallest rectangle around a layer, in metres, infinite for a layer that covers

@@ -11,7 +11,7 @@ use super::*;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
-use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION, REPEAT};
+use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, REGION, REPEAT, START};
 use crate::{FingerProfile, parse_touch_source};
 
 const DOCS: &str = include_str!("../../../../docs/scene.md");
@@ -53,7 +53,7 @@ fn every_example_compiles() {
 }
 
 /// The fields of every layer.
-const COMMON: [FieldSpec; 8] = [KIND, NAME, REGION, REPEAT, BLEND, GAIN, ABOVE, LIVE];
+const COMMON: [FieldSpec; 9] = [KIND, NAME, REGION, REPEAT, BLEND, GAIN, ABOVE, LIVE, START];
 
 /// All fields that the parser knows in a table, for any values of its other fields, in the order in which it reads
 /// them.

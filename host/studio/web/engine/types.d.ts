@@ -29,6 +29,8 @@ export type Layer = {
   felt: string;
   isLive: boolean;
   whyNotLive: string;
+  /** Whether it is on when the scene begins to play. */
+  startsOn: boolean;
   gain: number;
   gainMin: number;
   gainMax: number;

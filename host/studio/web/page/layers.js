@@ -49,7 +49,7 @@ export class Layers {
     again?.focus();
   }
 
-  /** A play begins: all layers are on, with the gain of the scene. */
+  /** A play begins: layers are on or off, with a gain, as the scene says. */
   reset() {
     this.#live.clear();
     this.onLive([]);
@@ -87,7 +87,7 @@ export class Layers {
       button.onclick = () => this.#editor.insertAfterLine(file, from[0], "live = true");
       return button;
     }
-    const state = this.#live.get(index) ?? { on: true, gain: layer.gain };
+    const state = this.#live.get(index) ?? { on: layer.startsOn, gain: layer.gain };
     const isOn = element("input", { type: "checkbox", checked: state.on, "aria-label": `${label} on` });
     // The slider has the gains of every day, the number all that a board takes.
     const most = Math.min(layer.gainMax, Math.max(2, 2 * layer.gain));
@@ -127,16 +127,16 @@ export class Layers {
    * @param {Live} state
    * @param {HTMLElement} note
    */
-  #note({ gain: written }, { on, gain }, note) {
+  #note({ gain: written, startsOn }, { on, gain }, note) {
     const isGain = gain !== written;
-    note.hidden = on && !isGain;
-    const now = on ? `Gain ${gain} now` : "Off now";
+    note.hidden = on === startsOn && !isGain;
+    const now = on ? (isGain ? `Gain ${gain} now` : "On now") : "Off now";
     const keep = isGain ? `, and write \`gain = ${gain}\` into it to keep it` : "";
     note.textContent = `${now}, until the scene changes. What is said here is for the scene as it is written${keep}.`;
     const changes = [...this.#live].flatMap(([index, state]) => {
       const layer = this.#shown.find((each) => each.index === index);
       if (!layer) return [];
-      if (!state.on) return [`${layer.name} off`];
+      if (state.on !== layer.startsOn) return [`${layer.name} ${state.on ? "on" : "off"}`];
       return state.gain === layer.gain ? [] : [`${layer.name} × ${state.gain}`];
     });
     this.onLive(changes);

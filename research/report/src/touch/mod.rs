@@ -109,6 +109,7 @@ impl Recording {
                 felt_n: place_m.map_or(0.0, texture),
                 natural_n: 0.0,
                 is_driven: true,
+                ..FidelitySample::default()
             }));
             samples.push(FidelitySample::default());
         }

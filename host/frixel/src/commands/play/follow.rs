@@ -120,8 +120,11 @@ impl<L: RecordedLink> Play<'_, L> {
     /// Carries out the lines of `--control`. Returns the longest time until they are looked at again; `None` if they
     /// end the play.
     fn control(&mut self) -> Result<Option<Duration>, CommandError> {
-        let Some(control) = &mut self.control else { return Ok(Some(Duration::MAX)) };
         let t_s = self.player.recorder_mut().t_s();
+        let Some(control) = &mut self.control else {
+            self.outputs.switch(t_s, self.player.playing().map_or(Vec::new(), LiveLayers::off));
+            return Ok(Some(Duration::MAX));
+        };
         let say = &mut |sentence| note(format_args!("frixel: {sentence}"));
         let ended = end_triggers(&mut self.player, say);
         let next = ended.and_then(|()| control.step(&mut self.player, t_s, say));

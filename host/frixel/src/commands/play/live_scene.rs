@@ -148,11 +148,12 @@ fn replace<L: RecordedLink>(
             return Ok(false);
         }
     };
-    let meanwhile = match player.replace(program) {
-        Ok(Replaced::AtOnce) => "",
-        Ok(Replaced::AfterFadeOut) => {
-            "; its pictures and those before it do not fit on the board together: the output faded out meanwhile"
-        }
+    let (meanwhile, dropped_gains) = match player.replace(program) {
+        Ok(Replaced { faded_out: false, dropped_gains }) => ("", dropped_gains),
+        Ok(Replaced { faded_out: true, dropped_gains }) => (
+            "; its pictures and those before it do not fit on the board together: the output faded out meanwhile",
+            dropped_gains,
+        ),
         Err(refused) if refused.is_refusal() => {
             note(format_args!("frixel: {refused}: the previous scene keeps playing"));
             return Ok(false);
@@ -164,6 +165,9 @@ fn replace<L: RecordedLink>(
         print_notes(playing.program());
     }
     note(format_args!("frixel: {} plays{how}{meanwhile}", path.display()));
+    if let Some(clamped) = dropped_gains {
+        note(format_args!("frixel: its gains are those of the file: with those that were set, {clamped}"));
+    }
     Ok(true)
 }
 

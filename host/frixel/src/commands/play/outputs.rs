@@ -153,9 +153,12 @@ impl Outputs {
     /// Notes which layers the finger touches. Returns the topmost one.
     fn touch(&mut self, row: &FeltRow) -> Option<TracedLayer> {
         let (x_mm, y_mm) = row.x_mm.zip(row.y_mm)?;
+        let off = self.off.iter().rfind(|(from_s, _)| *from_s < row.t_s).map(|(_, off)| &off[..]);
+        if let Some(off) = off {
+            self.touched.switch(off);
+        }
         let layer = self.touched.add(1e-3 * x_mm, 1e-3 * y_mm)?;
-        let last = self.off.iter().rfind(|(from_s, _)| *from_s < row.t_s);
-        let is_off = last.is_some_and(|(_, off)| off.contains(&layer));
+        let is_off = off.is_some_and(|off| off.contains(&layer));
         Some(self.trace.layer(self.touched.title(layer)?, is_off))
     }
 
@@ -166,7 +169,7 @@ impl Outputs {
         }
     }
 
-    /// Continues with another program from a time on, whose layers nobody has touched yet, and all of which are on.
+    /// Continues with another program from a time on, whose layers nobody has touched yet.
     pub(super) fn replace(&mut self, t_s: f64, program: &Program) {
         self.touched = TouchedLayers::new(program);
         self.replaced_at_s = Some(t_s);

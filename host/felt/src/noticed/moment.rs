@@ -1,0 +1,69 @@
+//! A play, moment by moment, while the board drives the scene.
+
+use frixel_scene::Program;
+use frixel_scene::reference::{Context, Reference};
+
+use crate::fidelity::{self, FidelitySample, settled};
+use crate::perception::{SAMPLE_HZ, visible_layers};
+
+/// Moments a second: as many as a program is judged with before it is played.
+pub(super) const MOMENT_HZ: f64 = SAMPLE_HZ;
+/// Samples of a moment.
+const SAMPLES: usize = (fidelity::SAMPLE_HZ / MOMENT_HZ) as usize;
+
+/// A moment of a play: means over half a millisecond. Frictions are electric parts, N.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    pub(super) context: Context,
+    /// The layers that have an effect at this place, a bit each.
+    pub(super) visible: u64,
+    /// Friction of the scene, under its finger.
+    pub(super) scene_n: f64,
+    /// What a display without fault would have given.
+    pub(super) wanted_n: f64,
+    pub(super) felt_n: f64,
+    /// Natural friction of the finger.
+    pub(super) natural_n: f64,
+}
+
+impl Moment {
+    /// `samples` are those of the moment; `None` without any, or with the finger off the screen.
+    fn of(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Option<Self> {
+        let last = samples.last()?;
+        let mean =
+            |value: &dyn Fn(&FidelitySample) -> f64| samples.iter().map(value).sum::<f64>() / samples.len() as f64;
+        let FidelitySample { t_s, x_m, y_m, .. } = *last;
+        let context = Context { x_m, y_m, t_s, speed_m_per_s: last.speed_m_per_s?, ..Context::default() };
+        Some(Self {
+            context,
+            visible: visible_layers(scene, x_m, y_m),
+            scene_n: electric_n(scene, program, &context),
+            wanted_n: mean(&FidelitySample::reference_electric_n),
+            felt_n: mean(&FidelitySample::felt_electric_n),
+            natural_n: mean(&|sample| sample.natural_n),
+        })
+    }
+
+    /// Whether the finger is on a layer.
+    pub(super) fn is_on(&self, layer: usize) -> bool {
+        self.visible >> layer & 1 == 1
+    }
+
+    /// Electric friction here and now, within reach, N.
+    pub(super) fn electric_n(&self, reference: &Reference, program: &Program) -> f64 {
+        electric_n(reference, program, &self.context)
+    }
+}
+
+/// Electric friction in a context, within reach, N.
+pub(super) fn electric_n(reference: &Reference, program: &Program, context: &Context) -> f64 {
+    reference.electric_friction_at_n(context).clamp(0.0, program.reach.electric_friction_max_n)
+}
+
+/// The stretches of a play in which the board drives the scene.
+pub(super) fn runs(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Vec<Vec<Moment>> {
+    let moments = |run: &[FidelitySample]| {
+        run.chunks_exact(SAMPLES).filter_map(|samples| Moment::of(samples, scene, program)).collect()
+    };
+    settled(samples).map(moments).collect()
+}

@@ -1,0 +1,30 @@
+//! Textures that a finger felt.
+
+use super::moment::{MOMENT_HZ, Moment};
+use crate::perception::{Texture, component_power, texture_component};
+use crate::spectrum::Spectrum;
+
+/// Moments of which a spectrum is taken: 256 ms, in which the speed of a hand changes little.
+const MOMENTS: usize = 512;
+/// A shorter touch has no texture, in moments: 64 ms.
+const MOMENTS_MIN: usize = 128;
+
+/// The most noticeable texture in each quarter of a second of a touch of a layer. `own_n` is the friction of the scene
+/// without the layers above it.
+pub(super) fn of_touch(touch: &[Moment], own_n: &[f64]) -> impl Iterator<Item = Texture> {
+    let parts = touch.chunks(MOMENTS).zip(own_n.chunks(MOMENTS));
+    parts.filter(|(moments, _)| moments.len() >= MOMENTS_MIN).filter_map(|(moments, own_n)| of_part(moments, own_n))
+}
+
+/// The texture of the scene, as far as its power is felt. Power that the display adds is no texture of the layer.
+fn of_part(moments: &[Moment], own_n: &[f64]) -> Option<Texture> {
+    let speed = moments.iter().map(|moment| moment.context.speed_m_per_s).sum::<f64>() / moments.len() as f64;
+    let (frequency_hz, amplitude_n) = texture_component(own_n, 1e3 * speed)?;
+    let power = |value: fn(&Moment) -> f64| {
+        let signal: Vec<f64> = moments.iter().map(value).collect();
+        component_power(&Spectrum::of(&signal, MOMENT_HZ), frequency_hz)
+    };
+    let felt = power(|moment| moment.felt_n).min(power(|moment| moment.wanted_n));
+    let part = (felt / power(|moment| moment.scene_n)).sqrt();
+    Texture::new(1e3 * speed, frequency_hz, part * amplitude_n)
+}

@@ -1,0 +1,40 @@
+//! The field of gratings and rings that move.
+
+use frixel_layers::range::DRIFT_HZ;
+
+use crate::fields::Fields;
+use crate::grammar::Absence::Number;
+use crate::grammar::{FieldSpec, Range};
+use crate::log::Log;
+use crate::mistake::FieldMistake;
+use crate::source::Places;
+use crate::tables::number;
+
+const DRIFT: FieldSpec = number(
+    "drift_mm_per_s",
+    Range::new(-1000.0, 1000.0, " mm/s"),
+    Number(0.0),
+    "how fast they move: across the stripes, in the direction of `angle_deg`; rings outwards. Negative: the other way. A \
+     finger feels it while it slides",
+);
+
+/// How fast stripes or rings move, mm/s; 0 if they do not.
+pub(super) fn read(fields: &mut Fields, log: &mut Log) -> f64 {
+    fields.number_or_default(log, &DRIFT)
+}
+
+/// Waves that pass a place in a second, Hz.
+pub(super) fn drift_hz(drift_mm_per_s: f64, wavelength_mm: f64) -> f64 {
+    drift_mm_per_s / wavelength_mm
+}
+
+/// Finds a drift at which more waves pass than a board accepts.
+pub(super) fn check(drift_mm_per_s: f64, wavelength_mm: f64, places: &Places, log: &mut Log) {
+    let max_hz = DRIFT_HZ.max;
+    if drift_hz(drift_mm_per_s, wavelength_mm).abs() > max_hz {
+        let max_mm_per_s = max_hz * wavelength_mm;
+        let mistake =
+            FieldMistake::DriftsTooFast { found_mm_per_s: drift_mm_per_s, wavelength_mm, max_hz, max_mm_per_s };
+        log.add(places.field(DRIFT.name), mistake);
+    }
+}
