@@ -1,5 +1,6 @@
 //! The tests of the crate as a whole, one program for all of them.
 
+mod agreement;
 mod brick;
 #[path = "designer/main.rs"]
 mod designer;

@@ -29,7 +29,10 @@ fn mean(program: &Program, key: &str) -> f64 {
             Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None }
         })
         .collect();
-    let score = Score::of(program, &trials, |trial| samples(program, &RigConfig::default(), trial)).unwrap();
+    let score = Score::of(program, &RigConfig::default().world.touch, &trials, |trial| {
+        samples(program, &RigConfig::default(), trial)
+    })
+    .unwrap();
     score.metrics.iter().find(|metric| metric.key == key).unwrap().mean
 }
 
@@ -52,7 +55,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
     let trial = Trial { stroke_name: "human 1".to_owned(), stroke, seed: 1, finger: None };
     let rig = RigConfig { world: rig.world.realistic(), ..rig };
-    let score = Score::of(&program, &[trial], |trial| samples(&program, &rig, trial)).unwrap();
+    let score = Score::of(&program, &rig.world.touch, &[trial], |trial| samples(&program, &rig, trial)).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
     assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }
@@ -88,6 +91,7 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
     assert!(
         layers.starts_with("layer,simulated_fingers,felt,") && layers.contains("\n\"layer 1 \"\"stripes\"\"\",1,1,")
     );
+    assert_eq!(json["touch_source"]["latency_ms"].as_f64(), Some(10.0));
     let said = "a verdict on 1 simulated finger in 4 plays";
     assert!(svg.contains(said) && json["simulated"].as_str().unwrap().starts_with(said), "{json}");
     assert_eq!(json["verdict"], "the simulated finger notices every layer");
@@ -168,4 +172,34 @@ fn people_differ_and_come_again() {
     let contrast = |play: usize| json["plays"][play]["fidelity"]["contrast_weber_steps"].as_f64().unwrap();
     assert!((contrast(0) - contrast(2)).abs() > 0.05 && (contrast(2) - contrast(4)).abs() > 0.05, "{json}");
     assert_eq!(json, plays());
+}
+
+/// The command under the tables of `docs/touch.md` prints the cell that it is said to print.
+#[test]
+fn the_command_of_the_touch_tables_prints_their_cell() {
+    let docs = crate::processes::repository().join("docs");
+    let page = std::fs::read_to_string(docs.join("touch.md")).unwrap();
+    let command = page.lines().find(|line| line.starts_with("frixel score touch/")).unwrap();
+    let row = page.lines().find(|line| line.starts_with("| 100 Hz | 10 mm |")).unwrap();
+    let cell = row.split('|').nth(4).unwrap().replace("mN", "").replace(',', " / ");
+    let cell: Vec<f64> = cell.split('/').map(|number| number.trim().parse().unwrap()).collect();
+    let out = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
+        .current_dir(&docs)
+        .args(command.split(' ').skip(1))
+        .args(["--json", "--out"])
+        .arg(out.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let score: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mean = |key: &str| {
+        let metrics = score["metrics"].as_array().unwrap().iter();
+        metrics.filter(|metric| metric["key"] == key).find_map(|metric| metric["mean"].as_f64()).unwrap()
+    };
+    for (key, cell, rounding) in
+        [("error", cell[0], 0.02), ("correlation", cell[1], 0.01), ("spurious_40_to_400_hz_mn", cell[2], 1.0)]
+    {
+        assert!((mean(key) - cell).abs() <= rounding, "{key}: {}, and {cell} in the page", mean(key));
+    }
 }

@@ -105,6 +105,6 @@ pub use screen::{Screen, Slab};
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
 pub use titles::{LayerNumber, LayerTitle, fold_copies};
-pub use touch_source::parse_touch_source;
+pub use touch_source::{TouchSource, parse_touch_source};
 pub use touched_layers::{LayerMiddle, TouchedLayers};
 pub use warning::Warning;

@@ -1,11 +1,73 @@
 //! Reads the file of a touch source: how often, how late and how reliably a touchscreen reports the finger.
 
+use std::fmt::{self, Display};
+
 use frixel_hil_sim::TouchConfig;
+use serde::Serialize;
 
 use super::compile_error::CompileError;
 use super::fields::{Fields, read_text};
 use super::log::Log;
 use super::tables::touch_source as fields_of;
+
+/// A touch source in the units and by the keys of its file.
+///
+/// ```
+/// use frixel_scene::TouchSource;
+/// let source = frixel_hil_sim::TouchConfig::bundled("200").map(|source| TouchSource::from(&source).to_string());
+/// assert_eq!(source.as_deref(), Some("200 reports a second, 5 ms late, 12 % lost, places in steps of 0.18 mm"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TouchSource {
+    /// Reports a second.
+    pub reports_per_s: f64,
+    /// Time from the sample to its arrival, ms.
+    pub latency_ms: f64,
+    /// Standard deviation of that time, ms.
+    pub jitter_ms: f64,
+    /// Noise of the place, rms, mm.
+    pub noise_mm: f64,
+    /// Steps of the place, mm; 0 for none.
+    pub step_mm: f64,
+    /// Part of the reports that never arrive.
+    pub lost_share: f64,
+    /// Part of the reports that arrive with the next one.
+    pub bunched_share: f64,
+    /// Pauses a second.
+    pub pauses_per_s: f64,
+    /// Longest pause, ms.
+    pub pause_max_ms: f64,
+}
+
+impl From<&TouchConfig> for TouchSource {
+    fn from(source: &TouchConfig) -> Self {
+        // Digits that only the change of units makes.
+        let rounded = |value: f64| (1e9 * value).round() / 1e9;
+        Self {
+            reports_per_s: rounded(source.rate_hz),
+            latency_ms: rounded(1e3 * source.latency_s),
+            jitter_ms: rounded(1e3 * source.jitter_rms_s),
+            noise_mm: rounded(1e3 * source.noise_rms_m),
+            step_mm: rounded(1e3 * source.step_m),
+            lost_share: source.lost_share,
+            bunched_share: source.bunched_share,
+            pauses_per_s: source.pause_rate_hz,
+            pause_max_ms: rounded(1e3 * source.pause_max_s),
+        }
+    }
+}
+
+impl Display for TouchSource {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { reports_per_s, latency_ms, lost_share, step_mm, .. } = self;
+        write!(formatter, "{reports_per_s} reports a second, {latency_ms} ms late")?;
+        match (1e4 * lost_share).round() / 1e2 {
+            percent if percent > 0.0 => write!(formatter, ", {percent} % lost")?,
+            _ => formatter.write_str(", none lost")?,
+        }
+        if *step_mm > 0.0 { write!(formatter, ", places in steps of {step_mm} mm") } else { Ok(()) }
+    }
+}
 
 /// Reads the text of a touch source's file. Messages call the file `name`.
 ///

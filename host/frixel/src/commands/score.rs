@@ -73,10 +73,13 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
         }
     };
     let _folder = OutputFolder::open(&args.out)?;
-    let score = Score::of(&program, &trials, |trial| samples(&program, &rig, trial)).map_err(|error| match error {
-        SimulationError::Play(error) => CommandError::of_play("sim", error),
-        SimulationError::World(error) => error.into(),
-    })?;
+    let score =
+        Score::of(&program, &rig.world.touch, &trials, |trial| samples(&program, &rig, trial)).map_err(|error| {
+            match error {
+                SimulationError::Play(error) => CommandError::of_play("sim", error),
+                SimulationError::World(error) => error.into(),
+            }
+        })?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
     let filled = [(&csv, score.to_csv()), (&layers, score.layers_csv()), (&svg, drawn)]

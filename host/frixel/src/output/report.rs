@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use frixel_driver::{Counters, StreamStatus};
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
-use frixel_scene::{LayerTitle, Origin, Reach, fold_copies};
+use frixel_scene::{LayerTitle, Origin, Reach, TouchSource, fold_copies};
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,6 +21,8 @@ pub(crate) struct Report {
     pub simulated: bool,
     /// The simulated world, `realistic`, `without-leakage` or `ideal`.
     pub world: Option<Effects>,
+    /// The simulated touch source.
+    pub touch_source: Option<TouchSource>,
     /// Seed of the simulated person whose finger the board does not know.
     pub finger_seed: Option<u64>,
     /// Number of ticks played.
@@ -79,10 +81,12 @@ pub(crate) struct Report {
 }
 
 /// The world that was simulated beside a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WorldReport {
     /// Which effects it had beside the contact model.
     pub effects: Effects,
+    /// The touch source.
+    pub touch_source: TouchSource,
     /// Seed of the random person; `None` if the finger was the scene's.
     pub finger_seed: Option<u64>,
 }
@@ -134,6 +138,7 @@ impl Report {
             board_refuses: Vec::new(),
             simulated: true,
             world: None,
+            touch_source: None,
             finger_seed: None,
             ticks: metrics.ticks,
             unreported_ticks: metrics.unreported_ticks,
@@ -182,7 +187,8 @@ impl Report {
     pub(crate) fn with_world(self, world: Option<WorldReport>) -> Self {
         let finger_seed = world.and_then(|world| world.finger_seed);
         let finger_origin = if finger_seed.is_some() { Origin::Assumed.word() } else { self.finger_origin };
-        Self { world: world.map(|world| world.effects), finger_seed, finger_origin, ..self }
+        let touch_source = world.map(|world| world.touch_source);
+        Self { world: world.map(|world| world.effects), touch_source, finger_seed, finger_origin, ..self }
     }
 
     /// Says why a board refuses the scene. If there is a reason, it is a draft.
@@ -227,6 +233,9 @@ impl Report {
         if let Some(world) = self.world {
             let (name, what) = world.words();
             line("world", format!("{name}: {what}"));
+        }
+        if let Some(source) = self.touch_source {
+            line("touch source", source.to_string());
         }
         if let Some(seed) = self.finger_seed {
             line("finger", format!("random person {seed}, assumed; the board computes for the scene's finger"));

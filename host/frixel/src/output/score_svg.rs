@@ -36,7 +36,11 @@ pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, Drawi
     panel.add("mean over the plays, simulated", mean, means);
     let mut chart = Chart::new(vec![panel, layers(score)], 1);
     title.clone_into(&mut chart.title);
-    chart.caption = vec![format!("This is {}.", score.simulated), format!("Verdict: {}.", score.verdict)];
+    let source = score.touch_source;
+    chart.caption = vec![
+        format!("This is {}. The touch source has {source}.", score.simulated),
+        format!("Verdict: {}.", score.verdict),
+    ];
     svg(&chart)
 }
 

@@ -421,7 +421,7 @@ fn report_as_json() {
     };
     assert_eq!(
         report(&known).to_json(),
-        "{\"rig\":\"simulator\",\"draft\":false,\"board_refuses\":[],\"simulated\":true,\"world\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
+        "{\"rig\":\"simulator\",\"draft\":false,\"board_refuses\":[],\"simulated\":true,\"world\":null,\"touch_source\":null,\"finger_seed\":null,\"ticks\":120000,\"unreported_ticks\":480,\
          \"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"slewing_ticks\":9,\
          \"load_mismatch_rms_n\":0.012,\"load_mismatch_max_n\":0.05,\"carrier_ripple_rms_n\":0.0005,\

@@ -11,9 +11,9 @@ mod text;
 
 use frixel_felt::fidelity::{Fidelity, FidelitySample};
 use frixel_felt::noticed::Noticing;
-use frixel_hil_sim::{FingertipConfig, Stroke, WorldConfig};
+use frixel_hil_sim::{FingertipConfig, Stroke, TouchConfig, WorldConfig};
 use frixel_model::LoadedContact;
-use frixel_scene::{LayerTitle, Program};
+use frixel_scene::{LayerTitle, Program, TouchSource};
 use serde::Serialize;
 
 use layers::Finger;
@@ -75,6 +75,8 @@ pub struct Score {
     /// Which layers the simulated fingers notice, and which levels of friction they tell apart: a sentence that names
     /// those that some fingers do not surely notice, and those of which the strokes say nothing.
     pub verdict: String,
+    /// The touch source that was simulated.
+    pub touch_source: TouchSource,
     /// Number of simulated fingers.
     pub simulated_fingers: usize,
     /// Each number of [`Fidelity`] over all plays.
@@ -92,10 +94,11 @@ pub struct Score {
 }
 
 impl Score {
-    /// Scores trials of a program. `play` plays one, and returns what was felt and the reference for every quarter of a
+    /// Scores trials of a program with a touch source. `play` plays one, and returns what was felt and the reference for every quarter of a
     /// millisecond.
     pub fn of<E>(
         program: &Program,
+        touch_source: &TouchConfig,
         trials: &[Trial],
         mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>,
     ) -> Result<Self, E> {
@@ -125,6 +128,7 @@ impl Score {
         let score = Self {
             simulated: String::new(),
             verdict: String::new(),
+            touch_source: touch_source.into(),
             simulated_fingers: fingers.len(),
             metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
             borders: layers::borders(program, &fingers),

@@ -103,6 +103,7 @@ fn shortened(mut parts: Vec<String>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use frixel_hil_sim::TouchConfig;
     use frixel_scene::LayerNumber;
 
     use super::*;
@@ -123,6 +124,7 @@ mod tests {
         Score {
             simulated: String::new(),
             verdict: String::new(),
+            touch_source: (&TouchConfig::IDEAL).into(),
             simulated_fingers,
             metrics: Vec::new(),
             layers,

@@ -21,6 +21,7 @@ impl Score {
             let _ = writeln!(text, "  {name:<NAME_WIDTH$} {value}");
         };
         line("simulated", &self.simulated);
+        line("touch source", &self.touch_source.to_string());
         for metric in &self.metrics {
             line(metric.title, &value_text(metric));
         }

@@ -65,6 +65,7 @@ impl SimulatedWorld {
 
     /// What the report says about this world.
     pub(super) fn report(&self) -> WorldReport {
-        WorldReport { effects: self.effects, finger_seed: self.person.as_ref().map(|drawn| drawn.seed) }
+        let touch_source = (&self.config(WorldConfig::IDEAL).touch).into();
+        WorldReport { effects: self.effects, touch_source, finger_seed: self.person.as_ref().map(|drawn| drawn.seed) }
     }
 }
