@@ -107,15 +107,16 @@ impl Stroke {
         Ok(Self::once(duration_s, Path::Sweep(sweep)))
     }
 
-    /// Touches with the statistics of people recorded on a surface-haptic tablet, for `duration_s` seconds, 0.001 to 600:
-    /// the finger lands, crosses a part of the screen with a speed and a heading that wander, lifts, and lands again;
-    /// few touches turn on the way. Without a median speed, above 0 and at most 10 m/s, the stroke has that of the seed's
-    /// person, 48 to 436 mm/s.
+    /// Touches with the statistics of people recorded on a surface-haptic tablet, for `duration_s` seconds, 0.001 to
+    /// 600: the finger lands, crosses a part of the screen with a speed and a heading that wander, lifts, and lands
+    /// again; few touches turn on the way. Without a median speed, above 0 and at most 10 m/s, the stroke has that of the
+    /// seed's person, 48 to 436 mm/s.
     ///
     /// Acceleration below 8 Hz, 95th percentile of speed and duration of the touches at each median speed are those of
     /// about 1,300 strokes, whose recordings cannot be shipped, as they come out of a reconstruction that smooths
-    /// ([`Self::human_rough`] has another). A touch ends at the margin of the screen, so on a small screen fast touches are shorter than the
-    /// recorded ones. Between milliseconds the finger goes straight. There is tremor at 8 to 12 Hz, whose size is assumed.
+    /// ([`Self::human_rough`] has another). A touch ends at the margin of the screen, so on a small screen fast touches
+    /// are shorter than the recorded ones. Between milliseconds the finger goes straight. There is tremor at 8 to 12 Hz,
+    /// whose size is assumed.
     ///
     /// Tests judge on [`HUMAN_TEST_SEEDS`], and constants are tuned on [`HUMAN_TUNING_SEEDS`].
     /// [`Self::sweep`] is an even stroke: it has no random part, and goes on for any time.
@@ -139,8 +140,8 @@ impl Stroke {
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
-    /// As [`Self::human`], with the acceleration that the recorded strokes have in a reconstruction that does not smooth,
-    /// whose noise of pixels and times is in it: 1.5 to 6 times as much. What fingers did lies between the two.
+    /// As [`Self::human`], with the acceleration that the recorded strokes have in a reconstruction that does not
+    /// smooth, whose noise of pixels and times is in it: 2 to 5 times as much. What fingers did lies between the two.
     pub fn human_rough(
         screen_width_m: f64,
         screen_height_m: f64,

@@ -59,8 +59,8 @@ const SINES: usize = 6;
 /// Steps of the bisection for a touch's median speed.
 const BISECTIONS: u32 = 20;
 
-/// How a person's touches differ with their median speed. The numbers were chosen so that duration, acceleration below 8
-/// Hz and the 95th percentile of speed are those of recorded strokes, which `tests.rs` states.
+/// How a person's touches differ with their median speed. The numbers were chosen so that duration, acceleration below
+/// 8 Hz and the 95th percentile of speed are those of recorded strokes, which `tests.rs` states.
 #[derive(Clone, Copy, Debug)]
 struct Habits {
     median_m_per_s: f64,

@@ -16,9 +16,10 @@ use frixel_lab::score::Trial;
 use frixel_scene::{Program, Scene, compile};
 
 /// Error from 0 to 400 Hz over the rms of the reference's changes, landing and end of a touch included, at 50 and 100
-/// mm/s; correlation; and the third octave between 40 and 400 Hz that grew most, over the finger's own noise in it. At 200
-/// mm/s the goal of the error is 0.35.
+/// mm/s; correlation; and the third octave between 40 and 400 Hz that grew most, over the finger's own noise in it.
 const GOAL: Held = Held { ratio_max: 0.25, correlation_min: 0.9, spurious_max_db: 6.0 };
+/// The goal at 200 mm/s.
+const FAST_GOAL: Held = Held { ratio_max: 0.35, ..GOAL };
 const SECONDS: f64 = 8.5;
 /// Swing of the texture: nearly all that the finger below has at 150 V.
 const SWING_N: f64 = 0.11;
@@ -78,17 +79,19 @@ const SLOW: Class = Class { source: "100", wavelength_mm: 10.0 };
 const MEDIUM: Class = Class { source: "200", wavelength_mm: 5.0 };
 const FAST: Class = Class { source: "500", wavelength_mm: 2.0 };
 
-/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed.
+/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed. `docs/touch.md` says
+/// why.
 const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 50.0, GOAL),
-    (SLOW, 100.0, Held { ratio_max: 0.33, spurious_max_db: 9.5, ..GOAL }),
-    (SLOW, 200.0, Held { ratio_max: 0.45, spurious_max_db: 13.5, ..GOAL }),
-    (MEDIUM, 50.0, Held { spurious_max_db: 6.5, ..GOAL }),
-    (MEDIUM, 100.0, Held { ratio_max: 0.30, spurious_max_db: 10.5, ..GOAL }),
-    (MEDIUM, 200.0, Held { ratio_max: 0.40, spurious_max_db: 13.0, ..GOAL }),
-    (FAST, 50.0, Held { spurious_max_db: 7.0, ..GOAL }),
-    (FAST, 100.0, Held { ratio_max: 0.30, spurious_max_db: 8.0, ..GOAL }),
-    (FAST, 200.0, Held { ratio_max: 0.36, spurious_max_db: 9.5, ..GOAL }),
+    (SLOW, 100.0, Held { ratio_max: 0.28, spurious_max_db: 7.5, ..GOAL }),
+    (SLOW, 200.0, Held { spurious_max_db: 12.0, ..FAST_GOAL }),
+    (MEDIUM, 50.0, GOAL),
+    // 0.22 on many strokes.
+    (MEDIUM, 100.0, Held { ratio_max: 0.26, spurious_max_db: 8.5, ..GOAL }),
+    (MEDIUM, 200.0, Held { spurious_max_db: 10.0, ..FAST_GOAL }),
+    (FAST, 50.0, Held { spurious_max_db: 7.2, ..GOAL }),
+    (FAST, 100.0, Held { ratio_max: 0.28, spurious_max_db: 7.0, ..GOAL }),
+    (FAST, 200.0, Held { spurious_max_db: 6.5, ..FAST_GOAL }),
 ];
 
 /// Every effect of the plant, with the touch source of a class.

@@ -5,13 +5,14 @@
 //! the covariance. It grows with the time between samples, so after a lost sample the filter trusts the next one more;
 //! a filter with constant gains does not (`docs/touch.md` compares both).
 
-/// Time constant of the finger's acceleration, in s. From 0.03 to 0.1 the error on human strokes changes by a tenth.
+/// Time constant of the finger's acceleration, in s. From 0.03 to 0.1 the error on human strokes changes by a twentieth.
 const ACCELERATION_S: f32 = 0.04;
 /// Standard deviation of the acceleration of a finger at rest, in m/s^2.
 const ACCELERATION_M_PER_S2: f32 = 0.3;
 /// Standard deviation of the acceleration per m/s of recent speed, added to that of a finger at rest, in 1/s: a finger
-/// that moves fast also turns fast.
-const ACCELERATION_PER_SPEED_PER_S: f32 = 6.0;
+/// that moves fast also turns fast. On strokes with the accelerations of recorded ones after smoothing, the error is least
+/// at 4 to 8, on those before smoothing at 12 to 20 (`docs/touch.md`).
+const ACCELERATION_PER_SPEED_PER_S: f32 = 8.0;
 /// Time constant with which the recent speed decays, in s.
 const RECENT_S: f32 = 0.5;
 /// Standard deviation of a measured place, in m: between the 0.02 mm of an infrared frame and the steps of 0.18 mm of a
@@ -161,6 +162,11 @@ impl Estimator {
         sampled_at_tick: 0,
     };
 
+    /// Forgets the finger: the next position is the first of another.
+    pub(crate) fn forget(&mut self) {
+        self.samples = 0;
+    }
+
     /// Takes a position in m that was measured at a tick. Returns whether it did: a sample that is not newer than the
     /// last one is ignored.
     pub(crate) fn take(&mut self, place_m: [f32; 2], at_tick: u32, tick_period_s: f32, interval_s: f32) -> bool {
@@ -175,6 +181,11 @@ impl Estimator {
             self.begin(place_m);
         }
         true
+    }
+
+    /// Time from the last sample to one that was measured at a tick, in s.
+    pub(crate) fn time_to_s(&self, at_tick: u32, tick_period_s: f32) -> f32 {
+        at_tick.wrapping_sub(self.sampled_at_tick) as i32 as f32 * tick_period_s
     }
 
     /// Takes the first position.

@@ -17,6 +17,8 @@ const SAMPLE_AGE_MAX_S: f32 = 0.1;
 /// moves away from the estimate again once it has reached it. So that time is longer than one interval: the next track
 /// then starts before this one turns, even when its report is late.
 const BLEND_INTERVALS: f32 = 1.5;
+/// Two samples closer than this, in intervals between reports, were bunched.
+const BUNCHED_INTERVALS: f32 = 0.25;
 /// Part of an interval between two reports that goes into their mean.
 const INTERVAL_SHARE: f32 = 0.125;
 
@@ -54,6 +56,8 @@ pub(crate) struct Tracker {
     /// position does not bring the finger back.
     newest_at_tick: Option<u32>,
     estimator: Estimator,
+    /// The estimator before the last sample.
+    estimator_before: Estimator,
     standstill: Standstill,
     /// Number of the contact that the last track belongs to.
     contact: u32,
@@ -61,7 +65,8 @@ pub(crate) struct Tracker {
     track: Option<Track>,
     /// When the last report was taken.
     reported_at_tick: u32,
-    /// Mean time between reports, at most the board's report period, in s.
+    /// Mean time between reports, at most the board's report period, in s. It is kept from touch to touch, because the
+    /// source stays the same.
     interval_s: f32,
 }
 
@@ -80,6 +85,7 @@ impl Tracker {
             sample: None,
             newest_at_tick: None,
             estimator: Estimator::NEW,
+            estimator_before: Estimator::NEW,
             standstill: Standstill::MOVING,
             contact: 0,
             track: None,
@@ -136,12 +142,16 @@ impl Tracker {
         self.expire(reported_at_tick);
         if self.track.is_none() {
             self.contact = self.contact.wrapping_add(1);
-            self.estimator = Estimator::NEW;
+            self.estimator.forget();
             self.standstill = Standstill::MOVING;
-            self.interval_s = timing.report_period_s;
         } else {
             self.measure_interval(reported_at_tick);
+            // The last report had waited for this one, so its place is older than it said: take it back.
+            if self.estimator.time_to_s(at_tick, timing.tick_period_s) < BUNCHED_INTERVALS * self.interval_s {
+                self.estimator = self.estimator_before;
+            }
         }
+        self.estimator_before = self.estimator;
         self.reported_at_tick = reported_at_tick;
         if !self.estimator.take(place_m, at_tick, timing.tick_period_s, self.interval_s) {
             return None;
@@ -287,6 +297,60 @@ mod tests {
             before = Some(track);
         }
         assert!(jumps_m > 5e-5, "there was something to lead on from: {jumps_m}");
+    }
+
+    /// A report of a steady finger is held back for a period, and arrives with the next, said to be as young as that.
+    #[test]
+    fn a_bunched_report_counts_as_lost() {
+        let steady_m = |tick: u32| 0.01 + 0.1 * 25e-6 * tick as f32;
+        let run = |bunched: bool| {
+            let mut tracker = Tracker::new(&Board::SIMULATOR);
+            let mut worst_m = 0.0_f32;
+            for report in 0..40_u32 {
+                let tick = report * REPORT_TICKS;
+                match report {
+                    20 => continue,
+                    21 if bunched => {
+                        // One tick before the next report, and said to be of that time.
+                        track(&mut tracker, steady_m(tick - REPORT_TICKS), tick - 1, 0, true);
+                    }
+                    _ => {}
+                }
+                let track = track(&mut tracker, steady_m(tick), tick, 0, true);
+                if report > 4 {
+                    let now = tick + REPORT_TICKS;
+                    worst_m = worst_m.max((place_m(&track, now) - steady_m(now)).abs());
+                }
+            }
+            worst_m
+        };
+        let (lost_m, bunched_m) = (run(false), run(true));
+        assert!(lost_m < 1e-5, "{lost_m}");
+        assert!(bunched_m < 1e-4, "{bunched_m}");
+    }
+
+    /// A touch begins with two reports at once: the second is its first place.
+    #[test]
+    fn a_touch_may_begin_with_a_bunched_report() {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        track(&mut tracker, 0.05, 1000, 0, true);
+        tracker.report(Touch::Up, 2000);
+        assert!(matches!(tracker.next_order(true), Some(Order::Lift)));
+        track(&mut tracker, 0.02, 3000, 0, true);
+        let second = track(&mut tracker, 0.021, 3001, 0, true);
+        assert_eq!((second.place_m[0], second.velocity_m_per_s), (0.021, [0.0; 2]));
+    }
+
+    /// Reports at four times the rate of the board's period are no bunches, from the first on.
+    #[test]
+    fn a_fast_source_is_followed_from_its_third_report_on() {
+        let mut tracker = Tracker::new(&Board::SIMULATOR);
+        for report in 0..6_u32 {
+            let tick = report * REPORT_TICKS / 4;
+            let track = track(&mut tracker, 0.01 + 0.1 * 25e-6 * tick as f32, tick, 0, true);
+            let [velocity, _] = track.velocity_m_per_s;
+            assert!(report < 2 || (velocity - 0.1).abs() < 2e-3, "report {report}: {velocity}");
+        }
     }
 
     #[test]

@@ -221,58 +221,63 @@ struct Kalman {
     deviation: f64,
     /// What a unit of recent speed adds to the deviation, in 1/s, and to that of the place, in s.
     by_speed: [f64; 2],
-    recent_m_per_s: f64,
-    /// Time between reports if paths lead on from each other.
+    /// Time between reports if paths lead on from each other, and bunched reports count as lost.
     leads_on_s: Option<f64>,
+    state: KalmanState,
+    /// The state before the last report.
+    before: KalmanState,
+    last: Option<Path>,
+}
+
+#[derive(Clone, Copy)]
+struct KalmanState {
     belief: Option<Belief>,
+    recent_m_per_s: f64,
     sampled_s: f64,
     samples: u32,
-    last: Option<Path>,
 }
 
 impl Kalman {
     fn fixed(time_s: f64, deviation: f64) -> Self {
-        Self {
-            time_s,
-            deviation,
-            by_speed: [0.0; 2],
-            recent_m_per_s: 0.0,
-            leads_on_s: None,
-            belief: None,
-            sampled_s: 0.0,
-            samples: 0,
-            last: None,
-        }
+        let state = KalmanState { belief: None, recent_m_per_s: 0.0, sampled_s: 0.0, samples: 0 };
+        Self { time_s, deviation, by_speed: [0.0; 2], leads_on_s: None, state, before: state, last: None }
     }
 
-    /// The constants of `firmware/session/src/motion/estimator.rs`.
+    /// The constants of `firmware/session/src/motion/estimator.rs` and `tracker.rs`.
     fn of_board(rate_hz: f64) -> Self {
-        Self { by_speed: [6.0, 0.04 / rate_hz], leads_on_s: Some(1.0 / rate_hz), ..Self::fixed(0.04, 0.3) }
+        Self { by_speed: [8.0, 0.04 / rate_hz], leads_on_s: Some(1.0 / rate_hz), ..Self::fixed(0.04, 0.3) }
     }
 }
 
 impl Filter for Kalman {
     fn take(&mut self, report: &TouchReport) -> Option<Path> {
-        let step_s = report.sampled_s - self.sampled_s;
-        let Some(belief) = &mut self.belief else {
-            self.belief = Some(Belief::first(report.place_m, self.deviation));
-            self.sampled_s = report.sampled_s;
-            return self.belief.map(|belief| belief.path(report.sampled_s));
+        let is_bunched =
+            |interval_s| self.state.samples > 0 && report.sampled_s - self.state.sampled_s < 0.25 * interval_s;
+        if self.leads_on_s.is_some_and(is_bunched) {
+            self.state = self.before;
+        }
+        self.before = self.state;
+        let state = &mut self.state;
+        let step_s = report.sampled_s - state.sampled_s;
+        let Some(belief) = &mut state.belief else {
+            state.belief = Some(Belief::first(report.place_m, self.deviation));
+            (state.sampled_s, state.samples) = (report.sampled_s, 1);
+            return state.belief.map(|belief| belief.path(report.sampled_s));
         };
         if step_s <= 0.0 {
             return None;
         }
-        self.sampled_s = report.sampled_s;
-        self.recent_m_per_s *= 0.5 / (0.5 + step_s);
+        state.sampled_s = report.sampled_s;
+        state.recent_m_per_s *= 0.5 / (0.5 + step_s);
         let [deviation_per_speed, place_per_speed] = self.by_speed;
-        belief.advance(step_s, self.time_s, self.deviation + deviation_per_speed * self.recent_m_per_s);
-        belief.correct(report.place_m, MEASURED_M.hypot(place_per_speed * self.recent_m_per_s));
+        belief.advance(step_s, self.time_s, self.deviation + deviation_per_speed * state.recent_m_per_s);
+        belief.correct(report.place_m, MEASURED_M.hypot(place_per_speed * state.recent_m_per_s));
         let [[_, x, _], [_, y, _]] = belief.axes;
-        self.recent_m_per_s = self.recent_m_per_s.max(x.hypot(y));
-        self.samples += 1;
+        state.recent_m_per_s = state.recent_m_per_s.max(x.hypot(y));
+        state.samples += 1;
         let mut path = belief.path(report.sampled_s);
         if let Some(interval_s) = self.leads_on_s
-            && self.samples > 2
+            && state.samples > 2
         {
             path = path.led_from(self.last, report.arrived_s, interval_s);
         }
