@@ -35,7 +35,7 @@ pub(super) struct ScoreArgs {
     /// Number of human strokes, of each person.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
     strokes: u64,
-    /// Repetitions of each stroke, each with its own noise seed.
+    /// Repetitions of each stroke. Load, noise and lost reports are others in each, and on each stroke.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
     /// Length of a generated stroke.
@@ -117,7 +117,8 @@ fn finger(args: &ScoreArgs, scene: &Scene, person: u64) -> Result<TrialFinger, C
     Ok(TrialFinger { person, contact, fingertip: (!args.ideal).then_some(drawn.fingertip) })
 }
 
-/// Every stroke with every seed, by one finger. Each person makes strokes of their own.
+/// Every stroke as often as it is repeated, by one finger. Each person makes strokes of their own, and each play has a
+/// world seed of its own.
 fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, CommandError> {
     let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * args.strokes);
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
@@ -132,8 +133,9 @@ fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> R
         }
         (file, None) => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
     };
-    let trials = strokes.into_iter().flat_map(|(stroke_name, stroke)| {
-        (1..=args.seeds).map(move |seed| Trial {
+    let trials = (first_stroke..).zip(strokes).flat_map(|(number, (stroke_name, stroke))| {
+        let first_seed = 1 + (number - 1) * args.seeds;
+        (first_seed..first_seed + args.seeds).map(move |seed| Trial {
             stroke_name: stroke_name.clone(),
             stroke: stroke.clone(),
             seed,
