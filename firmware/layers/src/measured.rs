@@ -26,15 +26,15 @@ pub(crate) const POLYGON_EDGE_LEVEL: u32 = 26;
 /// Layers, in a rectangle; `kind::core_cycles` finds one by its name.
 pub(crate) const LAYERS: &[(&str, u32)] = &[
     ("bitmap", 223),
-    ("bitmap_tiled", 292),
+    ("bitmap_tiled", 274),
     ("button", 281),
     ("constant", 72),
     ("drift", 14),
     ("drifting_rings", 56),
     ("edge", 253),
     ("noise", 402),
-    ("rings", 58),
-    ("saw", 118),
+    ("rings", 40),
+    ("saw", 136),
     ("sine", 139),
     ("spokes", 91),
     ("square", 145),
