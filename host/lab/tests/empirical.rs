@@ -95,6 +95,32 @@ fn means_have_a_power_law_too() {
     assert_eq!((fit.strokes, fit.held_out), (5, None));
 }
 
+/// The friction coefficient is that of the law, not that of a model which lies beside the means.
+#[test]
+fn means_of_a_steep_law_have_the_friction_coefficient_of_that_law() {
+    let mut csv = String::from("voltage_v_rms,normal_force_n,friction_n,friction_se_n\n");
+    for volts in [0.0_f64, 75.0, 106.0, 150.0] {
+        let friction_n = 0.25 + 0.1 * (volts / 150.0).powi(6);
+        writeln!(csv, "{volts},0.5,{friction_n},0.001").unwrap();
+    }
+    let fit = fit_power_law(data(csv.as_bytes()).unwrap().value, &settings()).unwrap();
+    assert!((fit.friction_coefficient.value - 0.5).abs() < 1e-3, "{:?}", fit.friction_coefficient);
+}
+
+/// At half of the voltage such a finger has 1 % of the friction or less, as little as noise: no stroke of it stuck.
+#[test]
+fn a_steep_law_is_no_finger_that_sticks() {
+    for exponent in [7.0, 9.0] {
+        for seed in 0..SEEDS {
+            let rows = person(exponent, seed).record(&Protocol::default());
+            let refused = fit(rows.clone(), &settings()).unwrap_err().to_string();
+            assert!(refused.contains("--law empirical"), "{exponent}: {refused}");
+            let fit = power_law(rows).unwrap_or_else(|error| panic!("{exponent}: {error}"));
+            assert!((fit.voltage_exponent.value / exponent - 1.0).abs() < 0.05, "{exponent}: {fit:?}");
+        }
+    }
+}
+
 #[test]
 fn data_without_a_law_are_refused() {
     let refused = |rows: Vec<Row>| power_law(rows).unwrap_err().to_string();
@@ -113,6 +139,12 @@ fn data_without_a_law_are_refused() {
     }
     let said = refused(step);
     assert!(said.contains("power law that fits best"), "{said}");
+    // Kilovolts that are called volts: no law may end at 0.15 V.
+    let mut kilovolts = record(2.0);
+    for row in &mut kilovolts {
+        row.voltage_v_rms *= 1e-3;
+    }
+    assert!(refused(kilovolts).contains("voltage_kv_rms"));
     // A friction coefficient near zero, which no finger on glass has.
     let mut smooth = record(2.0);
     for row in &mut smooth {

@@ -18,7 +18,7 @@ use super::{command, frixel, succeed};
 /// Strokes at a speed at which friction follows the drive.
 const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--minimum-jerk"];
 /// The fewest strokes that can be fitted, which take 14 s.
-const FEW: [&str; 2] = ["--strokes", "8"];
+const FEW: [&str; 2] = ["--strokes", "9"];
 
 /// A minute of naps of 50 ms: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 1_200;

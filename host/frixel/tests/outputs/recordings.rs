@@ -78,7 +78,7 @@ fn no_recording_is_replaced_without_overwrite() {
     let board = VirtualBoard::start(&folder, "sim --out board --from 10,20 --to 90,20");
     for line in [
         format!("record --port {} --seconds 0.5 -o mine", board.port),
-        "calibrate --strokes 8 -o mine".to_owned(),
+        "calibrate --strokes 9 -o mine".to_owned(),
         "threshold --port sim --trials 12 -o mine".to_owned(),
     ] {
         folder.write("mine", "mine");

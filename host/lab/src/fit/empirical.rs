@@ -51,7 +51,7 @@ pub fn fit_power_law(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         Some(solution.friction_coefficient * attraction_n)
     };
     let fit = EmpiricalFit {
-        friction_coefficient: data.friction_coefficient,
+        friction_coefficient: data.friction_coefficient(|replicate| &replicate.power)?,
         voltage_exponent: data.fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?,
         voltage_max_v_rms,
         electric_friction_n: data.fitted.estimate(|replicate| electric_friction_n(&replicate.power))?,

@@ -54,7 +54,7 @@ pub use means::MeanRow;
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
-use search::{Search, attraction_of, coupling_of, start};
+use search::{Replicate, Search, attraction_of, coupling_of, start};
 pub use summary::{Summary, words};
 pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
@@ -156,7 +156,6 @@ struct FittedData {
     fitted: Fitted,
     strokes: Vec<StrokeMeans>,
     observations: Vec<Observation>,
-    friction_coefficient: Estimate,
     /// Normal load at which friction is stated, in newtons.
     normal_load_n: f64,
     voltage_range_v_rms: (f64, f64),
@@ -206,13 +205,12 @@ impl FittedData {
         let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
         let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
         rules::check_slip(&strokes, &best.power, faults);
+        rules::check_top(&strokes, voltage_range_v_rms.1)?;
         // The search for intervals takes longest.
         faults.check()?;
         let held_out = HeldOut::of(&search, &strokes, &best);
         let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
-        let friction_coefficient = fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?;
         Ok(Self {
-            friction_coefficient: wandering(&strokes, friction_coefficient),
             fitted,
             observations,
             normal_load_n,
@@ -226,6 +224,12 @@ impl FittedData {
             held_out,
             strokes,
         })
+    }
+
+    /// Friction over load with the drive off, by one of the laws.
+    fn friction_coefficient(&self, law: impl Fn(&Replicate) -> &Solution) -> Result<Estimate, FitError> {
+        let estimate = self.fitted.estimate(|replicate| Some(law(replicate).friction_coefficient))?;
+        Ok(if self.division == Division::Means { estimate } else { wandering(&self.strokes, estimate) })
     }
 }
 
@@ -250,7 +254,7 @@ fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
     let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
     let gap_m = Coupling(coupling.value).gap_m();
     let fit = Fit {
-        friction_coefficient: data.friction_coefficient,
+        friction_coefficient: data.friction_coefficient(|replicate| &replicate.contact)?,
         coupling_sqrt_n_per_v2: coupling,
         stated_voltage_v_rms: settings.voltage_v_rms,
         normal_load_n,

@@ -214,7 +214,7 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
     if fit.bandwidth_hz.is_none() {
         notes.push(
             "too few switches, too much noise or too few rows a second to tell whether the force sensor was fast enough: \
-             below 80 Hz electric friction comes out too small",
+             below 120 Hz of bandwidth electric friction comes out too small",
         );
     }
     if !fit.has_speed {
