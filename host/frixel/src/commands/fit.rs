@@ -76,8 +76,8 @@ pub(super) struct FitArgs {
 enum Law {
     /// The contact model, which data that contradict it refuse.
     Contact,
-    /// A power of the voltage that is fitted to the data: for a finger that the contact model does not describe, on this
-    /// screen, under this load and up to the highest voltage of the data.
+    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a finger
+    /// that the contact model does not describe, on this screen, under this load and up to the highest voltage of the data.
     Empirical,
 }
 
@@ -146,7 +146,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     note_understood(path, understood.as_deref());
     let fit = match args.law {
         Law::Contact => fit::fit_data(data, &settings).map(|fit| Fitted::Contact(Box::new(fit))),
-        Law::Empirical => fit::fit_power_law(data, &settings).map(Fitted::Empirical),
+        Law::Empirical => fit::fit_empirical(data, &settings).map(Fitted::Empirical),
     };
     let fit = fit.map_err(refused)?;
     if let Some(outputs) = &outputs {

@@ -48,7 +48,7 @@ fn calibrate(folder: &Path, arguments: &[&str], run: fn(&Path, &[&str]) -> Outpu
         (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
     });
     let said = String::from_utf8(said.unwrap()).unwrap();
-    assert!(said.contains("8 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
+    assert!(said.contains("9 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
 }
 
 /// Runs a command whose standard input is what the virtual board's sensor measures meanwhile.

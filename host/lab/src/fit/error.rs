@@ -183,17 +183,17 @@ pub enum FitError {
         /// Least number of strokes.
         needed: usize,
     },
-    /// Too few strokes at the highest voltage.
+    /// Too few strokes at a voltage that an interval rests on.
     #[error(
-        "{found} of the strokes go up to {voltage_v_rms:.0} V rms, the highest voltage, too few for an interval: record at \
-         least {needed} there, as many as at the other voltages are best, or leave them out with --without"
+        "{found} of the strokes have {voltage_v_rms:.0} V rms, too few for an interval there: record at least {needed}, as many as \
+         at the other voltages are best, or leave them out with --without"
     )]
-    TooFewAtTop {
-        /// Number of strokes that reach the highest voltage.
+    TooFewAtVoltage {
+        /// Number of strokes of this voltage.
         found: usize,
         /// Least number of strokes.
         needed: usize,
-        /// The highest voltage, in volts rms.
+        /// The voltage, in volts rms.
         voltage_v_rms: f64,
     },
     /// Too few rows to divide into blocks.
@@ -348,6 +348,31 @@ pub enum FitError {
         /// 99.9 % half-interval of the mean, in millinewtons.
         error_mn: f64,
     },
+    /// A profile has fewer points than the data have voltages.
+    #[error(
+        "electric friction follows no power of the voltage, and has {found} voltages, where a profile has at most {max} points: \
+         leave strokes of some voltages out with --without"
+    )]
+    TooManyPoints {
+        /// Number of voltages.
+        found: usize,
+        /// Most points of a profile.
+        max: usize,
+    },
+    /// Friction between two voltages has no power that a profile can have.
+    #[error(
+        "electric friction follows no power of the voltage, and from {low_v_rms:.0} to {high_v_rms:.0} V rms it grows as voltage to \
+         the power {exponent:.2}, where a profile takes 0.5 to 12: {}",
+        rise_cure(*.exponent)
+    )]
+    NoRise {
+        /// Power of the voltage.
+        exponent: f64,
+        /// The lower voltage, in volts rms.
+        low_v_rms: f64,
+        /// The higher voltage, in volts rms.
+        high_v_rms: f64,
+    },
     /// No profile has such an exponent.
     #[error(
         "electric friction grows as voltage to the power {exponent:.2}, and a profile takes 0.5 to 12: check for a \
@@ -374,6 +399,16 @@ pub enum FitError {
          rows"
     )]
     NotConverged,
+}
+
+/// What to do about friction between two voltages that has no power of a profile.
+fn rise_cure(exponent: f64) -> &'static str {
+    if exponent > 12.0 {
+        "record strokes at voltages between them"
+    } else {
+        "check that the amplifier reaches the higher one; if it does, this finger is played up to the lower one: leave the \
+         strokes above that out with --without"
+    }
 }
 
 /// A number without hundreds of zeros.

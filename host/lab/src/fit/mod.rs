@@ -9,7 +9,7 @@
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
 //! least squares (`search`, `least_squares`), its error is told from strokes that it has not seen (`held_out`),
 //! intervals come from a bootstrap over strokes (`intervals`), and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it). A finger that contradicts
-//! the model has a power law of its own instead (`empirical`).
+//! the model has a law of its own instead (`empirical`): a power of the voltage, or else points (`measured_points`).
 //!
 //! # What is estimated
 //!
@@ -29,6 +29,7 @@ mod intervals;
 mod law;
 mod least_squares;
 mod means;
+mod measured_points;
 mod profile;
 pub mod recipe;
 mod recording;
@@ -41,7 +42,7 @@ mod verdict;
 
 pub use crate::bootstrap::Estimate;
 use contrast::{Levels, StrokeMeans, stroke_means};
-pub use empirical::{EmpiricalFit, fit_power_law};
+pub use empirical::{EmpiricalFit, VoltageLaw, fit_empirical};
 pub use error::FitError;
 use faults::Faults;
 pub use faults::{Fault, FaultyStroke};
@@ -51,6 +52,7 @@ use law::{Attraction, Coupling};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
 use least_squares::{Observation, Solution, residuals_n};
 pub use means::MeanRow;
+pub use measured_points::MeasuredPoint;
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;

@@ -287,6 +287,8 @@ pub fn page() -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::super::rows;
     use super::{FILES, Recipe, RecipeError, recipes};
 
@@ -320,7 +322,7 @@ mod tests {
     fn a_finger_that_turns_rests_and_lands_is_of_the_data_set() {
         let mut text = String::from("voltage_v_rms,normal_force_n,friction_n,speed_mm_s\n");
         for (load, speed) in [(0.0, 0.0), (1.9, 3.0)].into_iter().chain([(0.4, -50.0); 30]) {
-            text.push_str(&format!("100,{load},0.2,{speed}\n"));
+            writeln!(text, "100,{load},0.2,{speed}").unwrap();
         }
         assert_eq!(made("4tu-d9f05363", &text).unwrap().lines().count(), 33);
     }

@@ -77,7 +77,7 @@ pub(super) fn check_top(strokes: &[StrokeMeans], voltage_v_rms: f64) -> Result<(
     let top = strokes.iter().map(|stroke| stroke.top_level).max().flatten();
     let found = strokes.iter().filter(|stroke| stroke.top_level == top).count();
     if found < GROUP_MIN {
-        return Err(FitError::TooFewAtTop { found, needed: GROUP_MIN, voltage_v_rms });
+        return Err(FitError::TooFewAtVoltage { found, needed: GROUP_MIN, voltage_v_rms });
     }
     Ok(())
 }
