@@ -18,14 +18,14 @@ use std::collections::BTreeMap;
 
 use frixel_layers::Layer;
 use frixel_scene::Program;
-use frixel_scene::reference::{Context, Reference};
+use frixel_scene::reference::Reference;
 use serde::Serialize;
 
 use crate::fidelity::FidelitySample;
 use crate::perception::{Step, Texture, Verdict, contrast_within, has_texture};
 use border::Crossings;
 use likeness::Likeness;
-use moment::{MOMENT_HZ, Moment, electric_n, runs};
+use moment::{MOMENT_HZ, Moment, context, electric_n, runs};
 
 /// The longest way of which the contrast is taken, m: a change over a longer one is not noticed. Assumed.
 const WAY_MAX_M: f64 = 0.05;
@@ -192,11 +192,8 @@ impl Noticing {
 
     /// Whether the friction of the scene changes along the way of a play.
     pub fn changes_along(&self, samples: &[FidelitySample]) -> bool {
-        let places = samples.iter().step_by(PLACE_SAMPLES).filter_map(|sample| {
-            let FidelitySample { t_s, x_m, y_m, .. } = *sample;
-            let context = Context { x_m, y_m, t_s, speed_m_per_s: sample.speed_m_per_s?, ..Context::default() };
-            Some(electric_n(&self.scene, &self.program, &context))
-        });
+        let places = samples.chunks(PLACE_SAMPLES).filter_map(context);
+        let places = places.map(|context| electric_n(&self.scene, &self.program, &context));
         let (least_n, most_n) =
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(least_n, most_n), n| (least_n.min(n), most_n.max(n)));
         most_n - least_n > CHANGE_MIN_N
