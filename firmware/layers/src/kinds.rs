@@ -5,6 +5,8 @@ pub(crate) mod bitmap;
 #[cfg(feature = "edge")]
 pub(crate) mod button;
 pub(crate) mod constant;
+#[cfg(feature = "direction")]
+pub(crate) mod direction;
 #[cfg(feature = "drift")]
 pub(crate) mod drift;
 #[cfg(feature = "edge")]
@@ -183,6 +185,8 @@ kinds! {
     12 => DriftingGrating in drift, feature "drift" bit 14;
     /// Rings that move outwards.
     13 => DriftingRings in drift, feature "drift" bit 14;
+    /// Friction that depends on the direction of the slide.
+    14 => Direction in direction, feature "direction" bit 15;
 }
 
 // The session answers for streams, too.

@@ -29,6 +29,7 @@ pub(crate) const LAYERS: &[(&str, u32)] = &[
     ("bitmap_tiled", 274),
     ("button", 281),
     ("constant", 72),
+    ("direction", 170),
     ("drift", 14),
     ("drifting_rings", 56),
     ("edge", 253),

@@ -134,6 +134,9 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
     if any(|layer| matches!(layer, Layer::Speed(_))) {
         sentences.push(format!("Sliding at {} mm/s.", rounded(1e3 * preview.speed_m_per_s)));
     }
+    if any(|layer| matches!(layer, Layer::Direction(_))) {
+        sentences.push("Layers that depend on the direction of the slide: the mean of both ways.".to_owned());
+    }
     let at_most: Vec<&str> = [
         (any(|layer| matches!(layer, Layer::Vibration(_))), "vibration"),
         (any(|layer| matches!(layer, Layer::Stream(_))), "stream"),

@@ -15,7 +15,7 @@ use frixel_felt::perception::{weber_steps, weber_steps_safe};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
 use frixel_layers::{Header, Scene as WireScene};
-use frixel_scene::reference::{Context, Reference};
+use frixel_scene::reference::{Context, Reference, direction_of};
 use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};
 use frixel_testkit::golden;
 use frixel_wire::fault::Flags;
@@ -91,11 +91,12 @@ fn the_default_stroke_touches_every_layer() {
         let places: Vec<_> = (0..10_000).filter_map(|step| stroke.at(1e-3 * f64::from(step))).collect();
         let frictions_n = |program: &Program| -> Vec<f64> {
             let reference = Reference::new(program).with_vibrations_held();
-            let friction_n = |place: &FingerState| {
+            let friction_n = |[before, place]: &[FingerState; 2]| {
                 let FingerState { x_m, y_m, speed_m_per_s } = *place;
-                reference.electric_friction_at_n(&Context { x_m, y_m, speed_m_per_s, ..Context::default() })
+                let direction = direction_of([x_m - before.x_m, y_m - before.y_m]);
+                reference.electric_friction_at_n(&Context { x_m, y_m, speed_m_per_s, direction, ..Context::default() })
             };
-            places.iter().map(friction_n).collect()
+            places.array_windows().map(friction_n).collect()
         };
         let whole_n = frictions_n(program);
         for (number, title) in program.titles.iter().enumerate() {

@@ -15,7 +15,7 @@ pub struct Nearest {
 
 /// Words of other trades for words of a scene, each with a remark. Of those with one word, the first one whose meaning
 /// is known where it is written counts.
-const SYNONYMS: [(&str, &str, &str); 20] = [
+const SYNONYMS: [(&str, &str, &str); 22] = [
     ("file", "picture", ""),
     ("image", "picture", ""),
     ("photo", "picture", ""),
@@ -33,22 +33,18 @@ const SYNONYMS: [(&str, &str, &str); 20] = [
     ("switch", "button", ", with a click that a finger feels when it slides in"),
     ("dial", "spokes", ", whose notches a finger counts as it goes round"),
     ("knob", "spokes", ", whose notches a finger counts as it goes round"),
+    ("velvet", "direction", ", whose friction is another one way than the other"),
+    ("ratchet", "direction", ", with `blend = \"multiply\"` above a `grating`"),
     ("sound", "vibration", ", which is felt and not heard"),
     ("text", "bitmap", ", with a picture of the text"),
     ("icon", "bitmap", ", with a picture of the icon"),
 ];
 
 /// Words for what no kind of layer is, each with what to use instead. They count where [`A_KIND`] is known.
-const NO_KINDS: [(&str, &str); 2] = [
-    (
-        "direction",
-        "no kind depends on where a finger slides to: use one that depends on the place, such as `grating` or `bitmap`",
-    ),
-    (
-        "animation",
-        "no kind moves: use `vibration`, or layers with `live = true`, which a program switches by `--control`",
-    ),
-];
+const NO_KINDS: [(&str, &str); 1] = [(
+    "animation",
+    "no kind moves: use `vibration`, or layers with `live = true`, which a program switches by `--control`",
+)];
 
 /// A kind of layer: where it is known, the known words are kinds.
 const A_KIND: &str = "vibration";

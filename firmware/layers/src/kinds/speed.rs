@@ -1,4 +1,4 @@
-//! A curve over sliding speed, straight between its points and held outside of them: the only kind that reads speed.
+//! A curve over sliding speed, straight between its points and held outside of them.
 
 use frixel_wire::message::{ConfigRefusal, Refusal};
 use frixel_wire::scene::{CURVE_POINTS_MAX, SceneError};

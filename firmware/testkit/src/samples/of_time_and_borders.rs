@@ -1,15 +1,17 @@
-//! Kinds whose friction depends on time, on speed, on what the host streams, or on which way the finger came.
+//! Kinds whose friction depends on time, on the finger's velocity, on what the host streams, or on which way the finger
+//! came.
 
 use frixel_layers::{
-    Beat, Blend, Burst, Button, Click, DriftingGrating, DriftingRings, Edge, Grating, Layer, Point, Region, Rings,
-    Speed, Stream, Vibration, Wave,
+    Beat, Blend, Burst, Button, Click, Direction, DriftingGrating, DriftingRings, Edge, Grating, Layer, Point, Region,
+    Rings, Speed, Stream, Vibration, Wave,
 };
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
 use super::{CostCase, ELLIPSE, POLYGON, RECTANGLE, Sample, cost, sample};
 
 // Their formulas need more than the place: `host/frixel/tests/kinds`.
-pub(super) const SAMPLES: &[Sample] = &[EDGE, BUTTON, VIBRATION, SPEED, STREAM, DRIFTING_GRATING, DRIFTING_RINGS];
+pub(super) const SAMPLES: &[Sample] =
+    &[EDGE, BUTTON, VIBRATION, SPEED, STREAM, DRIFTING_GRATING, DRIFTING_RINGS, DIRECTION];
 
 const CLICK: Click = Click { height_n: 0.015, decay_s: 0.02 };
 /// Short enough that ticks during the click and ticks after its end are both counted.
@@ -206,6 +208,26 @@ const DRIFTING_RINGS: Sample = Sample {
         let cycles_per_m = draw.random.between(0.0, 2e3);
         let rings = Rings { wave, x_m, y_m, cycles_per_m, trough_n: draw.amounts[0], crest_n: draw.amounts[1] };
         Layer::DriftingRings(DriftingRings { rings, drift_hz: draw.random.between(-50.0, 50.0) })
+    },
+    #[cfg(feature = "std")]
+    formulas: &[],
+};
+
+const DIRECTION: Sample = Sample {
+    records: &[sample(
+        ELLIPSE,
+        Blend::Multiply,
+        1.0,
+        Layer::Direction(Direction { angle_turns: 0.125, along_n: 0.25, against_n: 1.0 }),
+        &[24..36],
+    )],
+    costs: &[cost(
+        "tick_direction_alone",
+        Layer::Direction(Direction { angle_turns: 0.125, along_n: 0.002, against_n: 0.02 }),
+    )],
+    random: |draw| {
+        let [along_n, against_n] = draw.amounts;
+        Layer::Direction(Direction { angle_turns: draw.turned, along_n, against_n })
     },
     #[cfg(feature = "std")]
     formulas: &[],

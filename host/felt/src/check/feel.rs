@@ -61,7 +61,11 @@ fn grouped(texts: Vec<(Subject, String)>, more: &str) -> Vec<String> {
 /// What a person will feel of a layer, one sentence without its subject.
 pub fn sentence(layer: &LayerPerception) -> String {
     let contrast = &layer.contrast;
-    let place = if layer.is_narrow { "at a narrow place in it" } else { "within it" };
+    let place = match layer {
+        LayerPerception { is_by_direction: true, .. } => "from one direction of the slide to the other",
+        LayerPerception { is_narrow: true, .. } => "at a narrow place in it",
+        _ => "within it",
+    };
     let within = if contrast.contrast_n > 0.0 {
         format!("{} {place}", step(contrast))
     } else {

@@ -69,11 +69,10 @@ impl Crossings {
     fn cross(&mut self, run: &[Moment], before: Range<usize>, after: Range<usize>) {
         let (Some(last), Some(first)) = (run.get(before.end - 1), run.get(after.start)) else { return };
         let side = |moment: &Moment| {
-            let Context { x_m, y_m, speed_m_per_s, .. } = moment.context;
-            let context = Context { x_m, y_m, speed_m_per_s, ..Context::default() };
+            let context = Context { t_s: 0.0, ..moment.context };
             let electric_n = total_n(&self.program, self.reference.electric_friction_at_n(&context))
                 - self.program.reach.natural_friction_n;
-            (visible_layers(&self.reference, x_m, y_m), electric_n)
+            (visible_layers(&self.reference, context.x_m, context.y_m), electric_n)
         };
         let ((before_layers, before_n), (after_layers, after_n)) = (side(last), side(first));
         let (sides, is_turned) = border_sides(before_layers, after_layers);

@@ -15,17 +15,18 @@ mod moment;
 mod texture;
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
-use frixel_layers::Layer;
+use frixel_layers::{Direction, Layer};
 use frixel_scene::Program;
-use frixel_scene::reference::{Context, Reference};
+use frixel_scene::reference::Reference;
 use serde::Serialize;
 
 use crate::fidelity::FidelitySample;
 use crate::perception::{Step, Texture, Verdict, contrast_within, has_texture};
 use border::Crossings;
 use likeness::Likeness;
-use moment::{MOMENT_HZ, Moment, electric_n, runs};
+use moment::{MOMENT_HZ, Moment, context, electric_n, runs};
 
 /// The longest way of which the contrast is taken, m: a change over a longer one is not noticed. Assumed.
 const WAY_MAX_M: f64 = 0.05;
@@ -55,8 +56,8 @@ pub struct Noticing {
 pub struct NoticedLayer {
     /// Index of the layer from the bottom.
     pub layer: usize,
-    /// The felt part of the largest contrast on a way of at most 50 mm within the layer. The step onto the layer is not
-    /// in it.
+    /// The felt part of the largest contrast on a way of at most 50 mm within the layer; of a layer that depends on the
+    /// direction, of the contrast between ways. The step onto the layer is not in it.
     pub contrast: Step,
     /// The most noticeable texture; absent where there is none.
     pub texture: Option<Texture>,
@@ -101,8 +102,11 @@ struct Touches {
     /// Where no layer is above.
     uppermost: Sums,
     likeness: Likeness,
-    /// The largest contrast of the scene on a way over the layer: least and largest electric friction, N.
+    /// The largest contrast of the scene on a way over the layer: least and largest electric friction, N. Of a layer
+    /// that depends on the direction, over all ways.
     widest_n: Option<[f64; 2]>,
+    /// Slides along the axis of a layer that depends on the direction, and against it.
+    by_direction: [Sums; 2],
     texture: Option<Texture>,
 }
 
@@ -177,14 +181,16 @@ impl Noticing {
                 touches.uppermost.add(moment);
             }
         }
-        let is_edge = matches!(record.layer, Layer::Edge(_));
         for way in ways(on_layer) {
             let Some(way_n) = own_n.get(way.clone()) else { continue };
             touches.likeness.add((touch.start + way.start..).zip(way_n.iter().copied()), run);
-            touches.widen(way_n, is_edge, program.reach.natural_friction_n);
+            touches.widen(way_n, &record.layer, program.reach.natural_friction_n);
+        }
+        if let Layer::Direction(Direction { angle_turns, .. }) = record.layer {
+            touches.add_directions(on_layer, angle_turns.into());
         }
         let visible = on_layer.iter().fold(0, |visible, moment| visible | moment.visible);
-        if !is_edge && has_texture(visible & (u64::MAX >> (63 - layer)), program) {
+        if !matches!(record.layer, Layer::Edge(_)) && has_texture(visible & (u64::MAX >> (63 - layer)), program) {
             let textures = texture::of_touch(on_layer, &own_n).chain(touches.texture);
             touches.texture = textures.max_by(|one, other| one.salience().total_cmp(&other.salience()));
         }
@@ -192,11 +198,8 @@ impl Noticing {
 
     /// Whether the friction of the scene changes along the way of a play.
     pub fn changes_along(&self, samples: &[FidelitySample]) -> bool {
-        let places = samples.iter().step_by(PLACE_SAMPLES).filter_map(|sample| {
-            let FidelitySample { t_s, x_m, y_m, .. } = *sample;
-            let context = Context { x_m, y_m, t_s, speed_m_per_s: sample.speed_m_per_s?, ..Context::default() };
-            Some(electric_n(&self.scene, &self.program, &context))
-        });
+        let places = samples.chunks(PLACE_SAMPLES).filter_map(context);
+        let places = places.map(|context| electric_n(&self.scene, &self.program, &context));
         let (least_n, most_n) =
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(least_n, most_n), n| (least_n.min(n), most_n.max(n)));
         most_n - least_n > CHANGE_MIN_N
@@ -215,22 +218,55 @@ impl Noticing {
 }
 
 impl Touches {
-    /// Notes the contrast on a way, electric friction in newtons, if it is the largest.
-    fn widen(&mut self, way_n: &[f64], is_edge: bool, natural_n: f64) {
+    /// Notes the contrast on a way, electric friction in newtons, if it is the largest; of a layer that depends on the
+    /// direction, as a part of the contrast between ways.
+    fn widen(&mut self, way_n: &[f64], layer: &Layer, natural_n: f64) {
         let total_n: Vec<f64> = way_n.iter().map(|own_n| natural_n + own_n).collect();
-        let Some((contrast, _)) = contrast_within(&total_n, is_edge) else { return };
-        if self.widest_n.is_none_or(|[least_n, most_n]| most_n - least_n < contrast.contrast_n) {
-            self.widest_n = Some([contrast.from_n, contrast.to_n].map(|total_n| total_n - natural_n));
+        let Some((contrast, _)) = contrast_within(&total_n, matches!(layer, Layer::Edge(_))) else { return };
+        let [least_n, most_n] = [contrast.from_n, contrast.to_n].map(|total_n| total_n - natural_n);
+        self.widest_n = match (self.widest_n, layer) {
+            (Some([least_before_n, most_before_n]), Layer::Direction(_)) => {
+                Some([least_n.min(least_before_n), most_n.max(most_before_n)])
+            }
+            (Some([least_before_n, most_before_n]), _) if most_before_n - least_before_n >= contrast.contrast_n => {
+                self.widest_n
+            }
+            _ => Some([least_n, most_n]),
+        };
+    }
+
+    /// Adds the moments of a touch to those that slide along an axis, or against it.
+    fn add_directions(&mut self, touch: &[Moment], axis_turns: f64) {
+        let (axis_y, axis_x) = libm::sincos(TAU * axis_turns);
+        let [along, against] = &mut self.by_direction;
+        for moment in touch {
+            let [x, y] = moment.context.direction;
+            match axis_x * x + axis_y * y {
+                cosine if cosine > 0.0 => along.add(moment),
+                cosine if cosine < 0.0 => against.add(moment),
+                _ => {}
+            }
         }
     }
 
+    /// The part of the scene's contrast that was felt.
+    fn felt_part(&self) -> f64 {
+        let [along, against] = &self.by_direction;
+        if along.count.min(against.count) < TOUCH_MIN as f64 {
+            return self.likeness.slope();
+        }
+        let difference_n = |sum: fn(&Sums) -> f64| sum(along) / along.count - sum(against) / against.count;
+        let (felt_n, scene_n) = (difference_n(|sums| sums.felt_n), difference_n(|sums| sums.scene_n));
+        if scene_n.abs() > CHANGE_MIN_N { (felt_n / scene_n).max(0.0) } else { self.likeness.slope() }
+    }
+
     fn noticed(&self, layer: usize, scenes_natural_n: f64) -> NoticedLayer {
-        let Self { sums, uppermost, likeness, widest_n, texture, .. } = self;
+        let Self { sums, uppermost, widest_n, texture, .. } = self;
         let widest_n = widest_n.unwrap_or_default();
         let [least_n, most_n] = widest_n.map(|electric_n| scenes_natural_n + electric_n);
         NoticedLayer {
             layer,
-            contrast: sums.felt_step(widest_n, likeness.slope()),
+            contrast: sums.felt_step(widest_n, self.felt_part()),
             texture: *texture,
             level: (uppermost.count > 0.0).then(|| Level {
                 scene_n: scenes_natural_n + uppermost.scene_n / uppermost.count,

@@ -1,7 +1,7 @@
 //! A play, moment by moment, while the board drives the scene.
 
 use frixel_scene::Program;
-use frixel_scene::reference::{Context, Reference};
+use frixel_scene::reference::{Context, Reference, direction_of};
 
 use crate::fidelity::{self, FidelitySample, settled};
 use crate::perception::{SAMPLE_HZ, visible_layers};
@@ -29,14 +29,12 @@ pub(super) struct Moment {
 impl Moment {
     /// `samples` are those of the moment; `None` without any, or with the finger off the screen.
     fn of(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Option<Self> {
-        let last = samples.last()?;
+        let context = context(samples)?;
         let mean =
             |value: &dyn Fn(&FidelitySample) -> f64| samples.iter().map(value).sum::<f64>() / samples.len() as f64;
-        let FidelitySample { t_s, x_m, y_m, .. } = *last;
-        let context = Context { x_m, y_m, t_s, speed_m_per_s: last.speed_m_per_s?, ..Context::default() };
         Some(Self {
             context,
-            visible: visible_layers(scene, x_m, y_m),
+            visible: visible_layers(scene, context.x_m, context.y_m),
             scene_n: electric_n(scene, program, &context),
             wanted_n: mean(&FidelitySample::reference_electric_n),
             felt_n: mean(&FidelitySample::felt_electric_n),
@@ -53,6 +51,15 @@ impl Moment {
     pub(super) fn electric_n(&self, reference: &Reference, program: &Program) -> f64 {
         electric_n(reference, program, &self.context)
     }
+}
+
+/// The finger at the last of some samples, sliding the way from the first one to it; `None` without any, or with the
+/// finger off the screen.
+pub(super) fn context(samples: &[FidelitySample]) -> Option<Context> {
+    let (first, last) = (samples.first()?, samples.last()?);
+    let FidelitySample { t_s, x_m, y_m, speed_m_per_s, .. } = *last;
+    let direction = direction_of([x_m - first.x_m, y_m - first.y_m]);
+    Some(Context { x_m, y_m, t_s, speed_m_per_s: speed_m_per_s?, direction, ..Context::default() })
 }
 
 /// Electric friction in a context, within reach, N.

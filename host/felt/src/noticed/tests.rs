@@ -92,6 +92,42 @@ fn a_layer_has_no_contrast_of_those_above_it() {
     assert!(weave.texture.is_some() && weave.level.is_some(), "{weave:?}");
 }
 
+/// A slide has one friction, and the slide back another, which no way of 50 mm shows.
+#[test]
+fn directions_are_compared_between_slides() {
+    let velvet = "[[layer]]\nkind = \"direction\"\nabove = \"natural\"\nalong_n = 0.01\nagainst_n = 0.1\n";
+    let program = program(&[velvet]);
+    let natural_n = program.reach.natural_friction_n;
+    let noticed = |plays: &[f64], along_n: f64, against_n: f64| {
+        let mut noticing = Noticing::new(&program);
+        for side in plays {
+            let sample = |number: u32| {
+                let t_s = f64::from(number) / crate::fidelity::SAMPLE_HZ;
+                FidelitySample {
+                    t_s,
+                    x_m: 0.06 + side * SPEED_M_PER_S * (t_s - 0.5),
+                    y_m: 0.04,
+                    speed_m_per_s: Some(SPEED_M_PER_S),
+                    reference_n: natural_n + if *side > 0.0 { 0.01 } else { 0.1 },
+                    felt_n: natural_n + if *side > 0.0 { along_n } else { against_n },
+                    natural_n,
+                    is_driven: true,
+                }
+            };
+            noticing.add(&(0..4000).map(sample).collect::<Vec<_>>());
+        }
+        noticing.layers()[0]
+    };
+    let checked = crate::perception::Perception::of(&program).layers[0].contrast.weber_steps;
+    let whole = noticed(&[1.0, -1.0, 1.0], 0.01, 0.1).contrast.weber_steps;
+    assert!((whole / checked - 1.0).abs() < 0.01, "{whole} of {checked}");
+    assert!(noticed(&[1.0, -1.0], 0.04, 0.07).contrast.weber_steps < 0.5 * checked);
+    // A display that knows no direction, the other one, and a finger that slides one way only.
+    for (plays, along_n, against_n) in [([1.0, -1.0], 0.05, 0.05), ([1.0, -1.0], 0.1, 0.01), ([1.0, 1.0], 0.01, 0.1)] {
+        assert_eq!(noticed(&plays, along_n, against_n).verdict(), Verdict::NotFelt, "{plays:?}");
+    }
+}
+
 #[test]
 fn what_was_not_driven_is_not_judged() {
     let program = program(&[PLATE]);

@@ -15,7 +15,7 @@ mod spectrum;
 mod tests;
 mod thresholds;
 
-use frixel_layers::{Burst, Layer};
+use frixel_layers::{Burst, Direction, Layer};
 use serde::Serialize;
 
 use crate::percentile::percentiles;
@@ -70,6 +70,8 @@ pub struct LayerPerception {
     /// side, that with the largest contrast. From the least to the largest friction if the layer is an edge, or if
     /// [`Self::is_narrow`].
     pub contrast: Step,
+    /// Whether the contrast is that of slides along an axis and back, because the layer depends on the direction.
+    pub is_by_direction: bool,
     /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
     pub is_narrow: bool,
     /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none, for an edge, which is a single
@@ -235,14 +237,24 @@ impl JudgedLayer {
     /// visible nowhere. `lasting` is `program` without pauses between bursts, and `reference` belongs to it.
     fn new(layer: usize, reference: &Reference, program: &Program, lasting: &Program) -> Option<Self> {
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        let slides = Slide::over(layer, reference, screen_m);
+        let record = program.records.get(layer)?;
+        let over = Slide::over(layer, reference, screen_m);
+        let slides = match record.layer {
+            Layer::Direction(Direction { angle_turns, .. }) => {
+                let along = Slide::along(angle_turns.into(), layer, reference, screen_m);
+                over.into_iter().chain(along).flat_map(|slide| [slide, slide.back()]).collect()
+            }
+            _ => over,
+        };
         let uncovered = reference.clone().with_only(|other| other <= layer);
         let slides_n = SPEEDS_M_PER_S.map(|speed_m_per_s| -> Vec<Vec<f64>> {
             slides.iter().map(|slide| slide.friction_n(&uncovered, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
         });
         let [_, usual_n, _] = &slides_n;
-        let is_edge = matches!(program.records.get(layer)?.layer, Layer::Edge(_));
-        let contrasts = usual_n.iter().filter_map(|friction_n| contrast_within(friction_n, is_edge));
+        let is_edge = matches!(record.layer, Layer::Edge(_));
+        let is_by_direction = matches!(record.layer, Layer::Direction(_));
+        let ways_n = usual_n.chunks(if is_by_direction { 2 } else { 1 });
+        let contrasts = ways_n.filter_map(|way_n| contrast_within(&way_n.concat(), is_edge));
         let (contrast, is_narrow) =
             contrasts.max_by(|(one, _), (other, _)| one.contrast_n.total_cmp(&other.contrast_n))?;
         let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference));
@@ -258,6 +270,7 @@ impl JudgedLayer {
         let perception = LayerPerception {
             layer: program.titles.get(layer)?.clone(),
             contrast,
+            is_by_direction,
             is_narrow,
             textures: textures.collect(),
             burst: burst(felt, program),
@@ -281,7 +294,10 @@ pub(crate) fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step
 pub(crate) fn has_texture(layers: u64, program: &Program) -> bool {
     let mut records = program.records.iter().enumerate().filter(|(number, _)| layers >> number & 1 == 1);
     records.any(|(_, record)| {
-        !matches!(record.layer, Layer::Constant(_) | Layer::Button(_) | Layer::Edge(_) | Layer::Speed(_))
+        !matches!(
+            record.layer,
+            Layer::Constant(_) | Layer::Button(_) | Layer::Edge(_) | Layer::Speed(_) | Layer::Direction(_)
+        )
     })
 }
 

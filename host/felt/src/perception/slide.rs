@@ -1,7 +1,9 @@
 //! Straight slides over a layer, and the friction along them.
 
+use std::f64::consts::TAU;
+
 use frixel_scene::Program;
-use frixel_scene::reference::{Context, Reference};
+use frixel_scene::reference::{Context, Reference, direction_of};
 
 /// Rows and columns over the bounding rectangle of a layer.
 const ROWS: usize = 5;
@@ -32,6 +34,26 @@ impl Slide {
                 .map(|(from_m, to_m)| Self::new(from_m, to_m))
         });
         slides.filter_map(|slide| slide.longest_visible(layer, reference)).collect()
+    }
+
+    /// The way along an axis through the middle of a layer, where the layer is visible for the longest.
+    pub(super) fn along(axis_turns: f64, layer: usize, reference: &Reference, screen_m: (f64, f64)) -> Option<Self> {
+        let [left_m, top_m, right_m, bottom_m] = reference.bounds_m(layer)?;
+        let [x_ends_m, y_ends_m] =
+            [[left_m.max(0.0), right_m.min(screen_m.0)], [top_m.max(0.0), bottom_m.min(screen_m.1)]];
+        let (axis_y, axis_x) = libm::sincos(TAU * axis_turns);
+        let half_m = |[from_m, to_m]: [f64; 2]| 0.5 * (to_m - from_m);
+        let middle_m = |[from_m, to_m]: [f64; 2]| 0.5 * (from_m + to_m);
+        // Infinite along the other side of an axis that is parallel to one.
+        let length_m = (half_m(x_ends_m) / axis_x.abs()).min(half_m(y_ends_m) / axis_y.abs());
+        let at = |part_m: f64| (middle_m(x_ends_m) + part_m * axis_x, middle_m(y_ends_m) + part_m * axis_y);
+        Self::new(at(-length_m), at(length_m)).longest_visible(layer, reference)
+    }
+
+    /// The same way back.
+    pub(super) fn back(&self) -> Self {
+        let (x_step_m, y_step_m) = self.place_step_m;
+        Self { from_m: self.to_m, to_m: self.from_m, place_step_m: (-x_step_m, -y_step_m) }
     }
 
     fn new(from_m: (f64, f64), to_m: (f64, f64)) -> Self {
@@ -99,10 +121,11 @@ impl Slide {
     /// A finger that slides along the way at a constant speed.
     pub(super) fn contexts(&self, speed_m_per_s: f64, sample_hz: f64) -> impl Iterator<Item = Context> {
         let step_m = speed_m_per_s / sample_hz;
+        let direction = direction_of([self.to_m.0 - self.from_m.0, self.to_m.1 - self.from_m.1]);
         let count = ((self.length_m() / step_m) as usize).min(SAMPLES_MAX);
         (0..count).map(move |number| {
             let (x_m, y_m) = self.at((number as f64 + 0.5) * step_m / self.length_m());
-            Context { x_m, y_m, t_s: number as f64 / sample_hz, speed_m_per_s, ..Context::default() }
+            Context { x_m, y_m, t_s: number as f64 / sample_hz, speed_m_per_s, direction, ..Context::default() }
         })
     }
 }

@@ -144,6 +144,31 @@ fn a_lone_edge_is_felt_where_it_is() {
     assert!(!only(&of(&grating(2.0, 20.0))).is_narrow);
 }
 
+/// A finger feels one friction along the axis, wherever it points, and the other one on its way back.
+#[test]
+fn a_layer_that_depends_on_the_direction_is_judged_there_and_back() {
+    for angle_deg in [0, 45, 90, 200] {
+        let fields = format!("kind = \"direction\"\nangle_deg = {angle_deg}\nalong_n = 0.01\nagainst_n = 0.06\n");
+        let perception = on_example(&plate(50, &fields));
+        let layer = only(&perception);
+        assert!(layer.is_by_direction && layer.textures.is_empty(), "{layer:?}");
+        let found = feel::sentence(layer);
+        assert_eq!(
+            found,
+            "260.0 to 310.0 mN, 1.7 Weber steps (near the threshold) from one direction of the slide to the other"
+        );
+    }
+    // Stripes that are felt only against the axis.
+    let stripes = "kind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\nhigh_fraction = 0.9\n";
+    let one_way = "kind = \"direction\"\nblend = \"multiply\"\nalong_factor = 0\nagainst_factor = 1\n";
+    let perception = on_example(&(plate(50, stripes) + &plate(50, one_way)));
+    let [stripes, one_way] = &perception.layers[..] else { panic!("{perception:?}") };
+    let Step { from_n, to_n, .. } = one_way.contrast;
+    assert!(from_n < 0.2501 && to_n > 0.36, "{one_way:?}");
+    let amplitude_n = |layer: &LayerPerception| layer.textures.last().unwrap().amplitude_n;
+    assert!((amplitude_n(one_way) / amplitude_n(stripes) - 1.0).abs() < 0.01, "{one_way:?} {stripes:?}");
+}
+
 /// A slide over a layer ends where another layer replaces it.
 #[test]
 fn a_layer_around_others_is_the_same_throughout() {

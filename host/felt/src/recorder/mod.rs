@@ -236,11 +236,11 @@ impl Comparison {
         finger: Option<&mut ReferenceFriction>,
     ) -> Frictions {
         let scenes_natural_n = self.reference.natural_friction_n();
+        // Only a simulated finger with a skin of its own turns.
+        let turning = self.turning.follow(observation.finger) && finger.is_some();
         let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
         let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);
         let in_reach = in_scene_n.is_some_and(|in_scene_n| self.inversion.reaches(in_scene_n - scenes_natural_n));
-        // Only a simulated finger with a skin of its own turns.
-        let turning = self.turning.follow(observation.finger) && finger.is_some();
         let (natural_n, wanted_n) = match (finger, &observation.felt) {
             (Some(finger), Some(felt)) => {
                 let through_finger_n = finger.follow(felt, electric_n.unwrap_or(0.0));
@@ -276,7 +276,8 @@ impl Comparison {
             self.reference.lift();
             return None;
         };
-        let context = Context { x_m, y_m, t_s, speed_m_per_s, stream, stream_weight, ..Context::default() };
+        let direction = self.turning.direction();
+        let context = Context { x_m, y_m, t_s, speed_m_per_s, direction, stream, stream_weight, begun_s: 0.0 };
         Some(self.reference.electric_friction_n(&context))
     }
 }

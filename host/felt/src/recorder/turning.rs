@@ -1,6 +1,7 @@
-//! Where a finger lands or turns.
+//! Which way a finger slides, and where it lands or turns.
 
 use frixel_hil_sim::{FingerState, RELAXATION_LENGTH_M};
+use frixel_scene::reference::direction_of;
 
 /// The part of its full pull against the motion from which the skin counts as turned.
 const TURNED: f64 = 0.95;
@@ -12,6 +13,8 @@ pub(super) struct Turning {
     /// A vector of length 1 in steady sliding.
     pull: [f64; 2],
     place_m: Option<[f64; 2]>,
+    /// Direction of the last step; zeros before the first one.
+    direction: [f64; 2],
 }
 
 impl Turning {
@@ -22,18 +25,23 @@ impl Turning {
             return true;
         };
         let Some([from_x_m, from_y_m]) = self.place_m.replace([x_m, y_m]) else { return true };
-        let (x_step_m, y_step_m) = (x_m - from_x_m, y_m - from_y_m);
-        let step_m = libm::hypot(x_step_m, y_step_m);
+        let step = [x_m - from_x_m, y_m - from_y_m];
+        let step_m = libm::hypot(step[0], step[1]);
         if step_m <= 0.0 {
             return libm::hypot(self.pull[0], self.pull[1]) < TURNED;
         }
-        let direction = [x_step_m / step_m, y_step_m / step_m];
+        self.direction = direction_of(step);
         let share = -libm::expm1(-step_m / RELAXATION_LENGTH_M);
-        for (pull, direction) in self.pull.iter_mut().zip(direction) {
+        for (pull, direction) in self.pull.iter_mut().zip(self.direction) {
             *pull += share * (direction - *pull);
         }
-        let along: f64 = self.pull.iter().zip(direction).map(|(pull, direction)| pull * direction).sum();
+        let along: f64 = self.pull.iter().zip(self.direction).map(|(pull, direction)| pull * direction).sum();
         along < TURNED
+    }
+
+    /// Direction of the last motion, a vector of length 1; zeros for a finger that has not moved since it landed.
+    pub(super) fn direction(&self) -> [f64; 2] {
+        self.direction
     }
 }
 
@@ -52,6 +60,8 @@ mod tests {
         let back: Vec<bool> = (0..99).rev().map(&mut at).collect();
         assert_eq!(back.iter().filter(|turning| **turning).count(), 42);
         assert!(!at(0), "a finger that rests after it has slid has turned");
+        assert!(turning.direction()[0] <= -1.0, "and has the direction of its slide");
         assert!(turning.follow(None));
+        assert!(turning.direction()[0].abs() <= 0.0, "a lifted finger has none");
     }
 }

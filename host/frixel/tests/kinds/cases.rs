@@ -238,6 +238,24 @@ fn in_time() -> Vec<Case> {
             ..CASE
         },
         Case {
+            name: "direction",
+            layers: "[[layer]]\nkind = \"direction\"\nangle_deg = 30\nalong_n = 0.024\nagainst_n = 0.002",
+            path: Path::Person((5.0, 30.0), (115.0, 45.0)),
+            expected: |_, at| 2.0 + 22.0 * part_along(110.0, 15.0, at.speed, 30.0),
+            bound: 0.0275,
+            ..CASE
+        },
+        Case {
+            // The finger slides against the axis.
+            name: "direction, one-way stripes",
+            layers: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_n = 0\nhigh_n = 0.024\n[[layer]]\n\
+                     kind = \"direction\"\nblend = \"multiply\"\nangle_deg = -170\nalong_factor = 0.25\nagainst_factor = 1",
+            path: Path::Person((5.0, 30.0), (115.0, 45.0)),
+            expected: |_, at| 24.0 * sine(at.x / 12.0) * (1.0 - 0.75 * part_along(110.0, 15.0, at.speed, -170.0)),
+            bound: 0.0266,
+            ..CASE
+        },
+        Case {
             // Nothing is streamed: the layer is as if it were not there.
             name: "stream, silent",
             layers: "[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.012\n\
@@ -342,6 +360,12 @@ fn blends() -> Vec<Case> {
             ..CASE
         },
     ]
+}
+
+/// The weight from 0 to 1 of the friction along an axis, for a finger on a way over the screen, at a speed in mm/s.
+fn part_along(right: f64, down: f64, speed: f64, axis_deg: f64) -> f64 {
+    let cosine = along_deg(right, down, axis_deg) / right.hypot(down);
+    0.5 + 0.5 * cosine * (speed / 20.0).min(1.0)
 }
 
 /// From (90, 10) to (60, 40), and on to (70, 70): where two polygons meet, in mm.

@@ -6,6 +6,7 @@ mod bitmap;
 mod button;
 mod click;
 mod constant;
+mod direction;
 mod drift;
 mod edge;
 mod grating;
@@ -285,6 +286,7 @@ kinds! {
     Stream in stream,
     Rings in rings,
     Spokes in spokes,
+    Direction in direction,
     ;
     DriftingGrating,
     DriftingRings,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use frixel_layers::{Blend, Record};
 
 pub(crate) use shape::{Shape, edges};
-pub use stroke::{Context, StrokeReference};
+pub use stroke::{Context, StrokeReference, direction_of};
 
 use crate::Program;
 use crate::kinds::{self, Field};

@@ -2,7 +2,7 @@
 
 use super::Reference;
 
-/// Evaluation context: the finger's place and speed, the time, and the stream's sample.
+/// Evaluation context: the finger's place and velocity, the time, and the stream's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Context {
     /// Place from the screen's left edge, m.
@@ -15,10 +15,19 @@ pub struct Context {
     pub begun_s: f64,
     /// Sliding speed, m/s.
     pub speed_m_per_s: f64,
+    /// Direction of the slide along x and y, a vector of length 1; zeros for a finger without a direction, under which
+    /// friction is the mean over all of them.
+    pub direction: [f64; 2],
     /// The stream's sample, from 0 to 1.
     pub stream: f64,
     /// Weight of the stream's layers, from 0 without a stream to 1.
     pub stream_weight: f64,
+}
+
+/// The direction of a step along x and y, as [`Context`] has it; zeros for a step of length 0.
+pub fn direction_of([x_m, y_m]: [f64; 2]) -> [f64; 2] {
+    let length_m = libm::hypot(x_m, y_m);
+    if length_m > 0.0 { [x_m / length_m, y_m / length_m] } else { [0.0; 2] }
 }
 
 /// The reference along a stroke, evaluated context by context in the order of time.

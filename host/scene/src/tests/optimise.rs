@@ -24,6 +24,7 @@ fn check(layers: &str, expected: &[&str], records: usize) {
             y_m: 0.11 * f64::from(place / 100) / 80.0,
             t_s: f64::from(place) * 25e-6,
             speed_m_per_s: 0.1,
+            direction: [0.6, -0.8],
             stream: 0.5,
             stream_weight: 1.0,
             begun_s: 0.0,

@@ -1,0 +1,167 @@
+//! Friction that depends on the direction of the slide: one friction along an axis, another against it.
+
+use frixel_wire::message::Refusal;
+
+use crate::context::Context;
+use crate::cosine::direction;
+use crate::interval::Interval;
+use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::parameters::{parameters, range};
+use crate::point::Point;
+use crate::prepare::Preparation;
+use crate::region::ActiveRegion;
+use crate::square_root::square_root;
+
+/// Below this speed, m/s, the friction fades to the mean of both: the estimated velocity of a finger that hardly moves
+/// has any direction. A slow exploring finger is as fast.
+const FADE_M_PER_S: f32 = 0.02;
+
+parameters! {
+    /// `against + (along - against) (1 + f c) / 2` with the cosine `c` of the angle between the finger's velocity and an
+    /// axis. `f` is 1 from a speed of 20 mm/s on, and the speed over 20 mm/s below.
+    pub struct Direction {
+        /// Direction of the axis, from x towards y, in turns.
+        angle_turns: f32 = 24 in range::ANGLE_TURNS,
+        /// Electric friction of a finger that slides along the axis, N.
+        along_n: f32 = 28 in range::FRICTION_N,
+        /// Electric friction of a finger that slides the other way, N.
+        against_n: f32 = 32 in range::FRICTION_N,
+    }
+}
+
+impl Kind for Direction {
+    type Coefficients = DirectionCoefficients;
+
+    fn cost(&self) -> u32 {
+        const { core_cycles("direction") }
+    }
+
+    fn bounds(&self, _points: &[Point]) -> Interval<f32> {
+        Interval::of([self.along_n, self.against_n])
+    }
+
+    fn prepare(&self, _layer: u8, _preparation: &mut Preparation) -> Result<DirectionCoefficients, Refusal> {
+        let (axis_x, axis_y) = direction(self.angle_turns);
+        Ok(DirectionCoefficients {
+            axis_x,
+            axis_y,
+            middle_n: 0.5 * (self.along_n + self.against_n),
+            swing_n: 0.5 * (self.along_n - self.against_n),
+        })
+    }
+}
+
+/// `middle + swing p`, with the part `p` from -1 to 1 of the velocity that lies along the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DirectionCoefficients {
+    axis_x: f32,
+    axis_y: f32,
+    middle_n: f32,
+    swing_n: f32,
+}
+
+impl Evaluate for DirectionCoefficients {
+    #[inline]
+    fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
+        let [x, y] = context.inputs.velocity_m_per_s;
+        let speed_m_per_s = square_root(x * x + y * y);
+        let along_m_per_s = self.axis_x * x + self.axis_y * y;
+        let part = along_m_per_s / if speed_m_per_s > FADE_M_PER_S { speed_m_per_s } else { FADE_M_PER_S };
+        // Between both frictions also where the squares overflow, and where the velocity is not-a-number.
+        let part = if part > -1.0 { if part < 1.0 { part } else { 1.0 } } else { -1.0 };
+        self.middle_n + self.swing_n * part
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::context::Inputs;
+    use crate::{BitmapPool, Blend, Clicks, Layer, Record, Region, active::ActiveLayers};
+
+    /// Friction under a finger of this velocity, m/s.
+    fn at(direction: Direction, velocity_m_per_s: [f32; 2]) -> f32 {
+        let layer = Layer::Direction(direction);
+        let mut layers = ActiveLayers::EMPTY;
+        let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
+        layers.push(&record, 40_000, &|_| None).unwrap();
+        let pool = Box::new(BitmapPool::new());
+        let inputs = Inputs { velocity_m_per_s, ..Inputs::default() };
+        layers.electric_friction_n(&inputs, &pool, &mut Clicks::NONE.clone())
+    }
+
+    /// 1 N along the axis, 0 N against it.
+    fn part(angle_turns: f32, velocity_m_per_s: [f32; 2]) -> f32 {
+        at(Direction { angle_turns, along_n: 1.0, against_n: 0.0 }, velocity_m_per_s)
+    }
+
+    #[test]
+    fn a_finger_feels_the_cosine_of_the_angle_to_the_axis() {
+        for (velocity, expected) in [
+            ([0.1, 0.0], 1.0),
+            ([-0.1, 0.0], 0.0),
+            ([0.0, 0.1], 0.5),
+            ([0.0, -3.0], 0.5),
+            ([0.06, 0.08], 0.8),
+            ([-0.06, 0.08], 0.2),
+        ] {
+            assert!((part(0.0, velocity) - expected).abs() < 1e-6, "{velocity:?}: {}", part(0.0, velocity));
+        }
+        // An axis that points down.
+        assert!((part(0.25, [0.0, 0.1]) - 1.0).abs() < 1e-6);
+        assert!((part(-0.75, [0.0, -0.1])).abs() < 1e-6);
+    }
+
+    /// A reversal passes through the mean of both, and no step is larger than the velocity's.
+    #[test]
+    fn a_slow_finger_feels_the_mean_of_both() {
+        for (speed, expected) in [(0.0, 0.5), (1e-30, 0.5), (1e-4, 0.5025), (-1e-4, 0.4975), (0.01, 0.75), (0.02, 1.0)]
+        {
+            assert!((part(0.0, [speed, 0.0]) - expected).abs() < 1e-6, "{speed}: {}", part(0.0, [speed, 0.0]));
+        }
+        let reversal = (-500..500).map(|number| part(0.0, [1e-4 * number as f32, 0.0]));
+        let steps = reversal.clone().zip(reversal.skip(1)).map(|(before, after)| after - before);
+        assert!(steps.clone().all(|step| (-1e-6..0.00251).contains(&step)), "{:?}", steps.reduce(f32::max));
+    }
+
+    #[test]
+    fn no_velocity_leads_out_of_both_frictions() {
+        let extremes = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MAX, f32::MIN, 2e19, 1e15, 1e-20, 1e-45, -0.0];
+        for angle_turns in [0.0, 0.125, 0.25, -1.0] {
+            for velocity in extremes.into_iter().flat_map(|x| extremes.map(|y| [x, y])) {
+                let found = part(angle_turns, velocity);
+                assert!((0.0..=1.0).contains(&found), "{angle_turns} {velocity:?}: {found}");
+            }
+        }
+        // Nor does the last bit of an angle, beyond rounding.
+        assert!(part(0.0, [2e19, 0.0]) >= 1.0 && part(0.0, [f32::NEG_INFINITY, 0.0]) <= 0.0);
+    }
+
+    proptest! {
+        /// Within 2e-6 of the difference of both, from the formula in `f64`.
+        #[test]
+        fn the_friction_is_that_of_the_formula(
+            angle_turns in -1.0_f32..=1.0,
+            heading_turns in 0.0_f64..1.0,
+            exponent in -6.0_f64..2.0,
+            along_n in -1.0_f32..1.0,
+            against_n in -1.0_f32..1.0,
+        ) {
+            let speed_m_per_s = libm::exp10(exponent);
+            let velocity = [libm::cos(TAU * heading_turns), libm::sin(TAU * heading_turns)]
+                .map(|part| (speed_m_per_s * part) as f32);
+            let [x, y] = velocity.map(f64::from);
+            let (axis_x, axis_y) = (libm::cos(TAU * f64::from(angle_turns)), libm::sin(TAU * f64::from(angle_turns)));
+            let part = (axis_x * x + axis_y * y) / libm::hypot(x, y).max(0.02);
+            let (along, against) = (f64::from(along_n), f64::from(against_n));
+            let expected = against + (along - against) * 0.5 * (1.0 + part);
+            let found = f64::from(at(Direction { angle_turns, along_n, against_n }, velocity));
+            let difference = (along - against).abs();
+            prop_assert!((found - expected).abs() <= 2e-6 * difference + 1e-7, "{} is not {}", found, expected);
+        }
+    }
+}
