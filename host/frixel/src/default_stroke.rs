@@ -1,7 +1,9 @@
 //! The stroke of a play without a stroke of its own.
 
+use std::f64::consts::TAU;
+
 use frixel_hil_sim::{Point, Stroke, StrokeError};
-use frixel_layers::Layer;
+use frixel_layers::{Direction, DriftingGrating, Grating, Layer};
 use frixel_scene::{LayerMiddle, Program, TouchedLayers};
 
 /// Duration of the sweep over the screen unless another is given, s.
@@ -18,12 +20,12 @@ const VISIT_MIN_M: f64 = 0.03;
 const VISIT_M_PER_S: f64 = 0.1;
 /// A finger has crossed the middle of a layer if it was this near to it along both sides, in parts of the sides.
 const MIDDLE_PART: f64 = 0.2;
-/// A finger crosses stripes if this part of its way, at least, goes across them.
-const ACROSS_PART: f64 = 0.5;
+/// A finger slides along an axis if this part of its way, at least, does.
+const ALONG_PART: f64 = 0.5;
 
 /// An even stroke over the screen of a program, for `seconds`, or for as long as it takes to cross the middle of every
 /// layer: first a sweep over the screen, and then a stroke over each layer whose middle the sweep misses, across its
-/// stripes or, without stripes, its shorter side.
+/// stripes, along its axis and back, or, with neither, across its shorter side.
 pub fn default_stroke(program: &Program, seconds: Option<f64>) -> Result<Stroke, StrokeError> {
     let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let sweep = Stroke::sweep(screen_m.0, screen_m.1, seconds.unwrap_or(SWEEP_S))?;
@@ -69,27 +71,58 @@ fn visit(layer: &Missed, (width_m, height_m): (f64, f64)) -> Result<Stroke, Stro
 /// A layer that is to be crossed.
 #[derive(Clone, Copy)]
 struct Missed {
+    /// Its index from the bottom.
+    layer: usize,
     middle: LayerMiddle,
-    /// The unit vector across its stripes; `None` without stripes.
-    across: Option<(f64, f64)>,
+    axis: Axis,
+}
+
+/// Which way a layer is to be crossed, a unit vector.
+#[derive(Clone, Copy)]
+enum Axis {
+    Any,
+    EitherWay((f64, f64)),
+    OneWay((f64, f64)),
 }
 
 impl Missed {
     /// The direction of the stroke over the layer, a unit vector.
     fn way(&self) -> (f64, f64) {
-        let is_narrow = self.middle.width_m <= self.middle.height_m;
-        self.across.unwrap_or(if is_narrow { (1.0, 0.0) } else { (0.0, 1.0) })
+        match self.axis {
+            Axis::EitherWay(axis) | Axis::OneWay(axis) => axis,
+            Axis::Any if self.middle.width_m <= self.middle.height_m => (1.0, 0.0),
+            Axis::Any => (0.0, 1.0),
+        }
     }
 
-    /// Whether a finger that moves by `(x_m, y_m)` crosses the layer's stripes.
+    /// Whether a finger that moves by `(x_m, y_m)` crosses the layer as it is to be crossed.
     fn is_crossed_by(&self, (x_m, y_m): (f64, f64)) -> bool {
-        self.across.is_none_or(|(x, y)| (x * x_m + y * y_m).abs() > ACROSS_PART * x_m.hypot(y_m))
+        let along_m = match self.axis {
+            Axis::Any => return true,
+            Axis::EitherWay((x, y)) => (x * x_m + y * y_m).abs(),
+            Axis::OneWay((x, y)) => x * x_m + y * y_m,
+        };
+        along_m > ALONG_PART * x_m.hypot(y_m)
     }
 }
 
-/// The unit vector across the stripes of a layer; `None` without stripes.
-fn across(layer: &Layer) -> Option<(f64, f64)> {
-    let Layer::Grating(grating) = layer else { return None };
+/// The ways in which a layer is to be crossed: stripes from either side, and one that depends on the direction from
+/// both.
+fn axes(layer: &Layer) -> Vec<Axis> {
+    match layer {
+        Layer::Grating(grating) | Layer::DriftingGrating(DriftingGrating { grating, .. }) => {
+            vec![across(grating).map_or(Axis::Any, Axis::EitherWay)]
+        }
+        Layer::Direction(Direction { angle_turns, .. }) => {
+            let (y, x) = libm::sincos(TAU * f64::from(*angle_turns));
+            vec![Axis::OneWay((x, y)), Axis::OneWay((-x, -y))]
+        }
+        _ => vec![Axis::Any],
+    }
+}
+
+/// The unit vector across stripes; `None` without stripes.
+fn across(grating: &Grating) -> Option<(f64, f64)> {
     let (x, y) = (f64::from(grating.cycles_per_m_x), f64::from(grating.cycles_per_m_y));
     let cycles_per_m = x.hypot(y);
     (cycles_per_m > 0.0).then(|| (x / cycles_per_m, y / cycles_per_m))
@@ -98,39 +131,38 @@ fn across(layer: &Layer) -> Option<(f64, f64)> {
 /// The layers whose middle a finger has crossed.
 struct Middles {
     layers: TouchedLayers,
-    /// Each layer that is to be crossed; `None` for one that was, or that cannot be touched.
-    missed: Vec<Option<Missed>>,
+    /// The layers that are still to be crossed, once for each way.
+    missed: Vec<Missed>,
 }
 
 impl Middles {
     fn new(program: &Program) -> Self {
         let layers = TouchedLayers::new(program);
-        let missed =
-            program.records.iter().enumerate().map(|(layer, record)| {
-                layers.middle(layer).map(|middle| Missed { middle, across: across(&record.layer) })
-            });
+        let touchable = program.records.iter().enumerate();
+        let touchable = touchable.filter_map(|(layer, record)| Some((layer, layers.middle(layer)?, record)));
+        let missed = touchable.flat_map(|(layer, middle, record)| {
+            axes(&record.layer).into_iter().map(move |axis| Missed { layer, middle, axis })
+        });
         let missed = missed.collect();
         Self { layers, missed }
     }
 
     /// The first layer that was not crossed.
     fn missed(&self) -> Option<Missed> {
-        self.missed.iter().find_map(|missed| *missed)
+        self.missed.first().copied()
     }
 
     /// Adds a place of the finger, and how it moves there: any vector of that direction.
     fn cross(&mut self, x_m: f64, y_m: f64, way: (f64, f64)) {
-        for (layer, missed) in self.missed.iter_mut().enumerate() {
-            let is_crossed = |missed: &mut Missed| {
-                let middle = &missed.middle;
-                (x_m - middle.x_m).abs() <= MIDDLE_PART * middle.width_m
-                    && (y_m - middle.y_m).abs() <= MIDDLE_PART * middle.height_m
-                    && missed.is_crossed_by(way)
-            };
-            if missed.as_mut().is_some_and(is_crossed) && self.layers.is_touched_at(layer, x_m, y_m) {
-                *missed = None;
-            }
-        }
+        let Self { layers, missed } = self;
+        missed.retain(|missed| {
+            let middle = &missed.middle;
+            let is_crossed = (x_m - middle.x_m).abs() <= MIDDLE_PART * middle.width_m
+                && (y_m - middle.y_m).abs() <= MIDDLE_PART * middle.height_m
+                && missed.is_crossed_by(way)
+                && layers.is_touched_at(missed.layer, x_m, y_m);
+            !is_crossed
+        });
     }
 
     /// Appends the places of a stroke that begins at `start_s`, and adds them.
@@ -155,7 +187,8 @@ mod tests {
     use std::collections::BTreeMap;
     use std::path::Path;
 
-    use frixel_hil_sim::RigConfig;
+    use frixel_hil_sim::{FingerState, RigConfig};
+    use frixel_scene::reference::{Context, Reference, direction_of};
     use frixel_scene::{Scene, compile};
 
     use super::*;
@@ -215,6 +248,37 @@ mod tests {
                     let part = (way.0 * across.cos() + way.1 * across.sin()).abs() / way.0.hypot(way.1);
                     assert!(part > 0.99, "{angle_deg}: {part} of its way goes across the stripes");
                 }
+            }
+        }
+    }
+
+    /// The sweep slides over a small place one way only.
+    #[test]
+    fn the_default_stroke_goes_both_ways_over_what_depends_on_the_direction() {
+        for region in ["", "region = { x_mm = 30, y_mm = 2, width_mm = 20, height_mm = 10 }\n"] {
+            for angle_deg in [0, 45, 90, -120] {
+                let text = format!(
+                    "version = 2\n[[layer]]\nkind = \"direction\"\nangle_deg = {angle_deg}\nalong_fraction = 0.1\n\
+                     against_fraction = 0.9\n{region}"
+                );
+                let scene = Scene::parse(&text, "velvet.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+                let board = RigConfig::default().board;
+                let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
+                let stroke = default_stroke(&program, None).unwrap();
+                let reference = Reference::new(&program);
+                let places = (0..).map(|step| 1e-3 * f64::from(step)).take_while(|t_s| *t_s <= stroke.duration_s());
+                let fingers: Vec<_> = places.filter_map(|t_s| stroke.at(t_s)).collect();
+                let parts = fingers.array_windows().map(|[before, finger]| {
+                    let FingerState { x_m, y_m, speed_m_per_s } = *finger;
+                    let direction = direction_of([x_m - before.x_m, y_m - before.y_m]);
+                    let context = Context { x_m, y_m, speed_m_per_s, direction, ..Context::default() };
+                    reference.electric_friction_at_n(&context) / program.reach.electric_friction_max_n
+                });
+                // The bare screen has 0.
+                let on_layer = parts.filter(|part| *part > 0.05);
+                let (least, most) =
+                    on_layer.fold((1.0_f64, 0.0_f64), |(least, most), part| (least.min(part), most.max(part)));
+                assert!(least < 0.31 && most > 0.69, "{angle_deg} {region}: {least} to {most}");
             }
         }
     }

@@ -43,7 +43,8 @@ const SYNONYMS: [(&str, &str, &str); 22] = [
 /// Words for what no kind of layer is, each with what to use instead. They count where [`A_KIND`] is known.
 const NO_KINDS: [(&str, &str); 1] = [(
     "animation",
-    "no kind moves: use `vibration`, or layers with `live = true`, which a program switches by `--control`",
+    "no kind plays pictures one after another: use `vibration`, `drift_mm_per_s` of a `grating`, or layers with \
+     `live = true`, which a program switches by `--control`",
 )];
 
 /// A kind of layer: where it is known, the known words are kinds.

@@ -13,12 +13,12 @@ use crate::region::ActiveRegion;
 use crate::square_root::square_root;
 
 /// Below this speed, m/s, the friction fades to the mean of both: the estimated velocity of a finger that hardly moves
-/// has any direction. A slow exploring finger is as fast.
+/// has any direction. Fingers that explore slowly slide this fast.
 const FADE_M_PER_S: f32 = 0.02;
 
 parameters! {
-    /// `against + (along - against) (1 + f c) / 2` with the cosine `c` of the angle between the finger's velocity and an
-    /// axis. `f` is 1 from a speed of 20 mm/s on, and the speed over 20 mm/s below.
+    /// `against + (along - against) (1 + f c) / 2` with the cosine `c` of the angle between an axis and the finger's
+    /// velocity. `f` is 1 from a speed of 20 mm/s on, and the speed over 20 mm/s below.
     pub struct Direction {
         /// Direction of the axis, from x towards y, in turns.
         angle_turns: f32 = 24 in range::ANGLE_TURNS,
@@ -116,7 +116,7 @@ mod tests {
         assert!((part(-0.75, [0.0, -0.1])).abs() < 1e-6);
     }
 
-    /// A reversal passes through the mean of both, and no step is larger than the velocity's.
+    /// A reversal passes through the mean of both, in steps in proportion to those of the velocity.
     #[test]
     fn a_slow_finger_feels_the_mean_of_both() {
         for (speed, expected) in [(0.0, 0.5), (1e-30, 0.5), (1e-4, 0.5025), (-1e-4, 0.4975), (0.01, 0.75), (0.02, 1.0)]
@@ -137,7 +137,7 @@ mod tests {
                 assert!((0.0..=1.0).contains(&found), "{angle_turns} {velocity:?}: {found}");
             }
         }
-        // Nor does the last bit of an angle, beyond rounding.
+        // Where the squares overflow, the side is still the right one.
         assert!(part(0.0, [2e19, 0.0]) >= 1.0 && part(0.0, [f32::NEG_INFINITY, 0.0]) <= 0.0);
     }
 

@@ -223,16 +223,12 @@ impl Touches {
     fn widen(&mut self, way_n: &[f64], layer: &Layer, natural_n: f64) {
         let total_n: Vec<f64> = way_n.iter().map(|own_n| natural_n + own_n).collect();
         let Some((contrast, _)) = contrast_within(&total_n, matches!(layer, Layer::Edge(_))) else { return };
-        let [least_n, most_n] = [contrast.from_n, contrast.to_n].map(|total_n| total_n - natural_n);
-        self.widest_n = match (self.widest_n, layer) {
-            (Some([least_before_n, most_before_n]), Layer::Direction(_)) => {
-                Some([least_n.min(least_before_n), most_n.max(most_before_n)])
-            }
-            (Some([least_before_n, most_before_n]), _) if most_before_n - least_before_n >= contrast.contrast_n => {
-                self.widest_n
-            }
-            _ => Some([least_n, most_n]),
-        };
+        let [from_n, to_n] = [contrast.from_n, contrast.to_n].map(|total_n| total_n - natural_n);
+        self.widest_n = Some(match (self.widest_n, layer) {
+            (Some([least_n, most_n]), Layer::Direction(_)) => [from_n.min(least_n), to_n.max(most_n)],
+            (Some([least_n, most_n]), _) if most_n - least_n >= contrast.contrast_n => [least_n, most_n],
+            _ => [from_n, to_n],
+        });
     }
 
     /// Adds the moments of a touch to those that slide along an axis, or against it.

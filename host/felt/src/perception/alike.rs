@@ -25,14 +25,16 @@ pub struct AlikeLayers {
 }
 
 /// Pairs of layers that a person cannot tell apart. Layers of the same parameters are meant to feel the same, and
-/// layers that act at the same place are not felt one by one.
+/// layers that act at the same place are not felt one by one. Layers that depend on the direction differ by it, however
+/// strong they are.
 pub(super) fn of(judged: &[JudgedLayer], program: &Program) -> Vec<AlikeLayers> {
     let pairs = judged
         .iter()
         .enumerate()
         .flat_map(|(number, one)| judged.iter().skip(number + 1).map(move |other| (one, other)));
     let is_comparable = |one: &JudgedLayer, other: &JudgedLayer| {
-        !(acts_on(one, other) || acts_on(other, one) || are_copies(one, other, program))
+        let are_by_direction = one.perception.is_by_direction || other.perception.is_by_direction;
+        !(are_by_direction || acts_on(one, other) || acts_on(other, one) || are_copies(one, other, program))
     };
     let comparable = pairs.filter(|(one, other)| is_comparable(one, other));
     comparable.filter_map(|(one, other)| alike(one, other, program)).collect()

@@ -70,7 +70,7 @@ pub struct LayerPerception {
     /// side, that with the largest contrast. From the least to the largest friction if the layer is an edge, or if
     /// [`Self::is_narrow`].
     pub contrast: Step,
-    /// Whether the contrast is that of slides along an axis and back, because the layer depends on the direction.
+    /// Whether the contrast is that of a slide and the same one back, because the layer depends on the direction.
     pub is_by_direction: bool,
     /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
     pub is_narrow: bool,

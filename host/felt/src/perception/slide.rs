@@ -24,9 +24,9 @@ pub(super) struct Slide {
 impl Slide {
     /// Rows and columns over a layer, each where it is visible for the longest.
     pub(super) fn over(layer: usize, reference: &Reference, screen_m: (f64, f64)) -> Vec<Self> {
-        let Some([left_m, top_m, right_m, bottom_m]) = reference.bounds_m(layer) else { return Vec::new() };
-        let (from_x_m, to_x_m) = (left_m.max(0.0), right_m.min(screen_m.0));
-        let (from_y_m, to_y_m) = (top_m.max(0.0), bottom_m.min(screen_m.1));
+        let Some([from_x_m, from_y_m, to_x_m, to_y_m]) = bounds_m(layer, reference, screen_m) else {
+            return Vec::new();
+        };
         let slides = (0..ROWS).flat_map(|number| {
             let part = (number as f64 + 0.5) / ROWS as f64;
             let (x_m, y_m) = (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m));
@@ -38,16 +38,13 @@ impl Slide {
 
     /// The way along an axis through the middle of a layer, where the layer is visible for the longest.
     pub(super) fn along(axis_turns: f64, layer: usize, reference: &Reference, screen_m: (f64, f64)) -> Option<Self> {
-        let [left_m, top_m, right_m, bottom_m] = reference.bounds_m(layer)?;
-        let [x_ends_m, y_ends_m] =
-            [[left_m.max(0.0), right_m.min(screen_m.0)], [top_m.max(0.0), bottom_m.min(screen_m.1)]];
+        let [left_m, top_m, right_m, bottom_m] = bounds_m(layer, reference, screen_m)?;
+        let (middle_x_m, middle_y_m) = (0.5 * (left_m + right_m), 0.5 * (top_m + bottom_m));
         let (axis_y, axis_x) = libm::sincos(TAU * axis_turns);
-        let half_m = |[from_m, to_m]: [f64; 2]| 0.5 * (to_m - from_m);
-        let middle_m = |[from_m, to_m]: [f64; 2]| 0.5 * (from_m + to_m);
-        // Infinite along the other side of an axis that is parallel to one.
-        let length_m = (half_m(x_ends_m) / axis_x.abs()).min(half_m(y_ends_m) / axis_y.abs());
-        let at = |part_m: f64| (middle_m(x_ends_m) + part_m * axis_x, middle_m(y_ends_m) + part_m * axis_y);
-        Self::new(at(-length_m), at(length_m)).longest_visible(layer, reference)
+        // An axis along one side never meets the ends of the other: infinite.
+        let half_m = (0.5 * (right_m - left_m) / axis_x.abs()).min(0.5 * (bottom_m - top_m) / axis_y.abs());
+        let at = |part: f64| (middle_x_m + part * half_m * axis_x, middle_y_m + part * half_m * axis_y);
+        Self::new(at(-1.0), at(1.0)).longest_visible(layer, reference)
     }
 
     /// The same way back.
@@ -128,6 +125,12 @@ impl Slide {
             Context { x_m, y_m, t_s: number as f64 / sample_hz, speed_m_per_s, direction, ..Context::default() }
         })
     }
+}
+
+/// Left, top, right and bottom of the part of a layer that lies on the screen, m.
+fn bounds_m(layer: usize, reference: &Reference, screen_m: (f64, f64)) -> Option<[f64; 4]> {
+    let [left_m, top_m, right_m, bottom_m] = reference.bounds_m(layer)?;
+    Some([left_m.max(0.0), top_m.max(0.0), right_m.min(screen_m.0), bottom_m.min(screen_m.1)])
 }
 
 /// Total friction, in newtons, with the electric friction clamped to what the drive can give.

@@ -158,6 +158,9 @@ fn a_layer_that_depends_on_the_direction_is_judged_there_and_back() {
             "260.0 to 310.0 mN, 1.7 Weber steps (near the threshold) from one direction of the slide to the other"
         );
     }
+    let velvet = "kind = \"direction\"\nalong_fraction = 0.1\nagainst_fraction = 0.9\n";
+    let turned = on_example(&(plate(10, velvet) + &plate(60, &format!("{velvet}angle_deg = 90\n"))));
+    assert!(turned.alike.is_empty(), "{:?}", turned.alike);
     // Stripes that are felt only against the axis.
     let stripes = "kind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\nhigh_fraction = 0.9\n";
     let one_way = "kind = \"direction\"\nblend = \"multiply\"\nalong_factor = 0\nagainst_factor = 1\n";
