@@ -121,7 +121,10 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
     assert!(fail(folder.path(), &["fit", "data.csv", "-o", "z.toml"]).contains("--law empirical"));
     assert!(!folder.path().join("z.toml").exists());
 
-    let said = succeed(folder.path(), &["fit", "data.csv", "-o", "z.toml", "--law", "empirical"]);
+    let empirical = ["fit", "data.csv", "-o", "z.toml", "--law", "empirical"];
+    let refused = fail(folder.path(), &[&empirical[..], &["--voltage", "100"]].concat());
+    assert!(refused.contains("leave --voltage out") && !folder.path().join("z.toml").exists(), "{refused}");
+    let said = succeed(folder.path(), &empirical);
     for words in ["empirical", "strokes left out", "up to this voltage", "z.toml"] {
         assert!(said.contains(words), "{words}: {said}");
     }

@@ -387,3 +387,22 @@ fn every_way_is_as_far_off_as_it_has_to_be() {
     let rows = rows(MEASURED);
     assert!(rows.iter().all(|row| number(row, "measured_run_time_over_f64_closed_form") > 0.0));
 }
+
+/// The model's figures are then of the example finger, and what is left out is of the scene's own.
+#[test]
+fn a_scene_of_an_empirical_finger_has_a_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = "version = 2\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
+                \"2026-11-23\", method = \"load cell\", screen = \"example\", exponent = 2, points = [[120, 0.09]], \
+                intervals_n = [[0.08, 0.1]] }\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
+    fs::write(&scene, text).unwrap();
+    let files = made(&folder.path().join("out"), &[&scene.display().to_string()]);
+    let page = &files["index.html"];
+    for words in
+        ["is empirical and has no contact model: these are of the example finger", "Drawn for the example finger"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(page.contains("120 V rms"), "the scene's own finger ends there");
+}

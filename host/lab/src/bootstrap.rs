@@ -32,6 +32,14 @@ impl Estimate {
     }
 }
 
+/// Standard deviations up to which some hundreds of draws show an interval: of 499, three lie beyond on either side.
+const Z_SHOWN: f64 = 2.5;
+/// Standard deviations from which an interval is stretched further: draws of few values end soon beyond.
+const Z_STRETCHED: f64 = 2.0;
+
+/// Least number of values of a group: of fewer, draws tell next to nothing.
+pub(crate) const GROUP_MIN: usize = 3;
+
 /// Values in groups, from each of which as many are drawn as it has.
 pub(crate) struct Draws {
     groups: Vec<Vec<usize>>,
@@ -49,7 +57,7 @@ enum Expansion {
 
 impl Draws {
     /// Groups values by a key, so that each draw has as many of each as there are, as of strokes with the same highest
-    /// voltage. With fewer than three values of a key, all values are one group.
+    /// voltage. Fewer than three values of a key join the group below theirs, or else the one above.
     pub(crate) fn new<K: Ord>(keys: &[K], seed: u64) -> Self {
         let mut distinct: Vec<&K> = keys.iter().collect();
         distinct.sort_unstable();
@@ -59,8 +67,11 @@ impl Draws {
             numbered.map(|(index, _)| index).collect::<Vec<_>>()
         };
         let mut groups: Vec<_> = distinct.into_iter().map(members).collect();
-        if groups.iter().any(|group| group.len() < 3) {
-            groups = vec![(0..keys.len()).collect()];
+        while let Some(few) = groups.iter().position(|group| group.len() < GROUP_MIN).filter(|_| groups.len() > 1) {
+            let joined = groups.remove(few);
+            if let Some(group) = groups.get_mut(few.saturating_sub(1)) {
+                group.extend(joined);
+            }
         }
         Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Values }
     }
@@ -90,17 +101,87 @@ impl Draws {
         (quantile(values, part), quantile(values, 1.0 - part))
     }
 
+    /// The same interval, but where one group has fewer than half of the values of another, what rests on it alone goes
+    /// beyond its values, and the interval is stretched about the median to there. It may leave the bounds of a bounded
+    /// quantity.
+    pub(crate) fn stretched_interval(&self, values: &mut [f64], z: f64) -> (f64, f64) {
+        let expanded = self.expanded(z);
+        if expanded <= Z_SHOWN || !self.is_uneven() {
+            return self.interval(values, z);
+        }
+        values.sort_by(f64::total_cmp);
+        let (part, median) = (normal_probability(-Z_STRETCHED), quantile(values, 0.5));
+        let end = |part| median + expanded / Z_STRETCHED * (quantile(values, part) - median);
+        (end(part), end(1.0 - part))
+    }
+
+    fn is_uneven(&self) -> bool {
+        let sizes = || self.groups.iter().map(Vec::len);
+        sizes().min().zip(sizes().max()).is_some_and(|(smallest, largest)| 2 * smallest < largest)
+    }
+
     /// How many standard deviations of the draws make an interval as wide as that of the Gaussian quantile `z` for many
     /// values: Student's quantile, and the variance that draws from few values lack.
     ///
-    /// The degrees of freedom are those of one group: nearly all that is known of electric friction comes from the
-    /// strokes of the highest voltage.
+    /// The degrees of freedom are those of the smallest group: electric friction rests on the strokes of the highest
+    /// voltage, and an exponent on those of the voltage with the fewest.
     pub(crate) fn expanded(&self, z: f64) -> f64 {
         match self.expansion {
             Expansion::Values => {}
             Expansion::Errors => return z,
         }
-        let per_group = self.groups.iter().map(Vec::len).sum::<usize>() as f64 / self.groups.len() as f64;
-        (per_group / (per_group - 1.0)).sqrt() * student_quantile(z, per_group - 1.0)
+        let smallest = self.groups.iter().map(Vec::len).min().unwrap_or_default() as f64;
+        (smallest / (smallest - 1.0)).sqrt() * student_quantile(z, smallest - 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_pcg::Pcg64;
+    use rand_pcg::rand_core::{Rng, SeedableRng};
+
+    use super::{Draws, Z_95};
+    use crate::statistics::mean;
+
+    /// How many of 2,000 intervals contain the mean of Gaussian numbers that rests on four of them.
+    fn covered(interval: impl Fn(&Draws, &mut [f64]) -> (f64, f64)) -> usize {
+        let mut random = Pcg64::seed_from_u64(1);
+        let mut uniform = || ((random.next_u64() >> 11) + 1) as f64 / (1_u64 << 53) as f64;
+        let mut gaussian = || (-2.0 * uniform().ln()).sqrt() * (core::f64::consts::TAU * uniform()).cos();
+        let keys = [1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2];
+        let mut contains = |seed: u64| {
+            let values: [f64; 4] = core::array::from_fn(|_| gaussian());
+            let mut draws = Draws::new(&keys, seed);
+            let mean_of = |drawn: Vec<usize>| mean(drawn.into_iter().filter_map(|index| values.get(index).copied()));
+            let mut means: Vec<f64> = (0..499).map(|_| mean_of(draws.draw())).collect();
+            let (low, high) = interval(&draws, &mut means);
+            (low..=high).contains(&0.0)
+        };
+        (0..2_000).filter(|seed| contains(*seed)).count()
+    }
+
+    /// No draw lies beyond the four values, between which the mean is in 7 of 8 cases.
+    #[test]
+    fn intervals_that_rest_on_few_of_many_values_are_stretched_beyond_them() {
+        let drawn = covered(|draws, values| draws.interval(values, Z_95));
+        assert!((1_680..1_790).contains(&drawn), "{drawn}");
+        let stretched = covered(|draws, values| draws.stretched_interval(values, Z_95));
+        assert!((1_840..1_920).contains(&stretched), "{stretched}");
+    }
+
+    #[test]
+    fn intervals_of_even_groups_are_those_of_the_draws() {
+        let draws = Draws::new(&[1, 1, 1, 2, 2, 2, 2, 2], 1);
+        let mut values: Vec<f64> = (0..499).map(f64::from).collect();
+        assert_eq!(draws.stretched_interval(&mut values.clone(), Z_95), draws.interval(&mut values, Z_95));
+    }
+
+    #[test]
+    fn few_values_of_a_key_join_the_group_beside_theirs() {
+        let sizes = |keys: &[u8]| Draws::new(keys, 1).groups.iter().map(Vec::len).collect::<Vec<_>>();
+        assert_eq!(sizes(&[1, 1, 1, 2, 2, 2, 2]), [3, 4]);
+        assert_eq!(sizes(&[1, 1, 1, 2, 3, 3, 3]), [4, 3]);
+        assert_eq!(sizes(&[1, 2, 2, 2, 2]), [5]);
+        assert_eq!(sizes(&[1, 2]), [2]);
     }
 }

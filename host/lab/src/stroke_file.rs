@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn bad_text_is_refused_by_row_and_column() {
         for (text, message) in [
-            ("", "the header has no column t_s: name the column so, in seconds"),
+            ("", "the table is empty: give a CSV file with a header row"),
             ("t_s,x_mm,y_mm\n", "the stroke has no rows: give at least two, so that the finger moves in time"),
             (
                 "t_s,x_mm,y_mm\n0,1,2\n",

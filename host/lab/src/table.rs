@@ -69,6 +69,13 @@ pub struct Place {
     power_of_ten: i32,
 }
 
+impl Place {
+    /// The name of the column, among those of its table.
+    pub(crate) fn name_in(self, names: &[String]) -> &str {
+        names.get(self.index).map_or("", String::as_str)
+    }
+}
+
 /// What was read of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading<T> {
@@ -193,6 +200,9 @@ impl<R: Read> Table<R> {
 
     /// The error of a header that has none of these columns. A name that the caller has asked for is not suggested.
     pub(crate) fn missing(&self, columns: &[Column]) -> TableError {
+        if self.names.is_empty() {
+            return TableError::Empty;
+        }
         let likeness = |name: &str| {
             let each = columns.iter().map(|column| strsim::normalized_damerau_levenshtein(column.name, name));
             each.fold(0.0, f64::max)
@@ -318,7 +328,7 @@ impl<'t> Row<'t> {
 
     /// The name that a column has in the file.
     pub(crate) fn column(&self, place: Place) -> String {
-        self.names.get(place.index).cloned().unwrap_or_default()
+        place.name_in(self.names).to_owned()
     }
 
     /// The number in a cell; `None` if the cell is empty.
@@ -421,6 +431,7 @@ mod tests {
                 "voltage_v_rms,friction_n (mN)\n",
                 "the column `friction_n (mN)` can be read in newtons or in millinewtons: name it friction_n or friction_mn",
             ),
+            ("\u{feff}\n\n", "the table is empty: give a CSV file with a header row"),
             (
                 "voltage_v_rms,friction_mn,friction [N]\n",
                 "the header has one quantity twice, friction_mn and friction [N]: leave one of them out",

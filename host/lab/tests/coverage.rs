@@ -148,3 +148,22 @@ fn nine_of_ten_plants_that_break_the_law_are_refused_or_covered() {
         assert!(caught >= 96, "{law:?}: {caught} of 100");
     }
 }
+
+/// Recordings of few strokes, and of few strokes at the highest voltage.
+#[test]
+#[ignore = "minutes: cargo xtask soak people"]
+fn intervals_of_few_strokes_cover() {
+    let few = |strokes: usize| Protocol { strokes, ..Protocol::default() };
+    let mut uneven = vec![75.0; 32];
+    uneven.extend([150.0; 4]);
+    let uneven = Protocol { voltages_v_rms: uneven, ..Protocol::default() };
+    for (what, protocol) in [("9", few(9)), ("12", few(12)), ("4 of 36 at 150 V", uneven)] {
+        let mut tally = Tally::default();
+        for seed in 0..MANY {
+            let person = person::Person { drift: 0.0, ..person::Person::drawn(seed) };
+            tally.add(fit(person.record(&protocol), &settings()), |load_n| person.truth(load_n));
+        }
+        tally.print(&format!("{what} strokes"));
+        assert!(tally.share(tally.electric) >= 0.89, "{what}: {}", tally.share(tally.electric));
+    }
+}

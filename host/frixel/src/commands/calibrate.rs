@@ -43,8 +43,8 @@ pub(super) struct CalibrateArgs {
     /// Highest voltage, in volts rms, at most 150. Without it, 150 or what the board allows.
     #[arg(long, value_name = "V_RMS", value_parser = experiment::voltage)]
     voltage: Option<f64>,
-    /// Number of strokes, 8 to 360. Each takes 1.8 s; the interval narrows with the root of their number.
-    #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(8..=360))]
+    /// Number of strokes, 9 to 360. Each takes 1.8 s; the interval narrows with the root of their number.
+    #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(9..=360))]
     strokes: u16,
     /// Simulated person: another one for each seed. Without it, the example finger.
     #[arg(long, value_name = "N")]

@@ -95,6 +95,11 @@ pub(crate) enum CommandError {
     )]
     VoltageAboveBoard { found: f64, limit_v_rms: f64 },
     #[error(
+        "--voltage {found} states the friction of the contact model, and an empirical law is stated at the highest voltage \
+         of the data: leave --voltage out"
+    )]
+    VoltageOfLaw { found: f64 },
+    #[error(
         "--finger-seed draws the finger of --port sim only; the finger on {port} is its own: leave --finger-seed out"
     )]
     FingerOnBoard { port: String },

@@ -17,6 +17,9 @@ use super::argument::positive;
 use super::error::CommandError;
 use super::terminal::{note_understood, print_line, say};
 
+/// Voltage at which electric friction is stated if none is given, in volts rms.
+const STATED_V_RMS: f64 = 150.0;
+
 #[derive(Debug, Args)]
 pub(super) struct FitArgs {
     /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and, if there are,
@@ -49,9 +52,10 @@ pub(super) struct FitArgs {
     /// example screen. The profile holds for this screen.
     #[arg(long, value_name = "SCREEN")]
     screen: Option<String>,
-    /// Voltage at which electric friction is stated, in volts rms.
-    #[arg(long, value_name = "V_RMS", default_value_t = 150.0, value_parser = positive)]
-    voltage: f64,
+    /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical law
+    /// is stated at the highest voltage of the data.
+    #[arg(long, value_name = "V_RMS", value_parser = positive)]
+    voltage: Option<f64>,
     /// Normal load of the profile, in newtons; without it, the median of the data.
     #[arg(long, value_name = "N", value_parser = positive)]
     load: Option<f64>,
@@ -72,8 +76,8 @@ pub(super) struct FitArgs {
 enum Law {
     /// The contact model, which data that contradict it refuse.
     Contact,
-    /// A power of the voltage that is fitted to the data: for a finger that the contact model does not describe, on this
-    /// screen, under this load and up to the highest voltage of the data.
+    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a finger
+    /// that the contact model does not describe, on this screen, under this load and up to the highest voltage of the data.
     Empirical,
 }
 
@@ -117,10 +121,13 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     let (Some(path), false) = (&args.data, args.recipe.as_deref() == Some("")) else {
         return print_recipes(args.recipe.as_deref().unwrap_or_default());
     };
+    if let (Law::Empirical, Some(found)) = (args.law, args.voltage) {
+        return Err(CommandError::VoltageOfLaw { found });
+    }
     let (screen_name, screen) = screen(args.screen.as_deref())?;
     let outputs = args.output.as_deref().map(|output| Outputs::new(args, path, output)).transpose()?;
     let settings = Settings {
-        voltage_v_rms: args.voltage,
+        voltage_v_rms: args.voltage.unwrap_or(STATED_V_RMS),
         normal_load_n: args.load,
         coating_gap_m: 1e-6 * screen.coating_gap_um(),
         without: args.without.clone(),
@@ -139,7 +146,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     note_understood(path, understood.as_deref());
     let fit = match args.law {
         Law::Contact => fit::fit_data(data, &settings).map(|fit| Fitted::Contact(Box::new(fit))),
-        Law::Empirical => fit::fit_power_law(data, &settings).map(Fitted::Empirical),
+        Law::Empirical => fit::fit_empirical(data, &settings).map(Fitted::Empirical),
     };
     let fit = fit.map_err(refused)?;
     if let Some(outputs) = &outputs {

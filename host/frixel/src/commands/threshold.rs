@@ -113,6 +113,12 @@ fn report(
         "threshold", interval_v_rms[0], interval_v_rms[1]
     ))?;
     print_line(format_args!("  {:<16} {highest:.0} V rms is {:.0} dB above it", "highest", -level_db))?;
+    if threshold.is_near_largest() {
+        print_line(format_args!(
+            "  {:<16} so near the highest voltage, luck makes thresholds too low: 7 of 10 such intervals contain them",
+            "note"
+        ))?;
+    }
     let mut method = format!("two-alternative staircase, {} trials, {STIMULUS_HZ} Hz", args.trials);
     if let Some(seed) = args.observer {
         // Writing to a string cannot fail.

@@ -36,15 +36,6 @@ pub enum ReportError {
         /// Error of the parser.
         source: serde_json::Error,
     },
-    /// The finger of the scene has an empirical law.
-    #[error(
-        "the report is about the contact model, and {title} is empirical: draw it for another one with --finger; `frixel \
-         scene check --board` says what a board needs for the scene"
-    )]
-    EmpiricalFinger {
-        /// The finger, for a person.
-        title: String,
-    },
     /// A picture could not be drawn.
     #[error("{name} cannot be drawn ({reason})")]
     Drawing {

@@ -18,7 +18,7 @@ use super::{command, frixel, succeed};
 /// Strokes at a speed at which friction follows the drive.
 const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--minimum-jerk"];
 /// The fewest strokes that can be fitted, which take 14 s.
-const FEW: [&str; 2] = ["--strokes", "8"];
+const FEW: [&str; 2] = ["--strokes", "9"];
 
 /// A minute of naps of 50 ms: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 1_200;
@@ -48,7 +48,7 @@ fn calibrate(folder: &Path, arguments: &[&str], run: fn(&Path, &[&str]) -> Outpu
         (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
     });
     let said = String::from_utf8(said.unwrap()).unwrap();
-    assert!(said.contains("8 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
+    assert!(said.contains("9 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
 }
 
 /// Runs a command whose standard input is what the virtual board's sensor measures meanwhile.

@@ -131,7 +131,7 @@ fn friction() -> &'static str {
     RECORDING.get_or_init(|| {
         let folder = TempDir::new().unwrap();
         let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-        command.args(["calibrate", "--strokes", "8", "-o", "data.csv"]).current_dir(folder.path());
+        command.args(["calibrate", "--strokes", "9", "-o", "data.csv"]).current_dir(folder.path());
         let output = command.output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         fs::read_to_string(folder.path().join("data.csv")).unwrap()

@@ -78,7 +78,7 @@ fn no_recording_is_replaced_without_overwrite() {
     let board = VirtualBoard::start(&folder, "sim --out board --from 10,20 --to 90,20");
     for line in [
         format!("record --port {} --seconds 0.5 -o mine", board.port),
-        "calibrate --strokes 8 -o mine".to_owned(),
+        "calibrate --strokes 9 -o mine".to_owned(),
         "threshold --port sim --trials 12 -o mine".to_owned(),
     ] {
         folder.write("mine", "mine");
@@ -247,6 +247,11 @@ fn a_killed_threshold_session_goes_on_after_its_last_answer() {
     let other = folder.run(&format!("{line} --finish --voltage 100"));
     assert!(other.code == Some(1) && other.notes.contains("give the options of the session"), "{}", other.notes);
     assert!(!other.notes.contains("add --finish"), "it is there already: {}", other.notes);
+    let answers = folder.text("person.toml.partial");
+    let simulated = folder.run("threshold --observer 3 --trials 12 -o person.toml --finish");
+    let says = "row 2, column observer: expected 3, found person";
+    assert!(simulated.code == Some(1) && simulated.notes.contains(says), "{}", simulated.notes);
+    assert_eq!(folder.text("person.toml.partial"), answers, "no simulated answer is among those of a person");
 
     let mut command = folder.command(&format!("{line} --finish"));
     let mut child = command.spawn().unwrap();

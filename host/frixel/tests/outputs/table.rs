@@ -76,7 +76,7 @@ pub(crate) const OUTPUTS: [Output; 15] = [
         is_reproducible: false,
         ..recording("record output", "record --port nowhere -o OUT", "", &["OUT"])
     },
-    recording("calibrate output", "calibrate --strokes 8 --forces IN -o OUT", "forces.csv", &["OUT"]),
+    recording("calibrate output", "calibrate --strokes 9 --forces IN -o OUT", "forces.csv", &["OUT"]),
     recording("threshold output", "threshold --port sim --trials 12 --screen IN -o OUT", "screen.toml", &["OUT"]),
     result("threshold noise", "threshold --noise OUT", "", &["OUT"]),
     result("model eval output", "model eval --input IN --output OUT", "points.csv", &["OUT"]),

@@ -1,95 +1,122 @@
-//! A power law of the voltage, for fingers that the contact model does not describe.
+//! A law of the voltage that data give without a model, for fingers that the contact model does not describe: a power of
+//! the voltage, or else points.
 
 use std::fmt::Write;
 
 use frixel_scene::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw};
 
-use super::contrast::LEVEL_WIDTH;
 use super::error::FitError;
 use super::least_squares::Solution;
+use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels, mean_and_error};
 use super::profile::rounded;
-use super::{Data, Division, FittedData, HeldOut, Settings, StrokeResult, results, verdict};
-use crate::bootstrap::{Estimate, Z_999};
+use super::{Data, Division, FittedData, HeldOut, Point, Settings, StrokeResult, results, verdict};
+use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
 
-/// Least number of strokes at a voltage that tell whether a power law holds there.
-const STROKES_MIN: usize = 3;
 /// Difference from a power law that is allowed, as a part of electric friction: that of the contact model at the
 /// friction of the example finger.
 const LAW_SHARE: f64 = 0.05;
-/// Powers that a profile may have (`docs/scene.md`, "Empirical fingers").
-const EXPONENTS: core::ops::RangeInclusive<f64> = 0.5..=12.0;
 
-/// A finger whose electric friction is `electric_friction_n (V/voltage_max_v_rms)^voltage_exponent`.
+/// A finger with a measured law of the voltage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EmpiricalFit {
     /// Friction over load with the drive off.
     pub friction_coefficient: Estimate,
-    /// Exponent of the voltage.
-    pub voltage_exponent: Estimate,
-    /// Highest voltage of the data, in volts rms; the law ends there.
-    pub voltage_max_v_rms: f64,
-    /// What that voltage adds to the friction, in newtons.
-    pub electric_friction_n: Estimate,
+    /// The law up to its highest point.
+    pub law: VoltageLaw,
+    /// The highest voltage of the data, where the law ends, and what it adds to the friction.
+    pub highest: MeasuredPoint,
     /// Normal load at which this holds, in newtons.
     pub normal_load_n: f64,
-    /// Errors in strokes that a fit has not seen; `None` for means, and if a fit without one stroke does not converge.
-    pub held_out: Option<HeldOut>,
+    /// Root mean square error of electric friction in strokes that a fit has not seen, and its mean, in newtons; `None`
+    /// for means, and if a fit without one stroke does not converge.
+    pub held_out_n: Option<(f64, f64)>,
     /// Number of strokes, or of means.
     pub strokes: usize,
     /// How rows were divided into strokes.
     pub division: Division,
 }
 
-/// Fits a power law of the voltage to a recording or to means, whatever the contact model says about them. Fails if
-/// electric friction follows no power law either.
-pub fn fit_power_law(data: Data, settings: &Settings) -> Result<EmpiricalFit, FitError> {
+/// How electric friction grows up to the highest voltage of the data.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VoltageLaw {
+    /// As a power of the voltage.
+    Power {
+        /// The power.
+        exponent: Estimate,
+    },
+    /// By power laws through points.
+    Points {
+        /// The points below the highest voltage, rising.
+        below: Vec<MeasuredPoint>,
+        /// Power of the voltage below the first of them.
+        exponent: f64,
+    },
+}
+
+/// Fits a power law of the voltage to a recording or to means, whatever the contact model says about them; where the strokes
+/// of a recording follow none, the law is that of their means at each voltage. Fails if electric friction does not rise with
+/// the voltage as a profile can have it.
+pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, FitError> {
     let data = FittedData::of(data, settings)?;
-    let voltage_max_v_rms = data.voltage_range_v_rms.1;
-    let electric_friction_n = |solution: &Solution| {
-        let attraction_n = solution.attraction.attraction_n(voltage_max_v_rms, data.normal_load_n)?;
+    let friction_coefficient = data.friction_coefficient(|replicate| &replicate.power)?;
+    let strokes = results(&data.strokes, &data.fitted.best.power).ok_or(FitError::NotConverged)?;
+    let (law, highest, held_out_n) = match power_law(&data, &strokes) {
+        Err(FitError::NoPowerLaw { .. }) if data.division != Division::Means => {
+            points(&data, &strokes, &friction_coefficient)?
+        }
+        fitted => fitted?,
+    };
+    verdict::check_estimates(data.division, &strokes, &friction_coefficient, &highest.electric_friction_n)?;
+    let (normal_load_n, division) = (data.normal_load_n, data.division);
+    Ok(EmpiricalFit { friction_coefficient, law, highest, normal_load_n, held_out_n, strokes: strokes.len(), division })
+}
+
+type Law = (VoltageLaw, MeasuredPoint, Option<(f64, f64)>);
+
+/// The power law of the data. Fails if their means at a voltage lie beside it.
+fn power_law(data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitError> {
+    let voltage_v_rms = data.voltage_range_v_rms.1;
+    let of = |solution: &Solution| {
+        let attraction_n = solution.attraction.attraction_n(voltage_v_rms, data.normal_load_n)?;
         Some(solution.friction_coefficient * attraction_n)
     };
-    let fit = EmpiricalFit {
-        friction_coefficient: data.friction_coefficient,
-        voltage_exponent: data.fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?,
-        voltage_max_v_rms,
-        electric_friction_n: data.fitted.estimate(|replicate| electric_friction_n(&replicate.power))?,
-        normal_load_n: data.normal_load_n,
-        held_out: data.held_out,
-        strokes: data.strokes.len(),
-        division: data.division,
-    };
-    let exponent = fit.voltage_exponent.value;
-    if !EXPONENTS.contains(&exponent) {
-        return Err(FitError::ExponentOutOfRange { exponent });
+    let exponent = data.fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?;
+    if !EXPONENTS.contains(&exponent.value) {
+        return Err(FitError::ExponentOutOfRange { exponent: exponent.value });
     }
-    let strokes = results(&data.strokes, &data.fitted.best.power).ok_or(FitError::NotConverged)?;
+    let Estimate { value, low, high } = data.fitted.estimate(|replicate| of(&replicate.power))?;
     // What the strokes of the highest voltage say without the law.
-    let beside_n = check_law(&strokes)?;
-    let Estimate { value, low, high } = fit.electric_friction_n;
-    let electric_friction_n = Estimate { value, low: low.min(value + beside_n), high: high.max(value + beside_n) };
-    verdict::check_estimates(fit.division, &strokes, &fit.friction_coefficient, &electric_friction_n)?;
-    Ok(EmpiricalFit { electric_friction_n, ..fit })
+    let beside_n = value + check_law(strokes)?;
+    let electric_friction_n = Estimate { value, low: low.min(beside_n), high: high.max(beside_n) };
+    let held_out_n = data.held_out.map(|held_out| (held_out.power_law_error_n, held_out.mean_n));
+    Ok((VoltageLaw::Power { exponent }, MeasuredPoint { voltage_v_rms, electric_friction_n }, held_out_n))
+}
+
+/// The law of the means at each voltage.
+fn points(data: &FittedData, strokes: &[StrokeResult], friction_coefficient: &Estimate) -> Result<Law, FitError> {
+    let Estimate { value, low, high } = *friction_coefficient;
+    let attraction = &data.fitted.best.power.attraction;
+    let law = LawOfPoints::of(strokes, attraction, data.normal_load_n, (high - low) / (2.0 * value))?;
+    let LawOfPoints { points: mut below, exponent, held_out_error_n } = law;
+    let highest = below.pop().ok_or(FitError::NotConverged)?;
+    let measured_n = strokes.iter().flat_map(|stroke| &stroke.points).map(|point| point.measured_n);
+    Ok((VoltageLaw::Points { below, exponent }, highest, Some((held_out_error_n, mean(measured_n)))))
 }
 
 /// Fails if the means of the strokes at a voltage lie beside the law by more than their 99.9 % interval and 5 %. Returns
 /// how far those of the highest voltage lie beside it, in newtons; 0 if they are too few to tell.
 fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
     let mut beside_n = 0.0;
-    let mut points: Vec<_> = strokes.iter().flat_map(|stroke| &stroke.points).collect();
-    points.sort_by(|one, other| one.voltage_v_rms.total_cmp(&other.voltage_v_rms));
-    for level in points.chunk_by(|one, next| next.voltage_v_rms <= LEVEL_WIDTH * one.voltage_v_rms) {
+    for level in levels(strokes) {
         beside_n = 0.0;
-        if level.len() < STROKES_MIN {
+        if level.len() < GROUP_MIN {
             continue;
         }
-        let count = level.len() as f64;
-        let over = |value: &dyn Fn(usize) -> f64| mean((0..level.len()).map(value));
-        let at = |index: usize| level.get(index).map_or((f64::NAN, f64::NAN), |one| (one.measured_n, one.residual_n));
-        let (measured_n, residual_n) = (over(&|index| at(index).0), over(&|index| at(index).1));
-        let square = over(&|index| (at(index).1 - residual_n).powi(2));
-        let error_n = student_quantile(Z_999, count - 1.0) * (square / (count - 1.0)).sqrt();
+        let over = |value: fn(&Point) -> f64| level.iter().map(value).collect::<Vec<_>>();
+        let (residual_n, error_n) = mean_and_error(&over(|point| point.residual_n));
+        let measured_n = mean(over(|point| point.measured_n).into_iter());
+        let error_n = student_quantile(Z_999, level.len() as f64 - 1.0) * error_n;
         let law_n = measured_n - residual_n;
         if residual_n.abs() > error_n + LAW_SHARE * law_n.abs() {
             let voltage_v_rms = level.first().map_or(f64::NAN, |one| one.voltage_v_rms);
@@ -106,17 +133,34 @@ fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
 }
 
 impl EmpiricalFit {
-    /// The profile of this finger: one point, and the exponent below it.
+    /// The points below the highest, and the power of the voltage below the lowest.
+    fn below(&self) -> (&[MeasuredPoint], f64) {
+        match &self.law {
+            VoltageLaw::Power { exponent } => (&[], exponent.value),
+            VoltageLaw::Points { below, exponent } => (below, *exponent),
+        }
+    }
+
+    /// All points, rising.
+    fn points(&self) -> impl Iterator<Item = &MeasuredPoint> {
+        self.below().0.iter().chain([&self.highest])
+    }
+
+    /// The profile of this finger.
     pub fn profile(&self, experiment: Experiment) -> FingerProfile {
-        let Estimate { value, low, high } = self.electric_friction_n;
+        let point = |point: &MeasuredPoint| (rounded(point.voltage_v_rms), rounded(point.electric_friction_n.value));
+        let interval_n = |point: &MeasuredPoint| {
+            let Estimate { low, high, .. } = point.electric_friction_n;
+            (rounded(low), rounded(high))
+        };
         FingerProfile {
             friction_coefficient: rounded(self.friction_coefficient.value),
             normal_load_n: rounded(self.normal_load_n),
             radius_mm: 0.0,
             elasticity: Elasticity::Empirical(MeasuredLaw {
-                exponent: rounded(self.voltage_exponent.value),
-                points: vec![(rounded(self.voltage_max_v_rms), rounded(value))],
-                intervals_n: vec![(rounded(low), rounded(high))],
+                exponent: rounded(self.below().1),
+                points: self.points().map(point).collect(),
+                intervals_n: self.points().map(interval_n).collect(),
             }),
             skin_gap_um: 0.0,
             evidence: Evidence::Empirical { experiment },
@@ -134,20 +178,34 @@ impl EmpiricalFit {
             let [value, low, high] = [value, low, high].map(|number| scale * number);
             format!("{value:.digits$} (95 % interval {low:.digits$} to {high:.digits$})")
         };
-        let (voltage, load_n) = (self.voltage_max_v_rms, self.normal_load_n);
-        line("law", "empirical: a power of the voltage, without the contact model".to_owned());
+        let law = match self.law {
+            VoltageLaw::Power { .. } => "a power of the voltage, without the contact model",
+            VoltageLaw::Points { .. } => "points that power laws join, since no power of the voltage fits them all",
+        };
+        line("law", format!("empirical: {law}"));
         line("friction coefficient", interval(self.friction_coefficient, 1.0, 3));
-        let electric = interval(self.electric_friction_n, 1e3, 1).replacen(" (", " mN (", 1);
-        line("electric friction", format!("{electric} at {voltage:.0} V rms under {load_n:.2} N"));
-        line("exponent of the voltage", interval(self.voltage_exponent, 1.0, 2));
-        if let Some(held_out) = &self.held_out {
-            line("strokes left out", held_out.words(held_out.power_law_error_n));
+        for MeasuredPoint { voltage_v_rms, electric_friction_n } in self.points() {
+            let electric = interval(*electric_friction_n, 1e3, 1).replacen(" (", " mN (", 1);
+            let load_n = self.normal_load_n;
+            line("electric friction", format!("{electric} at {voltage_v_rms:.0} V rms under {load_n:.2} N"));
+        }
+        if let VoltageLaw::Power { exponent } = self.law {
+            line("exponent of the voltage", interval(exponent, 1.0, 2));
+        }
+        if let Some((error_n, mean_n)) = self.held_out_n {
+            line("strokes left out", HeldOut::words(error_n, mean_n));
         }
         let what = if self.division == Division::Means { "means with their errors" } else { "strokes" };
         line("data", format!("{} {what}", self.strokes));
+        let below = match self.law {
+            VoltageLaw::Power { .. } => "nobody measured that friction goes on by the same power".to_owned(),
+            VoltageLaw::Points { exponent, .. } => {
+                format!("friction is taken to grow as voltage to the power {exponent:.1}")
+            }
+        };
         let notes = [
             "the law holds for this screen and this load, and up to this voltage: above it, scenes are refused",
-            "below the lowest voltage of the data, nobody measured that friction goes on by the same power",
+            &format!("below the lowest voltage of the data, {below}"),
         ];
         for note in notes {
             let _ = writeln!(text, "  note: {note}");
@@ -158,17 +216,26 @@ impl EmpiricalFit {
     /// The fit for programs.
     pub fn json(&self) -> serde_json::Value {
         let interval = |estimate: Estimate| [estimate.low, estimate.high];
+        let exponent = match self.law {
+            VoltageLaw::Power { exponent } => Some(exponent),
+            VoltageLaw::Points { .. } => None,
+        };
+        let electric_friction_n = self.highest.electric_friction_n;
+        let points: Vec<_> = self.points().map(|one| [one.voltage_v_rms, one.electric_friction_n.value]).collect();
+        let intervals_n: Vec<_> = self.points().map(|point| interval(point.electric_friction_n)).collect();
         serde_json::json!({
             "law": "empirical",
             "friction_coefficient": self.friction_coefficient.value,
             "friction_coefficient_interval": interval(self.friction_coefficient),
-            "voltage_exponent": self.voltage_exponent.value,
-            "voltage_exponent_interval": interval(self.voltage_exponent),
-            "voltage_max_v_rms": self.voltage_max_v_rms,
-            "electric_friction_n": self.electric_friction_n.value,
-            "electric_friction_interval_n": interval(self.electric_friction_n),
+            "voltage_exponent": exponent.map(|exponent| exponent.value),
+            "voltage_exponent_interval": exponent.map(interval),
+            "voltage_max_v_rms": self.highest.voltage_v_rms,
+            "electric_friction_n": electric_friction_n.value,
+            "electric_friction_interval_n": interval(electric_friction_n),
+            "points": points,
+            "intervals_n": intervals_n,
             "normal_load_n": self.normal_load_n,
-            "held_out_error_n": self.held_out.map(|held_out| held_out.power_law_error_n),
+            "held_out_error_n": self.held_out_n.map(|(error_n, _)| error_n),
             "strokes": self.strokes,
         })
     }

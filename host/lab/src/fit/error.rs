@@ -13,8 +13,8 @@ pub enum FitError {
     Table(#[from] TableError),
     /// A voltage is negative.
     #[error(
-        "row {row}, column voltage_v_rms: {found} V is below zero: give the root mean square of the drive, which has \
-         no sign"
+        "row {row}, column voltage_v_rms: {} V is below zero: give the root mean square of the drive, which has no sign",
+        plain(*.found)
     )]
     NegativeVoltage {
         /// Number of the row.
@@ -33,14 +33,24 @@ pub enum FitError {
     },
     /// A voltage is above what any driver board has.
     #[error(
-        "row {row}, column voltage_v_rms: {found} V is above 1000 V: give volts rms, not DAC codes, or \
-         name the column voltage_mv_rms if it is in millivolts"
+        "row {row}, column voltage_v_rms: {} V is above 1000 V: give volts rms, not DAC codes, or name the column \
+         voltage_mv_rms if it is in millivolts",
+        plain(*.found)
     )]
     VoltageTooHigh {
         /// Number of the row.
         row: u64,
         /// The voltage.
         found: f64,
+    },
+    /// The highest voltage is below what adds friction.
+    #[error(
+        "the highest voltage of voltage_v_rms is {max} V, and below 1 V a drive adds no friction that can be measured: name \
+         the column voltage_kv_rms if it is in kilovolts"
+    )]
+    VoltageTooLow {
+        /// Highest voltage of the data.
+        max: f64,
     },
     /// Time goes backwards.
     #[error(
@@ -60,8 +70,9 @@ pub enum FitError {
     NoLoads,
     /// The load is not that of a finger on a touchscreen.
     #[error(
-        "the median of normal_force_n is {median}, and a finger on a touchscreen presses with 0.03 to 3 N: the column \
-         {guess}; give newtons, or name the column normal_force_mn if it is in millinewtons"
+        "the median of normal_force_n is {}, and a finger on a touchscreen presses with 0.03 to 3 N: the column {guess}; \
+         give newtons, or name the column normal_force_mn if it is in millinewtons",
+        plain(*.median)
     )]
     LoadUnit {
         /// Median of the column.
@@ -84,8 +95,9 @@ pub enum FitError {
     },
     /// A force is none of a finger.
     #[error(
-        "row {row}, column {column}: {found_n} N is no force of a finger: correct the cell, or name the column \
-         friction_mn or normal_force_mn if it is in millinewtons"
+        "row {row}, column {column}: {} N is no force of a finger: correct the cell, or name the column friction_mn or \
+         normal_force_mn if it is in millinewtons",
+        plain(*.found_n)
     )]
     ForceTooHigh {
         /// Number of the row.
@@ -112,18 +124,29 @@ pub enum FitError {
         /// What was found.
         found: f64,
     },
-    /// An error is not above zero.
+    /// An error is none of a measured force.
     #[error(
-        "row {row}: the standard error of {found_n} N is not above zero: give the error of the mean, or leave the row out"
+        "row {row}: the standard error of {} N is none of a measured force, which is 1 nN to 50 N: give the error of the \
+         mean, or leave the row out",
+        plain(*.found_n)
     )]
-    ErrorNotPositive {
+    ErrorOutOfRange {
         /// Number of the row.
         row: u64,
         /// The standard error, in newtons.
         found_n: f64,
     },
+    /// Means are not strokes.
+    #[error("--without {stroke}: a table of means has no strokes: delete the row of the mean that is to be left out")]
+    MeansWithout {
+        /// What was asked for.
+        stroke: String,
+    },
     /// A mean has no load.
-    #[error("row {row}, column normal_force_n: {found_n} N is no load: give the mean normal force of that row")]
+    #[error(
+        "row {row}, column normal_force_n: {} N is no load: give the mean normal force of that row",
+        plain(*.found_n)
+    )]
     MeanWithoutLoad {
         /// Number of the row.
         row: u64,
@@ -142,7 +165,8 @@ pub enum FitError {
     #[error(
         "the means lie {times:.1} times their stated errors from the closest power law, and chance does that \
          in fewer than 1 of 1,000 tables: check that errors are standard errors, that voltages are rms, and that all \
-         rows are of the same fingers"
+         rows are of the same fingers; if so, electric friction follows no power of the voltage: write its points into a \
+         profile (docs/scene.md, \"Empirical fingers\")"
     )]
     MeansScatter {
         /// Root of the mean square of deviations over errors.
@@ -158,6 +182,19 @@ pub enum FitError {
         found: usize,
         /// Least number of strokes.
         needed: usize,
+    },
+    /// Too few strokes at a voltage that an interval rests on.
+    #[error(
+        "{found} of the strokes have {voltage_v_rms:.0} V rms, too few for an interval there: record at least {needed}, as many as \
+         at the other voltages are best, or leave them out with --without"
+    )]
+    TooFewAtVoltage {
+        /// Number of strokes of this voltage.
+        found: usize,
+        /// Least number of strokes.
+        needed: usize,
+        /// The voltage, in volts rms.
+        voltage_v_rms: f64,
     },
     /// Too few rows to divide into blocks.
     #[error(
@@ -237,8 +274,7 @@ pub enum FitError {
     },
     /// An interval is too wide.
     #[error(
-        "the 95 % interval of the {quantity} is {low:.4} to {high:.4} around {value:.4}, wider than +-20 %: record \
-         more strokes, more evenly"
+        "the 95 % interval of the {quantity} is {low:.4} to {high:.4} around {value:.4}, wider than +-20 %: {advice}"
     )]
     TooUncertain {
         /// The quantity with its unit.
@@ -249,12 +285,14 @@ pub enum FitError {
         high: f64,
         /// Estimate.
         value: f64,
+        /// What narrows it.
+        advice: &'static str,
     },
     /// The force sensor is too slow.
     #[error(
         "the force sensor is too slow: friction takes {rise_ms:.1} ms from 10 to 90 % of its way after a switch of the \
          drive, as with a bandwidth of {bandwidth_hz:.0} Hz, so that electric friction would come out too small; use \
-         a sensor, and a filter behind it, of at least 200 Hz, with at least 500 rows a second"
+         a sensor, and a filter behind it, of at least 200 Hz, with at least 250 rows a second"
     )]
     SlowSensor {
         /// Rise time in milliseconds.
@@ -310,6 +348,31 @@ pub enum FitError {
         /// 99.9 % half-interval of the mean, in millinewtons.
         error_mn: f64,
     },
+    /// A profile has fewer points than the data have voltages.
+    #[error(
+        "electric friction follows no power of the voltage, and has {found} voltages, where a profile has at most {max} points: \
+         leave strokes of some voltages out with --without"
+    )]
+    TooManyPoints {
+        /// Number of voltages.
+        found: usize,
+        /// Most points of a profile.
+        max: usize,
+    },
+    /// Friction between two voltages has no power that a profile can have.
+    #[error(
+        "electric friction follows no power of the voltage, and from {low_v_rms:.0} to {high_v_rms:.0} V rms it grows as voltage to \
+         the power {exponent:.2}, where a profile takes 0.5 to 12: {}",
+        rise_cure(*.exponent)
+    )]
+    NoRise {
+        /// Power of the voltage.
+        exponent: f64,
+        /// The lower voltage, in volts rms.
+        low_v_rms: f64,
+        /// The higher voltage, in volts rms.
+        high_v_rms: f64,
+    },
     /// No profile has such an exponent.
     #[error(
         "electric friction grows as voltage to the power {exponent:.2}, and a profile takes 0.5 to 12: check for a \
@@ -336,6 +399,21 @@ pub enum FitError {
          rows"
     )]
     NotConverged,
+}
+
+/// What to do about friction between two voltages that has no power of a profile.
+fn rise_cure(exponent: f64) -> &'static str {
+    if exponent > 12.0 {
+        "record strokes at voltages between them"
+    } else {
+        "check that the amplifier reaches the higher one; if it does, this finger is played up to the lower one: leave the \
+         strokes above that out with --without"
+    }
+}
+
+/// A number without hundreds of zeros.
+fn plain(value: f64) -> String {
+    if value != 0.0 && !(1e-6..1e7).contains(&value.abs()) { format!("{value:e}") } else { value.to_string() }
 }
 
 /// What bends the measured exponent of a quantity, which a factor on volts or newtons does not; and what to do if

@@ -18,9 +18,9 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
-    /// An error in words.
-    pub(super) fn words(&self, error_n: f64) -> String {
-        let percent = 100.0 * error_n / self.mean_n;
+    /// An error, and the mean electric friction, in words.
+    pub(super) fn words(error_n: f64, mean_n: f64) -> String {
+        let percent = 100.0 * error_n / mean_n;
         format!("their electric friction is predicted within {:.1} mN rms, {percent:.1} %", 1e3 * error_n)
     }
 

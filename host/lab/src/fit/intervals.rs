@@ -57,7 +57,7 @@ impl Fitted {
     /// A value, with the 95 % interval of a number of the fits.
     fn estimate_about(&self, value: f64, of: impl Fn(&Replicate) -> Option<f64>) -> Estimate {
         let mut values: Vec<f64> = self.replicates.iter().filter_map(of).collect();
-        let (low, high) = self.draws.interval(&mut values, Z_95);
+        let (low, high) = self.draws.stretched_interval(&mut values, Z_95);
         Estimate { value, low: low.min(value), high: high.max(value) }
     }
 

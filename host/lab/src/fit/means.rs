@@ -33,6 +33,9 @@ const NUMBER: Column = Column::new("n", "");
 /// Least number of means: friction coefficient and coupling are fitted, and something must be left to judge them.
 const MEANS_MIN: usize = 3;
 
+/// Standard errors of a measured force, in newtons: squares of others leave the range of numbers.
+const ERRORS_N: core::ops::RangeInclusive<f64> = 1e-9..=50.0;
+
 /// Mean friction at one voltage and load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanRow {
@@ -85,10 +88,10 @@ impl Errors {
             (None, Some(place), Some(count)) => row.real(place)? / count.sqrt(),
             _ => return Err(FitError::DeviationWithoutNumber),
         };
-        if error_n > 0.0 {
+        if ERRORS_N.contains(&error_n) {
             Ok((error_n, count))
         } else {
-            Err(FitError::ErrorNotPositive { row: number, found_n: error_n })
+            Err(FitError::ErrorOutOfRange { row: number, found_n: error_n })
         }
     }
 }
@@ -116,6 +119,9 @@ pub(super) fn read<R: Read>(mut table: Table<R>, errors: &Errors) -> Result<Read
 
 /// Fits laws to means. Fails if they scatter more than their errors explain.
 pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, FitError> {
+    if let Some(stroke) = settings.without.first() {
+        return Err(FitError::MeansWithout { stroke: stroke.clone() });
+    }
     let voltage_range_v_rms = check(rows)?;
     let loads = || rows.iter().map(|row| row.normal_force_n);
     let load_range_n = (loads().fold(f64::INFINITY, f64::min), loads().fold(0.0, f64::max));
@@ -139,7 +145,6 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, F
     let fitted = Fitted::of_draws(best, replicates, Draws::of_errors())?;
     check_scatter(&observations, &freedoms, &fitted)?;
     Ok(FittedData {
-        friction_coefficient: fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?,
         fitted,
         strokes,
         observations,
@@ -402,6 +407,7 @@ mod tests {
             (format!("{header},friction_sd_n,friction_se_n,n\n"), "leave one of them out"),
             (format!("{header},friction_se_n,n\n0,0.5,0.2,0.01,1\n"), "row 2, column n: expected a whole number"),
             (format!("{header},friction_se_n\n0,0.5,0.2,0\n"), "row 2: the standard error of 0 N"),
+            (format!("{header},friction_se_n\n0,0.5,0.2,1e300\n"), "row 2: the standard error of 1e300 N"),
             (format!("{header},friction_se_n\n0,0.5,0.2,0.01\n"), "1 means are too few"),
             (
                 format!("{header},friction_se_n\n10,0.5,0.2,0.01\n75,0.5,0.2,0.01\n150,0.5,0.2,0.01\n"),
@@ -412,5 +418,21 @@ mod tests {
             let found = fitted(&text).unwrap_err().to_string();
             assert!(found.contains(said), "{found}");
         }
+    }
+
+    #[test]
+    fn a_mean_is_not_left_out_as_a_stroke() {
+        let settings = Settings { without: vec!["3".to_owned()], ..settings() };
+        let data = data(table(None, 1.0, 16, &[0.5]).as_bytes()).unwrap().value;
+        let said = fit_data(data, &settings).unwrap_err().to_string();
+        assert!(said.contains("--without 3") && said.contains("delete the row"), "{said}");
+    }
+
+    #[test]
+    fn an_interval_that_is_too_wide_says_what_narrows_that_of_means() {
+        let header = "voltage_v_rms,normal_force_n,friction_n,friction_se_n";
+        let text = format!("{header}\n0,0.5,0.25,0.02\n75,0.5,0.272,0.02\n150,0.5,0.35,0.02\n");
+        let said = fitted(&text).unwrap_err().to_string();
+        assert!(said.contains("wider than") && said.contains("means of more values"), "{said}");
     }
 }

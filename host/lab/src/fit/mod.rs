@@ -9,7 +9,7 @@
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
 //! least squares (`search`, `least_squares`), its error is told from strokes that it has not seen (`held_out`),
 //! intervals come from a bootstrap over strokes (`intervals`), and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it). A finger that contradicts
-//! the model has a power law of its own instead (`empirical`).
+//! the model has a law of its own instead (`empirical`): a power of the voltage, or else points (`measured_points`).
 //!
 //! # What is estimated
 //!
@@ -29,6 +29,7 @@ mod intervals;
 mod law;
 mod least_squares;
 mod means;
+mod measured_points;
 mod profile;
 pub mod recipe;
 mod recording;
@@ -41,7 +42,7 @@ mod verdict;
 
 pub use crate::bootstrap::Estimate;
 use contrast::{Levels, StrokeMeans, stroke_means};
-pub use empirical::{EmpiricalFit, fit_power_law};
+pub use empirical::{EmpiricalFit, VoltageLaw, fit_empirical};
 pub use error::FitError;
 use faults::Faults;
 pub use faults::{Fault, FaultyStroke};
@@ -51,10 +52,11 @@ use law::{Attraction, Coupling};
 pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
 use least_squares::{Observation, Solution, residuals_n};
 pub use means::MeanRow;
+pub use measured_points::MeasuredPoint;
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
-use search::{Search, attraction_of, coupling_of, start};
+use search::{Replicate, Search, attraction_of, coupling_of, start};
 pub use summary::{Summary, words};
 pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
@@ -156,7 +158,6 @@ struct FittedData {
     fitted: Fitted,
     strokes: Vec<StrokeMeans>,
     observations: Vec<Observation>,
-    friction_coefficient: Estimate,
     /// Normal load at which friction is stated, in newtons.
     normal_load_n: f64,
     voltage_range_v_rms: (f64, f64),
@@ -206,13 +207,12 @@ impl FittedData {
         let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
         let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
         rules::check_slip(&strokes, &best.power, faults);
+        rules::check_top(&strokes, voltage_range_v_rms.1)?;
         // The search for intervals takes longest.
         faults.check()?;
         let held_out = HeldOut::of(&search, &strokes, &best);
         let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
-        let friction_coefficient = fitted.estimate(|replicate| Some(replicate.contact.friction_coefficient))?;
         Ok(Self {
-            friction_coefficient: wandering(&strokes, friction_coefficient),
             fitted,
             observations,
             normal_load_n,
@@ -226,6 +226,12 @@ impl FittedData {
             held_out,
             strokes,
         })
+    }
+
+    /// Friction over load with the drive off, by one of the laws.
+    fn friction_coefficient(&self, law: impl Fn(&Replicate) -> &Solution) -> Result<Estimate, FitError> {
+        let estimate = self.fitted.estimate(|replicate| Some(law(replicate).friction_coefficient))?;
+        Ok(if self.division == Division::Means { estimate } else { wandering(&self.strokes, estimate) })
     }
 }
 
@@ -250,7 +256,7 @@ fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
     let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
     let gap_m = Coupling(coupling.value).gap_m();
     let fit = Fit {
-        friction_coefficient: data.friction_coefficient,
+        friction_coefficient: data.friction_coefficient(|replicate| &replicate.contact)?,
         coupling_sqrt_n_per_v2: coupling,
         stated_voltage_v_rms: settings.voltage_v_rms,
         normal_load_n,

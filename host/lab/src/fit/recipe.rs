@@ -11,10 +11,14 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use super::table::{FRICTION, LOAD, SPEED, STROKE, TIME, VOLTAGE};
+use crate::statistics::quantile;
 use crate::table::{Column, Place, Reading, Table, TableError, Unit};
 
 /// How far a number may be outside of a range that a description states in round numbers, as a factor.
 const MARGIN: f64 = 1.25;
+/// The part of the loads and speeds that may be smaller than the one that is compared with a range: a finger also rests,
+/// turns and lands.
+const TYPICAL_PART: f64 = 0.9;
 const VOLTAGE_PEAK: Column = Column::new("voltage_v_peak", "volts, peak of a sine").converted(Unit::Volts);
 
 const FILES: [(&str, &str); 4] = [
@@ -86,17 +90,30 @@ pub enum RecipeError {
     /// The file is no table of the columns that are needed.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A number is outside of what the data set has.
+    /// A voltage is outside of what the data set has.
     #[error(
-        "row {row}, column {column}: {found} is outside of what the recipe says, {low} to {high}: name the column \
-         with the unit that it has, or check that the file is of that data set"
+        "row {row}, column {column}: {found} is outside of what the recipe says, 0 to {high}: name the column with the \
+         unit that it has, or check that the file is of that data set"
     )]
-    OutOfRange {
+    VoltageOutOfRange {
         /// Number of the row.
         row: u64,
         /// The column.
         column: String,
-        /// The number, in the unit of the recipe.
+        /// The voltage, in the unit of the recipe.
+        found: f64,
+        /// Highest voltage.
+        high: f64,
+    },
+    /// Loads or speeds are outside of what the data set has.
+    #[error(
+        "column {column}: nine of ten numbers are up to {found} without their sign, outside of what the recipe says, \
+         {low} to {high}: name the column with the unit that it has, or check that the file is of that data set"
+    )]
+    OutOfRange {
+        /// The column.
+        column: String,
+        /// The number that nine of ten do not exceed, in the unit of the recipe.
         found: f64,
         /// Lowest number.
         low: f64,
@@ -179,16 +196,17 @@ impl Recipe {
         let peak = voltage.column;
         let load_range = self.normal_force.as_ref().map(|load| load.range_n);
         let speed_range = self.speed.as_ref().map(|speed| speed.range_mm_s);
-        let mut numbers: Vec<(&str, Place, Option<[f64; 2]>)> = vec![
-            (VOLTAGE.name, table.need(peak.column())?, voltage.range.map(|[_, high]| [0.0, high])),
-            (LOAD.name, table.need(LOAD)?, load_range),
-            (FRICTION.name, table.need(FRICTION)?, None),
-        ];
+        let voltage_max = voltage.range.map(|[_, high]| high);
+        let (voltage, load) = (table.need(peak.column())?, table.need(LOAD)?);
+        let mut columns = vec![(VOLTAGE.name, voltage), (LOAD.name, load), (FRICTION.name, table.need(FRICTION)?)];
+        let mut typical: Vec<Typical> = load_range.map(|range| Typical::new(load, range)).into_iter().collect();
         for (column, range) in [(TIME, None), (SPEED, speed_range)] {
-            numbers.extend(table.find(column)?.map(|place| (column.name, place, range)));
+            let Some(place) = table.find(column)? else { continue };
+            columns.push((column.name, place));
+            typical.extend(range.map(|range| Typical::new(place, range)));
         }
         let stroke = table.find(STROKE)?;
-        let names = numbers.iter().map(|(name, ..)| *name).chain(stroke.map(|_| STROKE.name));
+        let names = columns.iter().map(|(name, _)| *name).chain(stroke.map(|_| STROKE.name));
         let mut text = names.collect::<Vec<_>>().join(",");
         let understood = table.understood();
         let mut line = 1;
@@ -200,25 +218,51 @@ impl Recipe {
                 line += 1;
             }
             let mut cells = Vec::new();
-            for (name, place, range) in &numbers {
+            for (name, place) in &columns {
                 let found = row.real(*place)?;
-                if let Some([low, high]) = range.filter(|range| !is_within(found, *range)) {
-                    let column = row.column(*place);
-                    return Err(RecipeError::OutOfRange { row: row.number(), column, found, low, high });
+                if let Some(high) = voltage_max.filter(|high| *place == voltage && found.abs() > high * MARGIN) {
+                    let (row, column) = (row.number(), row.column(*place));
+                    return Err(RecipeError::VoltageOutOfRange { row, column, found, high });
                 }
                 cells.push(if *name == VOLTAGE.name { peak.v_rms(found) } else { found }.to_string());
+            }
+            for column in &mut typical {
+                column.sizes.push(row.real(column.place)?.abs());
             }
             cells.extend(stroke.map(|stroke| format!("\"{}\"", row.text(stroke).replace('"', "\"\""))));
             let _ = write!(text, "{}", cells.join(","));
         }
         text.push('\n');
+        for column in typical {
+            column.check(table.names())?;
+        }
         Ok(Reading { value: text, understood })
     }
 }
 
-/// Whether a number, with its sign or without, is within a range and its margin.
-fn is_within(found: f64, [low, high]: [f64; 2]) -> bool {
-    (low / MARGIN..=high * MARGIN).contains(&found.abs())
+/// The numbers of a column, without their signs, whose typical one a description states.
+struct Typical {
+    place: Place,
+    range: [f64; 2],
+    sizes: Vec<f64>,
+}
+
+impl Typical {
+    fn new(place: Place, range: [f64; 2]) -> Self {
+        Self { place, range, sizes: Vec::new() }
+    }
+
+    /// Fails if the column is in another unit than that of the range.
+    fn check(mut self, names: &[String]) -> Result<(), RecipeError> {
+        self.sizes.sort_by(f64::total_cmp);
+        let found = quantile(&self.sizes, TYPICAL_PART);
+        let [low, high] = self.range;
+        if self.sizes.is_empty() || (low / MARGIN..=high * MARGIN).contains(&found) {
+            return Ok(());
+        }
+        let column = self.place.name_in(names).to_owned();
+        Err(RecipeError::OutOfRange { column, found, low, high })
+    }
 }
 
 /// The page of the documents that lists the recipes.
@@ -229,7 +273,8 @@ pub fn page() -> String {
          part of frixel. This page is made of the files in `host/lab/recipes`; `frixel fit --recipe NAME` prints a part of it.\n\n\
          To fit a file, look at its columns, name them as the recipe says ([Tables](outputs.md#tables) has the units that a name may state), and type\n\n    \
          frixel fit FILE.csv --recipe NAME -o finger.toml\n\n\
-         Numbers outside of what the description says, with a margin of a quarter, are refused: they are in another unit, or of other data.\n",
+         Voltages above what the description says, and loads and speeds of which nine of ten are outside of it, are refused, with a margin of a\n\
+         quarter: they are in another unit, or of other data.\n",
     );
     for recipe in recipes() {
         let _ = write!(page, "\n## `{}`\n\n{}.\n\n| | |\n|---|---|\n", recipe.name, recipe.title);
@@ -242,6 +287,8 @@ pub fn page() -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::super::rows;
     use super::{FILES, Recipe, RecipeError, recipes};
 
@@ -272,6 +319,15 @@ mod tests {
     }
 
     #[test]
+    fn a_finger_that_turns_rests_and_lands_is_of_the_data_set() {
+        let mut text = String::from("voltage_v_rms,normal_force_n,friction_n,speed_mm_s\n");
+        for (load, speed) in [(0.0, 0.0), (1.9, 3.0)].into_iter().chain([(0.4, -50.0); 30]) {
+            writeln!(text, "100,{load},0.2,{speed}").unwrap();
+        }
+        assert_eq!(made("4tu-d9f05363", &text).unwrap().lines().count(), 33);
+    }
+
+    #[test]
     fn wrong_units_are_refused() {
         for (name, text, said) in [
             (
@@ -287,12 +343,12 @@ mod tests {
             (
                 "4tu-d9f05363",
                 "voltage_v_rms,normal_force_n,friction_n\n100,200,100\n",
-                "column normal_force_n: 200 is outside",
+                "column normal_force_n: nine of ten numbers are up to 200 ",
             ),
             (
                 "4tu-d9f05363",
                 "voltage_v_rms,normal_force_n,friction_n,speed_mm_s\n100,0.4,0.2,0.05\n",
-                "column speed_mm_s: 0.05 is outside",
+                "column speed_mm_s: nine of ten numbers are up to 0.05 ",
             ),
             ("dryad-9ghx3ffgp", "", "there is no electric friction to fit"),
             ("sens3", "", "no voltage is part of it"),

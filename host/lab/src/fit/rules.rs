@@ -7,6 +7,7 @@ use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
 use super::recording::{Recording, Stroke};
 use super::table::Row;
+use crate::bootstrap::GROUP_MIN;
 use crate::statistics::{mean, median};
 
 /// Least number of strokes: intervals from fewer are too wide to be of use.
@@ -30,9 +31,12 @@ const REST_MIN_ROWS: f64 = 2.0;
 const EXTRAPOLATION: f64 = 1.05;
 /// A stroke with less friction than this part of the median did not slip all the way.
 const SLIP_SHARE: f64 = 0.5;
-/// A stroke with less electric friction than this part of the fit did not slip: the drive acts in full slip only
-/// (Sirin, arXiv 2104.01090).
+/// A stroke with less electric friction than this part of the usual one at its voltage did not slip: the drive acts in
+/// full slip only (Sirin, arXiv 2104.01090).
 const RESPONSE_SHARE: f64 = 0.25;
+/// A highest voltage below it, in volts rms, moves no finger by anything that can be measured: the example finger has
+/// 5 uN at 1 V.
+const VOLTAGE_MIN_V_RMS: f64 = 1.0;
 
 /// Whether there are rows, and their loads are newtons.
 pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
@@ -68,14 +72,27 @@ pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
     if found < STROKES_MIN { Err(FitError::TooFewStrokes { found, needed: STROKES_MIN }) } else { Ok(()) }
 }
 
+/// Whether there are enough strokes at the highest voltage, on which electric friction rests.
+pub(super) fn check_top(strokes: &[StrokeMeans], voltage_v_rms: f64) -> Result<(), FitError> {
+    let top = strokes.iter().map(|stroke| stroke.top_level).max().flatten();
+    let found = strokes.iter().filter(|stroke| stroke.top_level == top).count();
+    if found < GROUP_MIN {
+        return Err(FitError::TooFewAtVoltage { found, needed: GROUP_MIN, voltage_v_rms });
+    }
+    Ok(())
+}
+
 /// Whether there are voltages to compare; returns the lowest and the highest.
 pub(super) fn check_levels(levels: &Levels) -> Result<(f64, f64), FitError> {
     let Some((low, high)) = levels.range_v_rms() else { return Err(FitError::NoVoltage) };
     check_voltages(low, high)
 }
 
-/// Whether the lowest and the highest voltage are far enough apart; returns them.
+/// Whether the lowest and the highest voltage are volts, and far enough apart; returns them.
 pub(super) fn check_voltages(low: f64, high: f64) -> Result<(f64, f64), FitError> {
+    if high < VOLTAGE_MIN_V_RMS {
+        return Err(FitError::VoltageTooLow { max: high });
+    }
     if high < VOLTAGE_RATIO_MIN * low { Err(FitError::OneVoltage { found: high }) } else { Ok((low, high)) }
 }
 
@@ -142,10 +159,10 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
     Ok(())
 }
 
-/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction at a voltage
-/// is far below that of the fit did not.
+/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far below
+/// that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
 pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mut Faults) {
-    let ratios: Vec<(&StrokeMeans, f64)> = strokes
+    let mut ratios: Vec<(&StrokeMeans, f64)> = strokes
         .iter()
         .filter_map(|stroke| {
             let ratio = mean(stroke.observations.iter().filter_map(|one| {
@@ -155,11 +172,27 @@ pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mu
             (!ratio.is_nan()).then_some((stroke, ratio))
         })
         .collect();
-    let spread = 1.4826 * median(ratios.iter().map(|(_, ratio)| (ratio - 1.0).abs()));
+    // The order of strokes of one voltage stays.
+    ratios.sort_by_key(|(stroke, _)| stroke.top_level);
+    // Where each voltage has few strokes, only the fit tells what is usual.
+    let mut rest = Vec::new();
+    for alike in ratios.chunk_by(|(one, _), (other, _)| one.top_level == other.top_level) {
+        if alike.len() < GROUP_MIN { rest.extend_from_slice(alike) } else { check_slip_of(alike, faults) }
+    }
+    check_slip_of(&rest, faults);
+}
+
+/// Finds the strokes whose part of the fitted attraction is far below the usual one of these strokes.
+fn check_slip_of(ratios: &[(&StrokeMeans, f64)], faults: &mut Faults) {
+    let usual = median(ratios.iter().map(|(_, ratio)| *ratio));
+    if !(usual > 0.0) {
+        return;
+    }
+    let spread = 1.4826 * median(ratios.iter().map(|(_, ratio)| (ratio - usual).abs()));
     // A stroke of little electric friction only says something where strokes agree with each other.
-    let least = RESPONSE_SHARE.min(1.0 - 6.0 * spread);
+    let least = (RESPONSE_SHARE * usual).min(usual - 6.0 * spread);
     for (stroke, ratio) in ratios.iter().filter(|(_, ratio)| *ratio < least) {
-        let found = format!("the drive added {:.0} % of the friction that it added in others", 100.0 * ratio);
+        let found = format!("the drive added {:.0} % of the friction that it added in others", 100.0 * ratio / usual);
         faults.push(&stroke.name, Fault::NoSlip { found });
     }
 }

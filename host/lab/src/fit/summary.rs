@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::sensor::BANDWIDTH_TIMES_RISE;
-use super::{Division, Estimate, Exponent, Fit, Verdict};
+use super::{Division, Estimate, Exponent, Fit, HeldOut, Verdict};
 
 /// Voltage of the keys that name it, in volts rms.
 const NAMED_V_RMS: f64 = 150.0;
@@ -154,7 +154,7 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         line("force sensor", format!("follows a switch of the drive in {rise_ms:.1} ms, as with {bandwidth_hz:.0} Hz"));
     }
     if let Some(held_out) = &fit.held_out {
-        line("strokes left out", held_out.words(held_out.contact_error_n));
+        line("strokes left out", HeldOut::words(held_out.contact_error_n, held_out.mean_n));
     }
     let skin_um = 1e6 * fit.skin_gap_m;
     line(
@@ -214,7 +214,7 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
     if fit.bandwidth_hz.is_none() {
         notes.push(
             "too few switches, too much noise or too few rows a second to tell whether the force sensor was fast enough: \
-             below 80 Hz electric friction comes out too small",
+             below 120 Hz of bandwidth electric friction comes out too small",
         );
     }
     if !fit.has_speed {

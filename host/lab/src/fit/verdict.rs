@@ -138,7 +138,7 @@ impl Judge<'_> {
         }
         let centre = mean(differences.iter().copied());
         let spread = mean(differences.iter().map(|one| (one - centre) * (one - centre))).sqrt();
-        let (low, high) = self.fitted.draws.interval(&mut values, Z_95);
+        let (low, high) = self.fitted.draws.stretched_interval(&mut values, Z_95);
         let measured = Estimate { value, low: low.min(value), high: high.max(value) };
         let is_within = |z| (value - model).abs() <= self.fitted.draws.expanded(z) * spread;
         let verdict = if is_within(Z_95) { Verdict::Kept } else { Verdict::Doubted };
@@ -204,7 +204,11 @@ pub(super) fn check_estimates(
     {
         if !estimate.is_within(INTERVAL_SHARE) {
             let Estimate { value, low, high } = *estimate;
-            return Err(FitError::TooUncertain { quantity, low, high, value });
+            let advice = match division {
+                Division::Means => "give means of more values",
+                Division::Column | Division::Motion | Division::Blocks => "record more strokes, more evenly",
+            };
+            return Err(FitError::TooUncertain { quantity, low, high, value, advice });
         }
     }
     Ok(())

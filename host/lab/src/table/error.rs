@@ -12,6 +12,8 @@ use std::io;
 pub enum TableError {
     /// The input cannot be read.
     Read(io::Error),
+    /// There is no header.
+    Empty,
     /// The header can be separated in two ways.
     SeparatorDoubtful {
         /// Names of the separators, with the number of columns that each gives.
@@ -88,6 +90,7 @@ impl TableError {
     pub fn found(&self) -> String {
         match self {
             Self::Read(error) => format!("the table cannot be read ({error})"),
+            Self::Empty => "the table is empty".to_owned(),
             Self::SeparatorDoubtful { readings: [(one, columns), (other, others)] } => {
                 format!(
                     "the header can be read as {columns} columns that {one} separate, or as {others} that {other} do"
@@ -122,7 +125,7 @@ impl TableError {
     /// What to do about it.
     fn advice(&self) -> String {
         match self {
-            Self::Read(_) => "give a CSV file with a header row".to_owned(),
+            Self::Read(_) | Self::Empty => "give a CSV file with a header row".to_owned(),
             Self::UnitDoubtful { advice, .. } => advice.clone(),
             Self::ColumnMissing { unit: "", .. } => "name the column so".to_owned(),
             Self::ColumnMissing { unit, .. } => format!("name the column so, in {unit}"),

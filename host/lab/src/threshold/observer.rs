@@ -44,6 +44,13 @@ impl Observer {
         Self { curve: Some(curve), random }
     }
 
+    /// The observer of a seed with this threshold.
+    #[cfg(test)]
+    pub(super) fn with_threshold(seed: u64, threshold_db: f64) -> Self {
+        let Self { curve, random } = Self::drawn(seed);
+        Self { curve: curve.map(|curve| Curve { threshold_db, ..curve }), random }
+    }
+
     /// An observer who feels nothing, and guesses.
     pub fn guessing(seed: u64) -> Self {
         Self { curve: None, random: Pcg64::seed_from_u64(seed) }

@@ -33,7 +33,7 @@ use crate::rigs::SimStream;
 const FEW: (u64, u64) = (8, 1);
 const MANY: (u64, u64) = (200, 20);
 /// Strokes of the recordings from which the error over the length of a recording is measured, and how many people.
-const STROKES: [u64; 6] = [8, 12, 18, 36, 72, 144];
+const STROKES: [u64; 6] = [9, 12, 18, 36, 72, 144];
 const PEOPLE_PER_LENGTH: u64 = 24;
 /// Steady sliding: its length, and the part at the end that is measured, in seconds.
 const STEADY_S: f64 = 0.4;
@@ -278,7 +278,7 @@ fn the_default_calibration_is_fitted() {
 #[test]
 fn the_command_writes_what_is_measured_here() {
     let folder = tempfile::TempDir::new().unwrap();
-    let line = |output: &str| format!("-o {output} --finger-seed 3 --seed 2 --strokes 8");
+    let line = |output: &str| format!("-o {output} --finger-seed 3 --seed 2 --strokes 9");
     let output = folder.path().join("data.csv");
     run(&arguments(&line(output.to_str().unwrap()))).unwrap();
     assert_eq!(std::fs::read(output).unwrap(), calibrated(&line("x.csv")));

@@ -78,7 +78,7 @@ fn session<L: RecordedLink>(
     let mut random = Pcg64::seed_from_u64(args.seed);
     let mut answering = Answering::new(args.observer);
     let highest_v_rms = protocol.voltage_max_v_rms();
-    for level_db in recorded.repeat(highest_v_rms, &mut staircase)? {
+    for level_db in recorded.repeat(highest_v_rms, args.observer, &mut staircase)? {
         // As in the session that was cut off.
         let _ = random.next_u64();
         if let Answering::Observer(observer) = &mut answering {
@@ -111,7 +111,7 @@ fn session<L: RecordedLink>(
             }
         };
         staircase.answer(level_db, is_right);
-        recorded.add(Answer { trial, highest_v_rms, level_db, is_right })?;
+        recorded.add(Answer { trial, highest_v_rms, level_db, is_right, observer: args.observer })?;
     }
     player.stop()?;
     Ok((staircase.threshold().map_err(CommandError::Guessed)?, protocol))

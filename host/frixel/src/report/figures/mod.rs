@@ -35,7 +35,7 @@ pub(super) fn all(subject: &Subject, counts: &Counts) -> Result<(Vec<Answer>, Ve
     let answers = vec![
         Answer {
             question: "Error against run time",
-            sentences: run_time::sentences(&measured, counts),
+            sentences: drawn.instead.iter().cloned().chain(run_time::sentences(&measured, counts)).collect(),
             figure: time.name,
         },
         Answer {
