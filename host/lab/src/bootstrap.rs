@@ -57,8 +57,8 @@ enum Expansion {
 
 impl Draws {
     /// Groups values by a key, so that each draw has as many of each as there are, as of strokes with the same highest
-    /// voltage. Fewer than three values of a key join the group below theirs, or else the one above. Where most keys have so
-    /// few, as where each stroke has a voltage of its own, all values are one group.
+    /// voltage. Fewer than three values of a key join the group below theirs, or else the one above. Where most keys
+    /// have so few, as where each stroke has a voltage of its own, all values are one group.
     pub(crate) fn new<K: Ord>(keys: &[K], seed: u64) -> Self {
         let mut distinct: Vec<&K> = keys.iter().collect();
         distinct.sort_unstable();

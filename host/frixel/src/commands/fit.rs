@@ -52,8 +52,8 @@ pub(super) struct FitArgs {
     /// example screen. The profile holds for this screen.
     #[arg(long, value_name = "SCREEN")]
     screen: Option<String>,
-    /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical law
-    /// is stated at the highest voltage of the data.
+    /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical
+    /// law is stated at the highest voltage of the data.
     #[arg(long, value_name = "V_RMS", value_parser = positive)]
     voltage: Option<f64>,
     /// Normal load of the profile, in newtons; without it, the median of the data.
@@ -76,8 +76,9 @@ pub(super) struct FitArgs {
 enum Law {
     /// The contact model, which data that contradict it refuse.
     Contact,
-    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a finger
-    /// that the contact model does not describe, on this screen, under this load and up to the highest voltage of the data.
+    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a
+    /// finger that the contact model does not describe, on this screen, under this load and up to the highest voltage
+    /// of the data.
     Empirical,
 }
 

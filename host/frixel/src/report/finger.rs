@@ -1,5 +1,5 @@
-//! The finger that figures are drawn for: that of the scene, on its screen, or the example finger where that of the scene
-//! has no contact model.
+//! The finger that figures are drawn for: that of the scene, on its screen, or the example finger where that of the
+//! scene has no contact model.
 
 use frixel_lab::calibration::example_finger;
 use frixel_model::{Contact, Finger, ParameterError, Real};

@@ -162,8 +162,8 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
     Ok(())
 }
 
-/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far below
-/// that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
+/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far
+/// below that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
 pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mut Faults) {
     let mut ratios: Vec<(&StrokeMeans, f64)> = strokes
         .iter()
