@@ -124,7 +124,9 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
     let empirical = ["fit", "data.csv", "-o", "z.toml", "--law", "empirical"];
     let refused = fail(folder.path(), &[&empirical[..], &["--voltage", "100"]].concat());
     assert!(refused.contains("leave --voltage out") && !folder.path().join("z.toml").exists(), "{refused}");
+    fs::write(folder.path().join("z.svg"), "plots of an earlier fit").unwrap();
     let said = succeed(folder.path(), &empirical);
+    assert!(!folder.path().join("z.svg").exists() && !said.contains("z.svg"), "{said}");
     for words in ["empirical", "strokes left out", "up to this voltage", "z.toml"] {
         assert!(said.contains(words), "{words}: {said}");
     }

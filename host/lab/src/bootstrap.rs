@@ -57,7 +57,8 @@ enum Expansion {
 
 impl Draws {
     /// Groups values by a key, so that each draw has as many of each as there are, as of strokes with the same highest
-    /// voltage. Fewer than three values of a key join the group below theirs, or else the one above.
+    /// voltage. Fewer than three values of a key join the group below theirs, or else the one above. Where most keys
+    /// have so few, as where each stroke has a voltage of its own, all values are one group.
     pub(crate) fn new<K: Ord>(keys: &[K], seed: u64) -> Self {
         let mut distinct: Vec<&K> = keys.iter().collect();
         distinct.sort_unstable();
@@ -67,6 +68,10 @@ impl Draws {
             numbered.map(|(index, _)| index).collect::<Vec<_>>()
         };
         let mut groups: Vec<_> = distinct.into_iter().map(members).collect();
+        let many: usize = groups.iter().map(Vec::len).filter(|len| *len >= GROUP_MIN).sum();
+        if 2 * many < keys.len() {
+            groups = vec![(0..keys.len()).collect()];
+        }
         while let Some(few) = groups.iter().position(|group| group.len() < GROUP_MIN).filter(|_| groups.len() > 1) {
             let joined = groups.remove(few);
             if let Some(group) = groups.get_mut(few.saturating_sub(1)) {
@@ -183,5 +188,6 @@ mod tests {
         assert_eq!(sizes(&[1, 1, 1, 2, 3, 3, 3]), [4, 3]);
         assert_eq!(sizes(&[1, 2, 2, 2, 2]), [5]);
         assert_eq!(sizes(&[1, 2]), [2]);
+        assert_eq!(sizes(&[1, 2, 3, 4, 5, 6, 7, 8, 9]), [9], "a ramp has no groups");
     }
 }

@@ -29,8 +29,8 @@ pub(crate) fn normal_probability(z: f64) -> f64 {
     0.5 * libm::erfc(-z / SQRT_2)
 }
 
-/// The quantile of Student's distribution for a whole number of degrees of freedom, one or more, where the Gaussian one is
-/// `z`, above zero.
+/// The quantile of Student's distribution for a whole number of degrees of freedom, one or more, where the Gaussian one
+/// is `z`, above zero.
 pub(crate) fn student_quantile(z: f64, freedom: f64) -> f64 {
     let part = normal_probability(z);
     let (mut low, mut high) = (0.0, core::f64::consts::FRAC_PI_2);

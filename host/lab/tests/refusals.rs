@@ -248,3 +248,19 @@ fn without_strokes_rows_are_divided_by_motion_or_in_blocks() {
     }
     assert_eq!(fit_of(rows).unwrap().strokes.len(), 36);
 }
+
+/// Of a ramp, each stroke has a voltage of its own; of two voltages, one has two strokes only.
+#[test]
+fn few_strokes_near_the_highest_voltage_are_refused_and_a_ramp_is_not() {
+    let voltages_v_rms = |strokes: usize, of: &dyn Fn(usize) -> f64| (0..strokes).map(of).collect::<Vec<_>>();
+    let ramp =
+        Protocol { voltages_v_rms: voltages_v_rms(36, &|stroke| 60.0 + 2.5 * stroke as f64), ..Protocol::default() };
+    let fit = fit_of(Person::example(1).record(&ramp)).unwrap();
+    assert!((fit.electric_friction_n.value / 0.1298 - 1.0).abs() < 0.06, "{:?}", fit.electric_friction_n);
+    let two = Protocol {
+        voltages_v_rms: voltages_v_rms(26, &|stroke| if stroke < 24 { 75.0 } else { 150.0 }),
+        strokes: 26,
+        ..Protocol::default()
+    };
+    says(fit_of(Person::example(1).record(&two)), &["2 of the strokes have 150 V rms", "at least 3"]);
+}

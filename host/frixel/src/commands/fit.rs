@@ -39,7 +39,7 @@ pub(super) struct FitArgs {
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
     recipe: Option<String>,
     /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name that
-    /// ends in .svg.
+    /// ends in .svg; with another law, those of an earlier fit are removed.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
     /// The law of the voltage that is fitted.
@@ -52,8 +52,8 @@ pub(super) struct FitArgs {
     /// example screen. The profile holds for this screen.
     #[arg(long, value_name = "SCREEN")]
     screen: Option<String>,
-    /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical law
-    /// is stated at the highest voltage of the data.
+    /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical
+    /// law is stated at the highest voltage of the data.
     #[arg(long, value_name = "V_RMS", value_parser = positive)]
     voltage: Option<f64>,
     /// Normal load of the profile, in newtons; without it, the median of the data.
@@ -76,8 +76,9 @@ pub(super) struct FitArgs {
 enum Law {
     /// The contact model, which data that contradict it refuse.
     Contact,
-    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a finger
-    /// that the contact model does not describe, on this screen, under this load and up to the highest voltage of the data.
+    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a
+    /// finger that the contact model does not describe, on this screen, under this load and up to the highest voltage
+    /// of the data.
     Empirical,
 }
 
@@ -156,7 +157,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     let text = text.trim_end_matches('\n');
     match &outputs {
         Some(outputs) if args.json => say(&outputs.profile, text),
-        Some(outputs) => say(&outputs.profile, format_args!("{text}\n  {:<22} {}", "wrote", outputs.names())),
+        Some(outputs) => say(&outputs.profile, format_args!("{text}\n  {:<22} {}", "wrote", outputs.names(args.law))),
         None => print_line(text),
     }
 }
@@ -191,7 +192,7 @@ impl Outputs {
     fn new(args: &FitArgs, data: &PathBuf, path: &Path) -> Result<Self, CommandError> {
         let inputs = Inputs::new([data].into_iter().chain(args.screen.as_ref().map(PathBuf::from).as_ref()));
         let profile = OutputFile::new(path, "-o", &inputs)?;
-        if !profile.is_file() || args.law == Law::Empirical {
+        if !profile.is_file() {
             return Ok(Self { profile, plots: None });
         }
         let plots = OutputFile::new(&path.with_extension("svg"), "-o", &inputs)?;
@@ -208,11 +209,13 @@ impl Outputs {
             let drawn = draw_fit_svg(&format!("{}, fitted", data.display()), fit)?;
             written.push(plots.filled(drawn.as_bytes())?);
         }
-        Ok(commit_all(written, &[])?)
+        // Where there is another law, plots of an earlier fit would stand beside its profile.
+        Ok(commit_all(written, self.plots.as_slice())?)
     }
 
-    fn names(&self) -> String {
-        let files = [Some(&self.profile), self.plots.as_ref()].into_iter().flatten();
+    fn names(&self, law: Law) -> String {
+        let plots = self.plots.as_ref().filter(|_| law == Law::Contact);
+        let files = [Some(&self.profile), plots].into_iter().flatten();
         files.map(|file| file.path().display().to_string()).collect::<Vec<_>>().join(", ")
     }
 }

@@ -1,9 +1,9 @@
-//! The finger that figures are drawn for: that of the scene, on its screen, or the example finger where that of the scene
-//! has no contact model.
+//! The finger that figures are drawn for: that of the scene, on its screen, or the example finger where that of the
+//! scene has no contact model.
 
-use frixel_lab::fit::CONVENTIONAL_STIFFNESS_PA_PER_M;
+use frixel_lab::calibration::example_finger;
 use frixel_model::{Contact, Finger, ParameterError, Real};
-use frixel_scene::{Elasticity, FingerProfile, Program, Screen};
+use frixel_scene::{FingerProfile, Program, Screen};
 
 /// Voltage at which the friction of the example finger is stated, in volts rms.
 const EXAMPLE_V_RMS: f64 = 150.0;
@@ -42,17 +42,9 @@ impl DrawnFinger {
     /// The example finger on the example screen.
     fn instead_of(title: &str) -> Result<Self, ParameterError> {
         let example = FingerProfile::example();
-        let stiffness_pa_per_m = match example.elasticity {
-            Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
-            Elasticity::Soft { .. } | Elasticity::Empirical(_) => CONVENTIONAL_STIFFNESS_PA_PER_M,
-        };
-        let finger = Finger {
-            radius_m: 1e-3 * example.radius_mm,
-            stiffness_pa_per_m,
-            friction_coefficient: example.friction_coefficient,
-        };
         let gap_m = 1e-6 * (example.skin_gap_um + Screen::example().coating_gap_um());
-        let drawn = Self::named("the example finger, assumed", finger, gap_m, example.normal_load_n, EXAMPLE_V_RMS)?;
+        let drawn =
+            Self::named("the example finger, assumed", example_finger(), gap_m, example.normal_load_n, EXAMPLE_V_RMS)?;
         let instead = format!("{title} is empirical and has no contact model: these are of the example finger.");
         Ok(Self {
             caption: format!("{} {title} is empirical and has no contact model.", drawn.caption),

@@ -18,7 +18,7 @@ use thiserror::Error;
 pub use align::{BoardRow, align};
 pub use force_sensor::ForceSensor;
 pub use protocol::Protocol;
-pub use simulated_finger::{simulated_finger, simulation_seed};
+pub use simulated_finger::{example_finger, simulated_finger, simulation_seed};
 
 use crate::fit::Row;
 use crate::table::{Column, Reading, Table, TableError, Unit, whole_rows};

@@ -6,6 +6,20 @@ use frixel_scene::{Elasticity, FingerProfile};
 
 use crate::fit::CONVENTIONAL_STIFFNESS_PA_PER_M;
 
+/// The example finger of the contact model.
+pub fn example_finger() -> Finger<f64> {
+    let example = FingerProfile::example();
+    let stiffness_pa_per_m = match example.elasticity {
+        Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
+        Elasticity::Soft { .. } | Elasticity::Empirical(_) => CONVENTIONAL_STIFFNESS_PA_PER_M,
+    };
+    Finger {
+        radius_m: 1e-3 * example.radius_mm,
+        stiffness_pa_per_m,
+        friction_coefficient: example.friction_coefficient,
+    }
+}
+
 /// The finger under a simulated board, on a coating with this effective gap: its contact, and what it does beside the
 /// model. It is that of the person of a seed, or the example finger.
 pub fn simulated_finger(
@@ -18,16 +32,7 @@ pub fn simulated_finger(
         return Ok((contact, person.fingertip));
     }
     let example = FingerProfile::example();
-    let stiffness_pa_per_m = match example.elasticity {
-        Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
-        Elasticity::Soft { .. } | Elasticity::Empirical(_) => CONVENTIONAL_STIFFNESS_PA_PER_M,
-    };
-    let finger = Finger {
-        radius_m: 1e-3 * example.radius_mm,
-        stiffness_pa_per_m,
-        friction_coefficient: example.friction_coefficient,
-    };
-    let contact = Contact::new(&finger, coating_gap_m + 1e-6 * example.skin_gap_um);
+    let contact = Contact::new(&example_finger(), coating_gap_m + 1e-6 * example.skin_gap_um);
     let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
     Ok((contact?, FingertipConfig::REALISTIC))
 }

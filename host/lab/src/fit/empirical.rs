@@ -1,5 +1,5 @@
-//! A law of the voltage that data give without a model, for fingers that the contact model does not describe: a power of
-//! the voltage, or else points.
+//! A law of the voltage that data give without a model, for fingers that the contact model does not describe: a power
+//! of the voltage, or else points.
 
 use std::fmt::Write;
 
@@ -54,9 +54,9 @@ pub enum VoltageLaw {
     },
 }
 
-/// Fits a power law of the voltage to a recording or to means, whatever the contact model says about them; where the strokes
-/// of a recording follow none, the law is that of their means at each voltage. Fails if electric friction does not rise with
-/// the voltage as a profile can have it.
+/// Fits a power law of the voltage to a recording or to means, whatever the contact model says about them; where the
+/// strokes of a recording follow none, the law is that of their means at each voltage. Fails if electric friction does
+/// not rise with the voltage as a profile can have it.
 pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, FitError> {
     let data = FittedData::of(data, settings)?;
     let friction_coefficient = data.friction_coefficient(|replicate| &replicate.power)?;

@@ -348,8 +348,8 @@ mod tests {
                 "means of {count} at {} loads: {covered} of {fits} intervals contain the truth: {:.1} % ({:.1} to {:.1})",
                 loads_n.len(),
                 100.0 * share,
-                100.0 * (share - room),
-                100.0 * (share + room)
+                100.0 * (share - room).max(0.0),
+                100.0 * (share + room).min(1.0)
             );
             assert!(fits >= 588 && (0.93..=0.99).contains(&share), "{covered} of {fits}");
         }

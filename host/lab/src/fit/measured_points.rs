@@ -57,8 +57,8 @@ pub(super) fn mean_and_error(values: &[f64]) -> (f64, f64) {
 
 impl LawOfPoints {
     /// The law of the strokes at each voltage. Within a level, `attraction` moves what was measured to the mean voltage
-    /// and to `normal_load_n`. `coefficient_share` is half the interval of the friction coefficient as a part of it: all
-    /// strokes have it in common. Fails if friction does not rise as a profile can have it.
+    /// and to `normal_load_n`. `coefficient_share` is half the interval of the friction coefficient as a part of it:
+    /// all strokes have it in common. Fails if friction does not rise as a profile can have it.
     pub(super) fn of(
         strokes: &[StrokeResult],
         attraction: &Attraction,
@@ -95,8 +95,8 @@ impl LawOfPoints {
     }
 }
 
-/// The points from the first one on that is above zero for sure, and the power of the voltage below it. Fails if friction
-/// from one to the next has no power that a profile can have.
+/// The points from the first one on that is above zero for sure, and the power of the voltage below it. Fails if
+/// friction from one to the next has no power that a profile can have.
 fn rising(points: &[MeasuredPoint]) -> Result<(Vec<MeasuredPoint>, f64), FitError> {
     let first = points.iter().position(|point| point.electric_friction_n.low > 0.0).unwrap_or(points.len());
     let (small, points) = points.split_at(first);
@@ -111,8 +111,8 @@ fn rising(points: &[MeasuredPoint]) -> Result<(Vec<MeasuredPoint>, f64), FitErro
             return Err(FitError::NoRise { exponent, low_v_rms, high_v_rms });
         }
     }
-    // What was too small to measure was at most its upper end. The steepest power leaves 2 % of the lowest point at 0.7 of
-    // its voltage, which no finger feels.
+    // What was too small to measure was at most its upper end. The steepest power leaves 2 % of the lowest point at 0.7
+    // of its voltage, which no finger feels.
     let least = small.iter().map(|point| power((point.voltage_v_rms, point.electric_friction_n.high), lowest));
     let exponent = least.fold(EXPONENT_BELOW, f64::max).min(*EXPONENTS.end());
     Ok((points.to_vec(), exponent))

@@ -16,8 +16,8 @@ use crate::table::{Column, Place, Reading, Table, TableError, Unit};
 
 /// How far a number may be outside of a range that a description states in round numbers, as a factor.
 const MARGIN: f64 = 1.25;
-/// The part of the loads and speeds that may be smaller than the one that is compared with a range: a finger also rests,
-/// turns and lands.
+/// The part of the loads and speeds that may be smaller than the one that is compared with a range: a finger also
+/// rests, turns and lands.
 const TYPICAL_PART: f64 = 0.9;
 const VOLTAGE_PEAK: Column = Column::new("voltage_v_peak", "volts, peak of a sine").converted(Unit::Volts);
 

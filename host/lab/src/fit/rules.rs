@@ -18,6 +18,8 @@ const LOADS_N: core::ops::RangeInclusive<f64> = 0.03..=3.0;
 const COEFFICIENTS: core::ops::RangeInclusive<f64> = 0.05..=5.0;
 /// How far the load of a stroke may be off the median, as a part of it: the rule of a published rig.
 const LOAD_TOLERANCE: f64 = 0.15;
+/// Voltages above this part of the highest one are near it.
+const NEAR_TOP: f64 = 0.8;
 /// Least ratio of the highest to the lowest voltage from which an exponent can be told.
 const VOLTAGE_RATIO_MIN: f64 = 1.15;
 /// A force above it, in newtons, is none of a finger on a touchscreen.
@@ -72,10 +74,11 @@ pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
     if found < STROKES_MIN { Err(FitError::TooFewStrokes { found, needed: STROKES_MIN }) } else { Ok(()) }
 }
 
-/// Whether there are enough strokes at the highest voltage, on which electric friction rests.
+/// Whether there are enough strokes near the highest voltage, on which electric friction rests.
 pub(super) fn check_top(strokes: &[StrokeMeans], voltage_v_rms: f64) -> Result<(), FitError> {
-    let top = strokes.iter().map(|stroke| stroke.top_level).max().flatten();
-    let found = strokes.iter().filter(|stroke| stroke.top_level == top).count();
+    let is_near =
+        |stroke: &&StrokeMeans| stroke.observations.iter().any(|one| one.voltage_v_rms >= NEAR_TOP * voltage_v_rms);
+    let found = strokes.iter().filter(is_near).count();
     if found < GROUP_MIN {
         return Err(FitError::TooFewAtVoltage { found, needed: GROUP_MIN, voltage_v_rms });
     }
@@ -159,8 +162,8 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
     Ok(())
 }
 
-/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far below
-/// that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
+/// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far
+/// below that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
 pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mut Faults) {
     let mut ratios: Vec<(&StrokeMeans, f64)> = strokes
         .iter()

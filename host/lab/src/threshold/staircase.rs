@@ -25,8 +25,8 @@ const TRIALS: RangeInclusive<usize> = 12..=40;
 const FELT_RATIO: f64 = 1e4;
 /// The same ratio at which checks end, because the person guesses.
 const GUESSED_RATIO: f64 = 1e-3;
-/// Of people whose thresholds are within 3 dB of the largest level, a third are told from guessers, and their intervals contain
-/// the threshold in 7 of 10 cases. Their thresholds are found above this level.
+/// Of people whose thresholds are within 3 dB of the largest level, a third are told from guessers, and their intervals
+/// contain the threshold in 7 of 10 cases. Their thresholds are found above this level.
 const NEAR_LARGEST_DB: f64 = -8.0;
 /// The most trials at the largest level after the others, which tell feeling from guessing.
 const CHECKS_MAX: usize = 30;
@@ -41,7 +41,8 @@ pub struct Threshold {
 }
 
 impl Threshold {
-    /// Whether it is so close to the largest level that only lucky answers give a threshold there, which make it too low.
+    /// Whether it is so close to the largest level that only lucky answers give a threshold there, which make it too
+    /// low.
     pub fn is_near_largest(&self) -> bool {
         self.level_db > NEAR_LARGEST_DB
     }

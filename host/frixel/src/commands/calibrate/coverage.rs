@@ -212,8 +212,8 @@ impl Tally {
             100.0 * rms,
             100.0 * self.median_half_width(),
             100.0 * share,
-            100.0 * (share - 1.96 * error),
-            100.0 * (share + 1.96 * error),
+            100.0 * (share - 1.96 * error).max(0.0),
+            100.0 * (share + 1.96 * error).min(1.0),
         );
     }
 }
