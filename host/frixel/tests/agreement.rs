@@ -1,13 +1,13 @@
-//! `frixel scene check` and `frixel score` mean the same by *felt* and *not felt*: over every scene of `scenes/`, what a
-//! check calls felt is noticed by at least half of the simulated fingers, and what it calls not felt by at most half.
+//! `frixel scene check` and `frixel score` mean the same by *felt* and *not felt*, and so does a person: what a check
+//! calls felt is noticed by at least half of the simulated fingers, and what it calls not felt by at most half.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use frixel::scene_file;
 use frixel_felt::perception::{Perception, Verdict};
-use frixel_hil_sim::RigConfig;
+use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_scene::{LayerTitle, compile};
 use serde_json::Value;
 
@@ -18,36 +18,12 @@ const PEOPLE: &str = "10";
 /// Fewer fingers that touched a layer say nothing about half of them.
 const TOUCHED_MIN: u64 = 5;
 
-/// Layers about which the two differ, with the reason: scene, what the title contains, reason.
-const EXCEPTIONS: [(&str, &str, &str); 3] = [
-    (
-        "heartbeat",
-        "heart",
-        "a check gives a border to the uppermost layer, here the beat, which ends where the heart does",
-    ),
-    (
-        "ruler",
-        "ten",
-        "a check without a touch source takes a ridge of 3 mm as played in place; 100 reports a second blur it",
-    ),
-    ("slider", "detent", "the same of ridges of 4 mm"),
-];
-
-/// What a check says of each layer, by itself and by its borders.
+/// What a check says of each layer.
 fn checked(path: &Path) -> Vec<(LayerTitle, Verdict)> {
     let rig = RigConfig::default();
     let program = compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz).unwrap();
-    let Perception { layers, steps, .. } = Perception::of(&program);
-    let verdict = |layer: &LayerTitle| {
-        let own = layers.iter().filter(|judged| judged.layer == *layer);
-        let own = own.flat_map(|judged| {
-            let textures = judged.textures.iter().map(|texture| texture.verdict);
-            textures.chain(judged.click.map(|click| click.verdict)).chain([judged.contrast.verdict])
-        });
-        let borders = steps.iter().filter(|step| [&step.from, &step.to].contains(&&Some(layer.clone())));
-        Verdict::of_any(own.chain(borders.map(|border| border.step.verdict)))
-    };
-    layers.iter().map(|judged| (judged.layer.clone(), verdict(&judged.layer))).collect()
+    let layers = Perception::of(&program, &TouchConfig::REALISTIC).layers;
+    layers.into_iter().map(|judged| (judged.layer, judged.verdict)).collect()
 }
 
 /// How many simulated people touched each layer, and how many of them notice it.
@@ -66,27 +42,66 @@ fn scored(path: &Path) -> Vec<(String, [u64; 2])> {
     score["layers"].as_array().unwrap().iter().map(layer).collect()
 }
 
-#[test]
-fn a_check_and_a_score_of_every_scene_agree() {
-    let entries = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
-    let mut compared = [0, 0];
+/// Where a check of a scene and a score of it use one word for two things; `compared` counts the layers that a check
+/// called not felt and felt.
+fn disagreements(path: &Path, checked: &[(LayerTitle, Verdict)], compared: &mut [usize; 2]) -> Vec<String> {
     let mut apart = Vec::new();
-    for path in entries.filter(|path| path.extension().is_some_and(|end| end == "toml")) {
-        let (checked, scene) = (checked(&path), path.file_stem().unwrap().to_str().unwrap());
-        for (title, [touched, felt]) in scored(&path).into_iter().filter(|(_, [touched, _])| *touched >= TOUCHED_MIN) {
-            let Some((_, verdict)) = checked.iter().find(|(layer, _)| layer.as_str() == title) else { continue };
-            let agrees = match verdict {
-                Verdict::Felt => 2 * felt >= touched,
-                Verdict::NotFelt => 2 * felt <= touched,
-                Verdict::NearThreshold | Verdict::Unknown => continue,
-            };
-            compared[usize::from(*verdict == Verdict::Felt)] += 1;
-            let is_excepted = EXCEPTIONS.iter().any(|(of, part, _)| *of == scene && title.contains(part));
-            if !agrees && !is_excepted {
-                apart.push(format!("{scene}: {title}: {}, and {felt} of {touched} notice it", verdict.words()));
-            }
+    for (title, [touched, felt]) in scored(path).into_iter().filter(|(_, [touched, _])| *touched >= TOUCHED_MIN) {
+        let Some((_, verdict)) = checked.iter().find(|(layer, _)| layer.as_str() == title) else { continue };
+        let agrees = match verdict {
+            Verdict::Felt => 2 * felt >= touched,
+            Verdict::NotFelt => 2 * felt <= touched,
+            Verdict::NearThreshold | Verdict::Unknown => continue,
+        };
+        compared[usize::from(*verdict == Verdict::Felt)] += 1;
+        if !agrees {
+            let scene = path.file_stem().unwrap().display();
+            apart.push(format!("{scene}: {title}: {}, and {felt} of {touched} notice it", verdict.words()));
         }
     }
+    apart
+}
+
+fn scenes(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.filter(|path| path.extension().is_some_and(|end| end == "toml"))
+}
+
+#[test]
+fn a_check_and_a_score_of_every_scene_agree() {
+    let mut compared = [0, 0];
+    let apart: Vec<String> = scenes(&repository().join("scenes"))
+        .flat_map(|path| disagreements(&path, &checked(&path), &mut compared))
+        .collect();
     assert!(compared[0] >= 1 && compared[1] >= 10, "{compared:?} layers were called not felt and felt");
+    assert!(apart.is_empty(), "{apart:#?}");
+}
+
+/// Scenes whose first comment has what a person would say before anybody computes anything: `# felt: NAME, NAME` for
+/// each verdict.
+#[test]
+fn check_score_and_common_sense_agree() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/verdicts");
+    let mut compared = [0, 0];
+    let mut apart = Vec::new();
+    for path in scenes(&folder) {
+        let (text, checked) = (fs::read_to_string(&path).unwrap(), checked(&path));
+        let expected: Vec<(&str, &str)> = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("# ")?.split_once(": "))
+            .filter(|(word, _)| ["felt", "maybe", "not felt", "unknown"].contains(word))
+            .flat_map(|(word, names)| names.split(", ").map(move |name| (word, name)))
+            .collect();
+        assert!(!expected.is_empty(), "{}", path.display());
+        for (layer, verdict) in &checked {
+            let expected = expected.iter().find(|(_, name)| layer.as_str().contains(&format!("\"{name}")));
+            let (expected, _) = expected.unwrap_or_else(|| panic!("{}: {layer} is not named", path.display()));
+            if *expected != verdict.words() {
+                apart.push(format!("{}: {layer}: {}, and a person says {expected}", path.display(), verdict.words()));
+            }
+        }
+        apart.extend(disagreements(&path, &checked, &mut compared));
+    }
+    assert!(compared[0] >= 3 && compared[1] >= 10, "{compared:?} layers were called not felt and felt");
     assert!(apart.is_empty(), "{apart:#?}");
 }

@@ -31,14 +31,14 @@ fn checked(request: &Request) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
     let (scene, program) = drafted(request)?;
-    touch_source(request)?;
+    let touch = touch_source(request)?;
     let problems = problems_of(&program, &request.entry);
     let costs = match board_costs(&program, &RigConfig { board: for_drafts(config.board), ..config }) {
         // Not even the simulator plays it.
         Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
         costs => costs?,
     };
-    let check = SceneCheck::of(&program, &config.board.limits, &costs);
+    let check = SceneCheck::of(&program, &config.board.limits, &costs, &touch);
     let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
         "ok": !program.is_draft(),

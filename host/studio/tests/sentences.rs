@@ -6,7 +6,7 @@ use std::path::Path;
 use frixel::rehearsal::board_costs;
 use frixel::scene_file;
 use frixel_felt::check::SceneCheck;
-use frixel_hil_sim::RigConfig;
+use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_scene::compile;
 use frixel_studio::{Request, check, used_files};
 use serde_json::json;
@@ -23,7 +23,7 @@ fn the_report_is_that_of_the_command() {
         let scene = scene_file::load(&folder.join("../../scenes").join(&request.entry)).unwrap();
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
         let costs = board_costs(&program, &rig).unwrap();
-        let expected = SceneCheck::of(&program, &rig.board.limits, &costs).summary();
+        let expected = SceneCheck::of(&program, &rig.board.limits, &costs, &TouchConfig::REALISTIC).summary();
         let answer = check(&request);
         assert_eq!(answer["report"], expected, "{}: {answer}", request.entry);
         assert_eq!(answer["ok"], true);

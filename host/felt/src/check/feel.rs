@@ -1,137 +1,272 @@
 //! What a person will feel of a scene, as text.
 
-use crate::perception::{
-    AlikeLayers, BorderStep, BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Texture,
-    VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps_text,
-};
 use frixel_scene::LayerTitle;
 
-/// The subject of a sentence: a layer, or the border of two.
-struct Subject {
+use crate::perception::{
+    AlikeLayers, BorderStep, BurstTimes, LayerPerception, MAYBE, Obstacle, Over, Perception, SizeLimit, Step, Texture,
+    VOLTAGE_DIFFERENCE_DB, Verdict, texture_range_n, weber_steps_text,
+};
+
+/// Rows of a terminal with lines on the elements of a scene; more are counted in one line. With the costs, all fits 40
+/// rows of 80 characters.
+const ROWS_MAX: usize = 18;
+/// Characters of a row, and those before a line's text.
+const ROW_CHARS: usize = 80;
+const NAME_CHARS: usize = 19;
+/// Layers that a line names; more are counted.
+const NAMES_MAX: usize = 3;
+/// Lines on layers that are alike; more are counted in one line.
+const ALIKE_LINES_MAX: usize = 2;
+
+/// A verdict on a layer or on its click.
+struct Element {
+    layer: LayerTitle,
+    /// What of the layer it is: empty, or `click of `.
+    part: &'static str,
+    verdict: Verdict,
     text: String,
-    /// The numbers of its layers' tables in the file; `None` for the bare screen. Copies of a layer have the same.
-    tables: Vec<Option<usize>>,
 }
 
-/// Lines of a name and a text: one for all layers that feel the same, one for all borders with the same step, and one
-/// for each note.
+/// Lines of a name and a text. The first ones are named by a verdict: one for all elements of which the same is felt,
+/// what is least sure first. Then come layers that are alike, and notes.
 pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
-    let layers = perception.layers.iter().map(|layer| (Subject::layer(&layer.layer), sentence(layer)));
-    let borders = perception.steps.iter().map(|border| (sides(border), step(&border.step)));
-    let alike = perception.alike.iter().map(alike);
-    let notes = perception.notes.iter().map(|note| ("note", note.clone()));
-    let near = near_threshold(perception).into_iter().map(|subject| (subject, NEAR_THRESHOLD.to_owned()));
-    let lines = |name, texts, more| grouped(texts, more).into_iter().map(move |text| (name, text));
-    let felt = lines("feel", layers.collect(), " alike").chain(lines("step", borders.collect(), " alike"));
-    felt.chain(lines("alike", alike.collect(), " such pairs"))
-        .chain(lines("note", near.collect(), " alike"))
-        .chain(notes)
-        .collect()
+    let mut elements: Vec<Element> = perception.layers.iter().flat_map(elements).collect();
+    elements.sort_by_key(|element| element.verdict.sureness());
+    let has_maybe = elements.iter().any(|element| element.verdict == Verdict::NearThreshold);
+    let groups = grouped(elements);
+    let mut lines: Vec<(&'static str, String)> = groups.iter().map(Group::line).collect();
+    let rows = lines.iter().scan(0, |rows, (_, text)| {
+        *rows += (NAME_CHARS + text.chars().count()).div_ceil(ROW_CHARS);
+        Some(*rows)
+    });
+    let shown = rows.take_while(|rows| *rows <= ROWS_MAX).count();
+    lines.truncate(shown);
+    lines.extend(rest(groups.get(shown..).unwrap_or_default()).map(|text| ("more", text)));
+    lines.extend(perception.alike.iter().take(ALIKE_LINES_MAX).map(|alike| ("alike", alike_text(alike))));
+    let more_pairs = perception.alike.len().saturating_sub(ALIKE_LINES_MAX);
+    lines.extend(
+        (more_pairs > 0)
+            .then(|| ("alike", format!("{more_pairs} more {}", if more_pairs == 1 { "pair" } else { "pairs" }))),
+    );
+    lines.extend(has_maybe.then(|| ("note", MAYBE.to_owned())));
+    lines.extend(perception.notes.iter().map(|note| ("note", note.clone())));
+    lines
 }
 
-impl Subject {
-    fn layer(layer: &LayerTitle) -> Self {
-        Self { text: layer.to_string(), tables: vec![Some(layer.number().table)] }
-    }
-}
-
-/// Joins the subjects that have the same text. Of copies of a layer, only the first one is named, and `more` are
-/// counted.
-fn grouped(texts: Vec<(Subject, String)>, more: &str) -> Vec<String> {
-    let mut groups: Vec<(Vec<(Subject, usize)>, String)> = Vec::new();
-    for (subject, text) in texts {
-        let group = groups.iter().position(|(_, other)| *other == text).unwrap_or(groups.len());
-        if group == groups.len() {
-            groups.push((Vec::new(), text));
-        }
-        let Some((subjects, _)) = groups.get_mut(group) else { continue };
-        match subjects.iter_mut().find(|(other, _)| other.tables == subject.tables) {
-            Some((_, copies)) => *copies += 1,
-            None => subjects.push((subject, 0)),
-        }
-    }
-    let subject = |(Subject { text, .. }, copies): &(Subject, usize)| match copies {
-        0 => text.clone(),
-        copies => format!("{text} and {copies}{more}"),
-    };
-    let subjects = |subjects: &[(Subject, usize)]| subjects.iter().map(subject).collect::<Vec<String>>().join(", ");
-    groups.iter().map(|(group, text)| format!("{}: {text}", subjects(group))).collect()
-}
-
-/// What a person will feel of a layer, one sentence without its subject.
+/// What a person will feel of a layer, a verdict and its reasons.
 pub fn sentence(layer: &LayerPerception) -> String {
-    let contrast = &layer.contrast;
-    let place = match layer {
-        LayerPerception { is_by_direction: true, .. } => "from one direction of the slide to the other",
-        LayerPerception { is_narrow: true, .. } => "at a narrow place in it",
-        _ => "within it",
+    let texts = elements(layer).map(|Element { part, verdict, text, .. }| {
+        if part.is_empty() {
+            format!("{}: {text}", verdict.words())
+        } else {
+            format!("{part}it {}: {text}", verdict.words())
+        }
+    });
+    texts.collect::<Vec<String>>().join("; ")
+}
+
+/// The verdict on a layer, and that on its click.
+fn elements(layer: &LayerPerception) -> impl Iterator<Item = Element> {
+    let title = &layer.layer;
+    let whole = Element { layer: title.clone(), part: "", verdict: layer.verdict, text: reasons(layer) };
+    let cut_off = if layer.is_click_cut_off { ", cut off at the most that the drive can give" } else { "" };
+    let click = layer.click.map(|click| Element {
+        layer: title.clone(),
+        part: "click of ",
+        verdict: click.verdict,
+        text: format!("{}{cut_off}", step_text(&click, "")),
+    });
+    std::iter::once(whole).chain(click)
+}
+
+/// Elements of which the same is felt.
+struct Group {
+    verdict: Verdict,
+    text: String,
+    /// The first of the copies of a layer, and how many more there are.
+    members: Vec<(Element, usize)>,
+}
+
+impl Group {
+    fn line(&self) -> (&'static str, String) {
+        let member = |(element, copies): &(Element, usize)| {
+            let Element { layer, part, .. } = element;
+            if *copies == 0 { format!("{part}{layer}") } else { format!("{part}{layer} and {copies} alike") }
+        };
+        let members: Vec<String> = self.members.iter().take(NAMES_MAX).map(member).collect();
+        let more = match self.members.len().saturating_sub(NAMES_MAX) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        (self.verdict.words(), format!("{}{more}: {}", members.join(", "), self.text))
+    }
+
+    fn count(&self) -> usize {
+        self.members.iter().map(|(_, copies)| 1 + copies).sum()
+    }
+}
+
+/// Joins the elements of the same verdict that have the same text, and those that are copies of one layer, for which the
+/// first one stands.
+fn grouped(elements: Vec<Element>) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for element in elements {
+        let is_copy = |(other, _): &(Element, usize)| {
+            other.part == element.part && other.layer.number().table == element.layer.number().table
+        };
+        let mut of_verdict = groups.iter_mut().filter(|group| group.verdict == element.verdict);
+        let group = of_verdict.find(|group| group.text == element.text || group.members.iter().any(is_copy));
+        let Some(group) = group else {
+            let (verdict, text) = (element.verdict, element.text.clone());
+            groups.push(Group { verdict, text, members: vec![(element, 0)] });
+            continue;
+        };
+        match group.members.iter_mut().find(|member| is_copy(member)) {
+            Some((_, copies)) => *copies += 1,
+            None => group.members.push((element, 0)),
+        }
+    }
+    groups
+}
+
+/// How many elements of each verdict have no line.
+fn rest(groups: &[Group]) -> Option<String> {
+    let counts = [Verdict::NotFelt, Verdict::Unknown, Verdict::NearThreshold, Verdict::Felt].map(|verdict| {
+        let count: usize = groups.iter().filter(|group| group.verdict == verdict).map(Group::count).sum();
+        (count > 0).then(|| format!("{count} {}", verdict.words()))
+    });
+    let counts: Vec<String> = counts.into_iter().flatten().collect();
+    (!counts.is_empty()).then(|| format!("{} (--json has them all)", counts.join(", ")))
+}
+
+/// Why a layer has its verdict: all that is felt as surely, and what would be felt more surely without an obstacle.
+fn reasons(layer: &LayerPerception) -> String {
+    let LayerPerception { verdict, over, contrast, is_narrow, textures, border, burst, .. } = layer;
+    if *over == Over::Samples {
+        let Step { from_n, to_n, .. } = contrast;
+        return format!("what is streamed moves it between {} and {} mN", millinewtons(*from_n), millinewtons(*to_n));
+    }
+    let place = match (over, is_narrow) {
+        (Over::Speed, _) => " from 20 to 100 mm/s",
+        (Over::Time, _) => " in time",
+        (Over::Direction, _) => " from one direction of the slide to the other",
+        (_, true) => " at a narrow place in it",
+        _ => " within it",
     };
-    let within = if contrast.contrast_n > 0.0 {
-        format!("{} {place}", step(contrast))
-    } else {
-        format!("{:.1} mN throughout", 1e3 * contrast.from_n)
-    };
-    // A texture that is not felt at any speed is not worth a line.
-    let has_texture = layer.textures.iter().any(|texture| texture.verdict != Verdict::NotFelt);
-    let textures = layer.textures.iter().filter(|_| has_texture).map(texture);
-    let burst = layer.burst.iter().map(|BurstTimes { on_ms, period_ms }| {
+    let bare = || "the bare screen".to_owned();
+    let from = |border: &BorderStep| format!(" from {}", border.from.as_ref().map_or_else(bare, ToString::to_string));
+    let steps = border.iter().map(|border| (border.step, from(border)));
+    let mut steps: Vec<(Step, String)> = steps.chain([(*contrast, place.to_owned())]).collect();
+    steps.sort_by(|(one, _), (other, _)| other.weber_steps.abs().total_cmp(&one.weber_steps.abs()));
+    let is_told = |own: Verdict, unhindered: Verdict| own == *verdict || unhindered.sureness() > verdict.sureness();
+    let mut told: Vec<String> = steps
+        .iter()
+        .filter(|(step, _)| is_told(step.verdict, Verdict::of_step(step.weber_steps)))
+        // A vibration is told as a texture.
+        .filter(|(step, _)| textures.is_empty() || !matches!(step.obstacle, Some(Obstacle::TooFast { .. })))
+        .map(|(step, place)| step_text(step, place))
+        .collect();
+    if *verdict == Verdict::NotFelt {
+        // One of the steps is as good a reason as both.
+        told.truncate(1);
+        if contrast.contrast_n == 0.0 && border.is_none() {
+            told = vec![format!("{} mN throughout, and nothing beside it", millinewtons(contrast.from_n))];
+        }
+    }
+    let surest = textures.iter().max_by(|one, other| {
+        let by_verdict = one.verdict.sureness().cmp(&other.verdict.sureness());
+        by_verdict.then(one.salience().total_cmp(&other.salience()))
+    });
+    told.extend(
+        surest
+            .filter(|texture| is_told(texture.verdict, Verdict::of_texture(texture.amplitude_n, texture.frequency_hz)))
+            .map(texture_text),
+    );
+    let burst = burst.iter().map(|BurstTimes { on_ms, period_ms }| {
         format!("all this while a burst lasts, {on_ms:.0} ms of every {period_ms:.0} ms")
     });
-    let cut_off = if layer.is_click_cut_off { ", cut off at the most that the drive can give" } else { "" };
-    let click = layer.click.iter().map(|click| format!("click {}{cut_off}", step(click)));
-    std::iter::once(within).chain(textures).chain(burst).chain(click).collect::<Vec<String>>().join("; ")
+    told.into_iter().chain(burst).collect::<Vec<String>>().join("; ")
 }
 
-fn alike(alike: &AlikeLayers) -> (Subject, String) {
-    let AlikeLayers { layers, difference_db, difference_weber_steps } = alike;
+fn step_text(step: &Step, place: &str) -> String {
+    let Step { from_n, to_n, weber_steps, verdict, obstacle, .. } = step;
+    let steps = weber_steps_text(*weber_steps);
+    let as_a_step = if *verdict == Verdict::NotFelt && obstacle.is_none() { ": not felt as a step" } else { "" };
+    let text =
+        format!("{} to {} mN{place}, {steps} Weber steps{as_a_step}", millinewtons(*from_n), millinewtons(*to_n));
+    with_obstacle(text, obstacle.as_ref())
+}
+
+fn texture_text(texture: &Texture) -> String {
+    let Texture { speed_mm_per_s, frequency_hz, amplitude_n, natural_noise_n, verdict, obstacle, .. } = texture;
+    let threshold = match texture_range_n(*frequency_hz) {
+        None => "where no threshold is known".to_owned(),
+        Some(_) if *verdict == Verdict::Unknown => {
+            format!("less than the finger's own noise of about {} mN", two_digits(1e3 * natural_noise_n))
+        }
+        Some(range_n) => {
+            let [least, about, most] = range_n.map(|threshold_n| two_digits(1e3 * threshold_n));
+            format!("felt from about {about} mN, {least} to {most}")
+        }
+    };
+    let (amplitude, frequency) = (two_digits(1e3 * amplitude_n), two_digits(*frequency_hz));
+    with_obstacle(
+        format!("{amplitude} mN at {frequency} Hz when slid at {speed_mm_per_s:.0} mm/s, {threshold}"),
+        obstacle.as_ref(),
+    )
+}
+
+fn with_obstacle(text: String, obstacle: Option<&Obstacle>) -> String {
+    let Some(obstacle) = obstacle else { return text };
+    let obstacle = match obstacle {
+        Obstacle::TooSmall { least_mm, limit, weber_steps } => {
+            let limit = match limit {
+                SizeLimit::Fingertip => "a fingertip".to_owned(),
+                SizeLimit::TouchSource { reports_hz } => format!("a touch source of {reports_hz:.0} reports a second"),
+            };
+            let left = weber_steps.map_or(String::new(), |steps| format!(", which leaves {}", weber_steps_text(steps)));
+            format!("too small for {limit}{left}: {least_mm} mm at half height would do")
+        }
+        Obstacle::TooSlow { way_mm, weber_steps } => {
+            format!("too slow a slope: {} within {way_mm:.0} mm", weber_steps_text(*weber_steps))
+        }
+        Obstacle::TooFast { frequency_hz, most_hz } => {
+            format!("too fast for steps: {} Hz, and {most_hz:.0} Hz is the most", two_digits(*frequency_hz))
+        }
+        Obstacle::TooShort { duration_ms, least_ms } => {
+            format!("too short: {} ms, and {least_ms:.0} ms would do", two_digits(*duration_ms))
+        }
+        Obstacle::TooRare { pause_ms, touch_ms } => format!(
+            "too rare: a pause of {} s, and a touch of {} s may fall within it",
+            two_digits(1e-3 * pause_ms),
+            two_digits(1e-3 * touch_ms)
+        ),
+    };
+    format!("{text}, {obstacle}")
+}
+
+fn alike_text(alike: &AlikeLayers) -> String {
+    let AlikeLayers { layers, copies, difference_db, difference_weber_steps } = alike;
     let voltage = difference_db.map(|difference_db| {
-        format!("{difference_db:.2} dB apart in voltage; {VOLTAGE_DIFFERENCE_DB} dB are needed to tell them apart")
+        format!("{difference_db:.1} dB apart in voltage; {VOLTAGE_DIFFERENCE_DB} dB are needed to tell them apart")
     });
     let friction = difference_weber_steps
         .map(|steps| format!("{steps:.1} Weber steps apart in friction; 1 is needed to tell them apart by it"));
-    let [one, other] = layers;
-    let tables = layers.iter().map(|layer| Some(layer.number().table)).collect();
-    (Subject { text: format!("{one} and {other}"), tables }, voltage.or(friction).unwrap_or_default())
+    let [one, other] = [0, 1].map(|side| match copies[side] {
+        0 => layers[side].to_string(),
+        copies => format!("{} and {copies} alike", layers[side]),
+    });
+    format!("{one} with {other}: {}", voltage.or(friction).unwrap_or_default())
 }
 
-/// The layers and borders that are near the threshold, and of which nothing else is felt.
-fn near_threshold(perception: &Perception) -> Vec<Subject> {
-    let verdicts = |layer: &LayerPerception| {
-        let textures = layer.textures.iter().map(|texture| texture.verdict);
-        let click = layer.click.iter().map(|click| click.verdict);
-        textures.chain(click).chain([layer.contrast.verdict]).collect::<Vec<Verdict>>()
-    };
-    let is_felt = |layer: &LayerPerception| verdicts(layer).contains(&Verdict::Felt);
-    let is_near = |layer: &&LayerPerception| !is_felt(layer) && verdicts(layer).contains(&Verdict::NearThreshold);
-    let layers = perception.layers.iter().filter(is_near);
-    let borders_felt = |border: &BorderStep| {
-        let sides = [&border.from, &border.to].map(|side| side.as_ref().map(LayerTitle::number));
-        perception.layers.iter().any(|layer| is_felt(layer) && sides.contains(&Some(layer.layer.number())))
-    };
-    let is_near = |border: &&BorderStep| border.step.verdict == Verdict::NearThreshold && !borders_felt(border);
-    let borders = perception.steps.iter().filter(is_near).map(sides);
-    let borders = borders.map(|subject| Subject { text: format!("the step {}", subject.text), ..subject });
-    layers.map(|layer| Subject::layer(&layer.layer)).chain(borders).collect()
+/// A friction with three digits, mN.
+fn millinewtons(friction_n: f64) -> String {
+    format!("{:.0}", 1e3 * friction_n)
 }
 
-fn sides(border: &BorderStep) -> Subject {
-    let sides = [border.from.as_ref(), border.to.as_ref()];
-    let [from, to] = sides.map(|side| side.map_or("the bare screen", LayerTitle::as_str));
-    let tables = sides.map(|side| side.map(|layer| layer.number().table)).to_vec();
-    Subject { text: format!("from {from} to {to}"), tables }
-}
-
-fn step(step: &Step) -> String {
-    let Step { from_n, to_n, weber_steps, verdict, .. } = step;
-    let words = verdict.words();
-    let steps = weber_steps_text(*weber_steps);
-    format!("{:.1} to {:.1} mN, {steps} Weber steps ({words})", 1e3 * from_n, 1e3 * to_n)
-}
-
-fn texture(texture: &Texture) -> String {
-    let Texture { speed_mm_per_s, frequency_hz, amplitude_n, threshold_n, verdict, .. } = texture;
-    let threshold = threshold_n
-        .map_or("no threshold known".to_owned(), |threshold_n| format!("threshold {:.2} mN", 1e3 * threshold_n));
-    let words = verdict.words();
-    format!("at {speed_mm_per_s:.0} mm/s {:.2} mN at {frequency_hz:.0} Hz, {threshold} ({words})", 1e3 * amplitude_n)
+/// A number with two significant digits.
+fn two_digits(value: f64) -> String {
+    let digits = if value.abs() > 0.0 { (1.0 - value.abs().log10().floor()).clamp(0.0, 4.0) as usize } else { 0 };
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

@@ -7,7 +7,7 @@ mod board;
 pub mod feel;
 mod text;
 
-use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
 use frixel_scene::{Program, TargetRange, middle_mm};
@@ -156,8 +156,9 @@ pub struct ReachableFriction {
 }
 
 impl SceneCheck {
-    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it.
-    pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts) -> Self {
+    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it, and
+    /// what a finger will feel of it whose place is known by a touch source.
+    pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts, touch: &TouchConfig) -> Self {
         let scene_bytes = program.scene_bytes().len();
         let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
         let total_bytes = costs.wire_total_bytes;
@@ -188,7 +189,7 @@ impl SceneCheck {
             },
             asked: TargetRange::of(program),
             warnings: program.warnings().map(ToString::to_string).collect(),
-            perception: Perception::of(program),
+            perception: Perception::of(program, touch),
             notes: program.notes().map(str::to_owned).collect(),
             left_out: program.optimisations().map(ToString::to_string).collect(),
             board: None,

@@ -62,7 +62,9 @@ fn a_plate_has_a_step_onto_it_and_no_contrast() {
 #[test]
 fn a_layer_has_the_contrast_that_a_check_gives_it() {
     let program = program(&[STRIPES]);
-    let checked = crate::perception::Perception::of(&program).layers[0].contrast.weber_steps;
+    let checked = crate::perception::Perception::of(&program, &frixel_hil_sim::TouchConfig::REALISTIC).layers[0]
+        .contrast
+        .weber_steps;
     let contrast = |gain, late_s| slide(&program, gain, late_s).layers()[0].contrast.weber_steps;
     assert!((contrast(1.0, 0.0) / checked - 1.0).abs() < 0.03, "{} of {checked}", contrast(1.0, 0.0));
     assert!((contrast(1.0, 0.02) / checked - 1.0).abs() < 0.03, "a delay takes nothing: {}", contrast(1.0, 0.02));
@@ -118,7 +120,9 @@ fn directions_are_compared_between_slides() {
         }
         noticing.layers()[0]
     };
-    let checked = crate::perception::Perception::of(&program).layers[0].contrast.weber_steps;
+    let checked = crate::perception::Perception::of(&program, &frixel_hil_sim::TouchConfig::REALISTIC).layers[0]
+        .contrast
+        .weber_steps;
     let whole = noticed(&[1.0, -1.0, 1.0], 0.01, 0.1).contrast.weber_steps;
     assert!((whole / checked - 1.0).abs() < 0.01, "{whole} of {checked}");
     assert!(noticed(&[1.0, -1.0], 0.04, 0.07).contrast.weber_steps < 0.5 * checked);

@@ -1,5 +1,6 @@
-//! Layers that a person cannot tell apart by their strength.
+//! Layers of one kind that a person cannot tell apart by their strength.
 
+use frixel_layers::Layer;
 use frixel_scene::{LayerTitle, Program, without_place};
 use serde::Serialize;
 
@@ -7,14 +8,19 @@ use super::{JudgedLayer, Texture, USUAL_M_PER_S, VOLTAGE_DIFFERENCE_DB, Verdict,
 
 /// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
 const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
-/// Frictions are compared that differ by less, in Weber steps: by less than a person feels.
+/// Frictions that differ by less, in Weber steps, are alike: by less than a person feels.
 const ALIKE_WEBER_STEPS: f64 = 1.0;
 
-/// Two layers whose difference is less than a person can tell. One of the differences is known.
+/// Rims of buttons whose widths differ by a larger part are told apart by them. Assumed.
+const ALIKE_WIDTHS: f64 = 0.25;
+
+/// Two layers of one kind whose difference is less than a person can tell. One of the differences is known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AlikeLayers {
-    /// The layers.
+    /// The layers: of copies, the first ones.
     pub layers: [LayerTitle; 2],
+    /// How many more copies there are of each.
+    pub copies: [usize; 2],
     /// Textures of about the same frequency: difference of their voltages at the 95th percentile of their friction, dB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference_db: Option<f64>,
@@ -24,20 +30,42 @@ pub struct AlikeLayers {
     pub difference_weber_steps: Option<f64>,
 }
 
-/// Pairs of layers that a person cannot tell apart. Layers of the same parameters are meant to feel the same, and
-/// layers that act at the same place are not felt one by one. Layers that depend on the direction differ by it, however
-/// strong they are.
+/// Pairs of layers of one kind that a person cannot tell apart, each for all copies of both. Layers of the same
+/// parameters are meant to feel the same, layers that act at the same place are not felt one by one, and what is not
+/// felt has nothing to be told apart by. Layers that depend on the direction differ by it, however strong they are.
 pub(super) fn of(judged: &[JudgedLayer], program: &Program) -> Vec<AlikeLayers> {
-    let pairs = judged
+    let mut groups: Vec<(&JudgedLayer, usize)> = Vec::new();
+    for layer in judged.iter().filter(|judged| judged.perception.verdict.sureness() > Verdict::Unknown.sureness()) {
+        match groups.iter_mut().find(|(first, _)| are_copies(first, layer, program)) {
+            Some((_, copies)) => *copies += 1,
+            None => groups.push((layer, 0)),
+        }
+    }
+    let pairs = groups
         .iter()
         .enumerate()
-        .flat_map(|(number, one)| judged.iter().skip(number + 1).map(move |other| (one, other)));
-    let is_comparable = |one: &JudgedLayer, other: &JudgedLayer| {
-        let are_by_direction = one.perception.is_by_direction || other.perception.is_by_direction;
-        !(are_by_direction || acts_on(one, other) || acts_on(other, one) || are_copies(one, other, program))
+        .flat_map(|(number, one)| groups.iter().skip(number + 1).map(move |other| (one, other)));
+    let alike = |(one, other): (&(&JudgedLayer, usize), &(&JudgedLayer, usize))| {
+        let ((one, one_copies), (other, other_copies)) = (one, other);
+        let is_comparable = !acts_on(one, other) && !acts_on(other, one) && are_of_one_form(one, other, program);
+        let alike = is_comparable.then(|| alike(one, other, program)).flatten()?;
+        Some(AlikeLayers { copies: [*one_copies, *other_copies], ..alike })
     };
-    let comparable = pairs.filter(|(one, other)| is_comparable(one, other));
-    comparable.filter_map(|(one, other)| alike(one, other, program)).collect()
+    pairs.filter_map(alike).collect()
+}
+
+/// Whether two layers are of one kind, and buttons have rims of about the same width.
+fn are_of_one_form(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
+    let layer = |judged: &JudgedLayer| program.records.get(judged.layer).map(|record| record.layer);
+    match (layer(one), layer(other)) {
+        (Some(Layer::Button(one)), Some(Layer::Button(other))) => {
+            let (narrow_m, wide_m) = (one.rim_width_m.min(other.rim_width_m), one.rim_width_m.max(other.rim_width_m));
+            f64::from(wide_m - narrow_m) <= ALIKE_WIDTHS * f64::from(wide_m)
+        }
+        (Some(Layer::Direction(_)), Some(_)) => false,
+        (Some(one), Some(other)) => one.number() == other.number(),
+        _ => false,
+    }
 }
 
 /// Whether a layer acts where another one is.
@@ -45,7 +73,7 @@ fn acts_on(one: &JudgedLayer, other: &JudgedLayer) -> bool {
     other.visible >> one.layer & 1 == 1
 }
 
-/// Whether two layers have the same parameters, but for their place.
+/// Whether two layers have the same parameters, but for their place and how they are turned.
 pub(super) fn are_copies(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
     let placeless = |judged: &JudgedLayer| program.records.get(judged.layer).map(|record| without_place(record.layer));
     placeless(one) == placeless(other)
@@ -61,14 +89,15 @@ fn alike(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> Option<Al
             let difference_db = 20.0 * libm::log10(ratio).abs();
             let is_alike = octaves < ALIKE_OCTAVES && difference_db < VOLTAGE_DIFFERENCE_DB;
             let difference_db = Some(difference_db);
-            is_alike.then_some(AlikeLayers { layers, difference_db, difference_weber_steps: None })
+            is_alike.then_some(AlikeLayers { layers, copies: [0, 0], difference_db, difference_weber_steps: None })
         }
         (None, None) => {
             let (one, other) = (&one.perception.contrast, &other.perception.contrast);
             let least = weber_steps(one.from_n, other.from_n).abs();
             let steps = weber_steps(one.to_n, other.to_n).abs().max(least);
             let difference_weber_steps = Some(steps);
-            (steps < ALIKE_WEBER_STEPS).then_some(AlikeLayers { layers, difference_db: None, difference_weber_steps })
+            let alike = AlikeLayers { layers, copies: [0, 0], difference_db: None, difference_weber_steps };
+            (steps < ALIKE_WEBER_STEPS).then_some(alike)
         }
         _ => None,
     }

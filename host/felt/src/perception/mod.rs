@@ -3,49 +3,54 @@
 //! The input is a compiled program. The output is a verdict for each layer, for each border between two layers, and for
 //! layers that are too much alike. A change of friction that is slower than 10 Hz under the finger is judged as a
 //! step, in Weber fractions of the total friction; a faster one as a texture, against the threshold of touch at its
-//! frequency and against the noise of the finger itself. The thresholds and
-//! their sources stand in one file, `thresholds.rs`.
+//! frequency and against the noise of the finger itself. What is too small for the touch source or a fingertip, too
+//! slow, too short or too rare is felt less surely. The thresholds and their sources stand in one file,
+//! `thresholds.rs`, those of sizes and times in `obstacle.rs`.
 
 mod alike;
 mod click;
+mod layer;
 mod neighbours;
+mod obstacle;
 mod slide;
 mod spectrum;
 #[cfg(test)]
 mod tests;
 mod thresholds;
 
-use frixel_layers::{Burst, Direction, Layer};
+use std::cmp::Ordering;
+
+use frixel_layers::{Burst, Layer};
 use serde::Serialize;
 
 use crate::percentile::percentiles;
 pub use alike::AlikeLayers;
-use click::ClickStep;
+use frixel_hil_sim::TouchConfig;
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
+use layer::{Judge, JudgedBorder, JudgedLayer};
 pub(crate) use neighbours::{border_reference, border_sides};
-use slide::Slide;
+use obstacle::{Hindrance, SmallestSize};
+pub use obstacle::{Obstacle, SizeLimit};
 pub(crate) use slide::{total_n, visible_layers};
 pub(crate) use spectrum::component_power;
 use thresholds::lag_gain;
+pub(crate) use thresholds::{MAYBE, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n, texture_range_n};
 pub use thresholds::{
     NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text,
 };
-pub(crate) use thresholds::{NEAR_THRESHOLD, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n};
 
-/// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration.
+/// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration. Assumed.
 const SPEEDS_M_PER_S: [f64; 3] = [0.02, USUAL_M_PER_S, 0.1];
-/// The speed at which contrasts are judged, m/s.
+/// The speed at which contrasts are judged, m/s. Assumed.
 const USUAL_M_PER_S: f64 = 0.05;
 /// Samples a second of the friction along a slide: four times the highest frequency with a threshold.
 pub(crate) const SAMPLE_HZ: f64 = 2000.0;
 /// A texture of a smaller amplitude is not mentioned, N: a tenth of the smallest threshold.
 const AMPLITUDE_MIN_N: f64 = 2e-5;
-/// Frictions of the copies of a layer that differ by less are the same, N: a slide meets the top of a narrow ridge only
-/// as exactly as its samples lie.
-const SAMPLING_N: f64 = 2e-4;
 /// Where the 5th and the 95th percentile are nearer to one another than this part of the whole range, the friction is
 /// the same almost everywhere but for a narrow place, such as a ridge. Noise, whose extremes are rare, stays above it.
+/// Assumed.
 const NARROW_PART: f64 = 0.3;
 
 /// What a person will feel of a program.
@@ -66,23 +71,45 @@ pub struct Perception {
 pub struct LayerPerception {
     /// The layer's number and title.
     pub layer: LayerTitle,
+    /// Whether a person feels the layer in any way but its click: the surest of contrast, textures and border.
+    pub verdict: Verdict,
+    /// What the contrast is a change with.
+    pub over: Over,
     /// From the 5th to the 95th percentile of the friction along a slide over the layer: of ten slides, five along each
-    /// side, that with the largest contrast. From the least to the largest friction if the layer is an edge, or if
-    /// [`Self::is_narrow`].
+    /// side, that of which most is felt. From the least to the largest friction if the layer is an edge, or if
+    /// [`Self::is_narrow`]. Over speed, from the friction at 20 mm/s to that at 100 mm/s; over the direction, between a
+    /// slide and the slide back; of a stream, from its lowest to its highest sample.
     pub contrast: Step,
-    /// Whether the contrast is that of a slide and the same one back, because the layer depends on the direction.
-    pub is_by_direction: bool,
     /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
     pub is_narrow: bool,
     /// The most noticeable texture at 20, 50 and 100 mm/s; absent where there is none, for an edge, which is a single
     /// ridge, and where all that is felt has steps only, such as a button.
     pub textures: Vec<Texture>,
-    /// The bursts during which contrast and textures hold; absent if they hold all the time.
+    /// Of the borders where the layer ends, that which is felt most surely, as a step onto it; absent for a layer without
+    /// any.
+    pub border: Option<BorderStep>,
+    /// The bursts of a vibration, during which contrast and textures hold; absent if they hold all the time.
     pub burst: Option<BurstTimes>,
     /// The step with which the layer's click begins.
     pub click: Option<Step>,
     /// Whether the drive cannot give all of the click.
     pub is_click_cut_off: bool,
+}
+
+/// What friction changes with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Over {
+    /// The place of the finger.
+    Place,
+    /// Time.
+    Time,
+    /// The speed of the finger.
+    Speed,
+    /// The direction of its slide.
+    Direction,
+    /// The samples that a host streams.
+    Samples,
 }
 
 /// The times of a vibration's bursts.
@@ -105,15 +132,39 @@ pub struct Step {
     pub contrast_n: f64,
     /// The change in Weber steps, `ln(to / from) / ln 1.11`.
     pub weber_steps: f64,
-    /// Below 1 step not felt, up to 2.3 near the threshold.
+    /// Below 1 step not felt, up to 2.3 near the threshold; less where there is an obstacle.
     pub verdict: Verdict,
+    /// What makes the verdict less sure than the size of the step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<Obstacle>,
 }
 
 impl Step {
     /// The step from one total friction to another, in newtons.
     pub fn new(from_n: f64, to_n: f64) -> Self {
         let steps = weber_steps(from_n, to_n);
-        Self { from_n, to_n, contrast_n: to_n - from_n, weber_steps: steps, verdict: Verdict::of_step(steps) }
+        let verdict = Verdict::of_step(steps);
+        Self { from_n, to_n, contrast_n: to_n - from_n, weber_steps: steps, verdict, obstacle: None }
+    }
+
+    /// The step the other way.
+    fn reversed(self) -> Self {
+        let Self { from_n, to_n, contrast_n, weber_steps, .. } = self;
+        Self { from_n: to_n, to_n: from_n, contrast_n: -contrast_n, weber_steps: -weber_steps, ..self }
+    }
+
+    /// Orders steps by how surely they are felt, and then by their size.
+    fn cmp_felt(&self, other: &Self) -> Ordering {
+        let by_verdict = self.verdict.sureness().cmp(&other.verdict.sureness());
+        by_verdict.then(self.weber_steps.abs().total_cmp(&other.weber_steps.abs()))
+    }
+
+    /// The same step behind something that hinders a finger.
+    fn behind(self, hindrance: Option<Hindrance>) -> Self {
+        match hindrance.and_then(|hindrance| hindrance.apply(self.verdict)) {
+            Some((verdict, obstacle)) => Self { verdict, obstacle, ..self },
+            None => self,
+        }
     }
 }
 
@@ -132,6 +183,9 @@ pub struct Texture {
     pub natural_noise_n: f64,
     /// Whether a person feels it.
     pub verdict: Verdict,
+    /// What makes the verdict less sure than the amplitude.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<Obstacle>,
 }
 
 /// A step where one layer borders another.
@@ -146,32 +200,34 @@ pub struct BorderStep {
 }
 
 impl Perception {
-    /// Judges a program.
+    /// Judges a program for a finger whose place is known by a touch source.
     ///
     /// ```
     /// use std::collections::BTreeMap;
     /// use frixel_felt::perception::{Perception, Verdict};
+    /// use frixel_hil_sim::TouchConfig;
     /// use frixel_scene::{Scene, compile};
     /// # fn judge(text: &str, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
     /// let program = compile(&Scene::parse(text, "grating.toml", &BTreeMap::new())?, limits, 40_000)?;
-    /// for layer in Perception::of(&program).layers {
-    ///     println!("{}: {}", layer.layer, layer.contrast.verdict.words());
+    /// for layer in Perception::of(&program, &TouchConfig::REALISTIC).layers {
+    ///     println!("{}: {}", layer.layer, layer.verdict.words());
     /// }
     /// # Ok(())
     /// # }
     /// ```
-    pub fn of(program: &Program) -> Self {
-        // A burst is judged while it lasts, however rare it is.
+    pub fn of(program: &Program, touch: &TouchConfig) -> Self {
+        let smallest = SmallestSize::of(touch);
+        // A burst is judged while it lasts.
         let lasting = &without_bursts(program);
         let reference = Reference::new(lasting);
-        let mut judged: Vec<JudgedLayer> = (0..lasting.records.len())
-            .filter_map(|layer| JudgedLayer::new(layer, &reference, program, lasting))
-            .collect();
+        let borders = neighbours::borders(lasting, USUAL_M_PER_S, smallest.size_m());
+        let borders: Vec<JudgedBorder> =
+            borders.iter().filter_map(|border| JudgedBorder::new(border, program, &smallest)).collect();
+        let judge = Judge { reference: &reference, program, lasting, smallest, borders: &borders };
+        let mut judged: Vec<JudgedLayer> = (0..lasting.records.len()).filter_map(|layer| judge.layer(layer)).collect();
         unite_copies(&mut judged, program);
-        let steps =
-            neighbours::borders(lasting, USUAL_M_PER_S).into_iter().filter_map(|border| border_step(&border, program));
         Self {
-            steps: steps.collect(),
+            steps: borders.into_iter().map(|border| border.step).collect(),
             alike: alike::of(&judged, program),
             notes: notes(&reference),
             layers: judged.into_iter().map(|judged| judged.perception).collect(),
@@ -179,24 +235,14 @@ impl Perception {
     }
 }
 
-/// Gives copies of a layer the same contrast and click, if they differ only by how they were sampled.
+/// Gives copies of a layer that differ only by how they were sampled the numbers of the first one.
 fn unite_copies(judged: &mut [JudgedLayer], program: &Program) {
-    let are_near = |one: &Step, other: &Step| {
-        (one.from_n - other.from_n).abs() < SAMPLING_N && (one.to_n - other.to_n).abs() < SAMPLING_N
-    };
     for number in 1..judged.len() {
         let (before, rest) = judged.split_at_mut(number);
         let Some(copy) = rest.first_mut() else { return };
-        let is_like = |one: &&JudgedLayer| {
-            alike::are_copies(one, copy, program) && are_near(&one.perception.contrast, &copy.perception.contrast)
-        };
+        let is_like = |one: &&JudgedLayer| alike::are_copies(one, copy, program) && one.is_near(copy);
         let Some(one) = before.iter().find(is_like) else { continue };
-        copy.perception.contrast = one.perception.contrast;
-        if let (Some(click), Some(of_copy)) = (one.perception.click, &mut copy.perception.click)
-            && are_near(&click, of_copy)
-        {
-            *of_copy = click;
-        }
+        copy.perception = LayerPerception { layer: copy.perception.layer.clone(), ..one.perception.clone() };
     }
 }
 
@@ -209,76 +255,6 @@ fn without_bursts(program: &Program) -> Program {
         }
     }
     lasting
-}
-
-/// The step at a border; `None` where a ridge ends in nothing, which is no step.
-fn border_step(border: &neighbours::Border, program: &Program) -> Option<BorderStep> {
-    let ([from, to], [from_n, to_n]) = (border.sides, border.friction_n);
-    let step = Step::new(from_n, to_n);
-    let is_edge =
-        |layer: usize| program.records.get(layer).is_some_and(|record| matches!(record.layer, Layer::Edge(_)));
-    let ends_a_ridge = [from, to].into_iter().flatten().any(is_edge) && step.verdict == Verdict::NotFelt;
-    let title = |side: Option<usize>| side.and_then(|layer| program.titles.get(layer).cloned());
-    (!ends_a_ridge).then(|| BorderStep { from: title(from), to: title(to), step })
-}
-
-/// A layer with what its comparison with others needs.
-#[derive(Clone, Debug)]
-struct JudgedLayer {
-    /// Index from the bottom.
-    layer: usize,
-    /// The layers that act on its slides, a bit each.
-    visible: u64,
-    perception: LayerPerception,
-}
-
-impl JudgedLayer {
-    /// Judges a layer, with those below it but without those above it, which are judged themselves; `None` if it is
-    /// visible nowhere. `lasting` is `program` without pauses between bursts, and `reference` belongs to it.
-    fn new(layer: usize, reference: &Reference, program: &Program, lasting: &Program) -> Option<Self> {
-        let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        let record = program.records.get(layer)?;
-        let over = Slide::over(layer, reference, screen_m);
-        let slides = match record.layer {
-            Layer::Direction(Direction { angle_turns, .. }) => {
-                let along = Slide::along(angle_turns.into(), layer, reference, screen_m);
-                over.into_iter().chain(along).flat_map(|slide| [slide, slide.back()]).collect()
-            }
-            _ => over,
-        };
-        let uncovered = reference.clone().with_only(|other| other <= layer);
-        let slides_n = SPEEDS_M_PER_S.map(|speed_m_per_s| -> Vec<Vec<f64>> {
-            slides.iter().map(|slide| slide.friction_n(&uncovered, lasting, speed_m_per_s, SAMPLE_HZ)).collect()
-        });
-        let [_, usual_n, _] = &slides_n;
-        let is_edge = matches!(record.layer, Layer::Edge(_));
-        let is_by_direction = matches!(record.layer, Layer::Direction(_));
-        let ways_n = usual_n.chunks(if is_by_direction { 2 } else { 1 });
-        let contrasts = ways_n.filter_map(|way_n| contrast_within(&way_n.concat(), is_edge));
-        let (contrast, is_narrow) =
-            contrasts.max_by(|(one, _), (other, _)| one.contrast_n.total_cmp(&other.contrast_n))?;
-        let visible = slides.iter().fold(0, |visible, slide| visible | slide.visible_layers(reference));
-        let felt = visible & (u64::MAX >> (63 - layer));
-        let has_texture = !is_edge && has_texture(felt, program);
-        let textures = SPEEDS_M_PER_S.into_iter().zip(&slides_n).filter(|_| has_texture).filter_map(
-            |(speed_m_per_s, frictions_n)| {
-                let textures = frictions_n.iter().filter_map(|friction_n| Texture::of(friction_n, speed_m_per_s));
-                textures.max_by(|one, other| one.salience().total_cmp(&other.salience()))
-            },
-        );
-        let click = ClickStep::of(layer, &slides, lasting, USUAL_M_PER_S);
-        let perception = LayerPerception {
-            layer: program.titles.get(layer)?.clone(),
-            contrast,
-            is_by_direction,
-            is_narrow,
-            textures: textures.collect(),
-            burst: burst(felt, program),
-            click: click.map(|click| click.step),
-            is_click_cut_off: click.is_some_and(|click| click.is_cut_off),
-        };
-        Some(Self { layer, visible, perception })
-    }
 }
 
 /// The contrast along a slide, and whether only a narrow place makes it; `None` without any friction.
@@ -298,18 +274,6 @@ pub(crate) fn has_texture(layers: u64, program: &Program) -> bool {
             record.layer,
             Layer::Constant(_) | Layer::Button(_) | Layer::Edge(_) | Layer::Speed(_) | Layer::Direction(_)
         )
-    })
-}
-
-/// The bursts of the topmost of these layers that has any.
-fn burst(layers: u64, program: &Program) -> Option<BurstTimes> {
-    let acts = |(number, _): &(usize, _)| layers >> number & 1 == 1;
-    program.records.iter().enumerate().filter(acts).rev().find_map(|(_, record)| match record.layer {
-        Layer::Vibration(vibration) if vibration.burst.period_s > 0.0 => Some(BurstTimes {
-            on_ms: 1e3 * f64::from(vibration.burst.on_s),
-            period_ms: 1e3 * f64::from(vibration.burst.period_s),
-        }),
-        _ => None,
     })
 }
 
@@ -334,7 +298,16 @@ impl Texture {
             threshold_n: texture_threshold_n(frequency_hz),
             natural_noise_n: natural_noise_amplitude_n(frequency_hz),
             verdict: Verdict::of_texture(amplitude_n, frequency_hz),
+            obstacle: None,
         })
+    }
+
+    /// The same texture behind something that hinders a finger.
+    fn behind(self, hindrance: Option<Hindrance>) -> Self {
+        match hindrance.and_then(|hindrance| hindrance.apply(self.verdict)) {
+            Some((verdict, obstacle)) => Self { verdict, obstacle, ..self },
+            None => self,
+        }
     }
 }
 

@@ -1,10 +1,12 @@
 //! Steps of friction where one layer borders another.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use frixel_layers::{Blend, Layer};
 
 use super::slide::{total_n, visible_layers};
+use crate::percentile::percentiles;
 use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference};
 
@@ -19,13 +21,29 @@ pub(super) struct Border {
     pub(super) sides: [Option<usize>; 2],
     /// Mean total friction on either side, N.
     pub(super) friction_n: [f64; 2],
+    /// On the side of the layer above, the median of the means over squares as wide as the smallest size that is felt, N.
+    pub(super) met_n: f64,
+    /// The layers that end there, which are on that side only, a bit each.
+    pub(super) ends: [u64; 2],
 }
 
 /// Places on both sides of a border, and their friction.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Pairs {
     count: usize,
     sums_n: [f64; 2],
+    met_n: Vec<f64>,
+    ends: [u64; 2],
+}
+
+/// A place beside a border.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    /// The layers that have an effect there, a bit each.
+    visible: u64,
+    friction_n: f64,
+    /// Mean over a square beside the border.
+    met_n: f64,
 }
 
 /// What borders are judged by: vibrations at their largest, without clicks, streams, and ridges on what lies below: a
@@ -39,8 +57,8 @@ pub(crate) fn border_reference(program: &Program, is_on: impl Fn(usize) -> bool)
     Reference::new(program).with_vibrations_held().with_only(|layer| is_on(layer) && !is_ridge_on_ground(layer))
 }
 
-/// The borders between the layers of a program, for a slow finger.
-pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
+/// The borders between the layers of a program, for a slow finger. `smallest_m` is the smallest size that is felt.
+pub(super) fn borders(program: &Program, speed_m_per_s: f64, smallest_m: f64) -> Vec<Border> {
     let reference = border_reference(program, |_| true);
     let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
     let pitch_m = width_m.max(height_m) / PLACES;
@@ -52,29 +70,77 @@ pub(super) fn borders(program: &Program, speed_m_per_s: f64) -> Vec<Border> {
         (visible_layers(&reference, x_m, y_m), total_n(program, reference.electric_friction_at_n(&context)))
     };
     let cells: Vec<(u64, f64)> = (0..columns * rows).map(at).collect();
+    let sums = Sums::new(columns, rows, |column, row| cells.get(row * columns + column).map_or(0.0, |cell| cell.1));
+    let width = ((smallest_m / pitch_m).round() as usize).max(1);
     let mut found: BTreeMap<[Option<usize>; 2], Pairs> = BTreeMap::new();
     for (number, here) in cells.iter().enumerate() {
-        let right = (number % columns + 1 < columns).then_some(number + 1);
-        for other in [right, Some(number + columns)].into_iter().flatten().filter_map(|other| cells.get(other)) {
-            if here.0 != other.0 {
-                add(&mut found, *here, *other);
-            }
+        let (column, row) = (number % columns, number / columns);
+        // The square of the cells before and behind an index, and that around an index, which it need not be in.
+        let (before, behind) = (|end: usize| end.saturating_sub(width)..end, |start: usize| start..start + width);
+        let around = |middle: usize| middle.saturating_sub(width / 2)..(middle.saturating_sub(width / 2) + width);
+        let right = (column + 1 < columns).then(|| {
+            let [left, right] = [before(column + 1), behind(column + 1)];
+            (number + 1, [sums.mean(left, around(row)), sums.mean(right, around(row))])
+        });
+        let below = [before(row + 1), behind(row + 1)].map(|rows| sums.mean(around(column), rows));
+        for (other, [here_met_n, other_met_n]) in right.into_iter().chain([(number + columns, below)]) {
+            let Some(other) = cells.get(other).filter(|other| other.0 != here.0) else { continue };
+            let side = |cell: &(u64, f64), met_n| Side { visible: cell.0, friction_n: cell.1, met_n };
+            add(&mut found, side(here, here_met_n), side(other, other_met_n));
         }
     }
     let borders = found.into_iter().filter(|(_, pairs)| pairs.count >= PAIRS_MIN);
-    borders
-        .map(|(sides, pairs)| Border { sides, friction_n: pairs.sums_n.map(|sum| sum / pairs.count as f64) })
-        .collect()
+    let border = |(sides, pairs): ([Option<usize>; 2], Pairs)| {
+        let Pairs { count, sums_n, met_n, ends } = pairs;
+        // At corners a square reaches beyond the layer, however large that is.
+        let [met_n] = percentiles(met_n, [50]).unwrap_or_default();
+        Border { sides, friction_n: sums_n.map(|sum_n| sum_n / count as f64), met_n, ends }
+    };
+    borders.map(border).collect()
 }
 
 /// Counts a pair of places, with the lower layer first.
-fn add(found: &mut BTreeMap<[Option<usize>; 2], Pairs>, one: (u64, f64), other: (u64, f64)) {
-    let (sides, is_turned) = border_sides(one.0, other.0);
+fn add(found: &mut BTreeMap<[Option<usize>; 2], Pairs>, one: Side, other: Side) {
+    let (sides, is_turned) = border_sides(one.visible, other.visible);
     let (low, high) = if is_turned { (other, one) } else { (one, other) };
     let pairs = found.entry(sides).or_default();
     pairs.count += 1;
-    pairs.sums_n[0] += low.1;
-    pairs.sums_n[1] += high.1;
+    pairs.sums_n[0] += low.friction_n;
+    pairs.sums_n[1] += high.friction_n;
+    pairs.met_n.push(high.met_n);
+    pairs.ends[0] |= low.visible & !high.visible;
+    pairs.ends[1] |= high.visible & !low.visible;
+}
+
+/// Sums over the cells of a grid from its first corner on, from which that over any rectangle follows.
+#[derive(Clone, Debug)]
+struct Sums {
+    columns: usize,
+    rows: usize,
+    /// A row and a column more than the grid: the first are 0.
+    sums: Vec<f64>,
+}
+
+impl Sums {
+    fn new(columns: usize, rows: usize, value: impl Fn(usize, usize) -> f64) -> Self {
+        let mut sums = vec![0.0; (columns + 1) * (rows + 1)];
+        for row in 0..rows {
+            let mut of_row = 0.0;
+            for column in 0..columns {
+                of_row += value(column, row);
+                sums[(row + 1) * (columns + 1) + column + 1] = sums[row * (columns + 1) + column + 1] + of_row;
+            }
+        }
+        Self { columns, rows, sums }
+    }
+
+    /// The mean over the cells of a rectangle that are within the grid.
+    fn mean(&self, columns: Range<usize>, rows: Range<usize>) -> f64 {
+        let (right, bottom) = (columns.end.min(self.columns), rows.end.min(self.rows));
+        let at = |column: usize, row: usize| self.sums[row * (self.columns + 1) + column];
+        let sum = at(right, bottom) - at(columns.start, bottom) - at(right, rows.start) + at(columns.start, rows.start);
+        sum / ((right - columns.start) * (bottom - rows.start)).max(1) as f64
+    }
 }
 
 /// What a person would call two places beside one another by, the lower layer first, and whether that is the second

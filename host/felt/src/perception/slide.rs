@@ -58,7 +58,12 @@ impl Slide {
         Self { from_m, to_m, place_step_m }
     }
 
-    fn length_m(&self) -> f64 {
+    /// Whether it runs along x.
+    pub(super) fn is_row(&self) -> bool {
+        self.place_step_m.1 == 0.0
+    }
+
+    pub(super) fn length_m(&self) -> f64 {
         libm::hypot(self.to_m.0 - self.from_m.0, self.to_m.1 - self.from_m.1)
     }
 
@@ -101,6 +106,12 @@ impl Slide {
     pub(super) fn begun_outside(&self) -> Self {
         let ((x_m, y_m), (x_step_m, y_step_m)) = (self.from_m, self.place_step_m);
         Self { from_m: (x_m - 2.0 * x_step_m, y_m - 2.0 * y_step_m), ..*self }
+    }
+
+    /// The same way, begun earlier and ended later by a length in metres.
+    pub(super) fn begun_and_ended_outside(&self, length_m: f64) -> Self {
+        let part = length_m / self.length_m();
+        Self { from_m: self.at(-part), to_m: self.at(1.0 + part), ..*self }
     }
 
     /// Total friction along the way at a constant speed, in newtons, clamped to what the drive can give.

@@ -7,6 +7,8 @@ use crate::spectrum::Spectrum;
 
 /// Least number of samples of which a component is sought.
 const SAMPLES_MIN: usize = 64;
+/// A component with a smaller part of the signal's power is a harmonic, or numerical noise, of what is felt. Assumed.
+const POWER_PART_MIN: f64 = 0.05;
 /// Half width of a component, in bins: a Hann window spreads a sine over two bins on either side.
 const SPREAD_BINS: usize = 2;
 /// Half width of a component, as a factor of its frequency: a sixth of an octave on either side.
@@ -22,7 +24,7 @@ pub(super) struct Component {
 
 /// The component that exceeds the threshold of touch by the largest factor after `gain`, a factor by frequency in Hz,
 /// which its amplitude contains; where no frequency has a threshold, the component of the largest amplitude. `None` for
-/// a signal that is too short or has nothing above [`TEXTURE_MIN_HZ`].
+/// a signal that is too short, or has no component above [`TEXTURE_MIN_HZ`] with 5 % of its power.
 pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64) -> f64) -> Option<Component> {
     if samples.len() < SAMPLES_MIN {
         return None;
@@ -37,11 +39,13 @@ pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64
         .collect();
     let first = ((TEXTURE_MIN_HZ / bin_hz).ceil() as usize).max(SPREAD_BINS + 1);
     let peaks = (first..power.len()).filter(|bin| is_largest(&power, *bin));
-    let components = peaks.map(|bin| {
+    let power_min = POWER_PART_MIN * cumulative.last().copied().unwrap_or_default();
+    let components = peaks.filter_map(|bin| {
         let around = around(bin, power.len());
         let sum = cumulative.get(around.end).zip(cumulative.get(around.start)).map_or(0.0, |(to, from)| to - from);
         let frequency_hz = bin as f64 * bin_hz;
-        Component { frequency_hz, amplitude: gain(frequency_hz) * (2.0 * sum.max(0.0)).sqrt() }
+        let component = Component { frequency_hz, amplitude: gain(frequency_hz) * (2.0 * sum.max(0.0)).sqrt() };
+        (sum >= power_min).then_some(component)
     });
     components.max_by(|one, other| salience(one).total_cmp(&salience(other)))
 }
@@ -108,11 +112,19 @@ mod tests {
     /// The gain takes from 200 Hz what made it more noticeable than 40 Hz.
     #[test]
     fn what_is_most_noticeable_is_judged_behind_the_gain() {
-        let both = sines(4000, &[(40.0, 0.02), (200.0, 0.004)]);
+        let both = sines(4000, &[(40.0, 0.02), (200.0, 0.006)]);
         let ahead = most_noticeable(&both, SAMPLE_HZ, |_| 1.0).unwrap();
         assert!((ahead.frequency_hz - 200.0).abs() < 1.0, "{ahead:?}");
         let behind = most_noticeable(&both, SAMPLE_HZ, |hz| if hz > 100.0 { 1e-3 } else { 0.5 }).unwrap();
         assert!((behind.frequency_hz - 40.0).abs() < 1.0 && (behind.amplitude - 0.01).abs() < 1e-4, "{behind:?}");
+    }
+
+    /// 4.5 % of the power: a harmonic of what is felt as a step.
+    #[test]
+    fn a_small_part_of_the_power_is_no_component() {
+        let small = |amplitude| most_noticeable(&sines(4000, &[(5.0, 0.02), (200.0, amplitude)]), SAMPLE_HZ, |_| 1.0);
+        assert_eq!(small(0.0043), None);
+        assert!((small(0.0048).unwrap().frequency_hz - 200.0).abs() < 1.0);
     }
 
     #[test]

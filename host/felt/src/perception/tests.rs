@@ -1,9 +1,11 @@
-use super::{BurstTimes, LayerPerception, NEAR_THRESHOLD, Perception, Step, Verdict, weber_steps};
+use frixel_hil_sim::TouchConfig;
+
+use super::{BurstTimes, LayerPerception, MAYBE, Over, Perception, Step, Verdict, weber_steps};
 use crate::check::feel;
 use crate::tests::{compiled, program};
 
 fn of(layers: &str) -> Perception {
-    Perception::of(&program(layers))
+    Perception::of(&program(layers), &TouchConfig::REALISTIC)
 }
 
 fn only(perception: &Perception) -> &LayerPerception {
@@ -110,7 +112,7 @@ fn a_vibration_is_said_to_need_a_sliding_finger() {
 
 /// On the example screen, under the example finger: 250 mN, to which the drive adds up to 130 mN.
 fn on_example(layers: &str) -> Perception {
-    Perception::of(&compiled(&format!("version = 2\n{layers}")))
+    Perception::of(&compiled(&format!("version = 2\n{layers}")), &TouchConfig::REALISTIC)
 }
 
 /// A layer whose friction is in parts of the reach, at a place of 30 by 20 mm.
@@ -119,6 +121,7 @@ fn plate(x_mm: u32, fields: &str) -> String {
     format!("[[layer]]\n{region}\n{fields}\n")
 }
 
+/// A rare burst is as strong as a lasting vibration, and a touch may miss it.
 #[test]
 fn a_rare_burst_is_judged_while_it_lasts() {
     let vibration = |burst: &str| {
@@ -127,12 +130,17 @@ fn a_rare_burst_is_judged_while_it_lasts() {
     };
     let (lasting, rare) = (vibration(""), vibration("burst = { period_ms = 5000, on_ms = 100, ramp_ms = 10 }\n"));
     assert_eq!(only(&rare).contrast, only(&lasting).contrast);
-    assert_eq!(only(&rare).textures, only(&lasting).textures);
-    assert_eq!(only(&rare).textures[1].verdict, Verdict::Felt);
+    for (rare, lasting) in only(&rare).textures.iter().zip(&only(&lasting).textures) {
+        assert_eq!((rare.frequency_hz, rare.amplitude_n), (lasting.frequency_hz, lasting.amplitude_n));
+        assert_eq!((rare.verdict, lasting.verdict), (Verdict::NearThreshold, Verdict::Felt));
+    }
+    assert!(!only(&rare).textures.is_empty());
     let BurstTimes { on_ms, period_ms } = only(&rare).burst.unwrap();
     assert!((on_ms - 100.0).abs() < 1e-3 && (period_ms - 5000.0).abs() < 1e-3);
     assert_eq!(only(&lasting).burst, None);
-    assert!(feel::sentence(only(&rare)).contains("; all this while a burst lasts, 100 ms of every 5000 ms"));
+    let said = feel::sentence(only(&rare));
+    assert!(said.starts_with("maybe: ") && said.ends_with("; all this while a burst lasts, 100 ms of every 5000 ms"));
+    assert!(said.contains("too rare: a pause of 4.9 s, and a touch of 1 s may fall within it"), "{said}");
 }
 
 #[test]
@@ -140,7 +148,10 @@ fn a_lone_edge_is_felt_where_it_is() {
     let perception = on_example("[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 3\nridge_n = 0.02\n");
     let layer = only(&perception);
     assert!(layer.is_narrow && (layer.contrast.contrast_n - 0.02).abs() < 1e-5, "{layer:?}");
-    assert_eq!(feel::sentence(layer), "250.0 to 270.0 mN, 0.7 Weber steps (not felt) at a narrow place in it");
+    assert_eq!(
+        feel::sentence(layer),
+        "not felt: 250 to 270 mN at a narrow place in it, 0.7 Weber steps: not felt as a step"
+    );
     assert!(!only(&of(&grating(2.0, 20.0))).is_narrow);
 }
 
@@ -151,11 +162,13 @@ fn a_layer_that_depends_on_the_direction_is_judged_there_and_back() {
         let fields = format!("kind = \"direction\"\nangle_deg = {angle_deg}\nalong_n = 0.01\nagainst_n = 0.06\n");
         let perception = on_example(&plate(50, &fields));
         let layer = only(&perception);
-        assert!(layer.is_by_direction && layer.textures.is_empty(), "{layer:?}");
+        assert!(layer.over == Over::Direction && layer.textures.is_empty(), "{layer:?}");
         let found = feel::sentence(layer);
-        assert_eq!(
-            found,
-            "260.0 to 310.0 mN, 1.7 Weber steps (near the threshold) from one direction of the slide to the other"
+        let (verdict, text) = found.split_once(": ").unwrap();
+        assert_eq!(verdict, "maybe");
+        assert!(
+            text.contains("260 to 310 mN from one direction of the slide to the other, 1.7 Weber steps"),
+            "{found}"
         );
     }
     let velvet = "kind = \"direction\"\nalong_fraction = 0.1\nagainst_fraction = 0.9\n";
@@ -228,7 +241,12 @@ fn a_click_is_judged_where_it_begins_and_within_what_the_drive_can_give() {
     let perception = button(1.0);
     let layer = only(&perception);
     assert!(layer.is_click_cut_off && layer.click.unwrap().contrast_n.abs() < 1e-4, "{layer:?}");
-    assert!(feel::sentence(layer).contains("0.0 Weber steps (not felt), cut off at the most that the drive can give"));
+    let said = feel::sentence(layer);
+    assert!(said.contains("; click of it not felt: "), "{said}");
+    assert!(
+        said.ends_with("0.0 Weber steps: not felt as a step, cut off at the most that the drive can give"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -244,7 +262,9 @@ fn plates_and_buttons_of_almost_the_same_friction_are_alike() {
     assert!(pair[0].difference_weber_steps.unwrap() < 1.0 && pair[0].difference_db.is_none());
     assert_eq!(alike(&constant(high), &constant(high)), [], "the same layer twice is meant to be");
     assert_eq!(alike(&button(0.4, 0.8), &button(0.5, 0.8)).len(), 1);
-    assert_eq!(alike(&button(0.4, 0.8), &constant(0.6)).len(), 1);
+    assert_eq!(alike(&button(0.4, 0.8), &constant(0.6)), [], "another kind is told by its form");
+    let wide = button(0.5, 0.8).replace("rim_width_mm = 3", "rim_width_mm = 6");
+    assert_eq!(alike(&button(0.4, 0.8), &wide), [], "a rim is told by its width");
 }
 
 /// Layers that act at the same place are felt as one.
@@ -262,10 +282,31 @@ fn copies_of_a_layer_are_named_once() {
     let detents = "[[layer]]\nname = \"detent\"\nkind = \"edge\"\nregion = { x_mm = 10, y_mm = 20, width_mm = 4, \
          height_mm = 30 }\nrepeat = { columns = 6, dx_mm = 15 }\nx_mm = 12\ny_mm = 30\nwidth_mm = 4\nridge_n = 0.02\n";
     let lines = feel::lines(&of(detents));
-    let feel: Vec<&String> = lines.iter().filter(|(name, _)| *name == "feel").map(|(_, text)| text).collect();
-    assert_eq!(feel.len(), 1, "{feel:?}");
-    assert!(feel[0].starts_with("layer 1.1 \"detent 1\" and 5 alike: 250."), "{feel:?}");
-    assert!(!lines.iter().any(|(name, _)| *name == "alike"), "{lines:?}");
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert_eq!(lines[0].0, "not felt");
+    assert!(lines[0].1.starts_with("layer 1.1 \"detent 1\" and 5 alike: 250 to 2"), "{lines:?}");
+}
+
+/// Of a dial with twelve ticks, each turned, and four keys.
+#[test]
+fn copies_that_are_turned_are_one_group() {
+    let tick = |number: f64| {
+        let angle = number * std::f64::consts::TAU / 12.0;
+        let (x_mm, y_mm) = (60.0 + 30.0 * angle.cos(), 40.0 + 30.0 * angle.sin());
+        format!(
+            "[[layer]]\nkind = \"edge\"\nx_mm = {x_mm:.3}\ny_mm = {y_mm:.3}\nangle_deg = {}\nwidth_mm = 8\nridge_fraction = 0.8\n\
+             region = {{ shape = \"ellipse\", x_mm = {:.3}, y_mm = {:.3}, width_mm = 12, height_mm = 12 }}\n",
+            30.0 * number,
+            x_mm - 6.0,
+            y_mm - 6.0
+        )
+    };
+    let ticks: String = (0..12).map(|number| tick(number.into())).collect();
+    let other = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 8\nridge_fraction = 0.7\n\
+                 region = { x_mm = 50, y_mm = 30, width_mm = 20, height_mm = 20 }\n";
+    let alike = on_example(&(ticks + other)).alike;
+    assert_eq!(alike.len(), 1, "{alike:?}");
+    assert_eq!(alike[0].copies, [11, 0]);
 }
 
 /// A groove with ridges on it is the same throughout, and a step or a ridge is no texture.
@@ -277,15 +318,12 @@ fn a_layer_is_judged_without_the_layers_above_it() {
                    region = { x_mm = 10, y_mm = 30, width_mm = 8, height_mm = 20 }\nrepeat = { columns = 10, dx_mm = 8 }\n";
     let perception = on_example(&format!("{groove}{detents}"));
     let lines = feel::lines(&perception);
-    let of = |kind: &str| -> Vec<&str> {
-        lines.iter().filter(|(name, _)| *name == kind).map(|(_, text)| text.as_str()).collect()
-    };
-    assert_eq!(of("feel").len(), 2, "the ridges are the same: {lines:?}");
-    assert_eq!(of("feel")[0], "layer 1 \"groove\": 263.0 mN throughout");
-    assert!(of("feel")[1].starts_with("layer 2.1 \"detent 1\" and 9 alike: 263.0 to 36"), "{lines:?}");
+    let texts: Vec<&str> = lines.iter().map(|(_, text)| text.as_str()).collect();
     // The detents cover all of the groove, whose border is there all the same.
-    let step = "from the bare screen to layer 1 \"groove\": 250.0 to 263.0 mN, 0.5 Weber steps (not felt)";
-    assert_eq!(of("step"), [step]);
+    let groove = "layer 1 \"groove\": 250 to 263 mN from the bare screen, 0.5 Weber steps: not felt as a step";
+    assert_eq!((lines[0].0, texts[0]), ("not felt", groove));
+    assert!(texts[1].starts_with("layer 2.1 \"detent 1\" and 9 alike: 263 to 36"), "{lines:?}");
+    assert_eq!(lines.len(), 3, "the ridges are the same: {lines:?}");
 
     let button = plate(20, "kind = \"button\"\nrim_width_mm = 3\nrim_fraction = 0.9\nface_fraction = 0\n");
     let perception = on_example(&button);
@@ -297,22 +335,123 @@ fn a_layer_is_judged_without_the_layers_above_it() {
 }
 
 #[test]
-fn what_near_the_threshold_means_is_said_once_and_only_then() {
+fn what_maybe_means_is_said_once_and_only_then() {
     let said = |high_n: f64| {
         let constant = format!("kind = \"constant\"\nabove = \"natural\"\nfriction_n = {high_n}");
         let perception = on_example(&(plate(20, &constant) + &plate(60, &constant)));
         let lines = feel::lines(&perception);
-        let near = lines.into_iter().filter(|(_, text)| text.ends_with(NEAR_THRESHOLD));
-        near.map(|(_, text)| text.split(": near").next().unwrap().to_owned()).collect::<Vec<String>>()
+        let notes = lines.iter().filter(|(_, text)| text == MAYBE).count();
+        (lines[0].0, notes)
     };
     // 0.8, 1.7 and 2.7 Weber steps.
-    let both =
-        "the step from the bare screen to layer 1 (constant), the step from the bare screen to layer 2 (constant)";
-    assert_eq!([0.02, 0.05, 0.08].map(said), [vec![], vec![both.to_owned()], vec![]]);
+    assert_eq!([0.02, 0.05, 0.08].map(said), [("not felt", 0), ("maybe", 1), ("felt", 0)]);
     // At 20 mm/s it is near the threshold.
     let fine = on_example("[[layer]]\nkind = \"grating\"\nwavelength_mm = 1\nlow_fraction = 0\nhigh_fraction = 0.2\n");
     let verdicts: Vec<Verdict> = only(&fine).textures.iter().map(|texture| texture.verdict).collect();
     assert!(verdicts.contains(&Verdict::NearThreshold) && verdicts.contains(&Verdict::Felt), "{verdicts:?}");
+    assert_eq!(only(&fine).verdict, Verdict::Felt);
     assert!(!feel::lines(&fine).iter().any(|(name, _)| *name == "note"), "{:?}", feel::lines(&fine));
     assert_eq!(serde_json::to_string(&Verdict::NearThreshold).unwrap(), "\"felt_by_some\"");
+}
+
+/// The layers of what designers wrote who believed that anything strong is felt, and what is said of it.
+#[test]
+fn what_is_too_small_slow_short_or_rare_is_not_called_felt() {
+    let key = |size_mm: f64| {
+        let region = format!("region = {{ x_mm = 60, y_mm = 40, width_mm = {size_mm}, height_mm = {size_mm} }}");
+        format!("[[layer]]\n{region}\nkind = \"constant\"\nfriction_fraction = 0.9\n")
+    };
+    let layer = |fields: &str| format!("[[layer]]\n{fields}\n");
+    let grating = |fields: &str| layer(&format!("kind = \"grating\"\nlow_fraction = 0\nhigh_fraction = 0.9\n{fields}"));
+    let edge = |fields: &str| layer(&format!("kind = \"edge\"\nx_mm = 60\ny_mm = 40\nridge_fraction = 0.9\n{fields}"));
+    let vibration =
+        |fields: &str| layer(&format!("kind = \"vibration\"\nlow_fraction = 0\nhigh_fraction = 0.9\n{fields}"));
+    let hundred = "too small for a touch source of 100 reports a second";
+    for (layers, verdict, said) in [
+        (key(1.0), Verdict::NotFelt, hundred),
+        (key(1.5), Verdict::NotFelt, hundred),
+        (key(3.0), Verdict::NearThreshold, hundred),
+        (key(10.0), Verdict::Felt, "250 to 367 mN from the bare screen, 3.7 Weber steps"),
+        (edge("width_mm = 0.3"), Verdict::NotFelt, hundred),
+        (edge("width_mm = 4"), Verdict::NearThreshold, hundred),
+        (edge("width_mm = 10"), Verdict::Felt, "within it, 3.7 Weber steps"),
+        (grating("wavelength_mm = 120\nwave = \"saw\""), Verdict::NearThreshold, "too slow a slope: 1."),
+        (grating("wavelength_mm = 300\nwave = \"saw\""), Verdict::NotFelt, "too slow a slope: 0."),
+        (grating("wavelength_mm = 40"), Verdict::Felt, "within it, 3.6 Weber steps"),
+        (grating("wavelength_mm = 4"), Verdict::Felt, "25 Hz when slid at 100 mm/s, felt from about 7.6 mN, 2.5 to 23"),
+        (vibration("frequency_hz = 1000"), Verdict::Unknown, "Hz when slid at"),
+        (vibration("frequency_hz = 0.01"), Verdict::NotFelt, "in time"),
+        (vibration("frequency_hz = 3"), Verdict::Felt, "in time, 3."),
+        (
+            vibration("frequency_hz = 80\nburst = { period_ms = 60000, on_ms = 1, ramp_ms = 0 }"),
+            Verdict::NotFelt,
+            "too short: 1 ms, and 2 ms would do",
+        ),
+        (
+            layer("kind = \"stream\"\nlow_n = 0.26\nhigh_n = 0.35"),
+            Verdict::Unknown,
+            "what is streamed moves it between 260 and 350 mN",
+        ),
+        (
+            layer("kind = \"constant\"\nfriction_fraction = 0.9")
+                + &layer("kind = \"speed\"\nspeeds_mm_per_s = [20, 100]\nfactors = [0, 1]"),
+            Verdict::Felt,
+            "250 to 367 mN from 20 to 100 mm/s, 3.7 Weber steps",
+        ),
+    ] {
+        let perception = on_example(&layers);
+        let layer = perception.layers.last().unwrap();
+        let text = feel::sentence(layer);
+        assert_eq!(layer.verdict, verdict, "{layers}{text}");
+        assert!(text.contains(said), "{layers}{text}");
+    }
+}
+
+#[test]
+fn a_faster_touch_source_plays_smaller_elements() {
+    let dot = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n\
+               region = { x_mm = 60, y_mm = 40, width_mm = 2.5, height_mm = 2.5 }\n";
+    let verdict = |rate_hz| {
+        let touch = TouchConfig { rate_hz, ..TouchConfig::REALISTIC };
+        only(&Perception::of(&compiled(&format!("version = 2\n{dot}")), &touch)).verdict
+    };
+    assert_eq!([100.0, 200.0, 500.0].map(verdict), [Verdict::NotFelt, Verdict::Felt, Verdict::Felt]);
+}
+
+/// A texture that is slower than 10 Hz is felt as steps, and no harmonic of it is told.
+#[test]
+fn a_slow_square_wave_has_no_texture() {
+    let perception = on_example(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 50\nwave = \"square\"\nlow_fraction = 0\nhigh_fraction = 0.9\n",
+    );
+    let said = feel::sentence(only(&perception));
+    assert!(said.starts_with("felt: ") && !said.contains("Hz"), "{said}");
+}
+
+#[test]
+fn beside_what_is_felt_nothing_less_sure_is_told() {
+    let button = plate(20, "kind = \"button\"\nrim_width_mm = 3\nrim_fraction = 0.9\nface_fraction = 0.6\n");
+    let lines = feel::lines(&on_example(&button));
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!(lines[0].0 == "felt" && !lines[0].1.contains("too small"), "{lines:?}");
+}
+
+/// The one who asks is at a terminal of 80 by 40 characters, which wraps what is longer.
+#[test]
+fn many_layers_fit_a_terminal() {
+    let layer = |number: usize| {
+        let (x_mm, y_mm) = (3 + 19 * (number % 6), 1 + 11 * (number / 6));
+        format!(
+            "[[layer]]\nname = \"pad {number}\"\nkind = \"constant\"\nfriction_fraction = {}\n\
+             region = {{ x_mm = {x_mm}, y_mm = {y_mm}, width_mm = 14, height_mm = 9 }}\n",
+            0.1 + 0.02 * number as f64
+        )
+    };
+    let layers: String = (0..37).map(layer).collect();
+    let program = compiled(&format!("version = 2\n{layers}"));
+    let lines = feel::lines(&Perception::of(&program, &TouchConfig::REALISTIC));
+    let rows: usize = lines.iter().map(|(_, text)| (19 + text.chars().count()).div_ceil(80)).sum();
+    assert!(rows <= 27, "{rows} rows beside those of costs: {lines:#?}");
+    let counted: String = lines.iter().filter(|(name, _)| *name == "more").map(|(_, text)| text.as_str()).collect();
+    assert!(counted.contains("felt"), "{lines:#?}");
 }

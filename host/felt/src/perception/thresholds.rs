@@ -5,7 +5,8 @@ use frixel_hil_sim::RELAXATION_LENGTH_M;
 use serde::Serialize;
 
 /// Weber fraction of friction: the smallest change of the total friction that is felt, for a transient decrease
-/// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). It holds for steps and says nothing about fine textures.
+/// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). That it holds for rises and for changes over the place is assumed. It
+/// says nothing about fine textures.
 pub(crate) const WEBER_FRACTION: f64 = 0.11;
 
 /// Weber fraction that rubber needed under active touch, rounded up to the 0.27 of force discrimination below 0.5 N
@@ -23,8 +24,12 @@ pub const NATURAL_NOISE_RMS_N: f64 = 4.5e-3;
 /// Band of [`NATURAL_NOISE_RMS_N`], Hz.
 const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
 
-/// Below this frequency, Hz, a change of friction counts as a step. Above it, it counts as a texture.
+/// Below this frequency, Hz, a change of friction counts as a step. Above it, it counts as a texture. Assumed; it is the
+/// lowest frequency with a threshold.
 pub(super) const TEXTURE_MIN_HZ: f64 = 10.0;
+
+/// The highest frequency with a threshold, Hz.
+pub(super) const TEXTURE_MAX_HZ: f32 = 500.0;
 
 /// Smallest vibration that is felt: frequency in Hz and displacement amplitude in micrometres, from the four-channel
 /// model of Bolanowski et al. 1988 (doi:10.1121/1.397184). Quoted from memory.
@@ -41,10 +46,10 @@ const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
 /// were measured with a vibrating probe, not with friction. Assumed.
 pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 
-/// What [`Verdict::NearThreshold`] means, for a person. It is about a range of contrast, from the smallest Weber
-/// fraction of the studies to the largest one, or a factor of 3 on both sides of a texture's threshold; no study says
-/// which share of people is how far above it.
-pub(crate) const NEAR_THRESHOLD: &str = "near the threshold, where some people or some strokes will not notice it";
+/// What *maybe* means, for a person. It is about a range of contrast, from the smallest Weber fraction of the studies to
+/// the largest one, or a factor of 3 on both sides of a texture's threshold; no study says which share of people is how
+/// far above it.
+pub(crate) const MAYBE: &str = "maybe: near the threshold, where some people or some strokes will not notice it";
 
 /// Whether a person feels something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -89,20 +94,24 @@ impl Verdict {
 
     /// The verdict on what is felt in several ways: the surest of them, of which *not felt* is the last.
     pub fn of_any(verdicts: impl IntoIterator<Item = Self>) -> Self {
-        let sureness = |verdict: &Self| match verdict {
-            Self::Felt => 3,
-            Self::NearThreshold => 2,
-            Self::Unknown => 1,
-            Self::NotFelt => 0,
-        };
-        verdicts.into_iter().max_by_key(sureness).unwrap_or(Self::NotFelt)
+        verdicts.into_iter().max_by_key(|verdict| verdict.sureness()).unwrap_or(Self::NotFelt)
     }
 
-    /// The verdict in words that follow "is".
+    /// The larger, the surer it is that something is felt: from *not felt* over *unknown* and *maybe* to *felt*.
+    pub(crate) fn sureness(self) -> u8 {
+        match self {
+            Self::NotFelt => 0,
+            Self::Unknown => 1,
+            Self::NearThreshold => 2,
+            Self::Felt => 3,
+        }
+    }
+
+    /// The verdict in a word or two.
     pub fn words(self) -> &'static str {
         match self {
             Self::NotFelt => "not felt",
-            Self::NearThreshold => "near the threshold",
+            Self::NearThreshold => "maybe",
             Self::Felt => "felt",
             Self::Unknown => "unknown",
         }
@@ -150,6 +159,12 @@ pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
     let displacement_m = 1e-6 * from_um * libm::pow(to_um / from_um, part);
     let damping_n_per_m = std::f64::consts::TAU * frequency_hz * TANGENTIAL_DAMPING_N_S_PER_M;
     Some(displacement_m * libm::hypot(TANGENTIAL_STIFFNESS_N_PER_M, damping_n_per_m))
+}
+
+/// The threshold as it may be at the least, as it is known, and as it may be at the most, N.
+pub(crate) fn texture_range_n(frequency_hz: f64) -> Option<[f64; 3]> {
+    let threshold_n = texture_threshold_n(frequency_hz)?;
+    Some([threshold_n / THRESHOLD_UNCERTAINTY, threshold_n, threshold_n * THRESHOLD_UNCERTAINTY])
 }
 
 /// Amplitude of a sine with the power of a finger's own friction noise in the third of an octave around a frequency, N.

@@ -201,7 +201,7 @@ impl IntoField for Record {
     }
 
     fn without_place(self) -> Self {
-        Self { x_m: 0.0, y_m: 0.0, ..self }
+        Self { x_m: 0.0, y_m: 0.0, angle_turns: 0.0, ..self }
     }
 }
 

@@ -111,7 +111,10 @@ impl IntoField for Record {
     }
 
     fn without_place(self) -> Self {
-        Self { phase_turns: 0.0, ..self }
+        let cycles_per_m = libm::hypot(self.cycles_per_m_x.into(), self.cycles_per_m_y.into());
+        // Of a turned grating, the two differ by rounding.
+        let cycles_per_m_x = (100.0 * cycles_per_m).round() as f32 / 100.0;
+        Self { phase_turns: 0.0, cycles_per_m_x, cycles_per_m_y: 0.0, ..self }
     }
 }
 

@@ -158,7 +158,7 @@ pub(crate) trait IntoField: Copy {
     /// The friction over plane and time.
     fn field(&self, region: RecordRegion, program: &Program) -> Arc<dyn Field>;
 
-    /// The same at another place: what differs between a layer and its copies is left out.
+    /// The same at another place, and not turned: what differs between a layer and its copies is left out.
     #[must_use]
     fn without_place(self) -> Self {
         self
@@ -264,7 +264,7 @@ macro_rules! kinds {
             }
         }
 
-        /// The layer of a record without its place: the same for a layer and its copies.
+        /// The layer of a record without its place and its turn: the same for a layer and its copies.
         pub fn without_place(layer: Record) -> Record {
             match layer {
                 $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )*

@@ -55,7 +55,7 @@ export function showOutcome() {
  * @param {string} report
  */
 function feltFirst(report) {
-  const first = ["draft", "feel", "step", "out of reach"];
+  const first = ["draft", "not felt", "unknown", "maybe", "felt", "more", "alike", "out of reach"];
   const rank = (/** @type {string} */ line) => {
     const at = first.findIndex((word) => line.trimStart().startsWith(`${word} `));
     return at < 0 ? first.length : at;

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use crate::rehearsal::board_costs;
 use clap::Args;
 use frixel_felt::check::SceneCheck;
-use frixel_hil_sim::RigConfig;
+use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_scene::{compile, printable};
 
 use super::super::error::CommandError;
-use super::super::profiles::ProfileArgs;
+use super::super::profiles::{ProfileArgs, TouchArgs};
 use super::super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
@@ -18,6 +18,8 @@ pub(in super::super) struct CheckArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
+    #[command(flatten)]
+    touch: TouchArgs,
     /// Also report the smallest firmware build that plays it.
     #[arg(long)]
     board: bool,
@@ -29,6 +31,7 @@ pub(in super::super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     // The simulated board has the limits of the smallest board.
     let rig = RigConfig::default();
+    let touch = args.touch.source(false)?.unwrap_or(TouchConfig::REALISTIC);
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let compiled = scene.and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
     let program = match compiled {
@@ -38,7 +41,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
         }
         compiled => compiled?,
     };
-    let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?);
+    let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, &touch);
     check.notes.extend(files.outside().map(|path| {
         let path = printable(&path.display().to_string()).into_owned();
         format!("{path} is outside of the scene's folder: give it along with the scene")

@@ -8,7 +8,7 @@ use clap::Args;
 use frixel_felt::Preview;
 use frixel_felt::check::feel;
 use frixel_felt::perception::Perception;
-use frixel_hil_sim::RigConfig;
+use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_scene::compile_draft;
 
 use super::super::argument::number;
@@ -49,7 +49,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
     if program.is_draft() {
         print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals().count())))?;
     }
-    for (name, text) in feel::lines(&Perception::of(&program)) {
+    for (name, text) in feel::lines(&Perception::of(&program, &TouchConfig::REALISTIC)) {
         print_line(format_args!("  {name:<16} {text}"))?;
     }
     print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))
