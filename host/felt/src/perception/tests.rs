@@ -388,7 +388,7 @@ fn what_is_too_small_slow_short_or_rare_is_not_called_felt() {
             "too short: 1 ms, and 2 ms would do",
         ),
         (
-            layer("kind = \"stream\"\nlow_n = 0.26\nhigh_n = 0.35"),
+            layer("kind = \"stream\"\nabove = \"zero\"\nlow_n = 0.26\nhigh_n = 0.35"),
             Verdict::Unknown,
             "what is streamed moves it between 260 and 350 mN",
         ),
