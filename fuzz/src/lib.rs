@@ -12,12 +12,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use frixel::rehearsal::board_costs;
-use frixel::rigs::SimStream;
 use frixel::scene_file;
 use frixel_driver::{Device, DeviceError, PollingLink, Upload};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::simulation::{SimStream, board_costs};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
 use frixel_scene::{Scene, compile};
@@ -84,7 +83,7 @@ pub fn scene_load(bytes: &[u8]) -> bool {
     let mut memory = BoardMemory::new();
     let stroke = Stroke::sweep(0.12, 0.08, 1.0).expect("a stroke");
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
-    let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).expect("a board");
+    let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
     let taken = device.upload(&upload, &mut |_| {}).and_then(|()| device.commit(upload.scene_crc32()));
     match taken {

@@ -7,12 +7,9 @@ mod default_stroke;
 mod input;
 pub mod output;
 pub mod output_file;
-pub mod player;
-pub mod rehearsal;
 pub mod report;
 pub mod rigs;
 pub mod scene_file;
-pub mod score;
 pub mod stream;
 pub mod studio;
 

@@ -6,10 +6,10 @@
 
 use std::path::Path;
 
-use frixel::player::{Simulated, Simulation, simulate};
 use frixel::scene_file;
 use frixel_felt::metrics::MetricsSummary;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_lab::simulation::{Simulated, Simulation, simulate};
 use frixel_scene::{Program, compile};
 
 const START: Point = Point { x_m: 0.004, y_m: 0.03 };

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 use std::iter::Take;
 use std::ops::RangeInclusive;
 
-use frixel::score::samples;
 use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
 use frixel_hil_sim::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, RigConfig, Stroke, TouchConfig};
 use frixel_lab::score::Trial;
@@ -117,7 +116,7 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
 fn record(rig: &RigConfig, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
     let stroke = hand(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
     let trial = Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None };
-    samples(program, rig, &trial).unwrap()
+    trial.play(program, rig).unwrap()
 }
 
 fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> Felt {

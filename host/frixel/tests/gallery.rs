@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use frixel::default_stroke;
 use frixel::output::draw_preview_png;
-use frixel::player::{Simulation, simulate};
 use frixel::scene_file;
 use frixel_felt::Preview;
 use frixel_felt::perception::{weber_steps, weber_steps_safe};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
+use frixel_lab::simulation::{Simulation, simulate};
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::reference::{Context, Reference, direction_of};
 use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};

@@ -4,11 +4,11 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use frixel::rigs::SimStream;
 use frixel::scene_file;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::simulation::SimStream;
 use frixel_scene::compile;
 use frixel_wire::fault::State;
 
@@ -20,7 +20,7 @@ fn found(autonomous: bool) -> State {
     program.header.autonomous = autonomous;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
-    let mut first = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).unwrap();
+    let mut first = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap();
     frixel_play::start(&mut first, &program, &mut |_| ControlFlow::Continue(())).unwrap();
     Device::connect(first.into_link()).unwrap().hello().state
 }

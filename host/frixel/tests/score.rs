@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use frixel::scene_file;
-use frixel::score::samples;
 use frixel_hil_sim::{RigConfig, Stroke};
 use frixel_lab::score::{Score, Trial};
 use frixel_scene::{Program, Scene, compile};
@@ -29,10 +28,7 @@ fn mean(program: &Program, key: &str) -> f64 {
             Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None }
         })
         .collect();
-    let score = Score::of(program, &RigConfig::default().world.touch, &trials, |trial| {
-        samples(program, &RigConfig::default(), trial)
-    })
-    .unwrap();
+    let score = Score::of(program, &RigConfig::default(), &trials).unwrap();
     score.metrics.iter().find(|metric| metric.key == key).unwrap().mean
 }
 
@@ -55,7 +51,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
     let trial = Trial { stroke_name: "human 1".to_owned(), stroke, seed: 1, finger: None };
     let rig = RigConfig { world: rig.world.realistic(), ..rig };
-    let score = Score::of(&program, &rig.world.touch, &[trial], |trial| samples(&program, &rig, trial)).unwrap();
+    let score = Score::of(&program, &rig, &[trial]).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
     assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }
@@ -201,5 +197,28 @@ fn the_command_of_the_touch_tables_prints_their_cell() {
         [("error", cell[0], 0.02), ("correlation", cell[1], 0.01), ("spurious_40_to_400_hz_mn", cell[2], 1.0)]
     {
         assert!((mean(key) - cell).abs() <= rounding, "{key}: {}, and {cell} in the page", mean(key));
+    }
+}
+
+/// The number of threads changes nothing of what is said or written.
+#[test]
+fn every_number_of_jobs_has_the_same_bytes() {
+    let scored = |jobs: &str| {
+        let out = tempfile::tempdir().unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
+            .arg("score")
+            .arg(scene())
+            .args(["--people", "5", "--strokes", "2", "--seeds", "1", "--seconds", "0.4", "--json", "--jobs", jobs])
+            .arg("--out")
+            .arg(out.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let file = |name: &str| std::fs::read(out.path().join(name)).unwrap();
+        (output.stdout, ["score.csv", "score-layers.csv", "score.svg"].map(file))
+    };
+    let (said, files) = scored("1");
+    for jobs in ["2", "7"] {
+        assert!(scored(jobs) == (said.clone(), files.clone()), "--jobs {jobs}");
     }
 }

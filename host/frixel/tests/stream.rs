@@ -9,12 +9,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel::rigs::SimStream;
 use frixel::scene_file;
 use frixel::stream;
 use frixel_driver::{Device, PollingLink, StreamStatus};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
+use frixel_lab::simulation::SimStream;
 use frixel_layers::{Blend, Layer, Record, Region, Stream};
 use frixel_play::Recorded as _;
 use frixel_scene::{Program, compile};

@@ -3,6 +3,7 @@
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.
 //! - [`threshold`]: what a person just feels, from a staircase of answers.
+//! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`model_csv`]: the contact model over rows of CSV.
 //! - [`stroke_file`]: a finger's motion from a file.
@@ -16,6 +17,7 @@ pub mod calibration;
 pub mod fit;
 pub mod model_csv;
 pub mod score;
+pub mod simulation;
 mod statistics;
 pub mod stroke_file;
 pub mod table;

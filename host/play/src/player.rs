@@ -57,6 +57,12 @@ impl<L: Link + Recorded> Player<L> {
         Self { device, state, fault: None, stop_reason: None, playing: None, feed: None, telemetry: Vec::new() }
     }
 
+    /// Creates a player for a board, and records into `recorder` from the start of the play.
+    pub fn recording(mut device: Device<L>, recorder: L::Recorder) -> Self {
+        *device.link_mut().recorder_mut() = recorder;
+        Self::new(device)
+    }
+
     /// Uploads the program and plays it, whatever state an earlier client left the board in. The board sends a telemetry
     /// message every `telemetry_period_ticks` ticks; 0 disables telemetry. `progress` may break the upload off.
     pub fn start(
@@ -358,9 +364,14 @@ impl<L: Link + Recorded> Player<L> {
         &mut self.device
     }
 
-    /// Records the ticks that still wait for telemetry, after the last call.
-    pub fn record_rest(&mut self) {
-        self.device.link_mut().record_rest();
+    /// Ends the record with the data received so far, and returns the recorder. Stops the board if it plays.
+    pub fn into_recorder(mut self) -> L::Recorder
+    where
+        L::Recorder: Default,
+    {
+        let link = self.device.link_mut();
+        link.record_rest();
+        std::mem::take(link.recorder_mut())
     }
 
     /// The recorder of this play.

@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use frixel::rehearsal::board_costs;
 use frixel::scene_file;
 use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_lab::simulation::board_costs;
 use frixel_scene::compile;
 use frixel_studio::{Request, check, used_files};
 use serde_json::json;

@@ -2,11 +2,11 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use frixel::player::{Simulation, simulate};
 use frixel::report::{Data, Figure};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, Strip, StripCell};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
+use frixel_lab::simulation::{Simulation, simulate};
 use frixel_scene::{Scene, compile};
 
 /// Tick rates in Hz, each with a whole number of ticks per window.

@@ -95,11 +95,6 @@ impl Recorder {
         Self { finger: Some(ReferenceFriction::default()), ..self }
     }
 
-    /// Creates a placeholder that records nothing, for use until a play has its recorder.
-    pub fn idle() -> Self {
-        Self { ticks_max: 0, ..Self::without_reference(1, u32::MAX) }
-    }
-
     /// Makes `tick` time zero: the record begins with the tick after it, and earlier observations are ignored.
     pub fn start(&mut self, tick: u32) {
         self.start_tick = Some(u64::from(tick));
@@ -176,6 +171,13 @@ impl Recorder {
         }
         self.last_tick += u64::from(passed);
         Some(passed)
+    }
+}
+
+/// A placeholder that records nothing, for use until a play has its recorder.
+impl Default for Recorder {
+    fn default() -> Self {
+        Self { ticks_max: 0, ..Self::without_reference(1, u32::MAX) }
     }
 }
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use crate::output::{DrawingError, FeltLogError};
 use crate::output_file::OutputFileError;
-use crate::rehearsal::RehearsalError;
 use crate::report::ReportError;
 #[cfg(unix)]
 use crate::rigs::ServerError;
@@ -20,11 +19,13 @@ use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
+use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
+use rayon::ThreadPoolBuildError;
 use thiserror::Error;
 
 #[derive(Debug, Error)]
@@ -65,6 +66,8 @@ pub(crate) enum CommandError {
     NoPseudoTerminal { what: &'static str },
     #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
+    #[error("the threads of --jobs cannot start: {0}; give a smaller number")]
+    Threads(ThreadPoolBuildError),
     #[error("{}: {source}", path.display())]
     Stroke { path: PathBuf, source: StrokeFileError },
     #[error("no stroke can be generated for this scene's screen: {0}")]

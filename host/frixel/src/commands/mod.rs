@@ -10,6 +10,7 @@ mod faults;
 mod fit;
 mod info;
 mod interrupt;
+mod jobs;
 mod model;
 mod new;
 mod play;

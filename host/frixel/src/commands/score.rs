@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
-use crate::player::SimulationError;
-use crate::score::samples;
 use clap::Args;
 use frixel_hil_sim::{Person, RigConfig, Stroke};
 use frixel_lab::score::{Score, Trial, TrialFinger};
+use frixel_lab::simulation::SimulationError;
 use frixel_scene::{Program, Scene, compile};
 
 use super::argument::number;
 use super::error::CommandError;
+use super::jobs::JobsArgs;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke;
 use super::terminal::print_line;
@@ -46,6 +46,8 @@ pub(super) struct ScoreArgs {
     median_speed_mm_per_s: Option<f64>,
     #[command(flatten)]
     touch: TouchArgs,
+    #[command(flatten)]
+    jobs: JobsArgs,
     /// Simulate a world without noise, load changes, losses and offsets.
     #[arg(long)]
     ideal: bool,
@@ -73,13 +75,10 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
         }
     };
     let _folder = OutputFolder::open(&args.out)?;
-    let score =
-        Score::of(&program, &rig.world.touch, &trials, |trial| samples(&program, &rig, trial)).map_err(|error| {
-            match error {
-                SimulationError::Play(error) => CommandError::of_play("sim", error),
-                SimulationError::World(error) => error.into(),
-            }
-        })?;
+    let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(|error| match error {
+        SimulationError::Play(error) => CommandError::of_play("sim", error),
+        SimulationError::World(error) => error.into(),
+    })?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
     let filled = [(&csv, score.to_csv()), (&layers, score.layers_csv()), (&svg, drawn)]

@@ -3,12 +3,12 @@
 use std::io;
 use std::path::PathBuf;
 
+use frixel_lab::simulation::RehearsalError;
 use frixel_model::{InverseError, ParameterError, StateError, TableError};
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
 use crate::output_file::OutputFileError;
-use crate::rehearsal::RehearsalError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.

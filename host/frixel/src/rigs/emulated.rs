@@ -65,7 +65,7 @@ impl<'b> EmulatedStream<'b> {
             records,
             held: VecDeque::new(),
             telemetry: VecDeque::new(),
-            recorder: Recorder::idle(),
+            recorder: Recorder::default(),
         };
         let opened = board.host_answers_to(ticks.wrapping_add(SLICE_TICKS)).and_then(|()| board.set_host_open(true));
         opened.map(|()| link).map_err(not_opened)

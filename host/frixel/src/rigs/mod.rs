@@ -1,7 +1,6 @@
-//! The boards that a scene can play on, each behind a [`ByteStream`](frixel_driver::ByteStream) or a
+//! The boards with a clock of their own that a scene can play on, each behind a [`ByteStream`](frixel_driver::ByteStream) or a
 //! [`Link`] that records the play.
 //!
-//! - [`SimStream`]: a simulated board in this process, in virtual time.
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.
 //! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
@@ -18,7 +17,6 @@ mod port;
 mod server;
 #[cfg(unix)]
 mod server_log;
-mod sim_stream;
 
 #[cfg(unix)]
 pub use emulated::EmulatedStream;
@@ -28,7 +26,6 @@ pub(crate) use pace::Dropped;
 pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
-pub use sim_stream::SimStream;
 
 use frixel_driver::Link;
 use frixel_felt::recorder::Recorder;

@@ -16,7 +16,7 @@ pub(crate) struct PortLink {
 impl PortLink {
     /// Creates a link that records the telemetry of the board on `serial`.
     pub(crate) fn new(serial: SerialLink) -> Self {
-        Self { serial, recorder: Recorder::idle() }
+        Self { serial, recorder: Recorder::default() }
     }
 }
 

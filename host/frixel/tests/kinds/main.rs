@@ -15,10 +15,10 @@ use std::path::Path;
 
 use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
-use frixel::player::{Simulation, simulate};
 use frixel::scene_file::SceneFolder;
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_lab::simulation::{Simulation, simulate};
 use frixel_scene::{Program, Scene, compile};
 
 use crate::processes::HEAD;

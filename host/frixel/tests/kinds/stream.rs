@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel::rigs::SimStream;
 use frixel_driver::{Device, PollingLink, StreamSettings};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_lab::simulation::SimStream;
 use frixel_play::Recorded as _;
 use frixel_scene::Program;
 

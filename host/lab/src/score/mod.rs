@@ -9,17 +9,23 @@ mod metric;
 mod sentence;
 mod text;
 
-use frixel_felt::fidelity::{Fidelity, FidelitySample};
+use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
 use frixel_felt::noticed::Noticing;
-use frixel_hil_sim::{FingertipConfig, Stroke, TouchConfig, WorldConfig};
+use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::{LayerTitle, Program, TouchSource};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use layers::Finger;
 pub use layers::{BorderScore, LayerBorder, LayerScore, LevelScore, Verdicts};
 use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
+
+use crate::simulation::{Simulation, SimulationError, simulate_through_finger};
+
+/// Plays of which a thread's samples wait in memory: those of all plays together would not fit.
+const PLAYS_PER_THREAD: usize = 4;
 
 /// One play to score.
 #[derive(Clone, Debug)]
@@ -46,10 +52,21 @@ pub struct TrialFinger {
 }
 
 impl Trial {
-    /// The world of this trial: `world` with the finger's skin.
-    pub fn world(&self, world: WorldConfig) -> WorldConfig {
-        let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(world.fingertip);
-        WorldConfig { fingertip, ..world }
+    /// Plays the trial on the simulated board of `rig`, and returns what the finger felt and the reference: a sample for
+    /// every quarter of a millisecond.
+    pub fn play(&self, program: &Program, rig: &RigConfig) -> Result<Vec<FidelitySample>, SimulationError> {
+        let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
+        let simulation = Simulation {
+            rig: RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig },
+            stroke: self.stroke.clone(),
+            seconds: self.stroke.duration_s(),
+            seed: self.seed,
+            ticks_per_row: (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32,
+        };
+        let own_finger = self.finger.map(|finger| finger.contact.into());
+        let mut recorder = simulate_through_finger(program, &simulation, own_finger)?.recorder;
+        let start_s = recorder.start_s().unwrap_or(0.0);
+        Ok(recorder.take_rows().iter().map(|row| FidelitySample::of_row(row, start_s)).collect())
     }
 }
 
@@ -94,33 +111,32 @@ pub struct Score {
 }
 
 impl Score {
-    /// Scores trials of a program with a touch source. `play` plays one, and returns what was felt and the reference for every quarter of a
-    /// millisecond.
-    pub fn of<E>(
-        program: &Program,
-        touch_source: &TouchConfig,
-        trials: &[Trial],
-        mut play: impl FnMut(&Trial) -> Result<Vec<FidelitySample>, E>,
-    ) -> Result<Self, E> {
+    /// Plays trials of a program on the simulated board of `rig`, and scores them.
+    ///
+    /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number of
+    /// threads.
+    pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, SimulationError> {
         let mut fingers: Vec<(Option<u64>, Noticing)> = Vec::new();
-        let score =
-            |trial: &Trial| {
-                let person = trial.finger.map(|finger| finger.person);
-                let samples = play(trial)?;
-                let finger = fingers.iter().position(|(other, _)| *other == person).unwrap_or(fingers.len());
-                if finger == fingers.len() {
-                    fingers.push((person, Noticing::new(program)));
-                }
-                let mut fidelity = Fidelity::of(&samples);
-                if let Some((_, noticing)) = fingers.get_mut(finger) {
-                    noticing.add(&samples);
-                    fidelity = fidelity.map(|fidelity| {
-                        if noticing.changes_along(&samples) { fidelity } else { fidelity.without_ratios() }
-                    });
-                }
-                Ok(TrialScore { person, stroke: trial.stroke_name.clone(), seed: trial.seed, fidelity })
+        let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
+        for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
+            let felt = |trial: &Trial| {
+                trial.play(program, rig).map(|samples| {
+                    let fidelity = Fidelity::of(&samples);
+                    (samples, fidelity)
+                })
             };
-        let plays: Vec<TrialScore> = trials.iter().map(score).collect::<Result<_, E>>()?;
+            let felt: Vec<Result<_, SimulationError>> = trials.par_iter().map(felt).collect();
+            for (trial, felt) in trials.iter().zip(felt) {
+                let (samples, fidelity) = felt?;
+                let person = trial.finger.map(|finger| finger.person);
+                let noticing = noticing_of(&mut fingers, person, program);
+                noticing.add(&samples);
+                let changes = noticing.changes_along(&samples);
+                let fidelity = fidelity.map(|fidelity| if changes { fidelity } else { fidelity.without_ratios() });
+                let stroke = trial.stroke_name.clone();
+                plays.push(TrialScore { person, stroke, seed: trial.seed, fidelity });
+            }
+        }
         let groups = independent(&plays);
         let fingers: Vec<Finger> = fingers.iter().map(|(_, noticing)| Finger::from(noticing)).collect();
         let layers = layers::layers(program, &fingers);
@@ -128,7 +144,7 @@ impl Score {
         let score = Self {
             simulated: String::new(),
             verdict: String::new(),
-            touch_source: touch_source.into(),
+            touch_source: (&rig.world.touch).into(),
             simulated_fingers: fingers.len(),
             metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
             borders: layers::borders(program, &fingers),
@@ -139,6 +155,19 @@ impl Score {
         };
         Ok(Self { simulated: score.simulated_words(), verdict: score.sentence(), ..score })
     }
+}
+
+/// What a person's finger has noticed of a program so far.
+fn noticing_of<'a>(
+    fingers: &'a mut Vec<(Option<u64>, Noticing)>,
+    person: Option<u64>,
+    program: &Program,
+) -> &'a mut Noticing {
+    let finger = fingers.iter().position(|(other, _)| *other == person).unwrap_or(fingers.len());
+    if finger == fingers.len() {
+        fingers.push((person, Noticing::new(program)));
+    }
+    &mut fingers[finger].1
 }
 
 /// The plays in groups that are independent of one another: those of a person, or else those of a stroke. Seeds of the

@@ -20,14 +20,14 @@ use frixel_hil_sim::{
 };
 use frixel_lab::calibration::{align, write_csv};
 use frixel_lab::fit::{self, Estimate, Fit, FitError, Settings};
+use frixel_lab::simulation::SimStream;
 use frixel_model::{Contact, Finger};
+use frixel_play::Player;
 use frixel_scene::{Scene, Screen, compile};
 
 use super::recorded::Simulated;
 use super::{CalibrateArgs, run};
 use crate::commands::interrupt::Interrupt;
-use crate::player::player;
-use crate::rigs::SimStream;
 
 /// People and seeds of the test of every change, and of the soak.
 const FEW: (u64, u64) = (8, 1);
@@ -105,8 +105,8 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
         }
     };
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, ticks, 40).unwrap();
-    let line = SimStream::new(rig, Recorder::idle()).observed(observe);
-    let mut player = player(Device::connect(PollingLink::new(line)).unwrap(), recorder);
+    let line = SimStream::new(rig, Recorder::default()).observed(observe);
+    let mut player = Player::recording(Device::connect(PollingLink::new(line)).unwrap(), recorder);
     player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
     while player.recorder_mut().ticks_left() > 0 {
         player.step(Duration::MAX).unwrap();

@@ -16,7 +16,6 @@ use super::{CalibrateArgs, CommandError, experiment};
 use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{note, say};
 use crate::output_file::Recording;
-use crate::player::player;
 use crate::rigs::RecordedLink;
 
 /// Rows a second of the recording.
@@ -53,7 +52,7 @@ impl Plan {
     ) -> Result<Player<L>, CommandError> {
         let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
-        let mut player = player(device, recorder.map_err(CommandError::Finger)?);
+        let mut player = Player::recording(device, recorder.map_err(CommandError::Finger)?);
         player
             .start(self.program.clone(), telemetry_ticks, &mut |_| ControlFlow::Continue(()))
             .map_err(CommandError::Play)?;

@@ -7,6 +7,7 @@ use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger, simulation_seed};
+use frixel_lab::simulation::SimStream;
 use frixel_model::LoadedContact;
 
 use super::plan::{Plan, ROW_HZ};
@@ -15,7 +16,6 @@ use crate::commands::fit::screen;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::waiting;
 use crate::output_file::{FileWriter, Recording};
-use crate::rigs::SimStream;
 
 /// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
 const FORCES_LATE: Duration = Duration::from_millis(500);
@@ -63,7 +63,7 @@ impl Simulated {
         let mut rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
         rig.world_mut().set_own_finger(self.contact);
         let mut sensor = ForceSensor::new(ROW_HZ, self.config.board.tick_hz);
-        let line = SimStream::new(rig, Recorder::idle()).observed(|record| sensor.measure(record));
+        let line = SimStream::new(rig, Recorder::default()).observed(|record| sensor.measure(record));
         let mut player = self.plan.start(Device::connect(PollingLink::new(line))?, 0)?;
         // What is simulated needs no file until it is whole.
         let board = self.plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use crate::output::Report;
-use crate::player::{into_recorder, player};
 use crate::rigs::RecordedLink;
 use frixel_driver::Device;
 use frixel_play::{LiveLayers, PlayError, Player};
@@ -29,7 +28,7 @@ pub(super) fn follow<L: RecordedLink>(
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     check_log(args, is_simulated)?;
     let outputs = Outputs::create(args, files, is_simulated, &plan.program)?;
-    let player = player(waiting::watch(device, interrupt), plan.recorder()?);
+    let player = Player::recording(waiting::watch(device, interrupt), plan.recorder()?);
     let waits = plan.target == Target::Simulator;
     let control = args.control.then(|| Control::start(waits, interrupt)).transpose()?;
     let (bars, writing, refusals) = (Bars::default(), Duration::ZERO, sentences(&plan.program));
@@ -161,7 +160,7 @@ impl<L: RecordedLink> Play<'_, L> {
     fn finish(mut self, ended: Result<(), CommandError>, playing: Duration) -> Played {
         self.bars.finish();
         let (counters, stream) = (self.player.device().counters(), self.player.device().stream_status());
-        let mut recorder = into_recorder(self.player);
+        let mut recorder = self.player.into_recorder();
         let Plan { program, target, .. } = &self.plan;
         let is_requested = self.interrupt.is_requested() || (ended.is_err() && self.interrupt.was_requested());
         let interrupted = is_requested && target.is_virtual_time();

@@ -179,11 +179,10 @@ mod tests {
     use std::thread::sleep;
     use std::time::{Duration, Instant};
 
-    use crate::player::player;
-    use crate::rigs::SimStream;
     use frixel_driver::{Device, PollingLink};
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+    use frixel_lab::simulation::SimStream;
     use frixel_scene::{TargetRange, compile};
     use tempfile::TempDir;
 
@@ -216,8 +215,8 @@ mod tests {
             let program = compile(&scene.unwrap(), &limits, tick_hz).unwrap();
             let rig = Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
             let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
-            let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).unwrap();
-            let mut player = player(device, recorder);
+            let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap();
+            let mut player = Player::recording(device, recorder);
             player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
             let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
             Self { folder, player, live: LiveScene::new(&args, Target::Port, files, outputs) }

@@ -273,7 +273,7 @@ mod tests {
 
     fn report(program: &Program) -> Report {
         let link = Counters { frames_sent: 0, frames_rejected: 0, payload_bytes: 0, wire_bytes: 0 };
-        Report::new("board", &Recorder::idle().summary(), &program.reach, &link, None)
+        Report::new("board", &Recorder::default().summary(), &program.reach, &link, None)
     }
 
     fn files(args: &PlayArgs) -> PlayFiles {

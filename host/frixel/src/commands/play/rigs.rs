@@ -1,9 +1,9 @@
 //! How the boards that `--port` can name are opened for a play.
 
-use crate::rigs::SimStream;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_lab::simulation::SimStream;
 use frixel_scene::Scene;
 
 use super::super::experiment;
@@ -37,7 +37,7 @@ pub(super) fn play_on_simulator(
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
     plan.world = Some(world.report());
-    let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle())))?;
+    let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default())))?;
     follow(args, plan, device, outputs, interrupt)
 }
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use crate::rehearsal::board_costs;
 use clap::Args;
 use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_lab::simulation::board_costs;
 use frixel_scene::{compile, printable};
 
 use super::super::error::CommandError;

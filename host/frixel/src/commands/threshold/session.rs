@@ -10,6 +10,7 @@ use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::Protocol;
+use frixel_lab::simulation::SimStream;
 use frixel_lab::threshold::{FADE_S, Observer, STROKE_S, Staircase, Threshold, samples};
 use frixel_play::{Feed, Player};
 use frixel_scene::{Scene, compile};
@@ -23,8 +24,7 @@ use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{print, print_line};
 use crate::commands::waiting;
 use crate::input;
-use crate::player::player;
-use crate::rigs::{RecordedLink, SimStream};
+use crate::rigs::RecordedLink;
 
 /// Arrows that show the pace of a stroke.
 const ARROWS: u32 = 8;
@@ -49,7 +49,7 @@ pub(super) fn measure(
         let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
         let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
-        let line = SimStream::new(rig, Recorder::idle());
+        let line = SimStream::new(rig, Recorder::default());
         session(args, interrupt, Device::connect(PollingLink::new(line))?, protocol, answers)
     } else if args.observer.is_some() {
         Err(CommandError::ObserverOnBoard { port: port.to_owned() })
@@ -89,7 +89,7 @@ fn session<L: RecordedLink>(
     let scene = protocol.scene().map_err(CommandError::Finger)?;
     let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
-    let mut player = player(waiting::watch(device, interrupt), Recorder::idle());
+    let mut player = Player::recording(waiting::watch(device, interrupt), Recorder::default());
     player.start(program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
     if args.observer.is_none() {
         print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;

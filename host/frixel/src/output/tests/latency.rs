@@ -4,10 +4,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::player::{Simulation, simulate};
 use crate::scene_file;
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_lab::simulation::{Simulation, simulate};
 use frixel_scene::{Program, compile};
 use frixel_testkit::golden;
 

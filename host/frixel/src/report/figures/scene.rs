@@ -4,10 +4,10 @@ use frixel_felt::check::SceneCheck;
 use frixel_hil_sim::RigConfig;
 
 use super::{Figure, ReportError, Subject};
-use crate::rehearsal::board_costs;
 use crate::report::counts::Counts;
 use crate::report::figure::{Data, Value};
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
+use frixel_lab::simulation::board_costs;
 
 /// Points of the curve of friction over voltage.
 const POINTS: u32 = 200;

@@ -289,9 +289,9 @@ mod tests {
     use frixel_hil_sim::{BoardMemory, Point, Rig, Stroke};
 
     use super::*;
-    use crate::rigs::SimStream;
     use frixel_driver::{Bitmap, Device, PollingLink, Upload};
     use frixel_felt::recorder::Recorder;
+    use frixel_lab::simulation::SimStream;
 
     /// Frames and bytes that the driver sends to a simulated board.
     fn sent(program: &Program) -> (u64, u64) {
@@ -300,7 +300,7 @@ mod tests {
         let point = Point { x_m: 0.01, y_m: 0.01 };
         let stroke = Stroke::constant_speed(point, Point { x_m: 0.1, ..point }, 0.1).expect("a stroke");
         let rig = Rig::new(&mut memory, &config, stroke, 1).expect("a rig");
-        let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).expect("a board");
+        let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).expect("a board");
         let before = device.counters();
         let scene = program.scene_bytes();
         let bitmaps = program.bitmaps.iter().map(|bitmap| Bitmap {

@@ -11,19 +11,11 @@ use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
 use thiserror::Error;
 
-use crate::rigs::{RecordedLink, SimStream};
+mod rehearsal;
+mod sim_stream;
 
-/// A player for `device` that records into `recorder` from the start of the play.
-pub(crate) fn player<L: RecordedLink>(mut device: Device<L>, recorder: Recorder) -> Player<L> {
-    *device.link_mut().recorder_mut() = recorder;
-    Player::new(device)
-}
-
-/// Ends the record with the data received so far, and returns the recorder. Stops the board first if it plays.
-pub(crate) fn into_recorder<L: RecordedLink>(mut player: Player<L>) -> Recorder {
-    player.record_rest();
-    std::mem::replace(player.recorder_mut(), Recorder::idle())
-}
+pub use rehearsal::{RehearsalError, board_costs};
+pub use sim_stream::SimStream;
 
 /// Why a play on the simulator ended early.
 #[derive(Debug, Error)]
@@ -76,7 +68,7 @@ pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) 
 
 /// As [`simulate`], under a finger that is not the program's if there is one, and with a reference that goes through the
 /// simulated finger.
-pub(crate) fn simulate_through_finger(
+pub fn simulate_through_finger(
     program: &Program,
     simulation: &Simulation,
     own_finger: Option<FrictionLaw>,
@@ -102,8 +94,8 @@ fn run(
     if let Some(contact) = own_finger {
         rig.world_mut().set_own_finger(contact);
     }
-    let stream = SimStream::new(rig, Recorder::idle());
-    let mut player = player(Device::connect(PollingLink::new(stream))?, recorder);
+    let stream = SimStream::new(rig, Recorder::default());
+    let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
     player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
         player.stream(feed)?;
@@ -113,15 +105,15 @@ fn run(
     }
     player.stop()?;
     let (counters, stream) = (player.device().counters(), player.device().stream_status());
-    Ok(Simulated { recorder: into_recorder(player), counters, stream })
+    Ok(Simulated { recorder: player.into_recorder(), counters, stream })
 }
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use std::collections::BTreeMap;
 
     use frixel_play::StopReason;
-    use frixel_scene::compile;
+    use frixel_scene::{Scene, compile};
     use frixel_wire::fault::Fault;
 
     use super::*;
@@ -131,18 +123,21 @@ mod tests {
     fn a_board_that_stops_by_itself_ends_the_play() {
         let config = RigConfig::default();
         let board = &config.board;
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml");
-        let program = compile(&crate::scene_file::load(&path).unwrap(), &board.limits, board.tick_hz).unwrap();
+        let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
+        let scene = Scene::parse(text, "constant.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+        let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
         let mut memory = BoardMemory::new();
         let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
         rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
-        let mut player =
-            player(Device::connect(PollingLink::new(SimStream::new(rig, Recorder::idle()))).unwrap(), recorder);
+        let mut player = Player::recording(
+            Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap(),
+            recorder,
+        );
         player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
-        let recorder = into_recorder(player);
+        let recorder = player.into_recorder();
         assert!((10_000..25_000).contains(&recorder.ticks()), "{} ticks", recorder.ticks());
         assert!(!recorder.rows().is_empty());
     }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
 use thiserror::Error;
 
-use crate::rigs::SimStream;
+use super::SimStream;
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_felt::check::BoardCosts;
 use frixel_felt::recorder::Recorder;
@@ -31,7 +31,7 @@ pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, Reh
     let mut memory = BoardMemory::new();
     let header = &program.header;
     let stroke = Stroke::sweep(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
-    let stream = SimStream::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::idle());
+    let stream = SimStream::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::default());
     let mut device = Device::connect(PollingLink::new(stream))?;
     let wire_bytes = load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;
     Ok(BoardCosts::of(program, rig, wire_bytes))

@@ -1,0 +1,29 @@
+//! `--jobs`: how many plays a command simulates side by side.
+
+use std::num::NonZero;
+
+use clap::Args;
+use rayon::ThreadPoolBuilder;
+
+use super::error::CommandError;
+
+/// Most threads that a command takes.
+const JOBS_MAX: i64 = 1024;
+
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct JobsArgs {
+    /// Simulate so many plays side by side. Without it, as many as this machine has processors. Results are the same
+    /// for any number.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=JOBS_MAX))]
+    jobs: Option<u16>,
+}
+
+impl JobsArgs {
+    /// Does work that simulates on the threads of its rayon pool.
+    pub(super) fn run<R: Send>(self, work: impl FnOnce() -> R + Send) -> Result<R, CommandError> {
+        let jobs = self.jobs.map(usize::from);
+        let threads = jobs.or_else(|| std::thread::available_parallelism().ok().map(NonZero::get)).unwrap_or(1);
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(CommandError::Threads)?;
+        Ok(pool.install(work))
+    }
+}
