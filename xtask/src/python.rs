@@ -11,17 +11,18 @@ use crate::inputs::{self, Package};
 use crate::needs::Need;
 use crate::results;
 
+/// The package of its compiled part.
+const MODULE: &str = "frixel-python";
 /// The folder of the module.
 const FOLDER: &str = "host/python";
 /// What the checks need.
-pub(crate) const NEEDS: [Need; 4] =
-    [Need::Python, Need::Git, Need::Component("clippy", "clippy"), Need::Component("fmt", "rustfmt")];
+pub(crate) const NEEDS: [Need; 2] = [Need::Python, Need::Git];
 
 /// What the checks read: the module, the crates that it is made of, the command that it is compared with, and the
 /// documents whose examples are run.
 pub(crate) fn inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
-    let more = [FOLDER, "docs", "scenes", "xtask"].map(str::to_owned);
-    inputs::of_libraries(&["frixel"], packages).into_iter().chain(more).collect()
+    let more = ["docs", "scenes", "xtask"].map(str::to_owned);
+    inputs::of_libraries(&["frixel", MODULE], packages).into_iter().chain(more).collect()
 }
 
 /// Builds the wheel, installs it into a fresh virtual environment, and checks it there.
@@ -43,12 +44,9 @@ pub(crate) fn check() -> Result<(), String> {
     run("virtual environment", Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
     let install = ["install", "--quiet", "--disable-pip-version-check"];
     run("packages", in_environment("pip").args(install).args(["--requirement", "requirements.txt"]))?;
-    run("format", cargo_in(FOLDER).args(["fmt", "--check"]))?;
     run("format of Python", in_environment("ruff").args(["format", "--check", "."]))?;
     run("lints of Python", in_environment("ruff").args(["check", "."]))?;
-    let lints = ["clippy", "--quiet", "--release", "--locked", "--", "-D", "warnings"];
-    run("lints", cargo_in(FOLDER).args(lints).env("CARGO_TARGET_DIR", &target))?;
-    let build = ["build", "--quiet", "--release", "--locked", "--out"];
+    let build = ["build", "--quiet", "--locked", "--profile", "wheel", "--out"];
     run("wheel", in_environment("maturin").args(build).arg(&wheels))?;
     let wheel = only_file(&wheels)?;
     run("installation", in_environment("pip").args(install).args(["--no-index", "--no-deps"]).arg(wheel))?;

@@ -2,6 +2,8 @@
 //!
 //! Values cross as arrays, texts and plain objects; the types and documents for people are those of the Python
 //! files. Python's lock is released wherever something is computed.
+#![forbid(unsafe_code)]
+#![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take what was converted for them")]
 
 mod error;
 mod model;
