@@ -6,6 +6,7 @@
 //! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`model_csv`]: the contact model over rows of CSV.
+//! - [`recording`]: what a play or an experiment recorded, as Parquet.
 //! - [`stroke_file`]: a finger's motion from a file.
 //! - [`table`]: the one reader of CSV columns.
 //!
@@ -16,6 +17,7 @@ mod bootstrap;
 pub mod calibration;
 pub mod fit;
 pub mod model_csv;
+pub mod recording;
 pub mod score;
 pub mod simulation;
 mod statistics;
