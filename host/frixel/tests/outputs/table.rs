@@ -35,7 +35,7 @@ const fn recording(
 }
 
 /// Every output.
-pub(crate) const OUTPUTS: [Output; 16] = [
+pub(crate) const OUTPUTS: [Output; 17] = [
     Output {
         // It never replaces its scene.
         is_reproducible: true,
@@ -67,6 +67,12 @@ pub(crate) const OUTPUTS: [Output; 16] = [
         "stroke.csv",
         &["OUT/score.csv", "OUT/score-layers.csv", "OUT/score.svg"],
     ),
+    result(
+        "sweep out",
+        "sweep IN -o OUT",
+        "plan.toml",
+        &["OUT/layers.csv", "OUT/fingers.csv", "OUT/numbers.csv", "OUT/sweep.svg"],
+    ),
     Output {
         // It ends with a signal only.
         is_reproducible: false,
@@ -97,7 +103,7 @@ pub(crate) const OUTPUTS: [Output; 16] = [
 
 /// Every argument that names a file to read, or a port, by the type of a path.
 #[allow(dead_code, reason = "only the test of the command line reads it")]
-pub(crate) const INPUTS: [&str; 18] = [
+pub(crate) const INPUTS: [&str; 20] = [
     "calibrate forces",
     "fit data",
     "model eval input",
@@ -116,4 +122,6 @@ pub(crate) const INPUTS: [&str; 18] = [
     "score scene",
     "sim stroke",
     "studio page",
+    "sweep merge out",
+    "sweep plan",
 ];
