@@ -23,6 +23,7 @@ mod score;
 mod server_credit;
 mod stream;
 mod studio;
+mod sweep;
 mod untrusted_text;
 mod virtual_board;
 mod watch;

@@ -5,6 +5,7 @@
 //! - [`threshold`]: what a person just feels, from a staircase of answers.
 //! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
+//! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
 //! - [`model_csv`]: the contact model over rows of CSV.
 //! - [`stroke_file`]: a finger's motion from a file.
 //! - [`table`]: the one reader of CSV columns.
@@ -20,5 +21,6 @@ pub mod score;
 pub mod simulation;
 mod statistics;
 pub mod stroke_file;
+pub mod sweep;
 pub mod table;
 pub mod threshold;

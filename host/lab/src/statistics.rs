@@ -1,6 +1,8 @@
-//! The statistics that a fit needs.
+//! The statistics that fits and scores need.
 
 use core::f64::consts::SQRT_2;
+
+use crate::bootstrap::Z_95;
 
 /// Median; not-a-number of no values.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
@@ -22,6 +24,14 @@ pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
 pub(crate) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / count
+}
+
+/// 95 % interval of a share, of which `count` of `of` were counted (Wilson 1927, doi:10.1080/01621459.1927.10502953).
+pub(crate) fn share_interval(count: usize, of: usize) -> [f64; 2] {
+    let (count, of, z) = (count as f64, of as f64, Z_95);
+    let middle = (count + 0.5 * z * z) / (of + z * z);
+    let half = z / (of + z * z) * (count * (of - count) / of + 0.25 * z * z).sqrt();
+    [(middle - half).max(0.0), (middle + half).min(1.0)]
 }
 
 /// Probability that a Gaussian number of mean 0 and standard deviation 1 is below `z`.
@@ -59,7 +69,18 @@ fn student_probability(angle: f64, freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{median, normal_probability, quantile, student_quantile};
+    use super::{median, normal_probability, quantile, share_interval, student_quantile};
+
+    /// The examples of Newcombe 1998, `doi:10.1002/(SICI)1097-0258(19980430)17:8<857::AID-SIM777>3.0.CO;2-E`, table I.
+    #[test]
+    fn intervals_of_shares_are_those_of_the_tables() {
+        for (count, of, low, high) in
+            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
+        {
+            let found = share_interval(count, of);
+            assert!((found[0] - low).abs() < 1e-4 && (found[1] - high).abs() < 1e-4, "{count} of {of}: {found:?}");
+        }
+    }
 
     #[test]
     fn quantiles_of_students_distribution_are_those_of_the_tables() {

@@ -2,7 +2,7 @@
 //! anyone builds on them; `docs/truth.md` lists them.
 
 use frixel_hil_sim::RELAXATION_LENGTH_M;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Weber fraction of friction: the smallest change of the total friction that is felt, for a transient decrease
 /// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). That it holds for rises and for changes over the place is assumed. It
@@ -52,7 +52,7 @@ pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 pub(crate) const MAYBE: &str = "maybe: near the threshold, where some people or some strokes will not notice it";
 
 /// Whether a person feels something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Too small for anyone in the studies.

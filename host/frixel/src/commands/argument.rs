@@ -22,6 +22,14 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
+/// Parses a part of a whole, such as `2/8`.
+pub(super) fn shard(text: &str) -> Result<(usize, usize), String> {
+    let numbers = text.split_once('/').and_then(|(part, parts)| part.parse().ok().zip(parts.parse().ok()));
+    numbers
+        .filter(|(part, parts): &(usize, usize)| (1..=*parts).contains(part))
+        .ok_or_else(|| "expected the number of a part and how many there are, for example 2/8".to_owned())
+}
+
 /// The numbers above zero up to `max`.
 pub(super) fn above_zero_to(max: f64) -> impl RangeBounds<f64> {
     (Bound::Excluded(0.0), Bound::Included(max))

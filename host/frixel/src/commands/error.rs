@@ -21,6 +21,7 @@ use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
+use frixel_lab::sweep::{CellError, PlanError};
 use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
@@ -51,6 +52,16 @@ pub(crate) enum CommandError {
     Studio(#[from] StudioError),
     #[error(transparent)]
     Report(#[from] ReportError),
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    #[error("{cell}: {source}")]
+    Cell { cell: String, source: CellError },
+    #[error("{}: {found} of {of} cells are there: play the others with `frixel sweep PLAN.toml -o {}`", folder.display(), folder.display())]
+    CellsMissing { folder: PathBuf, found: usize, of: usize },
+    #[error("{} is no {what} ({reason}): delete it, and play the sweep again", path.display())]
+    NoSweepFile { path: PathBuf, what: &'static str, reason: String },
+    #[error("{}: this {what} cannot be read ({source}): {advice}", path.display())]
+    SweepInput { path: PathBuf, what: &'static str, source: io::Error, advice: &'static str },
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]

@@ -25,6 +25,7 @@ mod selftest;
 mod sim;
 mod stroke;
 mod studio;
+mod sweep;
 mod terminal;
 mod threshold;
 mod waiting;
@@ -64,6 +65,8 @@ enum Command {
     Scene(scene::SceneCommand),
     /// Score how faithfully simulated fingers feel a scene.
     Score(score::ScoreArgs),
+    /// Play every combination of scenes, people, screens and values, and draw which simulated fingers feel what.
+    Sweep(sweep::SweepArgs),
     /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
     Sim(SimArgs),
     /// Open the studio, a page in which scenes are made, seen and heard.
@@ -131,6 +134,7 @@ impl Cli {
             Some(Command::Play(args)) => play::run(&args),
             Some(Command::Scene(command)) => scene::run(&command),
             Some(Command::Score(args)) => score::run(&args),
+            Some(Command::Sweep(args)) => sweep::run(&args),
             #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use clap::Args;
-use frixel_hil_sim::{Person, RigConfig, Stroke};
-use frixel_lab::score::{Score, Trial, TrialFinger};
+use frixel_hil_sim::RigConfig;
+use frixel_lab::score::{Score, Trial, TrialFinger, TrialPlan, Way};
 use frixel_lab::simulation::SimulationError;
 use frixel_scene::{Program, Scene, compile};
 
@@ -67,13 +67,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let (csv, layers, svg) = (file("score.csv")?, file("score-layers.csv")?, file("score.svg")?);
     let scene = scene?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
-    let trials = match args.people {
-        None => trials(args, &program, None)?,
-        Some(people) => {
-            let of_person = |person: u64| trials(args, &program, Some(finger(args, &scene, person)?));
-            (1..=people).map(of_person).collect::<Result<Vec<_>, CommandError>>()?.concat()
-        }
-    };
+    let trials = trials(args, &scene, &program)?;
     let _folder = OutputFolder::open(&args.out)?;
     let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(|error| match error {
         SimulationError::Play(error) => CommandError::of_play("sim", error),
@@ -108,51 +102,36 @@ fn rig(args: &ScoreArgs) -> Result<RigConfig, CommandError> {
     Ok(rig)
 }
 
-/// The finger of a person on the screen of a scene. A scene of version 1 has none without its own finger's skin.
-fn finger(args: &ScoreArgs, scene: &Scene, person: u64) -> Result<TrialFinger, CommandError> {
-    let coating_gap_m = 1e-6 * scene.screen_without_skin()?.coating_gap_um();
-    let drawn = Person::drawn(person);
-    let contact = drawn.contact(coating_gap_m).map_err(CommandError::Finger)?;
-    Ok(TrialFinger { person, contact, fingertip: (!args.ideal).then_some(drawn.fingertip) })
-}
-
-/// Every stroke as often as it is repeated, by one finger. Each person makes strokes of their own, and each play has a
-/// world seed of its own.
-fn trials(args: &ScoreArgs, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, CommandError> {
-    let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * args.strokes);
-    let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-    let strokes: Vec<(String, Stroke)> = match (args.stroke.as_str(), stroke::human(Path::new(&args.stroke))) {
-        (_, Some(human)) => (first_stroke..first_stroke + args.strokes)
-            .map(|seed| human_stroke(args, human, screen_m, seed))
-            .collect::<Result<_, _>>()?,
-        // The name that it had before.
-        ("sweep" | "natural", None) => {
-            let stroke = Stroke::sweep(screen_m.0, screen_m.1, args.seconds).map_err(CommandError::GeneratedStroke)?;
-            vec![("sweep".to_owned(), stroke)]
-        }
-        (file, None) => vec![("file".to_owned(), stroke::from_file(Path::new(file))?)],
+/// What each finger does.
+fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan, CommandError> {
+    let way = match args.stroke.as_str() {
+        "human" => Way::Human,
+        "human-rough" => Way::HumanRough,
+        // `natural` is the name that it had before.
+        "sweep" | "natural" => Way::Sweep,
+        file => Way::Stroke(stroke::from_file(Path::new(file))?),
     };
-    let trials = (first_stroke..).zip(strokes).flat_map(|(number, (stroke_name, stroke))| {
-        let first_seed = 1 + (number - 1) * args.seeds;
-        (first_seed..first_seed + args.seeds).map(move |seed| Trial {
-            stroke_name: stroke_name.clone(),
-            stroke: stroke.clone(),
-            seed,
-            finger,
-        })
-    });
-    Ok(trials.collect())
+    Ok(TrialPlan {
+        way,
+        strokes: args.strokes,
+        seeds: args.seeds,
+        seconds: args.seconds,
+        median_speed_m_per_s: args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
+    })
 }
 
-fn human_stroke(
-    args: &ScoreArgs,
-    human: stroke::Human,
-    (width_m, height_m): (f64, f64),
-    seed: u64,
-) -> Result<(String, Stroke), CommandError> {
-    let median_speed_m_per_s = args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s);
-    let stroke = human(width_m, height_m, args.seconds, median_speed_m_per_s, seed);
-    Ok((format!("{} {seed}", args.stroke), stroke.map_err(CommandError::GeneratedStroke)?))
+/// Every trial of every finger.
+fn trials(args: &ScoreArgs, scene: &Scene, program: &Program) -> Result<Vec<Trial>, CommandError> {
+    let plan = trial_plan(args)?;
+    let of_finger = |finger| plan.trials(program, finger).map_err(CommandError::GeneratedStroke);
+    let Some(people) = args.people else { return of_finger(None) };
+    // A scene of version 1 has no screen without its own finger's skin.
+    let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
+    let of_person = |person| {
+        let finger = TrialFinger::of_person(person, coating_gap_um, args.ideal).map_err(CommandError::Finger)?;
+        of_finger(Some(finger))
+    };
+    Ok((1..=people).map(of_person).collect::<Result<Vec<_>, CommandError>>()?.concat())
 }
 
 /// Parses the median speed of a stroke.

@@ -4,11 +4,13 @@ mod files;
 mod saved_file;
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel_hil_sim::TouchConfig;
+use frixel_lab::sweep::Source;
 use frixel_scene::{
     CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, parse_touch_source,
 };
@@ -90,6 +92,32 @@ pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Sc
             (scene, named.files.into_inner())
         }
         Err(source) => (Err(SceneFileError::Unreadable { file, source }), files),
+    }
+}
+
+/// Reads a scene file with the bytes of the files that it names, for whoever plays it without them. Results call it
+/// `name`.
+pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError> {
+    let file = path.display().to_string();
+    let read = input::read(path, input::TOML_MAX_BYTES);
+    let bytes = read.map_err(|source| SceneFileError::Unreadable { file: file.clone(), source })?;
+    let kept = KeptFiles { folder: folder_of(path), kept: RefCell::default() };
+    Scene::parse_bytes(&bytes, &file, &kept)?;
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    Ok(Source { name: name.to_owned(), text, files: kept.kept.into_inner() })
+}
+
+/// Keeps the bytes of each file that a scene names.
+struct KeptFiles {
+    folder: SceneFolder,
+    kept: RefCell<BTreeMap<String, Vec<u8>>>,
+}
+
+impl Files for KeptFiles {
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+        let bytes = self.folder.bytes(name)?;
+        self.kept.borrow_mut().insert(name.to_owned(), bytes.clone());
+        Ok(bytes)
     }
 }
 

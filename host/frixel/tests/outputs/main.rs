@@ -45,6 +45,7 @@ impl Folder {
         folder.write("frictions.csv", &format!("{points},electric_friction_n\nwf-upper,0.008,1e-5,1,0.5,1.8e7,0.01\n"));
         folder.write("forces.csv", "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n");
         folder.write("bench.json", "{}");
+        folder.write("plan.toml", "scenes = [\"scene.toml\"]\npeople = 1\nstrokes = 1\nseeds = 1\nseconds = 0.5\n");
         folder.write("data.csv", friction());
         fs::copy(repository().join("scenes/textures/brick.png"), folder.path("picture.png")).unwrap();
         folder
@@ -160,6 +161,9 @@ fn every_command_line_of_the_table_writes_what_it_says() {
             expected.extend(["out/brick.toml".to_owned(), "out/textures/brick.png".to_owned()]);
         }
         expected.sort();
-        assert_eq!(folder.names(), expected, "{}: nothing else is left", output.argument);
+        let mut left = folder.names();
+        // The cells of a sweep are called by what they play.
+        left.retain(|name| !name.starts_with("out/cells/"));
+        assert_eq!(left, expected, "{}: nothing else is left", output.argument);
     }
 }

@@ -35,7 +35,7 @@ const fn recording(
 }
 
 /// Every output.
-pub(crate) const OUTPUTS: [Output; 15] = [
+pub(crate) const OUTPUTS: [Output; 16] = [
     Output {
         // It never replaces its scene.
         is_reproducible: true,
@@ -60,6 +60,12 @@ pub(crate) const OUTPUTS: [Output; 15] = [
         "score scene.toml --stroke IN --seeds 1 --out OUT",
         "stroke.csv",
         &["OUT/score.csv", "OUT/score-layers.csv", "OUT/score.svg"],
+    ),
+    result(
+        "sweep out",
+        "sweep IN -o OUT",
+        "plan.toml",
+        &["OUT/layers.csv", "OUT/fingers.csv", "OUT/numbers.csv", "OUT/sweep.svg"],
     ),
     Output {
         // It ends with a signal only.
@@ -91,7 +97,7 @@ pub(crate) const OUTPUTS: [Output; 15] = [
 
 /// Every argument that names a file to read, or a port, by the type of a path.
 #[allow(dead_code, reason = "only the test of the command line reads it")]
-pub(crate) const INPUTS: [&str; 17] = [
+pub(crate) const INPUTS: [&str; 19] = [
     "calibrate forces",
     "fit data",
     "model eval input",
@@ -109,4 +115,6 @@ pub(crate) const INPUTS: [&str; 17] = [
     "score scene",
     "sim stroke",
     "studio page",
+    "sweep merge out",
+    "sweep plan",
 ];

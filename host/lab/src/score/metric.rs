@@ -114,7 +114,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// 95 % interval of the mean of independent values; `None` of a single one.
-fn interval(values: &[f64]) -> Option<[f64; 2]> {
+pub(crate) fn interval(values: &[f64]) -> Option<[f64; 2]> {
     if values.len() < 2 {
         return None;
     }
@@ -124,6 +124,11 @@ fn interval(values: &[f64]) -> Option<[f64; 2]> {
     let mut means: Vec<f64> = drawn.collect();
     let (low, high) = draws.interval(&mut means, Z_95);
     Some([low, high])
+}
+
+/// The keys of all numbers.
+pub(crate) fn metric_keys() -> impl Iterator<Item = &'static str> {
+    METRICS.iter().map(|metric| metric.key)
 }
 
 pub(super) const METRICS: [Metric; 14] = [

@@ -8,6 +8,7 @@ mod layers;
 mod metric;
 mod sentence;
 mod text;
+mod trials;
 
 use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
 use frixel_felt::noticed::Noticing;
@@ -21,6 +22,8 @@ use layers::Finger;
 pub use layers::{BorderScore, LayerBorder, LayerScore, LevelScore, Verdicts};
 use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
+pub(crate) use metric::{interval, metric_keys};
+pub use trials::{TrialPlan, Way};
 
 use crate::simulation::{Simulation, SimulationError, simulate_through_finger};
 

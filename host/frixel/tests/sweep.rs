@@ -1,0 +1,121 @@
+//! `frixel sweep`: every division into parts and every interruption ends with the same bytes.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+const SCENE: &str = "version = 2\n[[layer]]\nname = \"plate\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
+                     region = { x_mm = 20, y_mm = 10, width_mm = 80, height_mm = 60 }\n";
+const PLAN: &str = "scenes = [\"plate.toml\"]\npeople = 3\nstrokes = 2\nseeds = 1\nseconds = 0.6\n\
+                    [parameters]\n\"layer.1.friction_fraction\" = [0.02, 0.9]\n";
+const RESULTS: [&str; 4] = ["layers.csv", "fingers.csv", "numbers.csv", "sweep.svg"];
+
+struct Folder(TempDir);
+
+impl Folder {
+    fn new(plan: &str) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        fs::write(folder.path("plate.toml"), SCENE).unwrap();
+        fs::write(folder.path("plan.toml"), plan).unwrap();
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// What the command says, or its error.
+    fn run(&self, line: &str) -> Result<String, String> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        let output = command.args(line.split_whitespace()).current_dir(self.0.path()).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        if output.status.success() { Ok(text(output.stdout)) } else { Err(text(output.stderr)) }
+    }
+
+    fn results(&self, out: &str) -> [Vec<u8>; 4] {
+        RESULTS.map(|name| fs::read(self.path(out).join(name)).unwrap())
+    }
+
+    fn cells(&self, out: &str) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.path(out).join("cells")).unwrap();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        paths
+    }
+}
+
+#[test]
+fn any_number_of_parts_makes_the_same_bytes() {
+    let folder = Folder::new(PLAN);
+    folder.run("sweep plan.toml -o whole").unwrap();
+    let whole = folder.results("whole");
+    for parts in [2, 7, 64] {
+        // The last part first: no order matters.
+        for part in (1..=parts).rev() {
+            folder.run(&format!("sweep plan.toml -o parts{parts} --shard {part}/{parts} --jobs 1")).unwrap();
+        }
+        folder.run(&format!("sweep merge parts{parts}")).unwrap();
+        assert!(folder.results(&format!("parts{parts}")) == whole, "{parts} parts");
+    }
+    let layers = String::from_utf8(whole[0].clone()).unwrap();
+    let rows: Vec<&str> = layers.lines().collect();
+    assert!(rows[1].starts_with("\"plate.toml\",,\"100\",0.02,\"layer 1 \"\"plate\"\"\",3,0,"), "{layers}");
+    assert!(rows[2].starts_with("\"plate.toml\",,\"100\",0.9,\"layer 1 \"\"plate\"\"\",3,2,1,"), "{layers}");
+}
+
+/// A killed sweep has lost the cells that were being played, and no other.
+#[test]
+fn what_is_there_is_not_played_again() {
+    let folder = Folder::new(PLAN);
+    folder.run("sweep plan.toml -o out").unwrap();
+    let (results, cells) = (folder.results("out"), folder.cells("out"));
+    assert_eq!(cells.len(), 6 + 1, "and the plan's");
+    fs::remove_file(&cells[2]).unwrap();
+    let error = folder.run("sweep merge out").unwrap_err();
+    assert!(error.contains("out: 5 of 6 cells are there: play the others with `frixel sweep"), "{error}");
+    let said = folder.run("sweep plan.toml -o out").unwrap();
+    assert!(said.contains("1 played, 5 were there, of 6"), "{said}");
+    assert!(folder.results("out") == results && folder.cells("out") == cells);
+    // Another value plays its own cells only.
+    fs::write(folder.path("plan.toml"), PLAN.replace("[0.02, 0.9]", "[0.02, 0.5, 0.9]")).unwrap();
+    let said = folder.run("sweep plan.toml -o out").unwrap();
+    assert!(said.contains("3 played, 6 were there, of 9"), "{said}");
+}
+
+#[test]
+fn what_is_wrong_is_said_before_anything_is_played() {
+    for (plan, said) in [
+        (PLAN.replace("people", "persons"), "persons"),
+        (PLAN.replace("people = 3", "people = 0"), "people is 0: give a number from 1 to 100000"),
+        (PLAN.replace("plate.toml", "palte.toml"), "palte.toml: this scene file cannot be read"),
+        (PLAN.replace("layer.1", "layer.2"), "plate.toml has no layer 2: it has 1"),
+        (PLAN.replace("friction_fraction", "friction_fractoin"), "friction_fractoin"),
+        (PLAN.replace("0.9", "1.9"), "plate.toml with layer.1.friction_fraction = 1.9"),
+        (PLAN.replace("people", "touch = [\"300\"]\npeople"), "this touch source cannot be read"),
+        (PLAN.replace("[0.02, 0.9]", "{ from = 0, to = 1, count = 1 }"), "a count from 2 to 1000"),
+        (
+            PLAN.replace("people = 3", "people = 90000\nscreens = [\"example\", \"a\", \"b\", \"c\", \"d\", \"e\"]"),
+            "1080000",
+        ),
+    ] {
+        let folder = Folder::new(&plan);
+        let error = folder.run("sweep plan.toml -o out").unwrap_err();
+        assert!(error.contains(said), "{plan}{error}");
+        assert!(!folder.path("out").exists(), "{plan}");
+    }
+}
+
+#[test]
+fn a_folder_of_something_else_is_not_merged() {
+    let folder = Folder::new(PLAN);
+    let error = folder.run("sweep merge nothing").unwrap_err();
+    assert!(error.contains("give the folder of a sweep"), "{error}");
+    folder.run("sweep plan.toml -o out").unwrap();
+    let cell = folder.cells("out")[0].clone();
+    fs::write(&cell, "{").unwrap();
+    let error = folder.run("sweep merge out").unwrap_err();
+    assert!(error.contains("is no result of a cell") && error.contains("delete it"), "{error}");
+}

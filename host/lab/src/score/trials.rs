@@ -1,0 +1,87 @@
+//! The trials of one finger: its strokes, each as often as it is repeated.
+
+use frixel_hil_sim::{Person, Stroke, StrokeError};
+use frixel_model::ParameterError;
+use frixel_scene::Program;
+
+use super::{Trial, TrialFinger};
+
+/// Makes the stroke of a person, as [`Stroke::human`] does.
+type Generator = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
+
+/// Where a simulated finger goes.
+#[derive(Clone, Debug)]
+pub enum Way {
+    /// Touches of people with the accelerations of recorded ones after smoothing, another for each stroke.
+    Human,
+    /// As [`Self::Human`], with the accelerations before smoothing.
+    HumanRough,
+    /// An even sweep over the screen.
+    Sweep,
+    /// This stroke.
+    Stroke(Stroke),
+}
+
+/// The strokes of a finger.
+#[derive(Clone, Debug)]
+pub struct TrialPlan {
+    /// Where the finger goes.
+    pub way: Way,
+    /// Number of strokes of [`Way::Human`] and [`Way::HumanRough`]; the other ways have one.
+    pub strokes: u64,
+    /// Repetitions of each stroke.
+    pub seeds: u64,
+    /// Duration of a stroke that is generated, s.
+    pub seconds: f64,
+    /// Median speed of the strokes of people, m/s; without it, each person has their own.
+    pub median_speed_m_per_s: Option<f64>,
+}
+
+impl TrialPlan {
+    /// The trials of a finger: without one, of that which the scene is meant for. Each person makes strokes of their
+    /// own, and each play has a world seed of its own.
+    pub fn trials(&self, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, StrokeError> {
+        let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * self.strokes);
+        let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
+        let strokes = match &self.way {
+            Way::Human => self.of_people("human", Stroke::human, (width_m, height_m), first_stroke)?,
+            Way::HumanRough => self.of_people("human-rough", Stroke::human_rough, (width_m, height_m), first_stroke)?,
+            Way::Sweep => vec![("sweep".to_owned(), Stroke::sweep(width_m, height_m, self.seconds)?)],
+            Way::Stroke(stroke) => vec![("file".to_owned(), stroke.clone())],
+        };
+        let trials = (first_stroke..).zip(strokes).flat_map(|(number, (stroke_name, stroke))| {
+            let first_seed = 1 + (number - 1) * self.seeds;
+            (first_seed..first_seed + self.seeds).map(move |seed| Trial {
+                stroke_name: stroke_name.clone(),
+                stroke: stroke.clone(),
+                seed,
+                finger,
+            })
+        });
+        Ok(trials.collect())
+    }
+
+    fn of_people(
+        &self,
+        name: &str,
+        hand: Generator,
+        (width_m, height_m): (f64, f64),
+        first: u64,
+    ) -> Result<Vec<(String, Stroke)>, StrokeError> {
+        let stroke = |seed| {
+            let stroke = hand(width_m, height_m, self.seconds, self.median_speed_m_per_s, seed)?;
+            Ok((format!("{name} {seed}"), stroke))
+        };
+        (first..first + self.strokes).map(stroke).collect()
+    }
+}
+
+impl TrialFinger {
+    /// The finger of a person, from 1, on a screen whose coating has an effective gap of so many micrometres. In an
+    /// ideal world it does nothing beside the contact model.
+    pub fn of_person(person: u64, coating_gap_um: f64, is_ideal: bool) -> Result<Self, ParameterError> {
+        let drawn = Person::drawn(person);
+        let contact = drawn.contact(1e-6 * coating_gap_um)?;
+        Ok(Self { person, contact, fingertip: (!is_ideal).then_some(drawn.fingertip) })
+    }
+}

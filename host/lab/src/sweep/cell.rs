@@ -1,0 +1,249 @@
+//! One simulated finger on one scene: all that its plays need, and what it noticed.
+
+use std::collections::BTreeMap;
+
+use frixel_felt::perception::Verdict;
+use frixel_hil_sim::{Person, RigConfig, StrokeError, TouchConfig};
+use frixel_model::ParameterError as ContactError;
+use frixel_scene::{CompileError, Program, Scene, Screen, compile, parse_touch_source};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use thiserror::Error;
+
+use super::parameter::Value;
+use crate::score::{Score, TrialFinger, TrialPlan, Verdicts, Way};
+use crate::simulation::SimulationError;
+
+/// Bytes of a hash that make a key.
+const KEY_BYTES: usize = 16;
+
+/// What the strokes of simulated people are made after.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hand {
+    /// The accelerations of recorded people after smoothing.
+    #[default]
+    Human,
+    /// Their accelerations before smoothing.
+    HumanRough,
+    /// An even sweep over the screen.
+    Sweep,
+}
+
+/// A screen or a touch source.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Profile {
+    /// Name, as results have it.
+    pub name: String,
+    /// Text of its file; absent for a bundled one.
+    pub text: Option<String>,
+}
+
+/// All that the plays of one simulated finger need.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cell {
+    /// Version of frixel: another one may feel otherwise.
+    pub version: String,
+    /// Name of the scene.
+    pub scene: String,
+    /// The values that the plan sets, by the paths of their fields.
+    pub parameters: BTreeMap<String, Value>,
+    /// Text of the scene, with these values.
+    pub text: String,
+    /// The bytes of the files that the scene names, by these names.
+    pub files: BTreeMap<String, Vec<u8>>,
+    /// The screen; absent for the scene's own.
+    pub screen: Option<Profile>,
+    /// The touch source.
+    pub touch: Profile,
+    /// Number of the simulated person, from 1.
+    pub person: u64,
+    /// What the strokes are made after.
+    pub stroke: Hand,
+    /// Number of strokes.
+    pub strokes: u64,
+    /// Repetitions of each stroke.
+    pub seeds: u64,
+    /// Duration of a stroke, s.
+    pub seconds: f64,
+    /// Median speed of the strokes, mm/s; absent for the person's own.
+    pub median_speed_mm_per_s: Option<f64>,
+    /// Whether the world has no noise, load changes, losses and offsets.
+    pub ideal: bool,
+}
+
+/// What one finger noticed of a layer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LayerResult {
+    /// Number and name of the layer.
+    pub layer: String,
+    /// Number of the layer's table in the scene: copies of a layer have the same one.
+    pub table: usize,
+    /// Whether it notices the layer: `felt`, `felt_by_some` near the threshold, `not_felt` or `unknown`.
+    pub verdict: Verdict,
+    /// Felt contrast within the layer, in Weber steps.
+    pub contrast_weber_steps: f64,
+}
+
+/// What one finger noticed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CellResult {
+    /// Name of the scene.
+    pub scene: String,
+    /// The values that the plan set.
+    pub parameters: BTreeMap<String, Value>,
+    /// Name of the screen; absent for the scene's own.
+    pub screen: Option<String>,
+    /// Name of the touch source.
+    pub touch: String,
+    /// Number of the simulated person.
+    pub person: u64,
+    /// Moisture of the person's skin, in standard deviations from the middle of the population.
+    pub moisture: f64,
+    /// Highest rms voltage of the scene, V.
+    pub voltage_v_rms: f64,
+    /// The layers that the finger touched for long enough, from bottom to top.
+    pub layers: Vec<LayerResult>,
+    /// Means over the finger's plays, by the names of the columns of `score.csv`. A number that exists in no play is
+    /// absent.
+    pub means: BTreeMap<String, f64>,
+}
+
+/// Why a cell cannot be played.
+#[derive(Debug, Error)]
+pub enum CellError {
+    /// The cell is of another version.
+    #[error("this cell is of frixel {found}, and this is {}: make the cells anew from their plan", env!("CARGO_PKG_VERSION"))]
+    OtherVersion {
+        /// Version of the cell.
+        found: String,
+    },
+    /// A bundled profile is unknown.
+    #[error("there is no bundled {what} called {name}")]
+    NotBundled {
+        /// What it is.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// The scene, the screen or the touch source has mistakes.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// The contact model refuses the person on this screen.
+    #[error("the contact model refuses the finger of person {person}: {source}")]
+    Finger {
+        /// Number of the person.
+        person: u64,
+        /// The reason.
+        source: ContactError,
+    },
+    /// The screen is too small for a stroke.
+    #[error("no stroke can be generated for this scene's screen: {0}")]
+    Stroke(#[from] StrokeError),
+    /// A play failed.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl Cell {
+    /// Name of the content: equal cells have equal keys, and others have others.
+    pub fn key(&self) -> String {
+        // Numbers, strings and maps with names always serialise.
+        let content = serde_json::to_vec(self).unwrap_or_default();
+        let hash = Sha256::digest(content);
+        let digits = hash.iter().take(KEY_BYTES).flat_map(|byte| [byte >> 4, byte & 15]);
+        digits.filter_map(|digit| char::from_digit(digit.into(), 16)).collect()
+    }
+
+    /// Plays the cell. The result is the same on every machine and for any number of threads.
+    pub fn play(&self) -> Result<CellResult, CellError> {
+        if self.version != env!("CARGO_PKG_VERSION") {
+            return Err(CellError::OtherVersion { found: self.version.clone() });
+        }
+        let (scene, rig, program) = self.compiled()?;
+        let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
+        let person = self.person;
+        let finger = TrialFinger::of_person(person, coating_gap_um, self.ideal)
+            .map_err(|source| CellError::Finger { person, source })?;
+        let trials = TrialPlan {
+            way: match self.stroke {
+                Hand::Human => Way::Human,
+                Hand::HumanRough => Way::HumanRough,
+                Hand::Sweep => Way::Sweep,
+            },
+            strokes: self.strokes,
+            seeds: self.seeds,
+            seconds: self.seconds,
+            median_speed_m_per_s: self.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
+        };
+        let score = Score::of(&program, &rig, &trials.trials(&program, Some(finger))?)?;
+        Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
+    }
+
+    /// Compiles the cell's scene, without playing it: what is wrong with one cell is wrong with those of all people.
+    pub fn check(&self) -> Result<(), CellError> {
+        self.compiled().map(drop)
+    }
+
+    fn compiled(&self) -> Result<(Scene, RigConfig, Program), CellError> {
+        let (scene, rig) = (self.scene()?, self.rig()?);
+        let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
+        Ok((scene, rig, program))
+    }
+
+    fn scene(&self) -> Result<Scene, CellError> {
+        let scene = Scene::parse(&self.text, &self.scene, &self.files)?;
+        let Some(Profile { name, text }) = &self.screen else { return Ok(scene) };
+        let screen = match text {
+            Some(text) => Screen::parse(text, name)?,
+            None => {
+                Screen::bundled(name).ok_or_else(|| CellError::NotBundled { what: "screen", name: name.clone() })?
+            }
+        };
+        Ok(scene.with_screen(screen, name)?)
+    }
+
+    fn rig(&self) -> Result<RigConfig, CellError> {
+        let Profile { name, text } = &self.touch;
+        let touch = match text {
+            Some(text) => parse_touch_source(text, name)?,
+            None => TouchConfig::bundled(name)
+                .ok_or_else(|| CellError::NotBundled { what: "touch source", name: name.clone() })?,
+        };
+        let mut rig = RigConfig::default();
+        rig.world = if self.ideal { rig.world } else { rig.world.realistic() };
+        rig.world.touch = if self.ideal { touch.without_losses() } else { touch };
+        Ok(rig)
+    }
+
+    fn result(&self, score: &Score, voltage_v_rms: f64) -> CellResult {
+        let layer = |layer: &crate::score::LayerScore| LayerResult {
+            layer: layer.layer.to_string(),
+            table: layer.layer.number().table,
+            verdict: only(&layer.simulated_fingers),
+            contrast_weber_steps: layer.contrast_weber_steps,
+        };
+        CellResult {
+            scene: self.scene.clone(),
+            parameters: self.parameters.clone(),
+            screen: self.screen.as_ref().map(|screen| screen.name.clone()),
+            touch: self.touch.name.clone(),
+            person: self.person,
+            moisture: Person::drawn(self.person).moisture,
+            voltage_v_rms,
+            layers: score.layers.iter().map(layer).collect(),
+            means: score.metrics.iter().map(|metric| (metric.key.to_owned(), metric.mean)).collect(),
+        }
+    }
+}
+
+/// The verdict of the one finger.
+fn only(verdicts: &Verdicts) -> Verdict {
+    match verdicts {
+        Verdicts { felt: 1.., .. } => Verdict::Felt,
+        Verdicts { felt_by_some: 1.., .. } => Verdict::NearThreshold,
+        Verdicts { unknown: 1.., .. } => Verdict::Unknown,
+        _ => Verdict::NotFelt,
+    }
+}

@@ -1,0 +1,200 @@
+//! A field of a scene by its path, and the values that a sweep gives it.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+use toml_edit::{DocumentMut, Item, TableLike};
+
+/// The name of the tables of layers.
+const LAYER: &str = "layer";
+
+/// A value of a field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// `true` or `false`.
+    Switch(bool),
+    /// A whole number.
+    Whole(i64),
+    /// Any other number.
+    Number(f64),
+    /// A word, such as the name of a wave.
+    Word(String),
+}
+
+impl Value {
+    /// The value as a number; `None` for a word or a switch.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Whole(number) => Some(*number as f64),
+            Self::Number(number) => Some(*number),
+            Self::Switch(_) | Self::Word(_) => None,
+        }
+    }
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Switch(is_on) => is_on.fmt(formatter),
+            Self::Whole(number) => number.fmt(formatter),
+            Self::Number(number) => number.fmt(formatter),
+            Self::Word(word) => formatter.write_str(word),
+        }
+    }
+}
+
+impl From<&Value> for toml_edit::Value {
+    fn from(value: &Value) -> Self {
+        match value {
+            Value::Switch(is_on) => (*is_on).into(),
+            Value::Whole(number) => (*number).into(),
+            Value::Number(number) => (*number).into(),
+            Value::Word(word) => word.as_str().into(),
+        }
+    }
+}
+
+/// Why a field of a scene cannot be set.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ParameterError {
+    /// The scene is not TOML.
+    #[error("{scene} is not TOML: {reason}")]
+    NotToml {
+        /// Name of the scene.
+        scene: String,
+        /// The reason, and where.
+        reason: String,
+    },
+    /// There is no layer of this number.
+    #[error("parameter \"{path}\": {scene} has no layer {found}: it has {layers}")]
+    NoLayer {
+        /// Path of the field.
+        path: String,
+        /// Name of the scene.
+        scene: String,
+        /// The number that the path has.
+        found: String,
+        /// Number of layers.
+        layers: usize,
+    },
+    /// The path leads through a field that has no fields, or to one that has.
+    #[error(
+        "parameter \"{path}\": \"{part}\" is no place for a value in {scene}; a path is that of one field, such as \
+         \"drive.voltage_max_v_rms\" or \"layer.2.high_n\""
+    )]
+    NoField {
+        /// Path of the field.
+        path: String,
+        /// Name of the scene.
+        scene: String,
+        /// The part of the path that does not fit.
+        part: String,
+    },
+}
+
+/// The text of a scene with a field set, which is added where the scene does not have it. `path` is the names of tables
+/// and of the field with dots between them; behind `layer` stands the number of a layer, from 1.
+pub(super) fn with_field(text: &str, scene: &str, path: &str, value: &Value) -> Result<String, ParameterError> {
+    let not_toml = |error: toml_edit::TomlError| ParameterError::NotToml {
+        scene: scene.to_owned(),
+        reason: error.to_string().trim_end().to_owned(),
+    };
+    let mut document: DocumentMut = text.parse().map_err(not_toml)?;
+    let parts: Vec<&str> = path.split('.').collect();
+    let set = match parts.split_last() {
+        Some((field, tables)) => set(document.as_table_mut(), tables, field, value),
+        None => Err(Misplaced::Part(path)),
+    };
+    let (path, scene) = (path.to_owned(), scene.to_owned());
+    set.map_err(|misplaced| match misplaced {
+        Misplaced::Part(part) => ParameterError::NoField { path, scene, part: part.to_owned() },
+        Misplaced::Layer(found, layers) => ParameterError::NoLayer { path, scene, found: found.to_owned(), layers },
+    })?;
+    Ok(document.to_string())
+}
+
+/// The part of a path that does not fit.
+enum Misplaced<'p> {
+    /// It is no table, or no field.
+    Part(&'p str),
+    /// It is no layer, of so many.
+    Layer(&'p str, usize),
+}
+
+fn set<'p>(table: &mut dyn TableLike, tables: &[&'p str], field: &'p str, value: &Value) -> Result<(), Misplaced<'p>> {
+    let Some((name, rest)) = tables.split_first() else {
+        return match table.get_mut(field) {
+            Some(Item::Value(toml_edit::Value::InlineTable(_)) | Item::Table(_) | Item::ArrayOfTables(_)) => {
+                Err(Misplaced::Part(field))
+            }
+            _ if field.is_empty() => Err(Misplaced::Part(field)),
+            _ => {
+                table.insert(field, Item::Value(value.into()));
+                Ok(())
+            }
+        };
+    };
+    match (table.get_mut(name), rest.split_first()) {
+        (Some(Item::ArrayOfTables(layers)), Some((number, rest))) => {
+            let count = layers.len();
+            let index = number.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+            match index.and_then(|index| layers.get_mut(index)) {
+                Some(layer) => set(layer, rest, field, value),
+                None => Err(Misplaced::Layer(number, count)),
+            }
+        }
+        (Some(item), _) => match item.as_table_like_mut() {
+            Some(table) => set(table, rest, field, value),
+            None => Err(Misplaced::Part(name)),
+        },
+        (None, Some((number, _))) if *name == LAYER => Err(Misplaced::Layer(number, 0)),
+        (None, _) => {
+            // The compiler says whether a scene has such a table.
+            let Some(table) = table.entry(name).or_insert(toml_edit::table()).as_table_like_mut() else {
+                return Err(Misplaced::Part(name));
+            };
+            set(table, rest, field, value)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "version = 2\n\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.01 # little\n\n[[layer]]\nkind = \"grating\"\n\
+                         region = { x_mm = 1, width_mm = 5 }\n";
+
+    fn set(path: &str, value: &Value) -> Result<String, String> {
+        with_field(SCENE, "a.toml", path, value).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_field_of_a_layer_of_a_region_and_of_the_scene_is_set_or_added() {
+        let set = |path, value| set(path, &value).unwrap();
+        assert!(set("layer.1.friction_n", Value::Number(0.02)).contains("friction_n = 0.02"));
+        assert!(set("layer.2.region.width_mm", Value::Whole(7)).contains("width_mm = 7"));
+        assert!(set("layer.2.wave", Value::Word("saw".to_owned())).contains("wave = \"saw\""));
+        let whole = set("drive.voltage_max_v_rms", Value::Whole(100));
+        assert!(whole.contains("[drive]\nvoltage_max_v_rms = 100\n"), "{whole}");
+    }
+
+    #[test]
+    fn a_path_that_leads_nowhere_is_named() {
+        let value = Value::Whole(1);
+        for (path, said) in [
+            ("layer.3.high_n", "a.toml has no layer 3: it has 2"),
+            ("layer.first.high_n", "no layer first"),
+            ("layer.0.high_n", "no layer 0"),
+            ("layer.1", "no place for a value"),
+            ("layer", "\"layer\" is no place for a value"),
+            ("layer.2.region", "\"region\" is no place for a value"),
+            ("version.x_mm", "\"version\" is no place for a value"),
+            ("layer.1.kind.x", "\"kind\" is no place for a value"),
+            ("", "no place for a value"),
+        ] {
+            let error = set(path, &value).unwrap_err();
+            assert!(error.contains(said), "{path}: {error}");
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! The plan of a sweep, a TOML file.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use thiserror::Error;
+
+use super::cell::{Cell, Hand, Profile};
+use super::parameter::{ParameterError, Value, with_field};
+
+/// Most cells of a plan.
+const CELLS_MAX: usize = 1_000_000;
+
+/// Which cells there are: every combination of what the lists have.
+///
+/// ```
+/// use frixel_lab::sweep::Plan;
+///
+/// let plan = Plan::parse(
+///     "scenes = [\"bars.toml\"]\npeople = 40\n[parameters]\n\"layer.1.high_n\" = { from = 0.01, to = 0.03, count = 3 }\n",
+///     "plan.toml",
+/// )?;
+/// assert_eq!((plan.people, plan.parameters["layer.1.high_n"].values().len()), (40, 3));
+/// # Ok::<(), frixel_lab::sweep::PlanError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    /// Scene files.
+    pub scenes: Vec<String>,
+    /// Files of screens, or names of bundled ones, in place of the scenes' own.
+    #[serde(default)]
+    pub screens: Vec<String>,
+    /// Files of touch sources, or names of bundled ones.
+    #[serde(default = "slowest_touch")]
+    pub touch: Vec<String>,
+    /// Number of simulated people, from the first one.
+    pub people: u64,
+    /// What their strokes are made after.
+    #[serde(default)]
+    pub stroke: Hand,
+    /// Strokes of each person.
+    #[serde(default = "four")]
+    pub strokes: u64,
+    /// Repetitions of each stroke.
+    #[serde(default = "two")]
+    pub seeds: u64,
+    /// Duration of a stroke, s.
+    #[serde(default = "three_s")]
+    pub seconds: f64,
+    /// Median speed of the strokes, mm/s. Without it, each person has their own.
+    pub median_speed_mm_per_s: Option<f64>,
+    /// Whether the world has no noise, load changes, losses and offsets.
+    #[serde(default)]
+    pub ideal: bool,
+    /// Values of fields of the scenes, by the path of the field: `drive.voltage_max_v_rms`, `layer.2.high_n`.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, Values>,
+}
+
+fn slowest_touch() -> Vec<String> {
+    vec!["100".to_owned()]
+}
+
+fn four() -> u64 {
+    4
+}
+
+fn two() -> u64 {
+    2
+}
+
+fn three_s() -> f64 {
+    3.0
+}
+
+/// The values of a field.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Values {
+    /// These values.
+    List(Vec<Value>),
+    /// Numbers at equal distances.
+    #[serde(untagged)]
+    Range(Range),
+}
+
+/// Numbers at equal distances.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// The first one.
+    pub from: f64,
+    /// The last one.
+    pub to: f64,
+    /// How many, at least 2.
+    pub count: u32,
+}
+
+impl Values {
+    /// The values.
+    pub fn values(&self) -> Vec<Value> {
+        match self {
+            Self::List(values) => values.clone(),
+            Self::Range(Range { from, to, count }) => {
+                let last = f64::from(count.saturating_sub(1)).max(1.0);
+                // Weighted, so that both ends are exact.
+                let value = |number: u32| {
+                    let part = f64::from(number) / last;
+                    Value::Number(from * (1.0 - part) + to * part)
+                };
+                (0..*count).map(value).collect()
+            }
+        }
+    }
+}
+
+/// Why there are no cells.
+#[derive(Debug, Error)]
+pub enum PlanError {
+    /// The text is no plan.
+    #[error("{name}: {reason}")]
+    NotAPlan {
+        /// Name of the file.
+        name: String,
+        /// What is wrong, and where.
+        reason: String,
+    },
+    /// A value is out of its range.
+    #[error("{name}: {field} is {found}: give {expected}")]
+    OutOfRange {
+        /// Name of the file.
+        name: String,
+        /// The field.
+        field: String,
+        /// What it is.
+        found: String,
+        /// What it can be.
+        expected: &'static str,
+    },
+    /// There are too many combinations.
+    #[error("{name}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it")]
+    TooMany {
+        /// Name of the file.
+        name: String,
+        /// Number of combinations.
+        found: usize,
+    },
+    /// A parameter is not that of a scene.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+}
+
+impl Plan {
+    /// Reads the text of a plan. Messages call the file `name`.
+    pub fn parse(text: &str, name: &str) -> Result<Self, PlanError> {
+        let not_a_plan = |error: toml::de::Error| PlanError::NotAPlan {
+            name: name.to_owned(),
+            reason: error.to_string().trim_end().to_owned(),
+        };
+        let plan: Self = toml::from_str(text).map_err(not_a_plan)?;
+        plan.check(name)?;
+        Ok(plan)
+    }
+
+    fn check(&self, name: &str) -> Result<(), PlanError> {
+        let refuse = |field: &str, found: String, expected| {
+            Err(PlanError::OutOfRange { name: name.to_owned(), field: field.to_owned(), found, expected })
+        };
+        if self.scenes.is_empty() {
+            return refuse("scenes", "empty".to_owned(), "the name of one scene file or more");
+        }
+        if self.touch.is_empty() {
+            return refuse("touch", "empty".to_owned(), "100, 200, 500, or the file of a touch source");
+        }
+        for (field, count) in [("people", self.people), ("strokes", self.strokes), ("seeds", self.seeds)] {
+            if !(1..=100_000).contains(&count) {
+                return refuse(field, count.to_string(), "a number from 1 to 100000");
+            }
+        }
+        if !(0.25..=600.0).contains(&self.seconds) {
+            return refuse("seconds", self.seconds.to_string(), "a duration from 0.25 to 600");
+        }
+        if let Some(speed) = self.median_speed_mm_per_s.filter(|speed| !(1.0..=1000.0).contains(speed)) {
+            return refuse("median_speed_mm_per_s", speed.to_string(), "a speed from 1 to 1000");
+        }
+        for (path, values) in &self.parameters {
+            match values {
+                Values::List(values) if values.is_empty() => {
+                    return refuse(path, "empty".to_owned(), "a list of values, or { from, to, count }");
+                }
+                Values::Range(range) if !(2..=1000).contains(&range.count) => {
+                    return refuse(path, format!("a range of {}", range.count), "a count from 2 to 1000");
+                }
+                _ => {}
+            }
+        }
+        let sizes = self.parameters.values().map(|values| values.values().len());
+        let sizes = sizes.chain([self.scenes.len(), self.screens.len().max(1), self.touch.len()]);
+        match sizes.fold(self.people as usize, usize::saturating_mul) {
+            found if found > CELLS_MAX => Err(PlanError::TooMany { name: name.to_owned(), found }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The cells, in the order of the lists: people last. `scenes` are the texts of the plan's scenes with the files
+    /// that each names, `screens` and `touch` its other profiles, each in the plan's order.
+    pub fn cells(&self, scenes: &[Source], screens: &[Profile], touch: &[Profile]) -> Result<Vec<Cell>, PlanError> {
+        let screens: Vec<Option<&Profile>> =
+            if screens.is_empty() { vec![None] } else { screens.iter().map(Some).collect() };
+        let mut cells = Vec::new();
+        for scene in scenes {
+            for (parameters, text) in self.variants(scene)? {
+                for screen in &screens {
+                    for touch in touch {
+                        let cell = |person| Cell {
+                            version: env!("CARGO_PKG_VERSION").to_owned(),
+                            scene: scene.name.clone(),
+                            parameters: parameters.clone(),
+                            text: text.clone(),
+                            files: scene.files.clone(),
+                            screen: screen.cloned(),
+                            touch: touch.clone(),
+                            person,
+                            stroke: self.stroke,
+                            strokes: self.strokes,
+                            seeds: self.seeds,
+                            seconds: self.seconds,
+                            median_speed_mm_per_s: self.median_speed_mm_per_s,
+                            ideal: self.ideal,
+                        };
+                        cells.extend((1..=self.people).map(cell));
+                    }
+                }
+            }
+        }
+        Ok(cells)
+    }
+
+    /// The text of a scene for every combination of the parameters' values.
+    fn variants(&self, scene: &Source) -> Result<Vec<Variant>, PlanError> {
+        let mut variants = vec![(BTreeMap::new(), scene.text.clone())];
+        for (path, values) in &self.parameters {
+            let mut more = Vec::new();
+            for (parameters, text) in &variants {
+                for value in values.values() {
+                    let text = with_field(text, &scene.name, path, &value)?;
+                    let mut parameters = parameters.clone();
+                    parameters.insert(path.clone(), value);
+                    more.push((parameters, text));
+                }
+            }
+            variants = more;
+        }
+        Ok(variants)
+    }
+}
+
+/// The values that a plan sets in a scene, and the scene's text with them.
+type Variant = (BTreeMap<String, Value>, String);
+
+/// A scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// Name, as results have it.
+    pub name: String,
+    /// Text of the scene.
+    pub text: String,
+    /// The bytes of the files that the scene names, by these names.
+    pub files: BTreeMap<String, Vec<u8>>,
+}

@@ -1,0 +1,284 @@
+//! The results of many cells together: which share of the simulated fingers notices what.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use frixel_felt::perception::Verdict;
+use serde::Serialize;
+
+use super::cell::{CellResult, LayerResult};
+use super::parameter::Value;
+use crate::score::{Verdicts, interval, metric_keys};
+use crate::statistics::{mean, median, share_interval};
+
+/// Most lines of a summary: a terminal has some 40.
+const LINES_MAX: usize = 36;
+
+/// The share of some fingers that notice a layer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LayerShare {
+    /// Number and name of the layer.
+    pub layer: String,
+    /// Number of the layer's table in the scene.
+    pub table: usize,
+    /// How many of the fingers that touched it notice it.
+    pub simulated_fingers: Verdicts,
+    /// Share of those that touched it who surely notice it.
+    pub felt_share: f64,
+    /// 95 % interval of that share among people like these (Wilson 1927, doi:10.1080/01621459.1927.10502953).
+    pub interval: [f64; 2],
+    /// Median of the felt contrast within the layer, in Weber steps.
+    pub contrast_weber_steps: f64,
+}
+
+/// Fingers that differ by the person only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Name of the scene.
+    pub scene: String,
+    /// The values that the plan set.
+    pub parameters: BTreeMap<String, Value>,
+    /// Name of the screen; absent for the scene's own.
+    pub screen: Option<String>,
+    /// Name of the touch source.
+    pub touch: String,
+    /// What each finger noticed, by the number of the person.
+    pub fingers: Vec<CellResult>,
+}
+
+/// The results of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// The groups, in the order of the first of their cells.
+    pub groups: Vec<Group>,
+}
+
+impl Study {
+    /// Puts the results of cells together, which are in the order of their plan.
+    pub fn new(results: impl IntoIterator<Item = CellResult>) -> Self {
+        let mut groups: Vec<Group> = Vec::new();
+        for result in results {
+            match groups.iter_mut().find(|group| group.is_of(&result)) {
+                Some(group) => group.fingers.push(result),
+                None => groups.push(Group {
+                    scene: result.scene.clone(),
+                    parameters: result.parameters.clone(),
+                    screen: result.screen.clone(),
+                    touch: result.touch.clone(),
+                    fingers: vec![result],
+                }),
+            }
+        }
+        Self { groups }
+    }
+
+    /// A row for each finger and layer.
+    pub fn fingers_csv(&self) -> String {
+        let paths = self.paths();
+        let mut text = format!("{},simulated_person,moisture,layer,verdict,contrast_weber_steps\n", header(&paths));
+        for group in &self.groups {
+            for finger in &group.fingers {
+                for LayerResult { layer, verdict, contrast_weber_steps, .. } in &finger.layers {
+                    // Writing to a string cannot fail.
+                    let _ = writeln!(
+                        text,
+                        "{},{},{},{},{},{contrast_weber_steps}",
+                        group.cells(&paths),
+                        finger.person,
+                        finger.moisture,
+                        quoted(layer),
+                        word(*verdict)
+                    );
+                }
+            }
+        }
+        text
+    }
+
+    /// A row for each group and layer: the share of the fingers that notice it, with its interval.
+    pub fn layers_csv(&self) -> String {
+        let paths = self.paths();
+        let mut text = format!(
+            "{},layer,simulated_fingers,felt,felt_by_some,not_felt,unknown,felt_share,felt_share_low,felt_share_high,\
+             contrast_weber_steps\n",
+            header(&paths)
+        );
+        for group in &self.groups {
+            for LayerShare {
+                layer, simulated_fingers, felt_share, interval: [low, high], contrast_weber_steps, ..
+            } in group.layers()
+            {
+                let Verdicts { touched, felt, felt_by_some, not_felt, unknown } = simulated_fingers;
+                // Writing to a string cannot fail.
+                let _ = writeln!(
+                    text,
+                    "{},{},{touched},{felt},{felt_by_some},{not_felt},{unknown},{felt_share},{low},{high},\
+                     {contrast_weber_steps}",
+                    group.cells(&paths),
+                    quoted(&layer)
+                );
+            }
+        }
+        text
+    }
+
+    /// A row for each group and number of a score: its mean over the fingers, with the interval.
+    pub fn numbers_csv(&self) -> String {
+        let paths = self.paths();
+        let mut text = format!("{},number,simulated_fingers,mean,mean_low,mean_high\n", header(&paths));
+        for group in &self.groups {
+            for key in metric_keys() {
+                let values: Vec<f64> =
+                    group.fingers.iter().filter_map(|finger| finger.means.get(key).copied()).collect();
+                if values.is_empty() {
+                    continue;
+                }
+                let [low, high] =
+                    interval(&values).map_or([String::new(), String::new()], |ends| ends.map(|end| end.to_string()));
+                // Writing to a string cannot fail.
+                let _ = writeln!(
+                    text,
+                    "{},{key},{},{},{low},{high}",
+                    group.cells(&paths),
+                    values.len(),
+                    mean(values.iter().copied())
+                );
+            }
+        }
+        text
+    }
+
+    /// Lines for a person, with their names: the share of the fingers that notice each layer, by the groups.
+    pub fn summary(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for group in &self.groups {
+            lines.push(format!("  {}, {} simulated fingers", group.title(), group.fingers.len()));
+            for LayerShare { layer, simulated_fingers, interval: [low, high], .. } in group.layer_rows() {
+                let Verdicts { touched, felt, felt_by_some, .. } = simulated_fingers;
+                let maybe = if felt_by_some > 0 { format!(", maybe by {felt_by_some}") } else { String::new() };
+                let (low, high) = (100.0 * low, 100.0 * high);
+                lines.push(format!("  {layer:<30} felt by {felt} of {touched} ({low:.0} to {high:.0} %){maybe}"));
+            }
+        }
+        if lines.len() > LINES_MAX {
+            let more = lines.len() - LINES_MAX;
+            lines.truncate(LINES_MAX);
+            lines.push(format!("  and {more} more lines: see layers.csv"));
+        }
+        lines
+    }
+
+    /// The paths of the fields that were set.
+    pub fn paths(&self) -> Vec<&str> {
+        let mut paths: Vec<&str> =
+            self.groups.iter().flat_map(|group| group.parameters.keys().map(String::as_str)).collect();
+        paths.sort_unstable();
+        paths.dedup();
+        paths
+    }
+}
+
+impl Group {
+    fn is_of(&self, result: &CellResult) -> bool {
+        (&self.scene, &self.parameters, &self.screen, &self.touch)
+            == (&result.scene, &result.parameters, &result.screen, &result.touch)
+    }
+
+    /// The layers that a finger touched, in the order of the scene.
+    pub fn layers(&self) -> Vec<LayerShare> {
+        shares(self.fingers.iter())
+    }
+
+    /// A row for each layer that a finger touched: of copies, the one that the smallest share of the fingers notices.
+    pub fn layer_rows(&self) -> Vec<LayerShare> {
+        least_of_copies(self.layers())
+    }
+
+    /// As [`Self::layer_rows`], of the fingers whose moisture is in a range, in standard deviations.
+    pub fn layer_rows_of_moisture(&self, range: std::ops::Range<f64>) -> Vec<LayerShare> {
+        least_of_copies(shares(self.fingers.iter().filter(|finger| range.contains(&finger.moisture))))
+    }
+
+    /// What the group is called beside others: the values that it has.
+    pub fn title(&self) -> String {
+        self.title_without("")
+    }
+
+    /// The same without the field of this path.
+    pub fn title_without(&self, path: &str) -> String {
+        let values = self.parameters.iter().filter(|(other, _)| *other != path);
+        let values = values.map(|(path, value)| format!("{path} = {value}"));
+        let screen = self.screen.iter().map(|screen| format!("screen {screen}"));
+        let touch = format!("touch {}", self.touch);
+        let parts: Vec<String> =
+            std::iter::once(self.scene.clone()).chain(values).chain(screen).chain([touch]).collect();
+        parts.join(", ")
+    }
+
+    fn cells(&self, paths: &[&str]) -> String {
+        let values = paths.iter().map(|path| {
+            self.parameters.get(*path).map_or(String::new(), |value| match value {
+                Value::Word(word) => quoted(word),
+                number => number.to_string(),
+            })
+        });
+        let screen = self.screen.as_deref().map_or(String::new(), quoted);
+        let names = [quoted(&self.scene), screen, quoted(&self.touch)];
+        names.into_iter().chain(values).collect::<Vec<_>>().join(",")
+    }
+}
+
+fn shares<'f>(fingers: impl Iterator<Item = &'f CellResult>) -> Vec<LayerShare> {
+    let fingers: Vec<&CellResult> = fingers.collect();
+    let mut layers: Vec<&LayerResult> = Vec::new();
+    for layer in fingers.iter().flat_map(|finger| &finger.layers) {
+        if layers.iter().all(|other| other.layer != layer.layer) {
+            layers.push(layer);
+        }
+    }
+    let share = |of: &LayerResult| {
+        let touched = || fingers.iter().filter_map(|finger| finger.layers.iter().find(|layer| layer.layer == of.layer));
+        let simulated_fingers: Verdicts = touched().map(|layer| layer.verdict).collect();
+        LayerShare {
+            layer: of.layer.clone(),
+            table: of.table,
+            simulated_fingers,
+            felt_share: simulated_fingers.felt as f64 / simulated_fingers.touched as f64,
+            interval: share_interval(simulated_fingers.felt, simulated_fingers.touched),
+            contrast_weber_steps: median(touched().map(|layer| layer.contrast_weber_steps)),
+        }
+    };
+    layers.into_iter().map(share).collect()
+}
+
+fn least_of_copies(layers: Vec<LayerShare>) -> Vec<LayerShare> {
+    let mut rows: Vec<LayerShare> = Vec::new();
+    for layer in layers {
+        match rows.iter_mut().find(|row| row.table == layer.table) {
+            Some(row) if layer.felt_share < row.felt_share => *row = layer,
+            Some(_) => {}
+            None => rows.push(layer),
+        }
+    }
+    rows
+}
+
+/// The word of a verdict in JSON and CSV.
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Felt => "felt",
+        Verdict::NearThreshold => "felt_by_some",
+        Verdict::NotFelt => "not_felt",
+        Verdict::Unknown => "unknown",
+    }
+}
+
+fn header(paths: &[&str]) -> String {
+    let names = ["scene", "screen", "touch"].into_iter().map(str::to_owned);
+    names.chain(paths.iter().map(|path| quoted(path))).collect::<Vec<_>>().join(",")
+}
+
+/// A cell of a CSV file.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}
