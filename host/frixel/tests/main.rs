@@ -17,6 +17,7 @@ mod model_command;
 mod outputs;
 mod play_command;
 mod processes;
+mod recording;
 mod report;
 mod scene_command;
 mod score;

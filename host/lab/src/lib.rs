@@ -8,6 +8,7 @@
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
 //! - [`model_csv`]: the contact model over rows of CSV.
+//! - [`recording`]: what a play or an experiment recorded, as Parquet.
 //! - [`stroke_file`]: a finger's motion from a file.
 //! - [`table`]: the one reader of CSV columns.
 //!
@@ -19,6 +20,7 @@ pub mod calibration;
 pub mod default_stroke;
 pub mod fit;
 pub mod model_csv;
+pub mod recording;
 pub mod score;
 pub mod simulation;
 mod statistics;

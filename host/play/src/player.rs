@@ -199,6 +199,9 @@ impl<L: Link + Recorded> Player<L> {
             return Err(LiveError::TriggerUnfed { layer: layer.to_owned() }.into());
         }
         self.send(&change)?;
+        for (record, _) in &change.settings {
+            self.recorder_mut().triggered(*record);
+        }
         Ok(change)
     }
 

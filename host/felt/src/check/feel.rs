@@ -170,7 +170,7 @@ fn reasons(layer: &LayerPerception) -> String {
         // One of the steps is as good a reason as both.
         told.truncate(1);
         if contrast.contrast_n == 0.0 && border.is_none() {
-            told = vec![format!("{} mN throughout, and nothing beside it", millinewtons(contrast.from_n))];
+            told = vec![format!("{} mN throughout, without a border that is felt", millinewtons(contrast.from_n))];
         }
     }
     let surest = textures.iter().max_by(|one, other| {

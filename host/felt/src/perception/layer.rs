@@ -18,6 +18,9 @@ use super::{
 /// as exactly as its samples lie.
 const SAMPLING_N: f64 = 2e-4;
 
+/// A smaller change of friction is none, N: above the rounding of `f32`.
+const CHANGE_MIN_N: f64 = 1e-6;
+
 /// A layer with what its comparison with others needs.
 #[derive(Clone, Debug)]
 pub(super) struct JudgedLayer {
@@ -51,8 +54,8 @@ pub(super) struct Judge<'p> {
 impl JudgedBorder {
     /// Judges the step at a border; `None` where a ridge ends in nothing, which is no step.
     pub(super) fn new(border: &Border, program: &Program, smallest: &SmallestSize) -> Option<Self> {
-        let ([from, to], [from_n, to_n]) = (border.sides, border.friction_n);
-        let step = Step::new(from_n, to_n).behind(Some(smallest.of_step(&Step::new(from_n, border.met_n))));
+        let ([from, to], [from_n, to_n], [from_met_n, to_met_n]) = (border.sides, border.friction_n, border.met_n);
+        let step = Step::new(from_n, to_n).behind(Some(smallest.of_step(&Step::new(from_met_n, to_met_n))));
         let is_edge =
             |layer: usize| program.records.get(layer).is_some_and(|record| matches!(record.layer, Layer::Edge(_)));
         let ends_a_ridge = [from, to].into_iter().flatten().any(is_edge) && step.verdict == Verdict::NotFelt;
@@ -111,9 +114,8 @@ impl Judge<'_> {
 
     /// The contrast of a layer, whether only a narrow place makes it, and what it is a change with.
     fn contrast(&self, layer: usize, slides: &[Slide]) -> Option<(Step, bool, Over)> {
-        let Self { reference, program, lasting, smallest, .. } = self;
+        let program = self.program;
         let record = program.records.get(layer)?;
-        let uncovered = (*reference).clone().with_only(|other| other <= layer);
         let mean_n = |speed_m_per_s: f64| {
             let frictions_n = self.frictions_n(slides, |other| other <= layer, speed_m_per_s);
             let all_n = frictions_n.as_slice().concat();
@@ -137,35 +139,59 @@ impl Judge<'_> {
                 let (contrast, is_narrow) = contrasts.max_by(|(one, _), (other, _)| one.cmp_felt(other))?;
                 Some((contrast, is_narrow, Over::Direction))
             }
-            played => {
-                let is_edge = matches!(played, Layer::Edge(_));
-                let frequency_hz = match played {
-                    Layer::Vibration(vibration) => Some(f64::from(vibration.frequency_hz)),
-                    _ => None,
-                };
-                let judged = |slide: &Slide| {
-                    let along_n = |slide: &Slide| slide.friction_n(&uncovered, lasting, USUAL_M_PER_S, SAMPLE_HZ);
-                    let friction_n = along_n(slide);
-                    let (contrast, is_narrow) = contrast_within(&friction_n, is_edge)?;
-                    // What changes with time does so wherever the finger is.
-                    let hindrance = match frequency_hz {
-                        Some(frequency_hz) => obstacle::of_frequency(frequency_hz),
-                        None => Some(smallest.of_slide(&along_n(&slide.begun_and_ended_outside(smallest.size_m())))),
-                    };
-                    Some((contrast.behind(Some(obstacle::of_slope(&friction_n))).behind(hindrance), is_narrow))
-                };
-                let contrasts = slides.iter().filter_map(judged);
-                let (contrast, is_narrow) = contrasts.max_by(|(one, _), (other, _)| one.cmp_felt(other))?;
-                let over = if frequency_hz.is_some() { Over::Time } else { Over::Place };
-                Some((contrast, is_narrow, over))
-            }
+            _ => self.contrast_along(layer, slides),
         }
+    }
+
+    /// The contrast of a layer that changes with the place of the finger, or with time, along the slide on which most of
+    /// it is felt.
+    fn contrast_along(&self, layer: usize, slides: &[Slide]) -> Option<(Step, bool, Over)> {
+        let Self { reference, lasting, smallest, program, .. } = self;
+        let record = program.records.get(layer)?;
+        let is_edge = matches!(record.layer, Layer::Edge(_));
+        let repeats = !is_edge && has_texture(1 << layer, program);
+        let frequency_hz = match record.layer {
+            Layer::Vibration(vibration) => Some(f64::from(vibration.frequency_hz)),
+            _ => None,
+        };
+        let whole = (*reference).clone().with_only(|other| other <= layer);
+        let below = joins_those_below(record.blend).then(|| (*reference).clone().with_only(|other| other < layer));
+        // All that is felt along a slide, and what is felt of it near to where the layer acts.
+        let along_n = |slide: &Slide, sample_hz: f64| {
+            let friction_n = |reference| slide.friction_n(reference, lasting, USUAL_M_PER_S, sample_hz);
+            let whole_n = friction_n(&whole);
+            let margin = (smallest.size_m() / USUAL_M_PER_S * sample_hz) as usize;
+            let own_n = below.as_ref().map(|below| where_it_acts(&whole_n, &friction_n(below), margin));
+            std::iter::once(whole_n).chain(own_n)
+        };
+        let judged = |slide: &Slide| {
+            let sample_hz = slide.contrast_sample_hz(USUAL_M_PER_S);
+            let outside = slide.begun_and_ended_outside(smallest.size_m());
+            let judged = |(friction_n, outside_n): (Vec<f64>, Vec<f64>)| {
+                let (contrast, is_narrow) = contrast_within(&friction_n, is_edge)?;
+                // A ridge or a rim may fill the layer or lie at its border; the border of what repeats is no part of it.
+                let met_n = if repeats && !is_narrow { &friction_n } else { &outside_n };
+                // What changes with time does so wherever the finger is.
+                let hindrance = match frequency_hz {
+                    Some(frequency_hz) => obstacle::of_frequency(frequency_hz),
+                    None => Some(smallest.of_slide(met_n, sample_hz)),
+                };
+                let slope = obstacle::of_slope(&friction_n, sample_hz);
+                Some((contrast.behind(Some(slope)).behind(hindrance), is_narrow))
+            };
+            let contrasts = along_n(slide, sample_hz).zip(along_n(&outside, sample_hz)).filter_map(judged);
+            contrasts.min_by(|(one, _), (other, _)| one.cmp_felt(other))
+        };
+        let contrasts = slides.iter().filter_map(judged);
+        let (contrast, is_narrow) = contrasts.max_by(|(one, _), (other, _)| one.cmp_felt(other))?;
+        Some((contrast, is_narrow, if frequency_hz.is_some() { Over::Time } else { Over::Place }))
     }
 
     /// The textures at each speed: of what the layer adds to those below it, or of all if it replaces or scales them.
     fn textures(&self, layer: usize, slides: &[Slide], visible: u64) -> Vec<Texture> {
         let Some(record) = self.program.records.get(layer) else { return Vec::new() };
-        let felt = visible & (u64::MAX >> (63 - layer));
+        let joins = joins_those_below(record.blend);
+        let felt = if joins { 1 << layer } else { visible & (u64::MAX >> (63 - layer)) };
         let has_none = matches!(record.layer, Layer::Edge(_) | Layer::Stream(_));
         if has_none || !has_texture(felt, self.program) {
             return Vec::new();
@@ -180,7 +206,7 @@ impl Judge<'_> {
         }
         let at_speed = |speed_m_per_s: f64| {
             let mut frictions_n = self.frictions_n(slides, |other| other <= layer, speed_m_per_s);
-            if matches!(record.blend, Blend::Add | Blend::Max) {
+            if joins {
                 let below_n = self.frictions_n(slides, |other| other < layer, speed_m_per_s);
                 for (friction_n, below_n) in frictions_n.iter_mut().flatten().zip(below_n.iter().flatten()) {
                     *friction_n -= below_n;
@@ -240,6 +266,28 @@ impl JudgedLayer {
         };
         self.perception.verdict == other.perception.verdict && steps(self).into_iter().zip(steps(other)).all(are_near)
     }
+}
+
+/// Whether a layer adds to those below it, which are felt with it: what is felt is not all its own.
+fn joins_those_below(blend: Blend) -> bool {
+    matches!(blend, Blend::Add | Blend::Max)
+}
+
+/// The part of the friction along a slide that lies no more samples than `margin` from where a layer changes that below;
+/// one sample for a layer that changes nothing.
+fn where_it_acts(whole_n: &[f64], below_n: &[f64], margin: usize) -> Vec<f64> {
+    let mut is_near = vec![false; whole_n.len()];
+    let mut marked = 0;
+    for (number, (whole_n, below_n)) in whole_n.iter().zip(below_n).enumerate() {
+        if (whole_n - below_n).abs() > CHANGE_MIN_N {
+            let end = (number + margin + 1).min(is_near.len());
+            let start = number.saturating_sub(margin).max(marked);
+            is_near.iter_mut().take(end).skip(start).for_each(|is_near| *is_near = true);
+            marked = end;
+        }
+    }
+    let near_n: Vec<f64> = whole_n.iter().zip(is_near).filter_map(|(n, is_near)| is_near.then_some(*n)).collect();
+    if near_n.is_empty() { whole_n.iter().take(1).copied().collect() } else { near_n }
 }
 
 /// The largest distance, m, over which a layer reaches both along x and along y.

@@ -21,8 +21,9 @@ pub(super) struct Border {
     pub(super) sides: [Option<usize>; 2],
     /// Mean total friction on either side, N.
     pub(super) friction_n: [f64; 2],
-    /// On the side of the layer above, the median of the means over squares as wide as the smallest size that is felt, N.
-    pub(super) met_n: f64,
+    /// Means over squares as wide as the smallest size that is felt, N: below, that of the quarter of the border that
+    /// differs most; above, the median.
+    pub(super) met_n: [f64; 2],
     /// The layers that end there, which are on that side only, a bit each.
     pub(super) ends: [u64; 2],
 }
@@ -32,7 +33,7 @@ pub(super) struct Border {
 struct Pairs {
     count: usize,
     sums_n: [f64; 2],
-    met_n: Vec<f64>,
+    met_n: [Vec<f64>; 2],
     ends: [u64; 2],
 }
 
@@ -61,28 +62,31 @@ pub(crate) fn border_reference(program: &Program, is_on: impl Fn(usize) -> bool)
 pub(super) fn borders(program: &Program, speed_m_per_s: f64, smallest_m: f64) -> Vec<Border> {
     let reference = border_reference(program, |_| true);
     let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-    let pitch_m = width_m.max(height_m) / PLACES;
-    let (columns, rows) = ((width_m / pitch_m) as usize, (height_m / pitch_m) as usize);
+    // A border across a narrow screen has as many pairs as one that counts.
+    let places = |side_m: f64| ((PLACES * side_m / width_m.max(height_m)).round() as usize).max(PAIRS_MIN);
+    let (columns, rows) = (places(width_m), places(height_m));
+    let (column_m, row_m) = (width_m / columns as f64, height_m / rows as f64);
     let at = |number: usize| {
-        let place_m = |cell: usize| (cell as f64 + 0.5) * pitch_m;
-        let (x_m, y_m) = (place_m(number % columns), place_m(number / columns));
+        let place_m = |cell: usize, pitch_m: f64| (cell as f64 + 0.5) * pitch_m;
+        let (x_m, y_m) = (place_m(number % columns, column_m), place_m(number / columns, row_m));
         let context = Context { x_m, y_m, speed_m_per_s, ..Context::default() };
         (visible_layers(&reference, x_m, y_m), total_n(program, reference.electric_friction_at_n(&context)))
     };
     let cells: Vec<(u64, f64)> = (0..columns * rows).map(at).collect();
     let sums = Sums::new(columns, rows, |column, row| cells.get(row * columns + column).map_or(0.0, |cell| cell.1));
-    let width = ((smallest_m / pitch_m).round() as usize).max(1);
+    let [wide, high] = [column_m, row_m].map(|pitch_m| ((smallest_m / pitch_m).round() as usize).max(1));
     let mut found: BTreeMap<[Option<usize>; 2], Pairs> = BTreeMap::new();
     for (number, here) in cells.iter().enumerate() {
         let (column, row) = (number % columns, number / columns);
-        // The square of the cells before and behind an index, and that around an index, which it need not be in.
-        let (before, behind) = (|end: usize| end.saturating_sub(width)..end, |start: usize| start..start + width);
-        let around = |middle: usize| middle.saturating_sub(width / 2)..(middle.saturating_sub(width / 2) + width);
+        // The cells of a square before an index, behind it, and around it.
+        let before = |end: usize, count: usize| end.saturating_sub(count)..end;
+        let behind = |start: usize, count: usize| start..start + count;
+        let around = |middle: usize, count: usize| behind(middle.saturating_sub(count / 2), count);
         let right = (column + 1 < columns).then(|| {
-            let [left, right] = [before(column + 1), behind(column + 1)];
-            (number + 1, [sums.mean(left, around(row)), sums.mean(right, around(row))])
+            let sides = [before(column + 1, wide), behind(column + 1, wide)];
+            (number + 1, sides.map(|columns| sums.mean(columns, around(row, high))))
         });
-        let below = [before(row + 1), behind(row + 1)].map(|rows| sums.mean(around(column), rows));
+        let below = [before(row + 1, high), behind(row + 1, high)].map(|rows| sums.mean(around(column, wide), rows));
         for (other, [here_met_n, other_met_n]) in right.into_iter().chain([(number + columns, below)]) {
             let Some(other) = cells.get(other).filter(|other| other.0 != here.0) else { continue };
             let side = |cell: &(u64, f64), met_n| Side { visible: cell.0, friction_n: cell.1, met_n };
@@ -92,9 +96,14 @@ pub(super) fn borders(program: &Program, speed_m_per_s: f64, smallest_m: f64) ->
     let borders = found.into_iter().filter(|(_, pairs)| pairs.count >= PAIRS_MIN);
     let border = |(sides, pairs): ([Option<usize>; 2], Pairs)| {
         let Pairs { count, sums_n, met_n, ends } = pairs;
-        // At corners a square reaches beyond the layer, however large that is.
-        let [met_n] = percentiles(met_n, [50]).unwrap_or_default();
-        Border { sides, friction_n: sums_n.map(|sum_n| sum_n / count as f64), met_n, ends }
+        let friction_n = sums_n.map(|sum_n| sum_n / count as f64);
+        // At corners a square reaches beyond the layer, however large that is. A quarter of a border, such as one side of
+        // a key beside others, is enough to come from.
+        let quarter = if friction_n[0] < friction_n[1] { 25 } else { 75 };
+        let [from_met_n, to_met_n] = met_n;
+        let met_n = [(from_met_n, quarter), (to_met_n, 50)]
+            .map(|(met_n, percent)| percentiles(met_n, [percent]).map_or(friction_n[0], |[met_n]| met_n));
+        Border { sides, friction_n, met_n, ends }
     };
     borders.map(border).collect()
 }
@@ -107,7 +116,8 @@ fn add(found: &mut BTreeMap<[Option<usize>; 2], Pairs>, one: Side, other: Side) 
     pairs.count += 1;
     pairs.sums_n[0] += low.friction_n;
     pairs.sums_n[1] += high.friction_n;
-    pairs.met_n.push(high.met_n);
+    pairs.met_n[0].push(low.met_n);
+    pairs.met_n[1].push(high.met_n);
     pairs.ends[0] |= low.visible & !high.visible;
     pairs.ends[1] |= high.visible & !low.visible;
 }

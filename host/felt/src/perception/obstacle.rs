@@ -5,7 +5,7 @@ use frixel_layers::Burst;
 use serde::Serialize;
 
 use super::thresholds::TEXTURE_MIN_HZ;
-use super::{SAMPLE_HZ, Step, USUAL_M_PER_S, Verdict};
+use super::{Step, USUAL_M_PER_S, Verdict};
 
 /// The smallest distance that a fingertip resolves, mm: 1 to 2 mm (Basdogan's review, second hand).
 const FINGERTIP_MM: f64 = 2.0;
@@ -138,15 +138,15 @@ impl SmallestSize {
 
     /// What keeps a finger from feeling the contrast of the friction along a slide at the usual speed, averaged over the
     /// smallest size.
-    pub(super) fn of_slide(&self, friction_n: &[f64]) -> Hindrance {
-        let box_samples = (self.size_m / USUAL_M_PER_S * SAMPLE_HZ).round() as usize;
-        self.of_step(&largest_change(&averaged(friction_n, box_samples)))
+    pub(super) fn of_slide(&self, friction_n: &[f64], sample_hz: f64) -> Hindrance {
+        let box_samples = (self.size_m / USUAL_M_PER_S * sample_hz).round() as usize;
+        self.of_step(&largest_change(&averaged(friction_n, box_samples), sample_hz))
     }
 }
 
 /// What keeps a finger from feeling the contrast of the friction along a slide at the usual speed as one change.
-pub(super) fn of_slope(friction_n: &[f64]) -> Hindrance {
-    let Step { weber_steps, verdict, .. } = largest_change(friction_n);
+pub(super) fn of_slope(friction_n: &[f64], sample_hz: f64) -> Hindrance {
+    let Step { weber_steps, verdict, .. } = largest_change(friction_n, sample_hz);
     Hindrance { most: verdict, obstacle: Obstacle::TooSlow { way_mm: 1e3 * USUAL_M_PER_S * TOUCH_S, weber_steps } }
 }
 
@@ -175,12 +175,12 @@ pub(super) fn of_bursts(burst: &Burst, triggered: bool) -> Option<Hindrance> {
 }
 
 /// The largest change over a way that counts as one, of the friction along a slide at the usual speed.
-fn largest_change(friction_n: &[f64]) -> Step {
-    /// Samples of a stretch of which least and largest friction are taken: 0.5 mm.
-    const STRETCH: usize = (0.5e-3 / USUAL_M_PER_S * SAMPLE_HZ) as usize;
-    const STRETCHES: usize = (TOUCH_S * SAMPLE_HZ) as usize / STRETCH;
-    let stretches: Vec<[f64; 2]> = friction_n.chunks(STRETCH).map(range_n).collect();
-    let ways = stretches.windows(STRETCHES.min(stretches.len()).max(1));
+fn largest_change(friction_n: &[f64], sample_hz: f64) -> Step {
+    // Samples of a stretch of which least and largest friction are taken: 0.5 mm, or one.
+    let stretch = ((0.5e-3 / USUAL_M_PER_S * sample_hz) as usize).max(1);
+    let stretches_of_way = (TOUCH_S * sample_hz) as usize / stretch;
+    let stretches: Vec<[f64; 2]> = friction_n.chunks(stretch).map(range_n).collect();
+    let ways = stretches.windows(stretches_of_way.min(stretches.len()).max(1));
     let changes = ways.map(|way| {
         let [least_n, most_n] = range_n(way.as_flattened());
         Step::new(least_n, most_n)
@@ -208,6 +208,7 @@ fn range_n(friction_n: &[f64]) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::SAMPLE_HZ;
     use super::*;
 
     const HUNDRED: SmallestSize = SmallestSize { size_m: 5e-3, limit: SizeLimit::TouchSource { reports_hz: 100.0 } };
@@ -233,7 +234,7 @@ mod tests {
         for (width_mm, verdict) in
             [(1, Verdict::NotFelt), (2, Verdict::NearThreshold), (4, Verdict::Felt), (8, Verdict::Felt)]
         {
-            let met = contrast.behind(Some(HUNDRED.of_slide(&bar(width_mm))));
+            let met = contrast.behind(Some(HUNDRED.of_slide(&bar(width_mm), SAMPLE_HZ)));
             assert_eq!((met.verdict, met.weber_steps), (verdict, contrast.weber_steps), "{width_mm} mm");
             assert_eq!(met.obstacle.is_some(), verdict != Verdict::Felt, "{met:?}");
         }
@@ -246,13 +247,13 @@ mod tests {
             (0..count).map(|number| 0.25 + 0.1 * number as f64 / count as f64).collect()
         };
         let contrast = Step::new(0.25, 0.35);
-        let met = contrast.behind(Some(of_slope(&line(200))));
+        let met = contrast.behind(Some(of_slope(&line(200), SAMPLE_HZ)));
         let Some(Obstacle::TooSlow { weber_steps, .. }) = met.obstacle else { panic!("{met:?}") };
         // The steepest part, in Weber steps, is the first one.
         assert!((weber_steps / Step::new(0.25, 0.275).weber_steps - 1.0).abs() < 0.02, "{weber_steps}");
         assert_eq!(met.verdict, Verdict::NotFelt);
-        assert_eq!(contrast.behind(Some(of_slope(&line(45)))).obstacle, None);
-        assert_eq!(of_slope(&[]).most, Verdict::NotFelt);
+        assert_eq!(contrast.behind(Some(of_slope(&line(45), SAMPLE_HZ))).obstacle, None);
+        assert_eq!(of_slope(&[], SAMPLE_HZ).most, Verdict::NotFelt);
     }
 
     #[test]

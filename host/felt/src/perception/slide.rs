@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::SAMPLE_HZ;
 use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference, direction_of};
 
@@ -124,6 +125,12 @@ impl Slide {
     ) -> Vec<f64> {
         let contexts = self.contexts(speed_m_per_s, sample_hz);
         contexts.map(|context| total_n(program, reference.electric_friction_at_n(&context))).collect()
+    }
+
+    /// Samples a second of a finger that slides along all of the way, for its contrast: on a long way fewer than for its
+    /// textures.
+    pub(super) fn contrast_sample_hz(&self, speed_m_per_s: f64) -> f64 {
+        SAMPLE_HZ.min(SAMPLES_MAX as f64 * speed_m_per_s / self.length_m())
     }
 
     /// A finger that slides along the way at a constant speed.

@@ -455,3 +455,85 @@ fn many_layers_fit_a_terminal() {
     let counted: String = lines.iter().filter(|(name, _)| *name == "more").map(|(_, text)| text.as_str()).collect();
     assert!(counted.contains("felt"), "{lines:#?}");
 }
+
+/// On the example finger, on a screen of this size.
+fn on_screen(width_mm: u32, height_mm: u32, layers: &str) -> Perception {
+    on_example(&format!("[screen]\nwidth_mm = {width_mm}\nheight_mm = {height_mm}\n{layers}"))
+}
+
+#[test]
+fn a_plate_across_a_long_and_narrow_screen_is_felt_at_its_ends() {
+    let plate = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n\
+                 region = { x_mm = 0, y_mm = 500, width_mm = 5, height_mm = 100 }\n";
+    let perception = on_screen(5, 2000, plate);
+    let border = only(&perception).border.clone().unwrap();
+    assert_eq!((border.from, border.step.verdict), (None, Verdict::Felt), "{perception:?}");
+}
+
+#[test]
+fn a_ridge_is_found_wherever_it_lies_on_a_long_screen() {
+    let ridge = "[[layer]]\nkind = \"edge\"\nx_mm = 1500\ny_mm = 10\nwidth_mm = 12\nridge_fraction = 0.9\n";
+    let perception = on_screen(2000, 20, ridge);
+    let contrast = only(&perception).contrast;
+    assert_eq!(contrast.verdict, Verdict::Felt, "{contrast:?}");
+    assert!((contrast.weber_steps / weber_steps(0.25, 0.25 + 0.9 * 0.12999) - 1.0).abs() < 0.01, "{contrast:?}");
+}
+
+#[test]
+fn a_layer_that_joins_those_below_is_not_felt_by_their_contrast() {
+    let ridge = |x_mm: u32, fraction: f64, blend: &str| {
+        format!(
+            "[[layer]]\nkind = \"edge\"\nblend = \"{blend}\"\nx_mm = {x_mm}\ny_mm = 40\nwidth_mm = 12\n\
+             ridge_fraction = {fraction}\n"
+        )
+    };
+    for blend in ["add", "max"] {
+        let perception = on_example(&(ridge(30, 0.9, blend) + &ridge(90, 0.05, blend)));
+        let verdicts: Vec<Verdict> = perception.layers.iter().map(|layer| layer.verdict).collect();
+        assert_eq!(verdicts, [Verdict::Felt, Verdict::NotFelt], "{blend}: {perception:#?}");
+    }
+}
+
+#[test]
+fn a_plate_that_joins_a_texture_has_none_itself() {
+    let perception = on_example(
+        "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 120\nlow_fraction = 0\nhigh_fraction = 0.9\n\
+         [[layer]]\nkind = \"constant\"\nblend = \"max\"\nfriction_fraction = 0.9\n",
+    );
+    assert_eq!(perception.layers[1].textures, [], "{perception:?}");
+}
+
+#[test]
+fn a_narrow_gap_between_plates_is_not_felt() {
+    let half = |x_mm: f64| {
+        format!(
+            "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n\
+             region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 59.5, height_mm = 80 }}\n"
+        )
+    };
+    let perception = on_screen(120, 80, &(half(0.0) + &half(60.5)));
+    for layer in &perception.layers {
+        assert_eq!(layer.verdict, Verdict::NotFelt, "{perception:?}");
+        assert!(feel::sentence(layer).contains("too small"), "{}", feel::sentence(layer));
+    }
+}
+
+/// The step onto its region is that of the border.
+#[test]
+fn stripes_of_a_region_are_as_fine_as_those_of_a_screen() {
+    let stripes = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_fraction = 0\nhigh_fraction = 0.95\n";
+    let region = "region = { x_mm = 20, y_mm = 20, width_mm = 80, height_mm = 40 }\n";
+    let [whole, part] = [stripes.to_owned(), format!("{stripes}{region}")].map(|layers| on_example(&layers));
+    let verdicts = [&whole, &part].map(|perception| only(perception).contrast.verdict);
+    assert_eq!(verdicts, [Verdict::NotFelt; 2], "{part:?}");
+}
+
+/// Too few places of the screen lie on both sides of its border.
+#[test]
+fn a_small_corner_is_not_said_to_fill_the_screen() {
+    let corner = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n\
+                  region = { x_mm = 119.5, y_mm = 79.5, width_mm = 0.5, height_mm = 0.5 }\n";
+    let perception = on_screen(120, 80, corner);
+    let said = feel::sentence(only(&perception));
+    assert_eq!(said, "not felt: 367 mN throughout, without a border that is felt");
+}

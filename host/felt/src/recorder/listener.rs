@@ -19,6 +19,11 @@ pub trait PlayListener {
         let _ = (record, setting);
     }
 
+    /// The layer with this record number, from zero, is triggered: it is switched on, and off again by itself.
+    fn triggered(&mut self, record: u8) {
+        let _ = record;
+    }
+
     /// The host asks the board to play a stream of so many samples a second.
     fn stream_started(&mut self, sample_hz: u32) {
         let _ = sample_hz;

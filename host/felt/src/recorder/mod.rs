@@ -7,6 +7,7 @@
 
 mod inversion;
 mod listener;
+mod marker;
 mod observation;
 mod rows;
 mod stream;
@@ -22,8 +23,10 @@ use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_scene::{LayerSetting, Program};
 use inversion::Inversion;
 pub use listener::PlayListener;
+use marker::Markers;
+pub use marker::{MarkedEvent, Marker};
 pub use observation::Observation;
-pub use rows::FeltRow;
+pub use rows::{FeltRow, FlagNames};
 use rows::{Frictions, RowMaker};
 use stream::Stream;
 use turning::Turning;
@@ -38,6 +41,7 @@ pub struct Recorder {
     finger: Option<ReferenceFriction>,
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
+    markers: Markers,
     tick_hz: u32,
     tick_period_s: f64,
     ticks_max: u64,
@@ -80,6 +84,7 @@ impl Recorder {
             finger: None,
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
+            markers: Markers::default(),
             tick_hz,
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_max: u64::MAX,
@@ -99,6 +104,14 @@ impl Recorder {
     pub fn start(&mut self, tick: u32) {
         self.start_tick = Some(u64::from(tick));
         self.last_tick = u64::from(tick);
+        self.mark(MarkedEvent::SceneBegan);
+    }
+
+    /// Adds a marker at the last observation. Nothing is marked before time zero.
+    fn mark(&mut self, event: MarkedEvent) {
+        if self.start_tick.is_some() {
+            self.markers.add(self.ticks(), self.t_s(), event);
+        }
     }
 
     fn with_stream(&mut self, change: impl FnOnce(&mut Stream)) {
@@ -148,6 +161,11 @@ impl Recorder {
         std::mem::take(&mut self.rows)
     }
 
+    /// What has happened so far, in its order. A marker has the time of the last observation before it.
+    pub fn markers(&self) -> &[Marker] {
+        self.markers.as_slice()
+    }
+
     /// The metrics so far; only the ticks if there is no reference.
     pub fn summary(&self) -> MetricsSummary {
         let ticks = self.ticks();
@@ -186,6 +204,8 @@ impl PlayListener for Recorder {
         if self.ticks_max == 0 {
             return Ok(());
         }
+        self.markers.name_layers(program);
+        self.mark(MarkedEvent::SceneReplaced);
         let reference = Reference::at_start(program).along_stroke();
         let inversion = Inversion::new(program, limits, self.tick_hz)?;
         if let Some(comparison) = &mut self.comparison {
@@ -204,11 +224,18 @@ impl PlayListener for Recorder {
         if let Some(comparison) = &mut self.comparison {
             comparison.reference.set_layer(record.into(), setting.on, setting.gain.into(), t_s);
         }
+        self.mark(self.markers.changed(record, setting));
+    }
+
+    fn triggered(&mut self, record: u8) {
+        let layer = self.markers.title(record);
+        self.mark(MarkedEvent::Triggered { layer });
     }
 
     /// The reference has the stream once the board reports that it plays.
     fn stream_started(&mut self, sample_hz: u32) {
         self.with_stream(|stream| stream.start(sample_hz));
+        self.mark(MarkedEvent::StreamStarted { sample_hz });
     }
 
     fn samples_sent(&mut self, samples: &[u16]) {
@@ -217,10 +244,12 @@ impl PlayListener for Recorder {
 
     fn stream_ended(&mut self) {
         self.with_stream(Stream::end);
+        self.mark(MarkedEvent::StreamEnded);
     }
 
     fn stopped(&mut self) {
         self.with_stream(Stream::stop);
+        self.mark(MarkedEvent::Stopped);
     }
 
     fn ticks_left(&self) -> u64 {

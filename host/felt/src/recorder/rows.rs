@@ -1,5 +1,7 @@
 //! The output of a recorder: one row for a fixed number of ticks.
 
+use std::fmt::{self, Display};
+
 use frixel_wire::fault::Flags;
 
 use super::Observation;
@@ -34,6 +36,34 @@ pub struct FeltRow {
     pub flags: Option<Flags>,
     /// Whether the board has had a report of the touch, at the end of the row.
     pub is_tracked: bool,
+}
+
+/// Displays flags as a recording has them: names joined by `+`, or `none`. Flags without a name, which newer firmware may
+/// set, are a hexadecimal number.
+///
+/// ```
+/// use frixel_felt::recorder::FlagNames;
+/// use frixel_wire::fault::Flags;
+///
+/// assert_eq!(FlagNames(Flags::SATURATED.with(Flags::STILL)).to_string(), "saturated+still");
+/// assert_eq!(FlagNames(Flags::default()).to_string(), "none");
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct FlagNames(pub Flags);
+
+impl Display for FlagNames {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut joint = "";
+        for name in self.0.names() {
+            write!(formatter, "{joint}{name}")?;
+            joint = "+";
+        }
+        match self.0.unnamed().0 {
+            0 if self.0.0 == 0 => formatter.write_str("none"),
+            0 => Ok(()),
+            unnamed => write!(formatter, "{joint}0x{unnamed:04x}"),
+        }
+    }
 }
 
 /// Total frictions at one tick, N.

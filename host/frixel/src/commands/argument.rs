@@ -2,6 +2,9 @@
 
 use std::ops::{Bound, RangeBounds};
 
+/// Longest code of a participant, in characters.
+const PARTICIPANT_MAX: usize = 32;
+
 /// Parses a number in a range; otherwise says what was expected.
 pub(super) fn number(text: &str, range: impl RangeBounds<f64>, expected: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| format!("expected {expected}"))
@@ -33,4 +36,13 @@ pub(super) fn shard(text: &str) -> Result<(usize, usize), String> {
 /// The numbers above zero up to `max`.
 pub(super) fn above_zero_to(max: f64) -> impl RangeBounds<f64> {
     (Bound::Excluded(0.0), Bound::Included(max))
+}
+
+/// Parses the code of a participant.
+pub(super) fn participant(text: &str) -> Result<String, String> {
+    let is_allowed = |character: char| character.is_ascii_alphanumeric() || "-_.".contains(character);
+    if (1..=PARTICIPANT_MAX).contains(&text.len()) && text.chars().all(is_allowed) {
+        return Ok(text.to_owned());
+    }
+    Err(format!("expected a code of 1 to {PARTICIPANT_MAX} letters, digits, `-`, `_` and `.`, for example P07"))
 }

@@ -19,6 +19,7 @@ use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
+use frixel_lab::recording::{Difference, RecordingError};
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::sweep::{CellError, PlanError};
@@ -242,6 +243,16 @@ pub(crate) enum CommandError {
     StreamOnEmulated,
     #[error("{port} {reason}")]
     Stopped { port: String, reason: StopReason },
+    #[error("{}: {source}", path.display())]
+    Recording { path: PathBuf, source: RecordingError },
+    #[error("{} cannot be played again: {reason}", path.display())]
+    NoReplay { path: PathBuf, reason: String },
+    #[error(
+        "{} plays other bits: {difference}; the file was changed, or this machine computes differently", path.display()
+    )]
+    ReplayDiffers { path: PathBuf, difference: Difference },
+    #[error("{} is no Parquet file by its name: give --record a name that ends in .parquet", path.display())]
+    NotParquetName { path: PathBuf },
     #[error("{} is no PNG file by its name: give the picture a name that ends in .png", path.display())]
     NotPng { path: PathBuf },
     #[error("Ctrl-C cannot be watched for: {0}")]
@@ -261,6 +272,12 @@ impl CommandError {
     pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Read { path, source }
+    }
+
+    /// Converts an error of the recording at `path`, for use in `map_err`.
+    pub(crate) fn recording(path: &Path) -> impl FnOnce(RecordingError) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Recording { path, source }
     }
 
     /// Converts an error of writing `path`, for use in `map_err`.

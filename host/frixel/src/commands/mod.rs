@@ -77,6 +77,8 @@ enum Command {
     Info(info::InfoArgs),
     /// Record the way of a finger on a board, as a stroke.
     Record(record::RecordArgs),
+    /// Play a simulated recording again, and say whether the bits are the same.
+    Replay(play::replay::ReplayArgs),
     /// Say what a board's last fault was.
     Faults(faults::FaultsArgs),
     /// Check link, clock and telemetry of a board, with its output at zero.
@@ -143,6 +145,7 @@ impl Cli {
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
             Some(Command::Record(args)) => record::run(&args),
+            Some(Command::Replay(args)) => play::replay::run(&args),
             Some(Command::Faults(args)) => faults::run(&args),
             Some(Command::Selftest(args)) => selftest::run(&args),
             Some(Command::Completions(args)) => completions::run(&args),

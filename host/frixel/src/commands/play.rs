@@ -11,6 +11,9 @@ mod live_scene;
 mod outputs;
 mod plan;
 mod progress;
+mod record_file;
+mod recorded;
+pub(super) mod replay;
 mod rigs;
 mod simulated_world;
 mod target;
@@ -76,7 +79,14 @@ pub(super) struct PlayArgs {
     /// scene's.
     #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true)]
     finger_seed: Option<u64>,
-    /// Rows a second in felt.csv; at most 1000 on a board.
+    /// Record into this Parquet file as well: the rows of felt.csv in full precision, what made them, and what happened
+    /// when (docs/outputs.md). `frixel replay` plays a simulated one again.
+    #[arg(long, value_name = "FILE.parquet")]
+    record: Option<PathBuf>,
+    /// Code of the participant, for the file of --record: letters, digits, `-`, `_` and `.`, not a name.
+    #[arg(long, value_name = "CODE", value_parser = argument::participant, requires = "record")]
+    participant: Option<String>,
+    /// Rows a second in felt.csv and in the file of --record; at most 1000 on a board.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
     csv_hz: u32,
     /// Let a board that is not a simulator drive its electrode.
@@ -121,6 +131,8 @@ impl PlayArgs {
             ideal: true,
             no_leakage: false,
             finger_seed: None,
+            record: None,
+            participant: None,
             csv_hz: 1000,
             arm: false,
             watch: false,
@@ -175,6 +187,10 @@ fn finish(args: &PlayArgs, played: Played) -> Result<(), CommandError> {
 }
 
 fn print(args: &PlayArgs, Played { report, files, .. }: &Played) -> Result<(), CommandError> {
+    if args.record.as_deref() == Some(Path::new("-")) {
+        note(report.summary());
+        return Ok(());
+    }
     if args.json {
         return print_line(report.to_json());
     }

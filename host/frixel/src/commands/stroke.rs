@@ -6,6 +6,7 @@ use crate::input;
 use clap::Args;
 use frixel_hil_sim::{Point, Stroke, StrokeError};
 use frixel_lab::stroke_file::StrokeFile;
+use serde::{Deserialize, Serialize};
 
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
@@ -50,6 +51,58 @@ pub(super) struct StrokeArgs {
     /// Start and end a straight stroke at rest, as a hand does, rather than at constant speed.
     #[arg(long, alias = "natural", requires = "from")]
     minimum_jerk: bool,
+    /// The stroke that a recording has, in place of that of a file.
+    #[arg(skip)]
+    recorded: Option<Stroke>,
+}
+
+/// The options of a stroke as a recording has them, without the path of a file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct RecordedStroke {
+    /// `human`, `human-rough`, or `file`, whose bytes are among the files of the recording.
+    name: Option<String>,
+    from_m: Option<[f64; 2]>,
+    to_m: Option<[f64; 2]>,
+    speed_m_per_s: Option<f64>,
+    times: Option<u32>,
+    minimum_jerk: bool,
+}
+
+/// The name of a stroke from a file, in a recording.
+const FILE: &str = "file";
+
+impl RecordedStroke {
+    pub(super) fn of(args: &StrokeArgs) -> Self {
+        let place = |point: Point| [point.x_m, point.y_m];
+        let name = |path: &PathBuf| if human(path).is_some() { path.display().to_string() } else { FILE.to_owned() };
+        Self {
+            name: args.stroke.as_ref().map(name),
+            from_m: args.from.map(place),
+            to_m: args.to.map(place),
+            speed_m_per_s: args.speed,
+            times: args.times,
+            minimum_jerk: args.minimum_jerk,
+        }
+    }
+
+    /// Whether the stroke is that of a file.
+    pub(super) fn is_from_file(&self) -> bool {
+        self.name.as_deref() == Some(FILE)
+    }
+
+    /// The options; `file` is the stroke of a file.
+    pub(super) fn into_args(self, file: Option<Stroke>) -> StrokeArgs {
+        let point = |[x_m, y_m]: [f64; 2]| Point { x_m, y_m };
+        StrokeArgs {
+            stroke: self.name.filter(|name| name != FILE).map(PathBuf::from),
+            from: self.from_m.map(point),
+            to: self.to_m.map(point),
+            speed: self.speed_m_per_s,
+            times: self.times,
+            minimum_jerk: self.minimum_jerk,
+            recorded: file,
+        }
+    }
 }
 
 impl StrokeArgs {
@@ -71,6 +124,9 @@ impl StrokeArgs {
         seconds: Option<f64>,
         seed: u64,
     ) -> Result<Option<Stroke>, CommandError> {
+        if let Some(stroke) = &self.recorded {
+            return Ok(Some(stroke.clone()));
+        }
         match (&self.stroke, self.from, self.to) {
             (Some(path), ..) => match human(path) {
                 Some(human) => {

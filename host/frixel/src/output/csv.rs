@@ -5,8 +5,7 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::marker::PhantomData;
 
-use frixel_felt::recorder::FeltRow;
-use frixel_wire::fault::Flags;
+use frixel_felt::recorder::{FeltRow, FlagNames};
 
 use crate::output_file::{FileWriter, OutputFileError};
 use crate::rigs::BoardEvent;
@@ -108,7 +107,7 @@ impl CsvRow for FeltRow {
             write!(formatter, "{code}")?;
         }
         formatter.write_str(",")?;
-        self.flags.map_or(Ok(()), |flags| write_flags(formatter, flags))
+        self.flags.map_or(Ok(()), |flags| write!(formatter, "{}", FlagNames(flags)))
     }
 }
 
@@ -134,22 +133,6 @@ impl CsvRow for ForceRow {
         let Self { time_s, normal_force_n, friction_n } = self;
         write!(formatter, "{time_s:.6},{normal_force_n:.9},{friction_n:.9}")
     }
-}
-
-fn write_flags(formatter: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result {
-    let mut joint = "";
-    for name in flags.names() {
-        write!(formatter, "{joint}{name}")?;
-        joint = "+";
-    }
-    let unnamed = flags.unnamed().0;
-    if unnamed != 0 {
-        // Flags without a name, which newer firmware may set.
-        write!(formatter, "{joint}0x{unnamed:04x}")?;
-    } else if flags.0 == 0 {
-        formatter.write_str("none")?;
-    }
-    Ok(())
 }
 
 /// Displays the cells of a row.

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeSet;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use super::writer::PARQUET;
 use super::{FileWriter, Inputs, OutputFile, OutputFileError, partial_beside};
 
 /// Bytes of the beginning of a file that say what it is.
 const HEAD: u64 = 4096;
+/// Largest footer of a Parquet file that is read.
+const FOOTER_MAX_BYTES: u64 = 64 << 20;
 /// The columns of a recorded stroke, and of a recording of friction.
 const STROKE_COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
 const FRICTION_COLUMNS: [&str; 3] = ["voltage_v_rms", "normal_force_n", "friction_n"];
@@ -122,18 +125,21 @@ fn is_of_another_program(partial: &Path) -> bool {
     read.is_ok() && !has_rows(&String::from_utf8_lossy(&head)) && !names.iter().all(is_of_name)
 }
 
-/// Whether there is a row below the header.
+/// Whether there is a row below the header. A Parquet file that was begun has one: it is written in whole row groups.
 fn has_rows(text: &str) -> bool {
-    text.bytes().filter(|byte| *byte == b'\n').count() > 1
+    text.as_bytes().starts_with(PARQUET) || text.bytes().filter(|byte| *byte == b'\n').count() > 1
 }
 
 /// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit` reads
-/// it, or a profile of `frixel threshold`.
+/// it, or a profile of `frixel threshold`; or by its metadata, if it is a Parquet file.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
     if read.is_err() {
         return false;
+    }
+    if head.starts_with(PARQUET) {
+        return footer(path).is_ok_and(|footer| frixel_lab::recording::is_of_person(&footer));
     }
     let text = String::from_utf8_lossy(&head);
     // Spreadsheets begin a file with a byte order mark.
@@ -144,6 +150,20 @@ pub(crate) fn is_recording(path: &Path) -> bool {
     let is_stroke =
         has(STROKE_COLUMNS) && columns.iter().all(|name| [&STROKE_COLUMNS[..], &["force_n"]].concat().contains(name));
     is_stroke || has(FRICTION_COLUMNS) || text.lines().any(|line| line.trim() == PERCEPTUAL)
+}
+
+/// The footer of a Parquet file, its length and last bytes included.
+fn footer(path: &Path) -> io::Result<Vec<u8>> {
+    let mut file = File::open(path)?;
+    let mut end = [0; 8];
+    file.seek(SeekFrom::End(-8))?;
+    file.read_exact(&mut end)?;
+    let [a, b, c, d, ..] = end;
+    let len = 8 + i64::from(u32::from_le_bytes([a, b, c, d]));
+    file.seek(SeekFrom::End(-len))?;
+    let mut footer = Vec::new();
+    file.take(FOOTER_MAX_BYTES).read_to_end(&mut footer)?;
+    Ok(footer)
 }
 
 #[cfg(test)]

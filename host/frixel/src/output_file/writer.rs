@@ -10,6 +10,9 @@ use super::{OutputFile, OutputFileError};
 /// Bytes that are collected before they are written, in whole lines.
 const CHUNK: usize = 64 * 1024;
 
+/// The first bytes of a Parquet file.
+pub(super) const PARQUET: &[u8] = b"PAR1";
+
 /// A file that is being written. It has its name after [`Self::commit`]; dropped before, a result is as it was, and a
 /// recording is left as `FILE.partial` if it has a row.
 #[derive(Debug)]
@@ -46,6 +49,8 @@ struct NewFile {
     destination: PathBuf,
     len: u64,
     lines: u64,
+    /// Whether it is a Parquet file, whose rows are no lines: every write is a whole row group of one.
+    is_parquet: bool,
     /// Why bytes are missing at the end. Nothing is written behind a gap.
     failed: Option<ErrorKind>,
     unfinished: Unfinished,
@@ -94,8 +99,10 @@ impl FileWriter {
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(failed)?;
         let mut writer = Self::new(path, destination, written, file, Unfinished::KeepsRows);
-        // A process that was killed may have left a part of a row.
-        bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1));
+        if !bytes.starts_with(PARQUET) {
+            // A process that was killed may have left a part of a row.
+            bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1));
+        }
         if let Sink::File(new) = &mut writer.sink {
             new.len = bytes.len() as u64;
             new.lines = count_lines(&bytes);
@@ -136,9 +143,24 @@ impl FileWriter {
     fn new(path: &Path, destination: &Path, written: &Path, file: File, unfinished: Unfinished) -> Self {
         let (written, destination) = (written.to_owned(), destination.to_owned());
         let (begins_anew, is_new) = (false, false);
-        let new =
-            NewFile { file, written, destination, len: 0, lines: 0, failed: None, unfinished, begins_anew, is_new };
+        let new = NewFile {
+            file,
+            written,
+            destination,
+            len: 0,
+            lines: 0,
+            is_parquet: false,
+            failed: None,
+            unfinished,
+            begins_anew,
+            is_new,
+        };
         Self { path: path.to_owned(), sink: Sink::File(new), pending: Vec::new() }
+    }
+
+    /// The path, as the user gave it.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Writes what is pending, and gives the file its name.
@@ -246,6 +268,9 @@ impl NewFile {
             (self.len, self.lines) = (0, 0);
             self.file.set_len(0).and_then(|()| self.file.seek(SeekFrom::Start(0)))?;
         }
+        if self.len == 0 {
+            self.is_parquet = bytes.starts_with(PARQUET);
+        }
         if let Err(error) = self.file.write_all(bytes) {
             self.failed = Some(error.kind());
             let _ = self.file.set_len(self.len).and_then(|()| self.file.seek(SeekFrom::Start(self.len)));
@@ -259,7 +284,7 @@ impl NewFile {
     fn is_kept(&self) -> bool {
         match self.unfinished {
             Unfinished::Removed => false,
-            Unfinished::KeepsRows => self.lines > 1,
+            Unfinished::KeepsRows => self.lines > 1 || (self.is_parquet && self.len > 0),
             Unfinished::IsNamed => true,
         }
     }

@@ -1,5 +1,6 @@
 //! The files that a scene is read from.
 
+use std::collections::BTreeMap;
 use std::iter::once;
 use std::path::Path;
 
@@ -10,17 +11,41 @@ use super::saved_file::SavedFile;
 pub(crate) struct SceneFiles {
     scene: SavedFile,
     named: Vec<SavedFile>,
+    /// The bytes of the scene's own file.
+    scene_bytes: Vec<u8>,
+    /// The bytes of the others, by the names that the scene gives them.
+    named_bytes: BTreeMap<String, Vec<u8>>,
 }
 
 impl SceneFiles {
     /// The scene's own file. Call this before the file is read.
     pub(super) fn new(scene: &Path) -> Self {
-        Self { scene: SavedFile::new(scene), named: Vec::new() }
+        Self { scene: SavedFile::new(scene), named: Vec::new(), scene_bytes: Vec::new(), named_bytes: BTreeMap::new() }
     }
 
     /// Adds a file that the scene names. Call this before the file is read.
     pub(super) fn add(&mut self, named: &Path) {
         self.named.push(SavedFile::new(named));
+    }
+
+    /// Keeps what was read of the scene's own file.
+    pub(super) fn keep_scene(&mut self, bytes: &[u8]) {
+        self.scene_bytes = bytes.to_vec();
+    }
+
+    /// Keeps what was read of a file that the scene calls `name`.
+    pub(super) fn keep_named(&mut self, name: &str, bytes: &[u8]) {
+        self.named_bytes.insert(name.to_owned(), bytes.to_vec());
+    }
+
+    /// The text of the scene's own file, as it was read; empty if it was not.
+    pub(crate) fn scene_text(&self) -> String {
+        String::from_utf8_lossy(&self.scene_bytes).into_owned()
+    }
+
+    /// The files that the scene names, as they were read, by the names that it gives them.
+    pub(crate) fn named_bytes(&self) -> &BTreeMap<String, Vec<u8>> {
+        &self.named_bytes
     }
 
     /// The path of the scene's own file.

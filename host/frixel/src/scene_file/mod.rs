@@ -84,9 +84,10 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 /// Reads a scene file, and returns the files that it was read from as well.
 pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
-    let files = SceneFiles::new(path);
+    let mut files = SceneFiles::new(path);
     match input::read(path, input::TOML_MAX_BYTES) {
         Ok(bytes) => {
+            files.keep_scene(&bytes);
             let named = NamedFiles { folder: folder_of(path), files: RefCell::new(files) };
             let scene = Scene::parse_bytes(&bytes, &file, &named).map_err(SceneFileError::from);
             (scene, named.files.into_inner())
@@ -130,7 +131,9 @@ struct NamedFiles {
 impl Files for NamedFiles {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
         self.files.borrow_mut().add(&self.folder.0.join(name));
-        self.folder.bytes(name)
+        let bytes = self.folder.bytes(name)?;
+        self.files.borrow_mut().keep_named(name, &bytes);
+        Ok(bytes)
     }
 }
 
@@ -163,14 +166,22 @@ pub(crate) struct ProfileNames {
 }
 
 impl ProfileNames {
+    /// The file of the finger, if it is in one.
+    pub(crate) fn finger_file(&self) -> Option<&Path> {
+        self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none()).map(Path::new)
+    }
+
+    /// The file of the screen, if it is in one.
+    pub(crate) fn screen_file(&self) -> Option<&Path> {
+        self.screen.as_deref().filter(|name| Screen::bundled(name).is_none()).map(Path::new)
+    }
+
     /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those
     /// returned.
     pub(crate) fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
         let (scene, mut files) = load_with_files(path);
-        let finger = self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none());
-        let screen = self.screen.as_deref().filter(|name| Screen::bundled(name).is_none());
-        for name in [finger, screen].into_iter().flatten() {
-            files.add(Path::new(name));
+        for file in [self.finger_file(), self.screen_file()].into_iter().flatten() {
+            files.add(file);
         }
         (scene.and_then(|scene| self.applied_to(scene)), files)
     }

@@ -35,7 +35,7 @@ const fn recording(
 }
 
 /// Every output.
-pub(crate) const OUTPUTS: [Output; 16] = [
+pub(crate) const OUTPUTS: [Output; 17] = [
     Output {
         // It never replaces its scene.
         is_reproducible: true,
@@ -52,6 +52,12 @@ pub(crate) const OUTPUTS: [Output; 16] = [
         "play scene.toml --seconds 0.3 --stroke IN --out OUT",
         "stroke.csv",
         &["OUT/felt.csv", "OUT/summary.json", "OUT/felt.svg", "OUT/scene.png"],
+    ),
+    result(
+        "play record",
+        "play scene.toml --seconds 0.3 --stroke IN --out OUT --record OUT.parquet",
+        "stroke.csv",
+        &["OUT.parquet", "OUT/felt.csv", "OUT/summary.json", "OUT/felt.svg", "OUT/scene.png"],
     ),
     result("scene migrate output", "scene migrate IN -o OUT", "old.toml", &["OUT"]),
     result("scene preview output", "scene preview IN -o OUT.png", "scene.toml", &["OUT.png"]),
@@ -97,7 +103,7 @@ pub(crate) const OUTPUTS: [Output; 16] = [
 
 /// Every argument that names a file to read, or a port, by the type of a path.
 #[allow(dead_code, reason = "only the test of the command line reads it")]
-pub(crate) const INPUTS: [&str; 19] = [
+pub(crate) const INPUTS: [&str; 20] = [
     "calibrate forces",
     "fit data",
     "model eval input",
@@ -107,6 +113,7 @@ pub(crate) const INPUTS: [&str; 19] = [
     "play stream",
     "play stroke",
     "play with_log",
+    "replay recording",
     "report bench",
     "report scene",
     "scene check scene",

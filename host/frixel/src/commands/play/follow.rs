@@ -14,6 +14,7 @@ use super::live_scene::LiveScene;
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
+use super::recorded::metadata;
 use super::target::Target;
 use super::{CommandError, Interrupt, PlayArgs, Played, note, waiting};
 
@@ -27,7 +28,8 @@ pub(super) fn follow<L: RecordedLink>(
 ) -> Result<Played, CommandError> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     check_log(args, is_simulated)?;
-    let outputs = Outputs::create(args, files, is_simulated, &plan.program)?;
+    let metadata = files.sources().map(|sources| metadata(args, sources, &plan, &device, is_simulated));
+    let outputs = Outputs::create(args, files, is_simulated, &plan.program, metadata)?;
     let player = Player::recording(waiting::watch(device, interrupt), plan.recorder()?);
     let waits = plan.target == Target::Simulator;
     let control = args.control.then(|| Control::start(waits, interrupt)).transpose()?;
@@ -111,7 +113,9 @@ impl<L: RecordedLink> Play<'_, L> {
 
     fn write_rows(&mut self) -> Result<(), CommandError> {
         let begin = Instant::now();
-        let written = self.outputs.write(&self.player.recorder_mut().take_rows());
+        let recorder = self.player.recorder_mut();
+        let rows = recorder.take_rows();
+        let written = self.outputs.write(&rows, recorder.markers());
         self.writing += begin.elapsed();
         written
     }
@@ -146,9 +150,12 @@ impl<L: RecordedLink> Play<'_, L> {
     /// Replaces the scene if its file was saved.
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
-        let replaced = live_scene.refresh(&mut self.player).map_err(|error| self.error(error))?;
+        let refreshed = live_scene.refresh(&mut self.player);
+        let text = live_scene.text();
+        let replaced = refreshed.map_err(|error| self.error(error))?;
         let t_s = self.player.recorder_mut().t_s();
         if let Some(playing) = self.player.playing().filter(|_| replaced) {
+            self.outputs.keep_scene(t_s, text);
             self.outputs.replace(t_s, playing.program());
             self.refusals.extend(sentences(playing.program()));
             self.plan.program = playing.program().clone();
@@ -175,10 +182,12 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_simulated(self.outputs.is_simulated())
             .with_stream(stream)
             .with_refusals(self.refusals);
-        let written = self.outputs.write(&recorder.take_rows());
+        let rows = recorder.take_rows();
+        let written = self.outputs.write(&rows, recorder.markers());
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
+        let marked = (recorder.markers(), is_requested || ended.is_err());
         let start_s = recorder.start_s().unwrap_or(0.0);
-        let finished = written.and_then(|()| self.outputs.finish(program, &report, start_s));
+        let finished = written.and_then(|()| self.outputs.finish(program, &report, start_s, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
         let failure = ended.err().filter(|_| !interrupted);
         let (files, failure) = match finished {

@@ -74,6 +74,11 @@ impl LiveScene {
         Self { loader, files, watches: args.watch, next: None }
     }
 
+    /// Text of the scene that plays.
+    pub(super) fn text(&self) -> String {
+        self.files.scene_text()
+    }
+
     /// Plays another scene next, and watches its files once it plays.
     pub(super) fn load<L: RecordedLink>(&mut self, path: &Path, player: &Player<L>) {
         self.compile(path.to_owned(), Origin::Other, player);

@@ -7,10 +7,13 @@ use crate::output_file::{
     FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
 };
 use crate::scene_file::SceneFiles;
-use frixel_felt::recorder::FeltRow;
+use frixel_felt::recorder::{FeltRow, Marker};
+use frixel_lab::recording::Metadata;
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
 use super::super::experiment::cut_off;
+use super::record_file::{self, RecordFile};
+use super::recorded::Sources;
 use super::target::Target;
 use super::with_log::joined;
 use super::{CommandError, PlayArgs};
@@ -30,6 +33,8 @@ pub(super) struct PlayFiles {
     /// The other one of the two, which an earlier play may have left.
     other_svg: OutputFile,
     png: OutputFile,
+    /// The file of `--record`, and what its recording is made from.
+    record: Option<(OutputFile, Sources)>,
 }
 
 impl PlayFiles {
@@ -47,7 +52,16 @@ impl PlayFiles {
             svg: file(svg)?,
             other_svg: file(other_svg)?,
             png: file("scene.png")?,
+            record: None,
         };
+        let record = record_file::output(args, &inputs)?;
+        if let Some(record) = &record {
+            for other in [&files.felt, &files.summary, &files.svg, &files.other_svg, &files.png] {
+                record.check_apart_from(other)?;
+            }
+        }
+        let record = record.map(|record| Ok::<_, CommandError>((record, Sources::new(args, scene)?))).transpose()?;
+        let files = Self { record, ..files };
         Self::check_earlier(args)?;
         Ok(files)
     }
@@ -66,7 +80,12 @@ impl PlayFiles {
         for file in [&self.felt, &self.summary, &self.svg, &self.other_svg, &self.png] {
             inputs.check(file)?;
         }
-        Ok(())
+        self.record.iter().try_for_each(|(record, _)| Ok(inputs.check(record)?))
+    }
+
+    /// What the recording of `--record` is made from.
+    pub(super) fn sources(&self) -> Option<&Sources> {
+        self.record.as_ref().map(|(_, sources)| sources)
     }
 
     /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
@@ -83,7 +102,9 @@ impl PlayFiles {
     }
 
     fn paths(&self) -> Vec<PathBuf> {
-        [&self.felt, &self.summary, &self.svg, &self.png].map(|file| file.path().to_owned()).into()
+        let record = self.record.as_ref().map(|(record, _)| record);
+        let files = [&self.felt, &self.summary, &self.svg, &self.png].into_iter().chain(record);
+        files.map(|file| file.path().to_owned()).collect()
     }
 }
 
@@ -93,6 +114,7 @@ pub(super) struct Outputs {
     files: PlayFiles,
     title: String,
     csv: FeltCsv,
+    record: Option<RecordFile>,
     trace: Trace,
     /// Whether finger or board is simulated.
     is_simulated: bool,
@@ -108,17 +130,22 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Starts to write `felt.csv`. Creates the folder if necessary.
+    /// Starts to write `felt.csv`, and the file of `--record` if there is its metadata. Creates the folder if necessary.
     pub(super) fn create(
         args: &PlayArgs,
         files: PlayFiles,
         is_simulated: bool,
         program: &Program,
+        metadata: Option<Metadata>,
     ) -> Result<Self, CommandError> {
         let folder = OutputFolder::open(&args.out)?;
         // The play that wrote into the folder until now may have been of a person.
         PlayFiles::check_earlier(args)?;
         let csv = FeltCsv::new(files.start(is_simulated, args.overwrite)?)?;
+        let create = |((output, _), metadata): (&(OutputFile, Sources), Metadata)| {
+            RecordFile::start(output, metadata, args.overwrite)
+        };
+        let record = files.record.as_ref().zip(metadata).map(create).transpose()?;
         let log = args.with_log.clone();
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
         Ok(Self {
@@ -126,6 +153,7 @@ impl Outputs {
             files,
             title,
             csv,
+            record,
             trace: Trace::new(),
             is_simulated,
             touched,
@@ -136,8 +164,11 @@ impl Outputs {
         })
     }
 
-    /// Writes rows and flushes them to the file.
-    pub(super) fn write(&mut self, rows: &[FeltRow]) -> Result<(), CommandError> {
+    /// Writes rows and flushes them to the file. `markers` are all so far.
+    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker]) -> Result<(), CommandError> {
+        if let Some(record) = self.record.as_mut().filter(|_| self.log.is_none()) {
+            record.write(rows, markers)?;
+        }
         for row in rows {
             self.csv.write(row)?;
             let layer = self.touch(row);
@@ -176,6 +207,13 @@ impl Outputs {
         self.off.clear();
     }
 
+    /// Keeps the text of the scene that [`Self::replace`] is told of.
+    pub(super) fn keep_scene(&mut self, t_s: f64, scene: String) {
+        if let Some(record) = &mut self.record {
+            record.replace(t_s, scene);
+        }
+    }
+
     /// Whether finger or board is simulated.
     pub(super) fn is_simulated(&self) -> bool {
         self.is_simulated
@@ -191,11 +229,14 @@ impl Outputs {
         self.touched.untouched().filter_map(|layer| self.touched.title(layer)).cloned().collect()
     }
 
-    /// Joins the rows with a log, writes `felt.csv` anew with them, and draws them.
-    fn write_joined(&mut self, log: &Path, start_s: f64) -> Result<(), CommandError> {
+    /// Joins the rows with a log, writes `felt.csv` anew with them, records and draws them.
+    fn write_joined(&mut self, log: &Path, start_s: f64, markers: &[Marker]) -> Result<(), CommandError> {
         let (rows, layers): (Vec<FeltRow>, Vec<Option<TracedLayer>>) =
             std::mem::take(&mut self.rows).into_iter().unzip();
         let joined = joined(log, &rows, start_s)?;
+        if let Some(record) = &mut self.record {
+            record.write(&joined, markers)?;
+        }
         self.csv.restart()?;
         for (row, layer) in joined.iter().zip(layers) {
             self.csv.write(row)?;
@@ -204,7 +245,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Completes `felt.csv`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
+    /// Completes `felt.csv` and the file of `--record`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
     /// `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv` stands alone; what a person's
     /// finger did stays in `felt.csv.partial`, because without the summary nothing says that it is of a person.
     ///
@@ -214,14 +255,16 @@ impl Outputs {
         program: &Program,
         report: &Report,
         start_s: f64,
+        (markers, interrupted): (&[Marker], bool),
     ) -> Result<Vec<PathBuf>, CommandError> {
         let log = self.log.take();
-        let joined = log.map_or(Ok(()), |log| self.write_joined(&log, start_s));
-        let others = joined.and_then(|()| self.write_others(program, report));
+        let joined = log.map_or(Ok(()), |log| self.write_joined(&log, start_s, markers));
+        let record = self.record.take().map(|record| record.finish(markers, interrupted)).transpose();
+        let others = joined.and_then(|()| Ok((self.write_others(program, report)?, record?)));
         let Self { files, csv, is_simulated, .. } = self;
         match others {
-            Ok(others) => {
-                let written = [csv.into_writer()].into_iter().chain(others).collect();
+            Ok((others, record)) => {
+                let written = [csv.into_writer()].into_iter().chain(others).chain(record).collect();
                 commit_all(written, std::slice::from_ref(&files.other_svg))?;
                 Ok(files.paths())
             }
@@ -230,8 +273,9 @@ impl Outputs {
                 Err(cut_off(&files.recording(false), error))
             }
             Err(error) => {
-                let PlayFiles { summary, svg, other_svg, png, .. } = files;
-                commit_all(vec![csv.into_writer()], &[summary, svg, other_svg, png])?;
+                let PlayFiles { summary, svg, other_svg, png, record, .. } = files;
+                let others = [summary, svg, other_svg, png].into_iter().chain(record.map(|(record, _)| record));
+                commit_all(vec![csv.into_writer()], &others.collect::<Vec<_>>())?;
                 Err(error)
             }
         }
@@ -288,7 +332,7 @@ mod tests {
         let args = PlayArgs::ideal("a.toml".as_ref(), folder.path());
         let files = files(&args);
         fs::write(folder.path().join("summary.json"), "{\"simulated\": false}").unwrap();
-        let error = Outputs::create(&args, files, true, &program("plate")).err().unwrap().to_string();
+        let error = Outputs::create(&args, files, true, &program("plate"), None).err().unwrap().to_string();
         assert!(error.contains("which no other play replaces"), "{error}");
     }
 
@@ -298,9 +342,9 @@ mod tests {
         let (out, log) = (folder.path().to_owned(), Some(folder.path().join("no-log.csv")));
         let args = PlayArgs { with_log: log, ..PlayArgs::ideal("a.toml".as_ref(), &out) };
         let plate = program("plate");
-        let mut outputs = Outputs::create(&args, files(&args), false, &plate).unwrap();
-        outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }]).unwrap();
-        let error = outputs.finish(&plate, &report(&plate), 0.0).unwrap_err().to_string();
+        let mut outputs = Outputs::create(&args, files(&args), false, &plate, None).unwrap();
+        outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }], &[]).unwrap();
+        let error = outputs.finish(&plate, &report(&plate), 0.0, (&[], false)).unwrap_err().to_string();
         assert!(error.contains("felt.csv.partial: rename it to keep it"), "{error}");
         assert!(!folder.path().join("felt.csv").exists(), "the next play would replace it");
         let kept = fs::read_to_string(folder.path().join("felt.csv.partial")).unwrap();
@@ -322,14 +366,14 @@ mod tests {
         let args = PlayArgs { with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref(), &folder.path().join("out")) };
 
         let (first, second) = (program("first"), program("second"));
-        let mut outputs = Outputs::create(&args, files(&args), true, &first).unwrap();
+        let mut outputs = Outputs::create(&args, files(&args), true, &first, None).unwrap();
         outputs.switch(0.0, Vec::new());
-        outputs.write(&rows[..1_000]).unwrap();
+        outputs.write(&rows[..1_000], &[]).unwrap();
         outputs.switch(1.0, vec![0]);
-        outputs.write(&rows[1_000..1_500]).unwrap();
+        outputs.write(&rows[1_000..1_500], &[]).unwrap();
         outputs.replace(1.5, &second);
-        outputs.write(&rows[1_500..]).unwrap();
-        let files = outputs.finish(&second, &report(&second), 0.0).unwrap();
+        outputs.write(&rows[1_500..], &[]).unwrap();
+        let files = outputs.finish(&second, &report(&second), 0.0, (&[], false)).unwrap();
         let svg = fs::read_to_string(&files[2]).unwrap();
         let shown: Vec<&str> = svg.lines().filter(|line| ["first", "first off", "second"].contains(line)).collect();
         assert_eq!(shown, ["first", "first off", "second"]);

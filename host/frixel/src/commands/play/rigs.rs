@@ -17,6 +17,9 @@ use super::simulated_world::SimulatedWorld;
 use super::target::Target;
 use super::{CommandError, Interrupt, PlayArgs, Played};
 
+/// A simulated board under a simulated finger.
+pub(super) type Simulator<'a> = Device<PollingLink<SimStream<'a>>>;
+
 /// Plays on the simulated board, under a simulated finger.
 pub(super) fn play_on_simulator(
     args: &PlayArgs,
@@ -24,6 +27,17 @@ pub(super) fn play_on_simulator(
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
+    let mut memory = BoardMemory::new();
+    let (plan, device) = simulator(args, scene, &mut memory)?;
+    follow(args, plan, device, outputs, interrupt)
+}
+
+/// Opens the simulated board for a play.
+pub(super) fn simulator<'a>(
+    args: &PlayArgs,
+    scene: &Scene,
+    memory: &'a mut BoardMemory,
+) -> Result<(Plan, Simulator<'a>), CommandError> {
     let world = SimulatedWorld::new(args, scene)?;
     let mut config = RigConfig::default();
     config.world = world.config(config.world);
@@ -33,12 +47,11 @@ pub(super) fn play_on_simulator(
     // A draft may take longer than a board has time for.
     config.board.limits.tick_cycles_max = u32::MAX;
     plan.has_own_reference = world.has_own_reference(&stroke);
-    let mut memory = BoardMemory::new();
-    let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
+    let mut rig = Rig::new(memory, &config, stroke, args.seed)?;
     world.set_finger(rig.world_mut());
     plan.world = Some(world.report());
     let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default())))?;
-    follow(args, plan, device, outputs, interrupt)
+    Ok((plan, device))
 }
 
 /// Rejects the emulator, because its serial port is a pseudo-terminal.

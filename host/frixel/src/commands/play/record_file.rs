@@ -1,0 +1,176 @@
+//! The file of `--record`.
+
+use std::io::Write;
+use std::path::Path;
+
+use frixel_felt::recorder::{FeltRow, Marker};
+use frixel_lab::recording::{LaterScene, Metadata, ParquetWriter, ROWS_PER_GROUP, play_fields, play_values};
+
+use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, Recording};
+
+use super::{CommandError, PlayArgs};
+
+/// The option that names the file.
+const OPTION: &str = "--record";
+/// How to keep what a finger did on a board until the play was cut off.
+const CUT_OFF: &str = "rename it to keep it";
+/// Most time of a person's play that is lost when the process is killed, s.
+const PERSON_GROUP_S: u32 = 10;
+
+/// The file that `--record` names; none without that option.
+pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFile>, CommandError> {
+    let Some(path) = &args.record else { return Ok(None) };
+    let is_parquet = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"));
+    if !is_parquet && path != Path::new("-") && !path.starts_with("/dev") {
+        return Err(CommandError::NotParquetName { path: path.clone() });
+    }
+    if args.overwrite {
+        return Ok(Some(Recording::new(path, OPTION, inputs, true, CUT_OFF)?.output().clone()));
+    }
+    Ok(Some(OutputFile::new(path, OPTION, inputs)?))
+}
+
+/// Writes rows as Parquet while a scene plays.
+pub(super) struct RecordFile {
+    file: FileWriter,
+    parquet: ParquetWriter<Vec<u8>>,
+    metadata: Metadata,
+    /// Rows of the next row group.
+    rows: Vec<FeltRow>,
+    rows_per_group: usize,
+}
+
+impl RecordFile {
+    /// Begins the file. What a person's finger does goes to `FILE.partial`, which is a whole Parquet file after each row
+    /// group; a play on a simulator can be made again.
+    pub(super) fn start(output: &OutputFile, metadata: Metadata, overwrites: bool) -> Result<Self, CommandError> {
+        let (file, rows_per_group) = if metadata.is_simulated {
+            (output.create()?, ROWS_PER_GROUP)
+        } else {
+            if output.exists() && !overwrites {
+                return Err(OutputFileError::Exists { path: output.path().to_owned(), option: OPTION }.into());
+            }
+            let rows_hz = metadata.tick_hz / metadata.ticks_per_row.max(1);
+            (recording(output, overwrites).start()?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
+        };
+        let path = output.path();
+        let parquet = ParquetWriter::new(Vec::new(), play_fields()).map_err(CommandError::recording(path))?;
+        Ok(Self { file, parquet, metadata, rows: Vec::new(), rows_per_group })
+    }
+
+    /// Adds rows. `markers` are all so far.
+    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker]) -> Result<(), CommandError> {
+        for row in rows {
+            self.rows.push(*row);
+            if self.rows.len() >= self.rows_per_group {
+                self.end_group(markers)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Another scene plays from a time on.
+    pub(super) fn replace(&mut self, t_s: f64, scene: String) {
+        self.metadata.later_scenes.push(LaterScene { t_s, scene });
+    }
+
+    /// Writes what is left. The caller commits the file.
+    pub(super) fn finish(mut self, markers: &[Marker], interrupted: bool) -> Result<FileWriter, CommandError> {
+        self.metadata.play["interrupted"] = interrupted.into();
+        self.write_group(markers, true)?;
+        Ok(self.file)
+    }
+
+    fn end_group(&mut self, markers: &[Marker]) -> Result<(), CommandError> {
+        self.write_group(markers, !self.metadata.is_simulated)
+    }
+
+    /// Writes a row group, with a footer behind it if the file has to be whole then.
+    fn write_group(&mut self, markers: &[Marker], is_whole: bool) -> Result<(), CommandError> {
+        let Self { file, parquet, metadata, rows, .. } = self;
+        if !rows.is_empty() {
+            parquet.write(&play_values(rows)).map_err(CommandError::recording(file.path()))?;
+            rows.clear();
+        }
+        if is_whole {
+            metadata.markers = markers.to_vec();
+            parquet.end(metadata).map_err(CommandError::recording(file.path()))?;
+        }
+        let bytes = std::mem::take(parquet.get_mut());
+        file.write_all(&bytes).and_then(|()| file.flush()).map_err(|source| file.error(source).into())
+    }
+}
+
+/// The file as a recording of a person.
+fn recording(output: &OutputFile, overwrites: bool) -> Recording {
+    Recording::of(output.clone(), overwrites, CUT_OFF)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use frixel_lab::recording;
+
+    use super::*;
+
+    /// A record of what a person did on a board, at 1,000 rows a second.
+    fn start(folder: &Path, overwrites: bool) -> Result<RecordFile, CommandError> {
+        let output = OutputFile::new(&folder.join("me.parquet"), OPTION, &Inputs::default())?;
+        let metadata = Metadata { tick_hz: 40_000, ticks_per_row: 40, ..Metadata::default() };
+        RecordFile::start(&output, metadata, overwrites)
+    }
+
+    fn rows(count: u32) -> Vec<FeltRow> {
+        (0..count).map(|row| FeltRow { t_s: 1e-3 * f64::from(row), ..FeltRow::default() }).collect()
+    }
+
+    fn read(path: &Path) -> recording::Recording {
+        recording::Recording::read_parquet(fs::read(path).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_persons_play_that_is_killed_loses_ten_seconds_at_most() {
+        let folder = tempfile::tempdir().unwrap();
+        let partial = folder.path().join("me.parquet.partial");
+        let mut file = start(folder.path(), false).unwrap();
+        file.write(&rows(9_999), &[]).unwrap();
+        assert!(fs::read(&partial).unwrap().is_empty());
+        file.write(&rows(12_000), &[]).unwrap();
+        // As a process that is killed leaves it.
+        let kept = read(&partial);
+        assert_eq!((kept.rows(), kept.is_cut_off), (20_000, false));
+        drop(file);
+        assert_eq!(read(&partial), kept, "an error that ends the play leaves it as well");
+
+        let error = start(folder.path(), false).err().unwrap().to_string();
+        assert!(
+            error.contains("me.parquet.partial has the rows of a recording that was cut off: rename it to"),
+            "{error}"
+        );
+        assert_eq!(read(&partial), kept);
+        fs::rename(&partial, folder.path().join("me.parquet")).unwrap();
+        let error = start(folder.path(), false).err().unwrap().to_string();
+        assert!(error.contains("me.parquet is a recording of a person, which no result replaces"), "{error}");
+    }
+
+    #[test]
+    fn a_persons_play_that_ends_has_every_row() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut file = start(folder.path(), false).unwrap();
+        file.write(&rows(10_001), &[]).unwrap();
+        file.finish(&[], false).unwrap().commit().unwrap();
+        let recorded = read(&folder.path().join("me.parquet"));
+        assert_eq!((recorded.rows(), recorded.metadata.is_simulated), (10_001, false));
+        assert!(!folder.path().join("me.parquet.partial").exists());
+    }
+
+    #[test]
+    fn a_persons_play_that_has_no_row_group_yet_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut file = start(folder.path(), false).unwrap();
+        file.write(&rows(100), &[]).unwrap();
+        drop(file);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

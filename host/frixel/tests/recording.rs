@@ -1,0 +1,220 @@
+//! `frixel play --record` and `frixel replay`.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+use frixel_felt::recorder::MarkedEvent;
+use frixel_lab::recording::{Recording, SourceFile, Values};
+use tempfile::TempDir;
+
+use crate::processes::{frixel, repository, run, succeed};
+
+/// A scene with a picture, a finger and a part of its own.
+const SCENE: &str = "version = 2\ninclude = [\"parts/part.toml\"]\n[[layer]]\nname = \"wall\"\nkind = \"bitmap\"\n\
+                     picture = \"brick.png\"\nx_mm = 10\ny_mm = 5\nwidth_mm = 100\npitch_mm = 0.4\nlive = true\n\
+                     black_fraction = 0.2\nwhite_fraction = 0.6\n";
+const PART: &str = "version = 2\n[[layer]]\nname = \"button\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
+                    live = true\nstart = \"off\"\n";
+
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("parts")).unwrap();
+    fs::write(path("scene.toml"), SCENE).unwrap();
+    fs::write(path("parts/part.toml"), PART).unwrap();
+    fs::copy(repository().join("scenes/textures/brick.png"), path("brick.png")).unwrap();
+    fs::write(path("stroke.csv"), "t_s,x_mm,y_mm,force_n\n0,10,20,0.4\n0.3,60,25,0.6\n0.7,30.1,40,0.5\n").unwrap();
+    fs::write(path("touch.toml"), "reports_per_s = 120\nlatency_ms = 8\nlost_share = 0.05\n").unwrap();
+    folder
+}
+
+fn read(folder: &Path, name: &str) -> Recording {
+    Recording::read_parquet(fs::read(folder.join(name)).unwrap()).unwrap()
+}
+
+fn write(folder: &Path, name: &str, recording: &Recording) {
+    let mut bytes = Vec::new();
+    recording.write_parquet(&mut bytes).unwrap();
+    fs::write(folder.join(name), bytes).unwrap();
+}
+
+/// Plays a recording that cannot be played again, or differs, and returns what is said.
+fn refused(folder: &Path, name: &str) -> String {
+    let output = run(folder, &["replay", name]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    said.lines().last().unwrap().to_owned()
+}
+
+/// Every option that changes what is felt, in a folder without the files.
+#[test]
+fn a_recording_plays_the_same_bits_again_without_its_files() {
+    let plays = [
+        "--seconds 0.3",
+        "--seconds 0.3 --ideal --seed 18446744073709551615",
+        "--seconds 0.5 --csv-hz 40000 --no-leakage --finger moist --screen example",
+        "--stroke stroke.csv --touch touch.toml --finger-seed 7",
+        "--stroke human --seconds 1 --seed 5 --touch 500",
+        "--from 10.1,20.3 --to 33.3,21.7 --speed 77.7 --times 2 --minimum-jerk --csv-hz 500",
+    ];
+    for play in plays {
+        let folder = folder();
+        let line = format!("play scene.toml {play} --record a.parquet");
+        succeed(folder.path(), &line.split(' ').collect::<Vec<_>>());
+        let elsewhere = TempDir::new().unwrap();
+        fs::copy(folder.path().join("a.parquet"), elsewhere.path().join("a.parquet")).unwrap();
+        let said = succeed(elsewhere.path(), &["replay", "a.parquet"]);
+        assert!(said.contains("a.parquet: the same bits, ") && said.contains("rows of 12 columns"), "{play}: {said}");
+        succeed(folder.path(), &line.replace("a.parquet", "b.parquet").split(' ').collect::<Vec<_>>());
+        let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+        assert!(bytes("a.parquet") == bytes("b.parquet"), "{play}: the same play has the same bytes");
+    }
+}
+
+#[test]
+fn a_recording_has_the_rows_of_felt_csv_and_what_made_them() {
+    let folder = folder();
+    let line = "play scene.toml --stroke stroke.csv --record a.parquet --participant P07";
+    succeed(folder.path(), &line.split(' ').collect::<Vec<_>>());
+    let recording = read(folder.path(), "a.parquet");
+    let mut csv = csv::Reader::from_path(folder.path().join("frixel-out/felt.csv")).unwrap();
+    let names: Vec<String> = csv.headers().unwrap().iter().map(str::to_owned).collect();
+    let mut compared = 0;
+    for (row, cells) in csv.records().enumerate() {
+        for (name, cell) in names.iter().zip(&cells.unwrap()) {
+            match &recording.column(name).unwrap().values {
+                Values::Numbers(numbers) => {
+                    let difference = numbers[row].map(|number| number - cell.parse::<f64>().unwrap());
+                    assert!(difference.map_or(cell.is_empty(), |difference| difference.abs() < 1e-3), "{name}, {row}");
+                }
+                Values::Integers(numbers) => assert_eq!(numbers[row].unwrap().to_string(), cell),
+                Values::Texts(texts) => assert_eq!(texts[row].as_deref().unwrap(), cell),
+            }
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 10 * recording.rows());
+
+    let metadata = &recording.metadata;
+    assert_eq!((metadata.scene.as_str(), metadata.participant.as_deref()), (SCENE, Some("P07")));
+    assert_eq!((metadata.rig.as_str(), metadata.is_simulated, metadata.tick_hz), ("sim", true, 40_000));
+    assert_eq!(metadata.files["scene/parts/part.toml"], SourceFile::Text(PART.to_owned()));
+    let picture = fs::read(folder.path().join("brick.png")).unwrap();
+    assert_eq!(metadata.files["scene/brick.png"].bytes(), Some(picture));
+    assert_eq!(metadata.files.len(), 3);
+    let events: Vec<_> = metadata.markers.iter().map(|marker| (marker.ticks, &marker.event)).collect();
+    assert_eq!(events, [(0, &MarkedEvent::SceneBegan), (28_000, &MarkedEvent::Stopped)]);
+
+    // Neither a path nor who or where.
+    let bytes = String::from_utf8_lossy(&fs::read(folder.path().join("a.parquet")).unwrap()).into_owned();
+    assert!(!bytes.contains(&*folder.path().to_string_lossy()) && !bytes.contains("stroke.csv"));
+}
+
+#[test]
+fn what_changes_a_play_is_marked_and_cannot_be_played_again() {
+    let folder = folder();
+    fs::write(folder.path().join("other.toml"), PART).unwrap();
+    let mut command = frixel();
+    command.args(["play", "scene.toml", "--control", "--seconds", "0.4", "--record", "a.parquet"]);
+    command.current_dir(folder.path()).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut play = command.spawn().unwrap();
+    let lines = "wait 0.1\ntrigger button 20\nwait 0.1\nlayer wall gain 0.5\nwait 0.05\nreplace other.toml\n";
+    play.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
+    let ended = play.wait_with_output().unwrap();
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+
+    let recording = read(folder.path(), "a.parquet");
+    let markers = &recording.metadata.markers;
+    let changed = |name: &str, on: bool, gain: f32| {
+        let is = |event: &MarkedEvent| {
+            matches!(event, MarkedEvent::LayerChanged { layer, on: found, gain: of }
+                if layer.contains(name) && *found == on && of.to_bits() == gain.to_bits())
+        };
+        markers.iter().find(|marker| is(&marker.event)).unwrap_or_else(|| panic!("{name}: {markers:?}")).t_s
+    };
+    for (found_s, expected_s) in
+        [(changed("button", true, 1.0), 0.1), (changed("button", false, 1.0), 0.12), (changed("wall", true, 0.5), 0.2)]
+    {
+        assert!((found_s - expected_s).abs() < 2e-3, "{found_s} s, expected {expected_s} s");
+    }
+    let is_trigger =
+        |event: &MarkedEvent| matches!(event, MarkedEvent::Triggered { layer } if layer.contains("button"));
+    assert!(markers.iter().any(|marker| is_trigger(&marker.event)), "{markers:?}");
+    assert!(markers.iter().any(|marker| marker.event == MarkedEvent::SceneReplaced && marker.t_s > 0.2));
+    assert!(markers.iter().all(|marker| (marker.ticks as f64 / 40_000.0 - marker.t_s).abs() < 1e-9));
+    assert_eq!(recording.metadata.later_scenes[0].scene, PART);
+    let said = refused(folder.path(), "a.parquet");
+    assert_eq!(
+        said,
+        "frixel: a.parquet cannot be played again: lines on standard input changed it (--control), which the recording \
+         does not have"
+    );
+}
+
+#[test]
+fn replay_names_the_first_difference_or_why_it_cannot_play() {
+    let folder = folder();
+    let folder = folder.path();
+    succeed(folder, &["play", "scene.toml", "--seconds", "0.2", "--record", "a.parquet"]);
+    let recording = read(folder, "a.parquet");
+
+    let mut changed = recording.clone();
+    let Values::Numbers(felt) = &mut changed.columns[6].values else { panic!("numbers") };
+    felt[123] = felt[123].map(|felt_n| f64::from_bits(felt_n.to_bits() ^ 1));
+    write(folder, "changed.parquet", &changed);
+    let said = refused(folder, "changed.parquet");
+    assert!(said.contains("changed.parquet plays other bits: row 124, column felt_n: "), "{said}");
+
+    let mut version = recording.clone();
+    version.metadata.frixel = "0.0.9".to_owned();
+    write(folder, "version.parquet", &version);
+    let said = refused(folder, "version.parquet");
+    assert!(said.contains("frixel 0.0.9 recorded it, and this is ") && said.contains("use that version"), "{said}");
+
+    let mut person = recording.clone();
+    (person.metadata.rig, person.metadata.is_simulated) = ("board".to_owned(), false);
+    write(folder, "person.parquet", &person);
+    assert!(refused(folder, "person.parquet").ends_with("it is of a board at a port, under a person's finger"));
+
+    let mut large = recording.clone();
+    let hash = SourceFile::Hash { sha256: "00".to_owned(), bytes: 9_000_000 };
+    large.metadata.files.insert("scene/brick.png".to_owned(), hash);
+    write(folder, "large.parquet", &large);
+    assert!(refused(folder, "large.parquet").contains("only the hash of the file scene/brick.png"));
+
+    let mut silent = recording.clone();
+    silent.metadata.play = serde_json::Value::Null;
+    write(folder, "silent.parquet", &silent);
+    assert!(refused(folder, "silent.parquet").contains("it does not say how it was played"));
+
+    // No command replaces what a person's finger did.
+    let before = fs::read(folder.join("person.parquet")).unwrap();
+    for line in ["play scene.toml --seconds 0.1 --record person.parquet", "model eval --output person.parquet"] {
+        let output = run(folder, &line.split(' ').collect::<Vec<_>>());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains("person.parquet is a recording of a person, which no result replaces"), "{line}: {said}");
+        assert!(fs::read(folder.join("person.parquet")).unwrap() == before);
+    }
+}
+
+/// Ctrl-C leaves a whole recording, and what it has is played again.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_recording_is_whole_and_plays_again() {
+    let folder = folder();
+    let mut command = frixel();
+    command.args(["play", "scene.toml", "--seconds", "86400", "--record", "a.parquet", "--seed", "3"]);
+    command.current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let process = command.spawn().unwrap();
+    let rows = folder.path().join("frixel-out/.felt.csv.frixel-tmp");
+    while fs::metadata(&rows).map_or(0, |file| file.len()) < 100_000 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+    rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+    assert!(process.wait_with_output().unwrap().status.success());
+    assert!(succeed(folder.path(), &["replay", "a.parquet"]).contains("the same bits"));
+}

@@ -1,0 +1,48 @@
+//! Why a recording cannot be read or written.
+
+use parquet::errors::ParquetError;
+use thiserror::Error;
+
+/// Why a recording cannot be read or written.
+#[derive(Debug, Error)]
+pub enum RecordingError {
+    /// The file has no bytes.
+    #[error("it is empty: give a recording that `frixel play --record` has written")]
+    Empty,
+    /// The file is something else.
+    #[error("it is no Parquet file: give a recording that `frixel play --record` has written")]
+    NoParquet,
+    /// The end is missing, and no whole row group comes before it.
+    #[error(
+        "its end is missing, which says what the rest is, so that nothing can be read: take a whole copy, or record anew"
+    )]
+    Truncated,
+    /// Parquet that is damaged, or of a kind that is not read.
+    #[error("its Parquet cannot be read ({0}): take another copy, or record anew")]
+    Damaged(ParquetError),
+    /// Parquet of another program.
+    #[error("it is a Parquet file without frixel's metadata: give one that `frixel play --record` has written")]
+    Foreign,
+    /// A format of the future.
+    #[error("it has format {found}, and this frixel reads format {known}: update frixel")]
+    Newer {
+        /// Its format.
+        found: String,
+        /// The format that is known.
+        known: u32,
+    },
+    /// Metadata that cannot be read.
+    #[error("its metadata `{key}` cannot be read ({source}): take another copy, or record anew")]
+    Metadata {
+        /// The key.
+        key: &'static str,
+        /// What is wrong.
+        source: serde_json::Error,
+    },
+    /// A column that the metadata does not describe.
+    #[error("its columns are not those that its metadata names: take another copy, or record anew")]
+    OtherColumns,
+    /// It cannot be written.
+    #[error("it cannot be written ({0})")]
+    Write(ParquetError),
+}

@@ -1,0 +1,159 @@
+//! The columns of a recording.
+
+use frixel_felt::recorder::{FeltRow, FlagNames};
+use serde::{Deserialize, Serialize};
+
+/// Name, unit and meaning of a column.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Field {
+    /// Its name, which ends in the unit.
+    pub name: String,
+    /// The unit, as `mm/s`; empty for a number without one and for text.
+    pub unit: String,
+    /// What it is, for people.
+    pub meaning: String,
+    /// What its values are.
+    pub kind: Kind,
+}
+
+/// What the values of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Real numbers.
+    Number,
+    /// Whole numbers.
+    Integer,
+    /// Texts.
+    Text,
+}
+
+/// The values of a column; an unknown one is `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Finite numbers.
+    Numbers(Vec<Option<f64>>),
+    /// Whole numbers.
+    Integers(Vec<Option<i32>>),
+    /// Texts.
+    Texts(Vec<Option<String>>),
+}
+
+impl Values {
+    /// A column of this kind without values.
+    pub(super) fn none(kind: Kind) -> Self {
+        match kind {
+            Kind::Number => Self::Numbers(Vec::new()),
+            Kind::Integer => Self::Integers(Vec::new()),
+            Kind::Text => Self::Texts(Vec::new()),
+        }
+    }
+
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Integers(values) => values.len(),
+            Self::Texts(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A value for comparison by its bits.
+    pub(super) fn bits(&self, row: usize) -> Option<Bits<'_>> {
+        match self {
+            Self::Numbers(values) => values.get(row)?.map(|value| Bits::Number(value.to_bits())),
+            Self::Integers(values) => values.get(row)?.map(Bits::Integer),
+            Self::Texts(values) => values.get(row)?.as_deref().map(Bits::Text),
+        }
+    }
+
+    /// A value for people; empty if it is unknown.
+    pub(super) fn text(&self, row: usize) -> String {
+        match self {
+            Self::Numbers(values) => {
+                values.get(row).copied().flatten().map_or_else(String::new, |value| value.to_string())
+            }
+            Self::Integers(values) => {
+                values.get(row).copied().flatten().map_or_else(String::new, |value| value.to_string())
+            }
+            Self::Texts(values) => values.get(row).cloned().flatten().unwrap_or_default(),
+        }
+    }
+
+    /// The values of some rows.
+    pub(super) fn part(&self, from: usize, to: usize) -> Self {
+        match self {
+            Self::Numbers(values) => Self::Numbers(values.get(from..to).unwrap_or_default().to_vec()),
+            Self::Integers(values) => Self::Integers(values.get(from..to).unwrap_or_default().to_vec()),
+            Self::Texts(values) => Self::Texts(values.get(from..to).unwrap_or_default().to_vec()),
+        }
+    }
+}
+
+/// A value whose equality is that of the bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bits<'a> {
+    Number(u64),
+    Integer(i32),
+    Text(&'a str),
+}
+
+/// How a column is taken from the rows of a play.
+enum Source {
+    Number(fn(&FeltRow) -> Option<f64>),
+    Integer(fn(&FeltRow) -> Option<i32>),
+    Text(fn(&FeltRow) -> Option<String>),
+}
+
+/// Name, unit, meaning and source of each column of a play.
+const PLAY: [(&str, &str, &str, Source); 12] = [
+    ("t_s", "s", "time since the scene began to play, at the end of the row", Source::Number(|row| Some(row.t_s))),
+    ("x_mm", "mm", "the finger's place from the left edge of the screen", Source::Number(|row| row.x_mm)),
+    ("y_mm", "mm", "the finger's place from the top edge of the screen", Source::Number(|row| row.y_mm)),
+    ("speed_mm_s", "mm/s", "the finger's sliding speed", Source::Number(|row| row.speed_mm_s)),
+    ("wanted_n", "N", "the reference: friction of the scene, mean over the row", Source::Number(|row| row.wanted_n)),
+    ("asked_n", "N", "friction that the board commanded, mean over the row", Source::Number(|row| row.asked_n)),
+    ("felt_n", "N", "friction that a simulated finger felt, mean over the row", Source::Number(|row| row.felt_n)),
+    ("natural_n", "N", "the part of it without the drive, mean over the row", Source::Number(|row| row.natural_n)),
+    ("electrode_v_rms", "V", "rms voltage on a simulated electrode", Source::Number(|row| row.electrode_v_rms)),
+    ("voltage_v_rms", "V", "rms voltage of the envelope, as last reported", Source::Number(|row| row.voltage_v_rms)),
+    ("dac_code", "", "the last code that went to the DAC", Source::Integer(|row| row.dac_code.map(i32::from))),
+    (
+        "flags",
+        "",
+        "every flag that the board reported, joined by +",
+        Source::Text(|row| row.flags.map(|flags| FlagNames(flags).to_string())),
+    ),
+];
+
+/// The columns of a play.
+pub fn play_fields() -> Vec<Field> {
+    let field = |(name, unit, meaning, source): &(&str, &str, &str, Source)| Field {
+        name: (*name).to_owned(),
+        unit: (*unit).to_owned(),
+        meaning: (*meaning).to_owned(),
+        kind: match source {
+            Source::Number(_) => Kind::Number,
+            Source::Integer(_) => Kind::Integer,
+            Source::Text(_) => Kind::Text,
+        },
+    };
+    PLAY.iter().map(field).collect()
+}
+
+/// The values of rows of a play, in the order of [`play_fields`]. A number that is not finite is unknown.
+pub fn play_values(rows: &[FeltRow]) -> Vec<Values> {
+    let values = |(.., source): &(&str, &str, &str, Source)| match source {
+        Source::Number(of) => {
+            Values::Numbers(rows.iter().map(|row| of(row).filter(|value| value.is_finite())).collect())
+        }
+        Source::Integer(of) => Values::Integers(rows.iter().map(of).collect()),
+        Source::Text(of) => Values::Texts(rows.iter().map(of).collect()),
+    };
+    PLAY.iter().map(values).collect()
+}

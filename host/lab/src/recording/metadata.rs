@@ -1,0 +1,157 @@
+//! What is known of a recording beside its columns.
+
+use std::collections::BTreeMap;
+
+use frixel_felt::recorder::Marker;
+use frixel_wire::hello::Hello;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Bytes of all files of a recording that are kept as they are; of further ones, only the hash is.
+const EMBEDDED_MAX_BYTES: usize = 4 << 20;
+
+/// What made a recording, and what happened meanwhile.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Metadata {
+    /// Version of frixel that made the recording.
+    pub frixel: String,
+    /// The commit that it was built from, if that was known.
+    pub git_revision: Option<String>,
+    /// Protocol that it speaks: `major.minor`.
+    pub protocol: String,
+    /// Where the scene played: `sim`, `qemu`, or `board` for one at a port.
+    pub rig: String,
+    /// Whether finger or board is simulated. Otherwise a person's finger was on a board, which cannot be played again.
+    pub is_simulated: bool,
+    /// The board.
+    pub board: BoardIdentity,
+    /// Ticks of the board a second.
+    pub tick_hz: u32,
+    /// Ticks between two rows.
+    pub ticks_per_row: u32,
+    /// Code of the participant, if one was given.
+    pub participant: Option<String>,
+    /// How the play was made, in the words of the program that made it: what plays it again reads this.
+    pub play: Value,
+    /// Text of the scene's file.
+    #[serde(skip)]
+    pub scene: String,
+    /// The other files, by what they are (`stroke`, `finger`, `screen`, `touch`) or, after `scene/`, the name by which the
+    /// scene names them.
+    #[serde(skip)]
+    pub files: BTreeMap<String, SourceFile>,
+    /// Scenes that replaced the first one, in their order.
+    #[serde(skip)]
+    pub later_scenes: Vec<LaterScene>,
+    /// What happened, in its order.
+    #[serde(skip)]
+    pub markers: Vec<Marker>,
+}
+
+/// The board of a recording.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoardIdentity {
+    /// Its kind.
+    pub kind: String,
+    /// Its unique identifier, in hexadecimal digits.
+    pub id: String,
+    /// Version of its firmware.
+    pub firmware: String,
+    /// Protocol that it speaks: `major.minor`.
+    pub protocol: String,
+}
+
+impl From<&Hello> for BoardIdentity {
+    fn from(hello: &Hello) -> Self {
+        let (major, minor, patch) = hello.firmware;
+        Self {
+            kind: hello.board.to_string(),
+            id: hex(&hello.id),
+            firmware: format!("{major}.{minor}.{patch}"),
+            protocol: format!("{}.{}", hello.protocol.0, hello.protocol.1),
+        }
+    }
+}
+
+/// A scene that replaced another one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LaterScene {
+    /// Time from which on it played, s.
+    pub t_s: f64,
+    /// Text of its file.
+    pub scene: String,
+}
+
+/// A file that a play was made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SourceFile {
+    /// Its text.
+    Text(String),
+    /// Its bytes in hexadecimal digits, if it is no text.
+    Hex(String),
+    /// A file that is too large to be kept.
+    Hash {
+        /// The SHA-256 of its bytes.
+        sha256: String,
+        /// Number of its bytes.
+        bytes: usize,
+    },
+}
+
+impl SourceFile {
+    /// Files by their names, as long as all of them have few bytes enough; larger ones by their hash.
+    pub fn all<'a>(files: impl IntoIterator<Item = (String, &'a [u8])>) -> BTreeMap<String, Self> {
+        let mut left = EMBEDDED_MAX_BYTES;
+        let mut file = |bytes: &[u8]| match left.checked_sub(bytes.len()) {
+            Some(rest) => {
+                left = rest;
+                std::str::from_utf8(bytes).map_or_else(|_| Self::Hex(hex(bytes)), |text| Self::Text(text.to_owned()))
+            }
+            None => Self::Hash { sha256: hex(&sha256(bytes)), bytes: bytes.len() },
+        };
+        files.into_iter().map(|(name, bytes)| (name, file(bytes))).collect()
+    }
+
+    /// The bytes of the file; `None` if only their hash is known.
+    pub fn bytes(&self) -> Option<Vec<u8>> {
+        match self {
+            Self::Text(text) => Some(text.clone().into_bytes()),
+            Self::Hex(digits) => from_hex(digits),
+            Self::Hash { .. } => None,
+        }
+    }
+}
+
+/// Bytes in hexadecimal digits.
+fn hex(bytes: &[u8]) -> String {
+    let digit = |nibble: u8| char::from_digit(nibble.into(), 16).unwrap_or_default();
+    bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()
+}
+
+fn from_hex(digits: &str) -> Option<Vec<u8>> {
+    let pair = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
+    digits.as_bytes().chunks(2).map(pair).collect()
+}
+
+fn sha256(bytes: &[u8]) -> Vec<u8> {
+    use sha2::Digest;
+    sha2::Sha256::digest(bytes).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_text_or_bytes_or_a_hash() {
+        let large = vec![7; EMBEDDED_MAX_BYTES];
+        let files: [(&str, &[u8]); 3] = [("a", b"version = 2\n"), ("b", &[0xff, 0x00]), ("c", &large)];
+        let files = SourceFile::all(files.map(|(name, bytes)| (name.to_owned(), bytes)));
+        assert_eq!(files["a"], SourceFile::Text("version = 2\n".to_owned()));
+        assert_eq!((&files["b"], files["b"].bytes()), (&SourceFile::Hex("ff00".to_owned()), Some(vec![0xff, 0x00])));
+        assert_eq!(files["c"].bytes(), None);
+        // The example of FIPS 180-4.
+        assert!(hex(&sha256(b"abc")).starts_with("ba7816bf8f01cfea414140de5dae2223"));
+    }
+}

@@ -1,0 +1,178 @@
+//! Recordings from Parquet.
+
+use std::panic::catch_unwind;
+
+use bytes::Bytes;
+use parquet::basic::Type as Physical;
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use serde::de::DeserializeOwned;
+
+use super::parquet_writer::{
+    FORMAT, KEY_COLUMNS, KEY_FILES, KEY_FORMAT, KEY_LATER_SCENES, KEY_MARKERS, KEY_RECORDING, KEY_SCENE,
+};
+use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values};
+
+/// First and last bytes of a Parquet file.
+const MAGIC: &[u8; 4] = b"PAR1";
+
+impl Recording {
+    /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. Of a file whose writer was killed,
+    /// reads what is whole.
+    pub fn read_parquet(bytes: impl Into<Bytes>) -> Result<Self, RecordingError> {
+        let bytes: Bytes = bytes.into();
+        // The decoders of pages check what they read by assertions.
+        catch_unwind(|| read(&bytes)).unwrap_or_else(|_| {
+            Err(RecordingError::Damaged(ParquetError::General("its pages are not as their headers say".to_owned())))
+        })
+    }
+}
+
+fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
+    if bytes.is_empty() {
+        return Err(RecordingError::Empty);
+    }
+    if !bytes.starts_with(MAGIC) {
+        return Err(RecordingError::NoParquet);
+    }
+    let whole = whole_part(bytes)?;
+    let is_cut_off = whole.len() < bytes.len();
+    let file = SerializedFileReader::new(whole).map_err(RecordingError::Damaged)?;
+    let (metadata, fields) = metadata_of(file.metadata())?;
+    let columns = fields.into_iter().enumerate().map(|(index, field)| {
+        let values = values(&file, index, &field)?;
+        Ok(Column { field, values })
+    });
+    let columns = columns.collect::<Result<Vec<_>, RecordingError>>()?;
+    if columns.len() != file.metadata().file_metadata().schema_descr().num_columns() {
+        return Err(RecordingError::OtherColumns);
+    }
+    Ok(Recording { metadata, columns, is_cut_off })
+}
+
+/// Whether a file is a recording of a person, by its last bytes: `8 + N` of them at least, where `N` is the little-endian
+/// number in the first four of the last eight.
+pub fn is_of_person(end: &[u8]) -> bool {
+    let metadata = || {
+        let (before, [a, b, c, d, ..]) = end.split_last_chunk::<8>()?;
+        let len = usize::try_from(u32::from_le_bytes([*a, *b, *c, *d])).ok()?;
+        let encoded = before.get(before.len().checked_sub(len)?..)?;
+        metadata_of(&ParquetMetaDataReader::decode_metadata(encoded).ok()?).ok()
+    };
+    metadata().is_some_and(|(metadata, _)| !metadata.is_simulated)
+}
+
+/// The file up to its last whole footer: all of it, unless its writer was killed.
+fn whole_part(bytes: &Bytes) -> Result<Bytes, RecordingError> {
+    let read = |end: usize| {
+        let part = bytes.slice(..end);
+        ParquetMetaDataReader::new().parse_and_finish(&part).map(|_| part)
+    };
+    let error = match read(bytes.len()) {
+        Ok(whole) => return Ok(whole),
+        Err(error) => error,
+    };
+    let mut end = bytes.len();
+    // A file shorter than this has no footer.
+    while let Some(at) = bytes.get(MAGIC.len()..end).and_then(|part| part.windows(4).rposition(|four| four == MAGIC)) {
+        end = at + 2 * MAGIC.len();
+        if let Ok(whole) = read(end) {
+            return Ok(whole);
+        }
+        end -= 1;
+    }
+    if bytes.ends_with(MAGIC) && bytes.len() > 12 {
+        Err(RecordingError::Damaged(error))
+    } else {
+        Err(RecordingError::Truncated)
+    }
+}
+
+fn metadata_of(file: &ParquetMetaData) -> Result<(Metadata, Vec<Field>), RecordingError> {
+    let pairs = file.file_metadata().key_value_metadata();
+    let text = |key: &str| {
+        let pair = pairs.into_iter().flatten().find(|pair| pair.key == key);
+        pair.and_then(|pair| pair.value.as_deref())
+    };
+    let format = text(KEY_FORMAT).ok_or(RecordingError::Foreign)?;
+    if format != FORMAT.to_string() {
+        return Err(RecordingError::Newer { found: format.to_owned(), known: FORMAT });
+    }
+    let metadata = Metadata {
+        scene: text(KEY_SCENE).unwrap_or_default().to_owned(),
+        files: json(KEY_FILES, text(KEY_FILES))?,
+        later_scenes: json(KEY_LATER_SCENES, text(KEY_LATER_SCENES))?,
+        markers: json(KEY_MARKERS, text(KEY_MARKERS))?,
+        ..json(KEY_RECORDING, text(KEY_RECORDING))?
+    };
+    Ok((metadata, json(KEY_COLUMNS, text(KEY_COLUMNS))?))
+}
+
+fn json<T: DeserializeOwned>(key: &'static str, text: Option<&str>) -> Result<T, RecordingError> {
+    serde_json::from_str(text.unwrap_or_default()).map_err(|source| RecordingError::Metadata { key, source })
+}
+
+/// The values of a column over all row groups.
+fn values(file: &SerializedFileReader<Bytes>, index: usize, field: &Field) -> Result<Values, RecordingError> {
+    let described = file.metadata().file_metadata().schema_descr().columns().get(index).cloned();
+    let physical = match field.kind {
+        Kind::Number => Physical::DOUBLE,
+        Kind::Integer => Physical::INT32,
+        Kind::Text => Physical::BYTE_ARRAY,
+    };
+    let is_same = |column: &parquet::schema::types::ColumnDescPtr| {
+        column.name() == field.name && column.physical_type() == physical && column.max_def_level() == 1
+    };
+    if !described.is_some_and(|column| is_same(&column)) {
+        return Err(RecordingError::OtherColumns);
+    }
+    let mut values = Values::none(field.kind);
+    for group in 0..file.num_row_groups() {
+        read_group(file, group, index, &mut values).map_err(RecordingError::Damaged)?;
+    }
+    Ok(values)
+}
+
+fn read_group(
+    file: &SerializedFileReader<Bytes>,
+    group: usize,
+    index: usize,
+    values: &mut Values,
+) -> ParquetResult<()> {
+    let group = file.get_row_group(group)?;
+    let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+    match (group.get_column_reader(index)?, values) {
+        (ColumnReader::DoubleColumnReader(column), Values::Numbers(values)) => {
+            values.extend(read_column(column, rows)?);
+        }
+        (ColumnReader::Int32ColumnReader(column), Values::Integers(values)) => {
+            values.extend(read_column(column, rows)?);
+        }
+        (ColumnReader::ByteArrayColumnReader(column), Values::Texts(values)) => {
+            for bytes in read_column(column, rows)? {
+                let text = bytes.map(|bytes| bytes.as_utf8().map(str::to_owned)).transpose()?;
+                values.push(text);
+            }
+        }
+        _ => return Err(ParquetError::General("a column has another type than its description".to_owned())),
+    }
+    Ok(())
+}
+
+/// The values of a column in one row group; an absent one is `None`.
+fn read_column<T: DataType>(mut column: ColumnReaderImpl<T>, rows: usize) -> ParquetResult<Vec<Option<T::T>>> {
+    let (mut levels, mut known) = (Vec::new(), Vec::new());
+    let mut read = 0;
+    while read < rows {
+        let (records, ..) = column.read_records(rows - read, Some(&mut levels), None, &mut known)?;
+        if records == 0 {
+            return Err(ParquetError::EOF(format!("{read} of {rows} rows are there")));
+        }
+        read += records;
+    }
+    let mut known = known.into_iter();
+    Ok(levels.into_iter().map(|level| if level == 0 { None } else { known.next() }).collect())
+}

@@ -1,0 +1,159 @@
+//! Recordings to Parquet.
+
+use std::io::Write;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int32Type};
+use parquet::errors::Result as ParquetResult;
+use parquet::file::metadata::{FileMetaData, KeyValue, ParquetMetaData, ParquetMetaDataWriter};
+use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterVersion};
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{SchemaDescriptor, Type};
+
+use super::{Field, Kind, Metadata, ROWS_PER_GROUP, Recording, RecordingError, Values, arrow_schema};
+
+/// Number of the format, in the metadata `frixel.format`.
+pub(super) const FORMAT: u32 = 1;
+/// Keys of the metadata.
+pub(super) const KEY_FORMAT: &str = "frixel.format";
+pub(super) const KEY_RECORDING: &str = "frixel.recording";
+pub(super) const KEY_SCENE: &str = "frixel.scene";
+pub(super) const KEY_FILES: &str = "frixel.files";
+pub(super) const KEY_LATER_SCENES: &str = "frixel.later_scenes";
+pub(super) const KEY_MARKERS: &str = "frixel.markers";
+pub(super) const KEY_COLUMNS: &str = "frixel.columns";
+
+impl Recording {
+    /// Writes the recording as a Parquet file.
+    pub fn write_parquet<W: Write + Send>(&self, to: W) -> Result<(), RecordingError> {
+        let fields = self.columns.iter().map(|column| column.field.clone()).collect();
+        let mut writer = ParquetWriter::new(to, fields)?;
+        for from in (0..self.rows()).step_by(ROWS_PER_GROUP) {
+            let to = self.rows().min(from + ROWS_PER_GROUP);
+            let values: Vec<Values> = self.columns.iter().map(|column| column.values.part(from, to)).collect();
+            writer.write(&values)?;
+        }
+        writer.end(&self.metadata)
+    }
+}
+
+/// Writes a recording as Parquet, row group by row group.
+///
+/// After each [`Self::end`], what was written is a whole Parquet file. More row groups may follow: a footer that others
+/// follow is skipped by readers. So a file that grows is lost only from the last `end` on.
+pub struct ParquetWriter<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    fields: Vec<Field>,
+    rows: i64,
+}
+
+impl<W: Write + Send> ParquetWriter<W> {
+    /// Begins a file with these columns.
+    pub fn new(to: W, fields: Vec<Field>) -> Result<Self, RecordingError> {
+        let properties = WriterProperties::builder()
+            .set_writer_version(WriterVersion::PARQUET_1_0)
+            .set_compression(Compression::SNAPPY)
+            .set_statistics_enabled(EnabledStatistics::None)
+            .set_offset_index_disabled(true)
+            .build();
+        let schema = schema(&fields).map_err(RecordingError::Write)?;
+        let writer = SerializedFileWriter::new(to, Arc::new(schema), Arc::new(properties));
+        Ok(Self { writer: writer.map_err(RecordingError::Write)?, fields, rows: 0 })
+    }
+
+    /// Writes a row group: the values of each column, in the order of the fields, of equal numbers.
+    pub fn write(&mut self, columns: &[Values]) -> Result<(), RecordingError> {
+        self.rows += columns.first().map_or(0, Values::len) as i64;
+        write_group(&mut self.writer, columns).map_err(RecordingError::Write)
+    }
+
+    /// Ends the file here, with the metadata of all that was written. [`Self::write`] may go on behind it.
+    pub fn end(&mut self, metadata: &Metadata) -> Result<(), RecordingError> {
+        let pairs = pairs(metadata, &self.fields)?;
+        let end = |writer: &mut SerializedFileWriter<W>| -> ParquetResult<()> {
+            let schema = Arc::new(SchemaDescriptor::new(writer.schema_descr().root_schema_ptr()));
+            let created_by = format!("frixel version {}", metadata.frixel);
+            let file = FileMetaData::new(1, self.rows, Some(created_by), Some(pairs), schema, None);
+            let whole = ParquetMetaData::new(file, writer.flushed_row_groups().to_vec());
+            let mut footer = Vec::new();
+            ParquetMetaDataWriter::new(&mut footer, &whole).finish()?;
+            writer.write_all(&footer)?;
+            Ok(writer.flush()?)
+        };
+        end(&mut self.writer).map_err(RecordingError::Write)
+    }
+
+    /// Where the file goes. What is written there by others makes the file unreadable; a buffer may be emptied.
+    pub fn get_mut(&mut self) -> &mut W {
+        self.writer.inner_mut()
+    }
+}
+
+/// The metadata as pairs of keys and values.
+fn pairs(metadata: &Metadata, fields: &[Field]) -> Result<Vec<KeyValue>, RecordingError> {
+    let json = |key, value: Result<String, serde_json::Error>| match value {
+        Ok(text) => Ok(KeyValue::new(key_name(key), text)),
+        Err(source) => Err(RecordingError::Metadata { key, source }),
+    };
+    Ok(vec![
+        KeyValue::new(key_name(KEY_FORMAT), FORMAT.to_string()),
+        json(KEY_RECORDING, serde_json::to_string(metadata))?,
+        KeyValue::new(key_name(KEY_SCENE), metadata.scene.clone()),
+        json(KEY_FILES, serde_json::to_string(&metadata.files))?,
+        json(KEY_LATER_SCENES, serde_json::to_string(&metadata.later_scenes))?,
+        json(KEY_MARKERS, serde_json::to_string(&metadata.markers))?,
+        json(KEY_COLUMNS, serde_json::to_string(fields))?,
+        KeyValue::new(key_name(arrow_schema::KEY), arrow_schema::encoded(fields)),
+    ])
+}
+
+fn key_name(key: &str) -> String {
+    key.to_owned()
+}
+
+fn schema(fields: &[Field]) -> ParquetResult<Type> {
+    let column = |field: &Field| -> ParquetResult<Arc<Type>> {
+        let (physical, logical) = match field.kind {
+            Kind::Number => (Physical::DOUBLE, None),
+            Kind::Integer => (Physical::INT32, None),
+            Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        };
+        let column = Type::primitive_type_builder(&field.name, physical).with_repetition(Repetition::OPTIONAL);
+        Ok(Arc::new(column.with_logical_type(logical).build()?))
+    };
+    let columns = fields.iter().map(column).collect::<ParquetResult<Vec<_>>>()?;
+    Type::group_type_builder("schema").with_fields(columns).build()
+}
+
+fn write_group<W: Write + Send>(writer: &mut SerializedFileWriter<W>, columns: &[Values]) -> ParquetResult<()> {
+    let mut group = writer.next_row_group()?;
+    for values in columns {
+        let Some(mut column) = group.next_column()? else { break };
+        match values {
+            Values::Numbers(values) => write_column::<DoubleType>(&mut column, values.iter().copied()),
+            Values::Integers(values) => write_column::<Int32Type>(&mut column, values.iter().copied()),
+            Values::Texts(values) => {
+                let bytes = |text: &Option<String>| text.as_deref().map(ByteArray::from);
+                write_column::<ByteArrayType>(&mut column, values.iter().map(bytes))
+            }
+        }?;
+        column.close()?;
+    }
+    group.close()?;
+    Ok(())
+}
+
+fn write_column<T: DataType>(
+    column: &mut SerializedColumnWriter<'_>,
+    values: impl ExactSizeIterator<Item = Option<T::T>>,
+) -> ParquetResult<()> {
+    let mut levels = Vec::with_capacity(values.len());
+    let mut known = Vec::with_capacity(values.len());
+    for value in values {
+        levels.push(i16::from(value.is_some()));
+        known.extend(value);
+    }
+    column.typed::<T>().write_batch(&known, Some(&levels), None)?;
+    Ok(())
+}

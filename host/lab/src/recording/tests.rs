@@ -1,0 +1,187 @@
+use std::sync::Arc;
+
+use frixel_felt::recorder::{FeltRow, MarkedEvent, Marker};
+use frixel_wire::fault::Flags;
+
+use super::*;
+
+/// Rows in which every column has known and unknown values.
+fn rows(count: u32) -> Vec<FeltRow> {
+    let row = |row: u32| {
+        let known = |value: f64| (!row.is_multiple_of(3)).then_some(value);
+        let t_s = 1e-3 * f64::from(row + 1);
+        FeltRow {
+            t_s,
+            x_mm: known(10.0 + 0.1 * t_s),
+            felt_n: known(0.25 + 1e-9 * f64::from(row)),
+            electrode_v_rms: Some(f64::NAN),
+            dac_code: (row % 2 == 1).then_some(-5 - (row % 100) as i16),
+            flags: (row % 4 == 1).then_some(Flags::SATURATED.with(Flags::STILL)),
+            ..FeltRow::default()
+        }
+    };
+    (0..count).map(row).collect()
+}
+
+fn metadata(is_simulated: bool) -> Metadata {
+    let files: [(&str, &[u8]); 2] = [("stroke", b"t_s,x_mm,y_mm\n"), ("scene/brick.png", &[0x89, 0xff])];
+    Metadata {
+        frixel: "0.1.0".to_owned(),
+        rig: "sim".to_owned(),
+        is_simulated,
+        tick_hz: 40_000,
+        ticks_per_row: 40,
+        participant: Some("P07".to_owned()),
+        play: serde_json::json!({ "seed": u64::MAX, "seconds": 0.1 + 0.2 }),
+        scene: "version = 2\n".to_owned(),
+        files: SourceFile::all(files.map(|(name, bytes)| (name.to_owned(), bytes))),
+        later_scenes: vec![LaterScene { t_s: 0.5, scene: "version = 2\n# later\n".to_owned() }],
+        markers: vec![
+            Marker { ticks: 0, t_s: 0.0, event: MarkedEvent::SceneBegan },
+            Marker {
+                ticks: 1234,
+                t_s: 0.03085,
+                event: MarkedEvent::LayerChanged { layer: "layer 1 \"OK\"".to_owned(), on: true, gain: 0.1 },
+            },
+        ],
+        ..Metadata::default()
+    }
+}
+
+fn recording(count: u32) -> Recording {
+    Recording::of_rows(metadata(true), &rows(count))
+}
+
+fn bytes(recording: &Recording) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    recording.write_parquet(&mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn what_is_written_is_read_and_the_bytes_are_the_same_each_time() {
+    for count in [0, 1, ROWS_PER_GROUP as u32 + 7] {
+        let written = recording(count);
+        let first = bytes(&written);
+        assert_eq!(first, bytes(&written));
+        let read = Recording::read_parquet(first).unwrap();
+        assert_eq!(read, written);
+        assert_eq!((read.rows(), read.first_difference(&written)), (count as usize, None));
+    }
+    let read = Recording::read_parquet(bytes(&recording(3))).unwrap();
+    let texts = Values::Texts(vec![None, Some("saturated+still".to_owned()), None]);
+    assert_eq!(read.column("flags").unwrap().values, texts);
+    assert_eq!(
+        read.column("electrode_v_rms").unwrap().values,
+        Values::Numbers(vec![None; 3]),
+        "not a number is unknown"
+    );
+}
+
+/// A unit stands in the name as well, so that it is there in a table without metadata.
+#[test]
+fn every_number_has_a_unit_and_every_column_a_meaning() {
+    for Field { name, unit, meaning, kind } in play_fields() {
+        assert!(!meaning.is_empty(), "{name}");
+        let ending = name.rsplit_once('_').map_or("", |(_, ending)| ending);
+        assert_eq!(unit.is_empty(), kind != Kind::Number, "{name}");
+        assert!(
+            unit.is_empty() || name.contains("_v_rms") || unit.to_lowercase().ends_with(ending),
+            "{name} in {unit}"
+        );
+    }
+}
+
+#[test]
+fn the_first_difference_is_the_first_row() {
+    let one = recording(100);
+    let mut other = one.clone();
+    let Values::Numbers(felt) = &mut other.columns[6].values else { panic!("numbers") };
+    felt[50] = felt[50].map(|felt_n| f64::from_bits(felt_n.to_bits() + 1));
+    let Values::Numbers(x) = &mut other.columns[1].values else { panic!("numbers") };
+    x[70] = None;
+    let Some(Difference::Cell { row: 50, column, .. }) = one.first_difference(&other) else { panic!("a cell") };
+    assert_eq!(column, "felt_n");
+    let shorter = recording(99);
+    assert_eq!(one.first_difference(&shorter), Some(Difference::Rows { one: 100, other: 99 }));
+    assert!(matches!(
+        one.first_difference(&Recording { columns: Vec::new(), ..one.clone() }),
+        Some(Difference::Columns { .. })
+    ));
+}
+
+/// A file that grows: after each end it is whole, and what follows is lost alone.
+#[test]
+fn a_writer_that_is_killed_loses_the_last_row_group() {
+    let all = rows(300);
+    let mut writer = ParquetWriter::new(Vec::new(), play_fields()).unwrap();
+    let mut ends = vec![];
+    for hundred in all.chunks(100) {
+        writer.write(&play_values(hundred)).unwrap();
+        writer.end(&metadata(false)).unwrap();
+        ends.push(writer.get_mut().len());
+    }
+    let bytes = std::mem::take(writer.get_mut());
+    let [first, second, third] = ends[..] else { panic!("{ends:?}") };
+    assert_eq!(third, bytes.len());
+    for (len, rows, is_cut_off) in [
+        (first, 100, false),
+        (first + 1, 100, true),
+        (second - 5, 100, true),
+        (second, 200, false),
+        (third, 300, false),
+    ] {
+        let read = Recording::read_parquet(bytes[..len].to_vec()).unwrap();
+        assert_eq!((read.rows(), read.is_cut_off), (rows, is_cut_off), "{len} bytes");
+        let whole = Recording { is_cut_off, ..Recording::of_rows(metadata(false), &all[..rows]) };
+        assert_eq!(read, whole, "{len} bytes");
+    }
+    assert!(matches!(Recording::read_parquet(bytes[..first - 1].to_vec()), Err(RecordingError::Truncated)));
+    assert!(is_of_person(&bytes) && !is_of_person(&bytes[..first - 1]));
+}
+
+#[test]
+fn what_is_no_recording_is_refused_with_what_to_do() {
+    let own = bytes(&recording(10));
+    assert!(!is_of_person(&own), "it is simulated");
+    let foreign = {
+        let schema = parquet::schema::types::Type::group_type_builder("schema").build().unwrap();
+        let writer = parquet::file::writer::SerializedFileWriter::new(Vec::new(), schema.into(), Arc::default());
+        writer.unwrap().into_inner().unwrap()
+    };
+    let replaced = |from: &str, to: &str| {
+        let at = own.windows(from.len()).rposition(|part| part == from.as_bytes()).unwrap();
+        [&own[..at], to.as_bytes(), &own[at + to.len()..]].concat()
+    };
+    let format = own.windows(13).rposition(|part| part == b"frixel.format").unwrap();
+    // The key is followed by the head and the length of the value.
+    let value = format + 13 + 2;
+    assert_eq!(own[value], b'1');
+    let newer = [&own[..value], b"2", &own[value + 1..]].concat();
+    let cases: [(Vec<u8>, &str); 8] = [
+        (Vec::new(), "it is empty"),
+        (b"t_s,x_mm\n".to_vec(), "no Parquet file"),
+        (own[..own.len() - 1].to_vec(), "its end is missing"),
+        (b"PAR1".to_vec(), "its end is missing"),
+        (foreign, "without frixel's metadata"),
+        (newer, "format 2, and this frixel reads format 1"),
+        (replaced("\"is_simulated\":true", "\"is_simulated\":1234"), "`frixel.recording` cannot be read"),
+        (replaced("\"name\":\"felt_n\"", "\"name\":\"melt_n\""), "not those that its metadata names"),
+    ];
+    for (bytes, says) in cases {
+        let error = Recording::read_parquet(bytes).unwrap_err().to_string();
+        assert!(error.contains(says) && error.contains(": "), "{says}: {error}");
+    }
+}
+
+/// Bytes that are wrong anywhere are an error or a recording, and no panic.
+#[test]
+fn a_damaged_file_is_no_panic() {
+    let own = bytes(&recording(200));
+    for at in (0..own.len()).step_by(own.len() / 400) {
+        let mut damaged = own.clone();
+        damaged[at] ^= 0x5a;
+        let _ = Recording::read_parquet(damaged);
+        let _ = Recording::read_parquet(own[..at].to_vec());
+    }
+}
