@@ -15,6 +15,7 @@ from pathlib import Path
 
 import frixel
 import numpy as np
+import pyarrow.parquet as parquet
 import pytest
 from frixel import ParameterError, Scene, Simulator, Stroke
 
@@ -55,6 +56,7 @@ def test_a_play_has_the_bits_of_the_command(
     rows = felt_csv(tmp_path, path, *options)
     recording = frixel.run({"scene": Scene.load(path), "seconds": seconds, **arguments})
     assert recording.rows == len(rows) > 400
+    assert [row["flags"] for row in rows] == recording["flags"].tolist()
     for column, decimals in {**DECIMALS, "voltage_v_rms": 4, "dac_code": 0}.items():
         written = np.array([float(row[column] or "nan") for row in rows])
         # Half a step of the file is the most that its rounding takes away.
@@ -113,12 +115,32 @@ def test_a_recording_becomes_tables() -> None:
     assert list(frame.columns) == list(frixel.COLUMNS) == list(recording)
     assert len(frame) == recording.rows == 100
     assert frame.attrs["seed"] == 2
+    assert frame["flags"].iloc[-1] == str(recording["flags"][-1])
     dataset = recording.to_xarray()
     assert dataset.felt_n.attrs["units"] == "N"
     np.testing.assert_array_equal(dataset.t_s, recording["t_s"])
     copy = pickle.loads(pickle.dumps(recording))
     np.testing.assert_array_equal(copy["felt_n"], recording["felt_n"])
     assert "100 rows, 0.100 s" in repr(recording)
+
+
+def test_a_recording_as_parquet_has_what_the_command_records(tmp_path: Path, scenes: Path) -> None:
+    path, ours, theirs = scenes / "brick.toml", tmp_path / "ours.parquet", tmp_path / "theirs.parquet"
+    felt_csv(tmp_path, path, "--seconds", "0.5", "--record", str(theirs))
+    recording = Simulator(Scene.load(path)).run(0.5)
+    recording.to_parquet(ours)
+    one, other = (parquet.read_table(file) for file in (ours, theirs))
+    assert one.column_names == other.column_names == list(frixel.COLUMNS)
+    assert one.num_rows == 500
+    assert one.equals(other), "the same bits"
+    metadata = one.schema.metadata
+    assert metadata[b"frixel.scene"].decode() == path.read_text(encoding="utf-8")
+    assert b"textures/" in metadata[b"frixel.files"]
+    copy = pickle.loads(pickle.dumps(recording))
+    copy.to_parquet(tmp_path / "copy.parquet")
+    assert (tmp_path / "copy.parquet").read_bytes() == ours.read_bytes()
+    with pytest.raises(frixel.FrixelError, match="this file cannot be written"):
+        recording.to_parquet(tmp_path / "nowhere" / "ours.parquet")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent as on Unix")
