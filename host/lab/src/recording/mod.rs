@@ -18,6 +18,7 @@ use frixel_felt::recorder::FeltRow;
 pub use error::RecordingError;
 pub use fields::{Field, Kind, Values, play_fields, play_values};
 pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
+pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::ParquetWriter;
 
@@ -60,6 +61,17 @@ impl Recording {
     /// The column of a name.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.field.name == name)
+    }
+
+    /// The columns as CSV text with a header, every number with all of its digits; an unknown value is an empty cell.
+    pub fn to_csv(&self) -> Vec<u8> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        // Writing into memory does not fail, and every row has as many cells as the header.
+        let _ = writer.write_record(self.columns.iter().map(|column| column.field.name.as_str()));
+        for row in 0..self.rows() {
+            let _ = writer.write_record(self.columns.iter().map(|column| column.values.text(row)));
+        }
+        writer.into_inner().unwrap_or_default()
     }
 
     /// The first row in which another recording differs by a bit, and the first column there; `None` if there is none.
