@@ -16,7 +16,7 @@ use std::fmt::{self, Display};
 use frixel_felt::recorder::FeltRow;
 
 pub use error::RecordingError;
-pub use fields::{Field, Kind, Values, play_fields, play_values};
+pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
 pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
 pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
@@ -51,6 +51,26 @@ impl Recording {
         let columns = play_fields().into_iter().zip(play_values(rows));
         let columns = columns.map(|(field, values)| Column { field, values }).collect();
         Self { metadata, columns, is_cut_off: false }
+    }
+
+    /// The recording of a table in CSV, with commas between columns and points in numbers, that has these columns.
+    pub fn of_csv(metadata: Metadata, csv: &[u8], fields: Vec<Field>) -> Result<Self, RecordingError> {
+        let mut reader = csv::Reader::from_reader(csv);
+        let header = reader.headers().map_err(RecordingError::Table)?.clone();
+        let place = |field: &Field| header.iter().position(|name| name == field.name);
+        let places: Vec<usize> =
+            fields.iter().map(|field| place(field).ok_or(RecordingError::OtherColumns)).collect::<Result<_, _>>()?;
+        let column = |field: Field| Column { values: Values::none(field.kind), field };
+        let mut columns: Vec<Column> = fields.into_iter().map(column).collect();
+        for row in reader.records() {
+            let row = row.map_err(RecordingError::Table)?;
+            for (column, place) in columns.iter_mut().zip(&places) {
+                if !column.values.push(row.get(*place).unwrap_or_default()) {
+                    return Err(RecordingError::OtherColumns);
+                }
+            }
+        }
+        Ok(Self { metadata, columns, is_cut_off: false })
     }
 
     /// Number of rows.

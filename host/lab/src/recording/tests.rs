@@ -111,6 +111,17 @@ fn a_recording_is_a_stroke_and_its_table_has_every_digit() {
 }
 
 #[test]
+fn a_table_is_a_recording_if_its_cells_are_what_its_columns_say() {
+    let read = |csv: &str| Recording::of_csv(metadata(true), csv.as_bytes(), stroke_fields());
+    let whole = read("y_mm,t_s,x_mm,note\n3,0.005,2,a\n,0.010,,b\n").unwrap();
+    assert_eq!(whole.column("x_mm").unwrap().values, Values::Numbers(vec![Some(2.0), None]));
+    assert_eq!((whole.rows(), whole.columns.len()), (2, 3));
+    for wrong in ["t_s,x_mm\n", "t_s,x_mm,y_mm\n0,one,2\n", "t_s,x_mm,y_mm\n0,inf,2\n", "t_s,x_mm,y_mm\n0,1\n"] {
+        assert!(read(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
 fn the_first_difference_is_the_first_row() {
     let one = recording(100);
     let mut other = one.clone();
