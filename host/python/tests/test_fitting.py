@@ -22,7 +22,7 @@ def measured() -> dict[str, np.ndarray]:
     finger = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=10e-6)
     stroke = np.repeat(np.arange(24), 200)
     voltage = np.where(np.arange(4800) % 200 < 100, 0.0, np.array([75.0, 100.0, 150.0])[stroke % 3])
-    load = np.array([0.3, 0.5, 0.8, 1.0])[stroke % 4]
+    load = np.array([0.46, 0.49, 0.51, 0.54])[stroke % 4]
     friction = model.eval(finger, voltage, load).friction_n * (1 + 0.01 * noise.standard_normal(4800))
     return {"voltage_v_rms": voltage, "normal_force_n": load, "friction_n": friction, "stroke": stroke}
 
