@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["FrixelError", "Mistake", "ParameterError", "PlayError", "SceneError"]
+__all__ = ["FitError", "FrixelError", "Mistake", "ParameterError", "PlayError", "SceneError"]
 
 
 class FrixelError(Exception):
@@ -14,6 +14,10 @@ class FrixelError(Exception):
 
 class ParameterError(FrixelError, ValueError):
     """A value that is not taken: the message says what was found, and what is expected."""
+
+
+class FitError(FrixelError, ValueError):
+    """Measured friction does not give a finger: the message says why, and what to measure."""
 
 
 class PlayError(FrixelError):

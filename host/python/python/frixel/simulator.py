@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from . import _frixel
 from .errors import ParameterError
 from .profiles import Finger, Screen, TouchSource
@@ -99,13 +101,19 @@ class Simulator:
         """
         columns = _frixel.simulate(self.scene.compiled, self, seconds)
         settings = {
+            "frixel": _frixel.__version__,
             "scene": self.scene.name,
+            "stroke": None if self.stroke is None else repr(self.stroke),
+            "seconds": seconds,
             "seed": self.seed,
             "person": self.person,
+            "touch": None if self.touch is None else self.touch.name,
             "ideal": self.ideal,
-            "frixel_version": _frixel.__version__,
+            "leakage": self.leakage,
+            "rows_per_s": self.rows_per_s,
         }
-        return Recording(columns, {name: value for name, value in settings.items() if value is not None})
+        given = {name: value for name, value in settings.items() if value is not None}
+        return Recording({name: np.asarray(values) for name, values in columns.items()}, given, self.scene)
 
 
 def run(cell: Mapping[str, Any]) -> Recording:
