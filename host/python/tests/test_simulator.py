@@ -105,6 +105,19 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
         (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), "both numbers, or neither"),
         (lambda: Simulator(FLAT, stroke=Stroke.from_arrays([1, 0], [1, 2], [1, 2])).run(), "rising"),
+        (lambda: Simulator("brick.toml"), "Scene.load reads a file, found 'brick.toml'"),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, seed=-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
+        (lambda: Simulator(FLAT, person=1.5), "person is a whole number from 0 to 18446744073709551615, found 1.5"),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, rows_per_s=0), "rows_per_s is a whole number from 1 to 40000, found 0"),
+        (
+            lambda: Simulator(FLAT, rows_per_s=2**40).run(1),
+            "rows_per_s is a whole number from 1 to 40000, found 1099511627776",
+        ),
+        (lambda: Simulator(FLAT, finger="me.toml"), "Finger.load reads a file"),
+        (lambda: Simulator(FLAT, finger=3), "a finger is a Finger, a name, or a table, found 3"),  # type: ignore[arg-type]
+        (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 10000, found 0"),
+        (lambda: Stroke.straight((1,), (2, 3)), "a place is x and y in mm"),  # type: ignore[arg-type]
+        (lambda: Stroke.human(-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
         (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is called `50`"),
     ],
 )

@@ -13,9 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel, _toml
+from .errors import whole
 from .profiles import Finger, Screen, TouchSource, read_bytes
 
 __all__ = ["Scene"]
+
+MAP_MAX_PX = 10_000
+"""Largest width and height of a map, pixels."""
 
 
 class Scene:
@@ -150,7 +154,9 @@ class Scene:
             Electric friction at the middle of each pixel, N, of shape (rows, columns), from the top left. Vibrations
             and streams are at their largest.
         """
-        return self.compiled.map(width, height, 1e-3 * speed_mm_s)[0]
+        return self.compiled.map(
+            whole("width", width, 1, MAP_MAX_PX), whole("height", height, 1, MAP_MAX_PX), 1e-3 * speed_mm_s
+        )[0]
 
     def __repr__(self) -> str:
         width, height = self.screen_mm
