@@ -2,6 +2,7 @@
 
 import doctest
 import io
+import itertools
 import json
 import math
 import re
@@ -156,9 +157,10 @@ def test_intervals_contain_the_truth_and_guessers_get_no_threshold(task: Task, n
     # Of 60 intervals that contain the truth with 95 %, fewer than 51 do once in 1,600 runs.
     assert coverage * (people - refused) >= 51 - refused
     assert abs(bias) < 0.2
-    assert refused <= 4
-    # Of 60 guessers, 1 % each: more than 4 are fooled once in 2,700 runs.
-    assert fooled <= 4
+    # Where false alarms have to be found out as well, evidence of 90 trials is short for one observer in eight.
+    assert refused <= (2 if task == TWO_ALTERNATIVES else 15)
+    # Of 60 guessers, at most one in 1,000 each: more than 1 is fooled once in 570 runs.
+    assert fooled <= 1
 
 
 def test_an_observer_that_compares_frictions_is_right_as_often_as_one_that_compares_levels() -> None:
@@ -175,8 +177,16 @@ def test_a_guesser_is_told_so() -> None:
     )
     assert found.threshold is None
     assert found.interval is None
-    assert str(found).startswith("no better than guessing: 96 trials have an evidence of ")
+    assert str(found).startswith("no better than guessing: 96 trials are ")
     assert str(estimate(Answers(), TWO_ALTERNATIVES)).startswith("no better than guessing: 0 trials")
+
+
+def test_guessing_is_as_likely_as_the_average_of_all_answers_to_it() -> None:
+    # Over every series of answers of one who guesses, the likelihood ratio has a mean of 1: so says Ville's inequality.
+    levels = [0.05, 0.1, 0.2, 0.4]
+    series = itertools.product([False, True], repeat=len(levels))
+    ratios = [estimate(Answers(zip(levels, answers, strict=True)), TWO_ALTERNATIVES).evidence for answers in series]
+    assert np.mean(ratios) == pytest.approx(1.0, abs=1e-9)
 
 
 def test_levels_that_are_all_felt_bound_a_threshold_on_one_side_only() -> None:
@@ -254,8 +264,11 @@ def test_a_session_that_was_cut_off_goes_on_without_repeating_an_answer(tmp_path
     with opened(tmp_path / "whole") as session:
         whole, person = run(session, Person()), Person()
         rows = session.rows
-    with opened(tmp_path / "cut") as session, pytest.raises(KeyboardInterrupt):
-        run(session, Person(fails_at=6))
+    with opened(tmp_path / "cut") as session:
+        with pytest.raises(KeyboardInterrupt):
+            run(session, Person(fails_at=6))
+        with pytest.raises(ExperimentError, match="open the session again"):
+            run(session, Person())
     # As a crash in the middle of a write leaves it.
     with (tmp_path / "cut" / "trials.jsonl").open("ab") as file:
         file.write(b'{"number": 6, "bl')

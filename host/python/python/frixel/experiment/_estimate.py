@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TextIO
@@ -12,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from ._psychometric import Array, Grid, Task
 
-EVIDENCE_MIN = 9.21
-"""Least ``2 ln(likelihood ratio)`` against guessing: 1 % of those who guess have more (chi square of two degrees)."""
+EVIDENCE_MIN = 1000.0
+"""Least likelihood ratio to guessing: at most one in 1,000 who guess has more, whatever the method, and however often
+one looks (Ville's inequality)."""
 
 
 class Answers:
@@ -81,7 +83,7 @@ class Estimate:
     interval: tuple[float, float] | None
     """95 % interval of the threshold: it holds 95 % of the posterior, and each side beyond it 2.5 %."""
     evidence: float
-    """Twice the logarithm of the likelihood ratio of the best psychometric function to guessing."""
+    """How many times as likely the answers are of somebody who notices, averaged over the grid, as of a guesser."""
     trials: int
     """Number of trials."""
     is_bounded: bool
@@ -91,8 +93,8 @@ class Estimate:
     def __str__(self) -> str:
         if self.threshold is None or self.interval is None:
             return (
-                f"no better than guessing: {self.trials} trials have an evidence of {self.evidence:.1f}, "
-                f"and {EVIDENCE_MIN} is needed"
+                f"no better than guessing: {self.trials} trials are {self.evidence:.2g} times as likely of somebody "
+                f"who notices, and {EVIDENCE_MIN:.0f} times is needed"
             )
         low, high = self.interval
         more = "" if self.is_bounded else "; it reaches beyond the levels that were presented: present others"
@@ -109,12 +111,14 @@ def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate
     >>> 0.05 < found.interval[0] < found.threshold < found.interval[1] < 0.3
     True
     >>> print(estimate(Answers([(0.4, True)] * 15 + [(0.4, False)] * 15), TWO_ALTERNATIVES))
-    no better than guessing: 30 trials have an evidence of 0.0, and 9.21 is needed
+    no better than guessing: 30 trials are 0.14 times as likely of somebody who notices, and 1000 times is needed
     """
     grid = grid or Grid()
     log_likelihood = answers.log_likelihood(task, grid)
-    evidence = 2.0 * (float(log_likelihood.max()) - answers.log_likelihood_of_guessing(task)) if len(answers) else 0.0
-    evidence = max(evidence, 0.0)
+    most = float(log_likelihood.max())
+    log_average = most + math.log(float(np.exp(log_likelihood - most).mean()))
+    # A number beyond this is no plainer.
+    evidence = math.exp(min(log_average - answers.log_likelihood_of_guessing(task), 700.0))
     if evidence < EVIDENCE_MIN:
         return Estimate(None, None, evidence, len(answers), False)
     posterior = np.exp(log_likelihood - log_likelihood.max()).sum(axis=(1, 2, 3))

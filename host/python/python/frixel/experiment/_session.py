@@ -81,6 +81,7 @@ class Session:
             self.close()
             raise
         self._replayed = 0
+        self._is_cut_off = False
         self._begin_s = time.monotonic()
 
     def __enter__(self) -> Session:
@@ -119,8 +120,11 @@ class Session:
         1 for "different". ``practice`` are levels of trials before the first one, which count for nothing. After every
         ``catch_every`` trials of the method, a trial at level 0 follows. ``on_break`` is called with the number of
         trials so far, after every ``break_every``; an exception in it or in ``play`` and ``answer`` ends the run, and
-        the next one goes on there.
+        the same program goes on there when it opens the session again.
         """
+        if self._is_cut_off:
+            raise ExperimentError("the run before this one was cut off: open the session again, and it goes on there")
+        self._is_cut_off = True
         answers = Answers()
         for practised in practice:
             self._trial(play, answer, block, float(practised), is_practice=True)
@@ -134,6 +138,7 @@ class Session:
                 answers.add(0.0, self._trial(play, answer, block, 0.0, is_catch=True))
             if on_break and break_every and count % break_every == 0 and self._replayed == len(self._rows):
                 on_break(count)
+        self._is_cut_off = False
         return answers
 
     def estimate(self, answers: Answers) -> Estimate:
