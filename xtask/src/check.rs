@@ -9,7 +9,7 @@ use crate::needs::{Machine, Missing, Need};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
 use crate::test_programs::{self, Programs};
-use crate::{bench, budgets, fuzz, inputs, portability, results, stamps, studio_tests};
+use crate::{bench, budgets, fuzz, inputs, portability, python, results, stamps, studio_tests};
 
 /// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 8] =
@@ -41,7 +41,7 @@ pub(crate) const M3_TARGET: Need = Need::Target(M3);
 pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 
 /// All checks, in the order in which they run: a cheap one fails first.
-const STAGES: [Stage; 15] = [
+const STAGES: [Stage; 16] = [
     Stage { name: "format", tier: Tier::First, needs: &[FORMAT], run: format },
     Stage { name: "lints", tier: Tier::First, needs: &[CLIPPY], run: lints },
     Stage { name: "feature sets", tier: Tier::First, needs: &[M4F_TARGET, CLIPPY, Need::Git], run: feature_sets },
@@ -85,6 +85,7 @@ const STAGES: [Stage; 15] = [
         needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
         run: budgets_stage,
     },
+    Stage { name: "python", tier: Tier::All, needs: &python::NEEDS, run: python_module },
     Stage { name: "other systems", tier: Tier::All, needs: &portability::NEEDS, run: other_systems },
     Stage {
         name: "fuzz targets for libFuzzer",
@@ -174,6 +175,10 @@ fn studio_beside_the_command() -> Result<Outcome, String> {
 
 fn budgets_stage() -> Result<Outcome, String> {
     unless_firmware_unchanged("budgets", || passed(check_budgets()))
+}
+
+fn python_module() -> Result<Outcome, String> {
+    stamps::unless_unchanged("python", &python::inputs(&packages()?), || passed(python::check()))
 }
 
 fn other_systems() -> Result<Outcome, String> {

@@ -28,10 +28,11 @@ struct Reads {
     tests: &'static [&'static str],
 }
 
-const READS: [Reads; 6] = [
+const READS: [Reads; 7] = [
     Reads { package: "frixel", source: &["scenes"], tests: &["README.md", "docs", "firmware"] },
     Reads { package: "frixel-fuzz", source: &["scenes"], tests: &[] },
     Reads { package: "frixel-hil-sim", source: &[], tests: &["firmware"] },
+    Reads { package: "frixel-lab", source: &[], tests: &["scenes"] },
     Reads { package: "frixel-scene", source: &["scenes"], tests: &["docs"] },
     Reads { package: "frixel-studio", source: &["scenes"], tests: &[] },
     // It looks at the manifests, lock files and sources of every package, and at the licences in the page.

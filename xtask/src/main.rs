@@ -12,6 +12,7 @@ mod licences;
 mod needs;
 mod outcome;
 mod portability;
+mod python;
 mod results;
 mod soak;
 mod stages;
@@ -30,7 +31,7 @@ use needs::{Need, require};
 
 const USAGE: &str = "\
 cargo xtask test     format, lints, images, all tests but those on emulators, the studio in a browser, docs
-         --all       and what is slow: tests on emulators, budgets, other systems, fuzz targets; what CI runs
+         --all       and what is slow: tests on emulators, budgets, Python, other systems, fuzz targets; CI runs it
 cargo xtask soak     the parts of what takes too long for that; each takes an hour at most
 cargo xtask soak PART
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
@@ -42,6 +43,7 @@ cargo xtask studio   the studio as one HTML file; its path is the last line
 cargo xtask studio-test
                      types and lints of the studio's scripts, and the studio in a browser: needs node,
                      npm and Chromium
+cargo xtask python   the Python module in a fresh virtual environment: wheel, types, lints, tests, examples
 cargo xtask fuzz SECONDS
                      each fuzz target for this time, with libFuzzer; needs a C++ compiler
 cargo xtask programs PACE FIRST COUNT
@@ -73,6 +75,11 @@ fn main() -> ExitCode {
                 .and_then(|()| studio_tests::check_scripts())
                 .and_then(|()| studio_tests::run_page())
                 .and_then(|()| studio_tests::run_beside_command());
+            results::print();
+            result
+        }
+        ["python"] => {
+            let result = require(&python::NEEDS).and_then(|()| python::check());
             results::print();
             result
         }

@@ -16,6 +16,9 @@ const CHROMIUM: &str = "/usr/bin/chromium";
 /// The oldest node that runs the tests of the studio.
 const NODE_MAJOR_MIN: u32 = 20;
 
+/// Fails without the parts of Python that Debian packages apart, and where it is older than 3.11.
+const PYTHON_PROBE: &str = "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))";
+
 /// One thing that a stage needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Need {
@@ -32,6 +35,8 @@ pub(crate) enum Need {
     Chromium,
     /// A compiler for C++, which libFuzzer is written in.
     CppCompiler,
+    /// Python with what makes virtual environments.
+    Python,
 }
 
 impl Need {
@@ -46,6 +51,7 @@ impl Need {
             Self::Npm => "npm".to_owned(),
             Self::Chromium => "Chromium".to_owned(),
             Self::CppCompiler => "a C++ compiler (c++)".to_owned(),
+            Self::Python => "python3, 3.11 or newer, with venv".to_owned(),
         }
     }
 
@@ -60,6 +66,7 @@ impl Need {
             Self::Npm => "Debian: `apt-get install npm`".to_owned(),
             Self::Chromium => "Debian: `apt-get install chromium`, or set CHROMIUM to its path".to_owned(),
             Self::CppCompiler => "Debian: `apt-get install g++`".to_owned(),
+            Self::Python => "Debian: `apt-get install python3-venv`".to_owned(),
         }
     }
 
@@ -118,6 +125,7 @@ impl Machine {
             Need::Npm => runs("npm"),
             Need::Chromium => self.chromium.is_file(),
             Need::CppCompiler => runs("c++"),
+            Need::Python => self.text("python3", &["-c", PYTHON_PROBE]).is_some(),
         }
     }
 
@@ -212,12 +220,13 @@ mod tests {
 
     const TARGET: Need = Need::Target("thumbv7m-none-eabi");
     const CLIPPY: Need = Need::Component("clippy", "clippy");
-    const STAGES: [(&str, &[Need]); 5] = [
+    const STAGES: [(&str, &[Need]); 6] = [
         ("lints", &[CLIPPY]),
         ("images", &[TARGET, CLIPPY]),
         ("browser", &[Need::Node, Need::Npm, Need::Chromium]),
         ("emulators", &[TARGET, Need::Emulator]),
         ("tests", &[Need::Git]),
+        ("python", &[Need::Python]),
     ];
 
     /// A folder of made-up programs, which is the whole PATH.
@@ -270,7 +279,9 @@ mod tests {
             "missing  npm",
             "missing  Chromium",
             "missing  git: Debian: `apt-get install git`",
+            "missing  python3, 3.11 or newer, with venv: Debian: `apt-get install python3-venv`",
             "SKIPPED  tests: without git",
+            "SKIPPED  python: without python3, 3.11 or newer, with venv",
             "SKIPPED  lints: without clippy",
             "SKIPPED  images: without target thumbv7m-none-eabi, clippy",
             "SKIPPED  browser: without node 20 or newer, npm, Chromium",

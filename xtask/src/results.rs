@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 /// What the runners of this run have reported.
 static RESULTS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Runs a test runner, cargo's or node's: prints its output as it comes, without its results, which [`print()`] prints.
+/// Runs a test runner, cargo's, node's or pytest: prints its output as it comes, without its results, which [`print()`] prints.
 /// Fails if it fails.
 pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
     eprintln!("-- {name}");
@@ -36,14 +36,19 @@ pub(crate) fn print() {
     }
 }
 
-/// Whether a line counts tests: `test result: ok. 5 passed; …` of cargo, `# pass 5` or `ℹ pass 5` of node.
+/// Whether a line counts tests: `test result: ok. 5 passed; …` of cargo, `# pass 5` or `ℹ pass 5` of node, `5 passed in 2.10s`
+/// of pytest.
 fn is_result(line: &str) -> bool {
     let of_node = |rest: &str| {
         let (word, number) = rest.split_once(' ').unwrap_or_default();
         let words = ["tests", "suites", "pass", "fail", "cancelled", "skipped", "todo", "duration_ms"];
         words.contains(&word) && number.parse::<f64>().is_ok()
     };
-    line.starts_with("test result: ") || line.strip_prefix("# ").or(line.strip_prefix("ℹ ")).is_some_and(of_node)
+    let of_pytest =
+        line.starts_with(|first: char| first.is_ascii_digit()) && line.contains(" passed") && line.contains(" in ");
+    line.starts_with("test result: ")
+        || of_pytest
+        || line.strip_prefix("# ").or(line.strip_prefix("ℹ ")).is_some_and(of_node)
 }
 
 #[cfg(test)]
@@ -57,6 +62,8 @@ mod tests {
             "# tests 12",
             "ℹ pass 12",
             "# duration_ms 812.31",
+            "5 passed in 2.10s",
+            "1 failed, 4 passed, 2 skipped in 61.02s (0:01:01)",
         ] {
             assert!(is_result(line), "{line}");
         }

@@ -3,7 +3,6 @@
 #![forbid(unsafe_code)]
 
 mod commands;
-mod default_stroke;
 mod input;
 pub mod output;
 pub mod output_file;
@@ -18,7 +17,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use commands::Cli;
-pub use default_stroke::default_stroke;
 
 /// Runs the `frixel` command with the arguments of this process.
 ///

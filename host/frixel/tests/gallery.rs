@@ -6,13 +6,13 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use frixel::default_stroke;
 use frixel::output::draw_preview_png;
 use frixel::scene_file;
 use frixel_felt::Preview;
 use frixel_felt::perception::{weber_steps, weber_steps_safe};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
+use frixel_lab::default_stroke::default_stroke;
 use frixel_lab::simulation::{Simulation, simulate};
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_scene::reference::{Context, Reference, direction_of};

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 use frixel_felt::recorder::MarkedEvent;
-use frixel_lab::recording::{Recording, SourceFile, Values};
+use frixel_lab::recording::{Recording, SourceFile, Values, calibration_fields};
 use tempfile::TempDir;
 
 use crate::processes::{frixel, repository, run, succeed};
@@ -198,6 +198,22 @@ fn replay_names_the_first_difference_or_why_it_cannot_play() {
         assert!(said.contains("person.parquet is a recording of a person, which no result replaces"), "{line}: {said}");
         assert!(fs::read(folder.join("person.parquet")).unwrap() == before);
     }
+}
+
+#[test]
+fn a_calibration_is_parquet_by_its_name_and_fits_the_same() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    for name in ["data.csv", "data.parquet"] {
+        succeed(folder, &["calibrate", "--strokes", "9", "-o", name]);
+    }
+    let recording = read(folder, "data.parquet");
+    assert_eq!((recording.columns.len(), recording.metadata.is_simulated), (6, true));
+    let csv = fs::read(folder.join("data.csv")).unwrap();
+    let of_csv = Recording::of_csv(recording.metadata.clone(), &csv, calibration_fields()).unwrap();
+    assert_eq!(of_csv.first_difference(&recording), None);
+    let fit = |name: &str| succeed(folder, &["fit", name, "--json"]);
+    assert_eq!(fit("data.csv"), fit("data.parquet"));
 }
 
 /// Ctrl-C leaves a whole recording, and what it has is played again.

@@ -3,6 +3,7 @@
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.
 //! - [`threshold`]: what a person just feels, from a staircase of answers.
+//! - [`default_stroke`]: the stroke of a play that names none.
 //! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
@@ -16,6 +17,7 @@
 
 mod bootstrap;
 pub mod calibration;
+pub mod default_stroke;
 pub mod fit;
 pub mod model_csv;
 pub mod recording;

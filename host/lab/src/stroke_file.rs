@@ -12,8 +12,18 @@ const X: Column = Column::new("x_mm", "mm from the left edge of the screen").con
 const Y: Column = Column::new("y_mm", "mm from the top edge of the screen").converted(Unit::Millimetres);
 /// The normal load, which may be left out.
 const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::Newtons);
-/// Columns of `felt.csv` that a stroke does not need.
-const OF_A_PLAY: [&str; 7] = ["speed_mm_s", "wanted_n", "asked_n", "felt_n", "voltage_v_rms", "dac_code", "flags"];
+/// Columns of a play that a stroke does not need.
+const OF_A_PLAY: [&str; 9] = [
+    "speed_mm_s",
+    "wanted_n",
+    "asked_n",
+    "felt_n",
+    "natural_n",
+    "electrode_v_rms",
+    "voltage_v_rms",
+    "dac_code",
+    "flags",
+];
 /// A load above it is one in another unit.
 const LOAD_MAX_N: f64 = 50.0;
 const MM_PER_M: f64 = 1e3;

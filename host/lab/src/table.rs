@@ -7,6 +7,8 @@
 //! commas, in UTF-16. What a file has is found from its first 64 KiB, and what can be read in two ways is refused.
 //! [`Table::understood`] says in a sentence what was found.
 //!
+//! A Parquet file of [`recording`](crate::recording) is a table, too, with its rows numbered as those of its CSV.
+//!
 //! Cells may have blanks around them. Blank lines, and lines that start with `#`, are skipped. Rows are numbered as the
 //! lines of the file, so that an editor or a spreadsheet shows the row that a message names.
 
@@ -17,9 +19,11 @@ mod unit;
 mod utf16;
 
 use std::borrow::Cow;
-use std::io::{Chain, Cursor, Read};
+use std::io::{self, Chain, Cursor, Read};
 
 use csv::{ByteRecord, Reader, ReaderBuilder};
+
+use crate::recording::{MAGIC, Recording};
 
 pub(crate) use dialect::Dialect;
 use dialect::Digits;
@@ -105,6 +109,11 @@ impl<R: Read> Table<R> {
         let mut input = Utf8::new(input).map_err(TableError::Read)?;
         let mut head = Vec::new();
         input.by_ref().take(HEAD_BYTES).read_to_end(&mut head).map_err(TableError::Read)?;
+        if head.starts_with(MAGIC) {
+            input.read_to_end(&mut head).map_err(TableError::Read)?;
+            let recording = Recording::read_parquet(head).map_err(|error| TableError::Read(io::Error::other(error)))?;
+            head = recording.to_csv();
+        }
         let is_whole = (head.len() as u64) < HEAD_BYTES;
         let dialect = Dialect::of(&mut head, is_whole, input.order())?;
         let input = Lines::new(Cursor::new(head).chain(input));

@@ -7,11 +7,13 @@ use frixel_scene::reference::{Context, Reference};
 
 use super::likeness::Likeness;
 use super::moment::{MOMENT_HZ, Moment};
-use super::{BTreeMap, FINGERTIP_M, NoticedBorder, Sums, starts_on};
+use super::{BTreeMap, FINGERTIP_M, NoticedBorder, Sums, near_count, starts_on};
 use crate::perception::{border_reference, border_sides, total_n, visible_layers};
 
 /// Longest way on either side of a border, m.
 const SIDE_MAX_M: f64 = 0.01;
+/// A fingertip resolves 1 mm, half of which is on either side of a border, m: texture that is finer has its mean there.
+const EDGE_M: f64 = 5e-4;
 /// Longest time on either side of a border, in moments: 200 ms.
 const SIDE_MAX: usize = 400;
 /// A shorter time on one side is a corner, in moments: 2 ms.
@@ -29,7 +31,7 @@ pub(super) struct Crossings {
 #[derive(Clone, Copy, Debug, Default)]
 struct Crossed {
     count: f64,
-    /// Friction on either side, electric, the mean over a fingertip's resolution, N.
+    /// Friction on either side, electric, the mean over [`EDGE_M`], N.
     sides_n: [f64; 2],
     /// The layers that are only on that side, a bit each.
     layers: [u64; 2],
@@ -65,7 +67,9 @@ impl Crossings {
 
     /// Adds a border that is crossed at a moment, with the moments before and after it that count, from the border away.
     fn cross(&mut self, run: &[Moment], border: usize, [first, second]: [Range<usize>; 2]) {
-        let near = border - first.start.max(SIDE_MIN)..border + second.start.max(SIDE_MIN);
+        let (edge, behind_edge) =
+            (near_count(run.iter().take(border).rev(), EDGE_M), near_count(run.iter().skip(border), EDGE_M));
+        let near = border - edge.clamp(1, first.end)..border + behind_edge.clamp(1, second.end);
         let (before, after) = (border - first.end..border - first.start, border + second.start..border + second.end);
         let side = |moments: Range<usize>| {
             let moments = run.get(moments)?;
@@ -105,10 +109,7 @@ impl Crossings {
     pub(super) fn noticed(&self) -> Vec<NoticedBorder> {
         let noticed = |(sides, crossed): (&[Option<usize>; 2], &Crossed)| {
             let friction_n = crossed.sides_n.map(|sum_n| sum_n / crossed.count);
-            // What the display adds is no step of the scene; without a bound, what is felt of a scene that is the same on
-            // both sides, such as two fine textures, would be a large part of nothing.
-            let part = crossed.likeness.part_of_scene().min(crossed.sums.part_wanted());
-            let step = crossed.sums.felt_step(friction_n, part);
+            let step = crossed.sums.felt_step(friction_n, crossed.likeness.part_of_scene(), self.program.reach);
             NoticedBorder { sides: *sides, layers: crossed.layers, step }
         };
         self.borders.iter().map(noticed).collect()

@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use frixel_layers::{Direction, Layer};
-use frixel_scene::Program;
 use frixel_scene::reference::Reference;
+use frixel_scene::{Program, Reach};
 use serde::Serialize;
 
 use crate::fidelity::FidelitySample;
@@ -133,15 +133,13 @@ impl Sums {
         self.natural_n += moment.natural_n;
     }
 
-    /// What a display without fault would have given of the scene's friction, under the load of the finger.
-    fn part_wanted(&self) -> f64 {
-        if self.scene_n > 0.0 { self.wanted_n / self.scene_n } else { 1.0 }
-    }
-
-    /// The step between two electric frictions of the scene, of which a part is felt.
-    fn felt_step(&self, [from_n, to_n]: [f64; 2], part: f64) -> Step {
+    /// The step between two electric frictions of the scene, of which a part is felt: at most as much as the drive can give
+    /// this finger. A large part of next to nothing is no more.
+    fn felt_step(&self, [from_n, to_n]: [f64; 2], part: f64, reach: Reach) -> Step {
         let [scene_n, felt_n, natural_n] = [self.scene_n, self.felt_n, self.natural_n].map(|sum| sum / self.count);
-        let total_n = |electric_n: f64| natural_n + (felt_n + part * (electric_n - scene_n)).max(0.0);
+        let load = if self.scene_n > 0.0 { (self.wanted_n / self.scene_n).max(1.0) } else { 1.0 };
+        let most_n = load * reach.electric_friction_max_n;
+        let total_n = |electric_n: f64| natural_n + (felt_n + part * (electric_n - scene_n)).clamp(0.0, most_n);
         Step::new(total_n(from_n), total_n(to_n))
     }
 }
@@ -219,8 +217,11 @@ impl Noticing {
 
     /// The layers that the finger touched, from bottom to top.
     pub fn layers(&self) -> Vec<NoticedLayer> {
-        let touched = self.layers.iter().enumerate().filter(|(_, touches)| touches.moments >= TOUCH_MIN);
-        touched.map(|(layer, touches)| touches.noticed(layer, self.program.reach.natural_friction_n)).collect()
+        let touched =
+            self.layers.iter().enumerate().filter(|(_, touches)| {
+                touches.moments >= std::env::var("SFT").map_or(TOUCH_MIN, |v| v.parse().unwrap())
+            });
+        touched.map(|(layer, touches)| touches.noticed(layer, self.program.reach)).collect()
     }
 
     /// The borders that the finger crossed, those of lower layers first.
@@ -268,13 +269,14 @@ impl Touches {
         if scene_n.abs() > CHANGE_MIN_N { (felt_n / scene_n).max(0.0) } else { self.likeness.slope() }
     }
 
-    fn noticed(&self, layer: usize, scenes_natural_n: f64) -> NoticedLayer {
+    fn noticed(&self, layer: usize, reach: Reach) -> NoticedLayer {
+        let scenes_natural_n = reach.natural_friction_n;
         let Self { sums, uppermost, widest_n, texture, .. } = self;
         let widest_n = widest_n.unwrap_or_default();
         let [least_n, most_n] = widest_n.map(|electric_n| scenes_natural_n + electric_n);
         NoticedLayer {
             layer,
-            contrast: sums.felt_step(widest_n, self.felt_part()),
+            contrast: sums.felt_step(widest_n, self.felt_part(), reach),
             texture: *texture,
             level: (uppermost.count >= TOUCH_MIN as f64).then(|| Level {
                 scene_n: scenes_natural_n + uppermost.scene_n / uppermost.count,
@@ -310,18 +312,18 @@ fn stretches(run: &[Moment], is_wanted: impl Fn(&Moment) -> bool) -> Vec<std::op
 
 /// The moments of a stretch that are farther from both of its ends than a fingertip's resolution.
 fn inner(stretch: &[Moment]) -> &[Moment] {
-    let from = near_count(stretch.iter());
-    let to = stretch.len() - near_count(stretch.iter().rev());
+    let from = near_count(stretch.iter(), FINGERTIP_M);
+    let to = stretch.len() - near_count(stretch.iter().rev(), FINGERTIP_M);
     stretch.get(from..to).unwrap_or_default()
 }
 
-/// How many moments of a way are nearer to its beginning than a fingertip's resolution.
-fn near_count<'m>(way: impl Iterator<Item = &'m Moment>) -> usize {
+/// How many moments of a way are nearer to its beginning than a distance.
+fn near_count<'m>(way: impl Iterator<Item = &'m Moment>, distance_m: f64) -> usize {
     let ways_m = way.scan(0.0, |way_m, moment| {
         *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
         Some(*way_m)
     });
-    ways_m.take_while(|way_m| *way_m < FINGERTIP_M).count()
+    ways_m.take_while(|way_m| *way_m < distance_m).count()
 }
 
 /// Parts of a touch that are at most [`WAY_MAX_M`] long.

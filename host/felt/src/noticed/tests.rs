@@ -154,8 +154,9 @@ fn a_display_adds_no_step_to_a_border() {
     let [border] = noticing.borders()[..] else { panic!("{:?}", noticing.borders()) };
     assert!(border.step.weber_steps.abs() < 0.3, "{border:?}");
     let plate = program(&[PLATE]);
-    let step = |gain| slide(&plate, gain, 0.0).borders()[0].step.weber_steps;
-    assert!((step(1.5) / step(1.0) - 1.0).abs() < 0.2, "{} and {}", step(1.5), step(1.0));
+    let [natural_n, most_n] = [plate.reach.natural_friction_n, plate.reach.electric_friction_max_n];
+    let strong = slide(&plate, 5.0, 0.0).borders()[0].step.weber_steps;
+    assert!((strong - Step::new(natural_n, natural_n + most_n).weber_steps).abs() < 0.1, "{strong}");
 }
 
 /// A late display has the level of a plate, and a bar that is as narrow as a fingertip resolves has none.

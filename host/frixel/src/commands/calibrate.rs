@@ -9,13 +9,17 @@ mod recorded;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use frixel_lab::calibration::{BoardRow, CalibrationError, ForceRow, align, read_board, write_csv};
+use frixel_lab::calibration::{CalibrationError, align, read_board, write_csv};
+use frixel_lab::recording::calibration_fields;
+use frixel_wire::hello::Hello;
 
 use super::error::CommandError;
 use super::experiment;
 use super::interrupt::Interrupt;
+use super::parquet;
 use super::terminal::say;
 use crate::output_file::{Inputs, Recording};
+use recorded::Recorded;
 
 /// How to keep what a board reported until the recording was cut off.
 const CUT_OFF: &str = "add --finish, and the --forces of that run unless they came on standard input, to keep it";
@@ -25,10 +29,13 @@ pub(super) struct CalibrateArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// The recording, for `frixel fit`. Until the end, what a board reports is in a file of the same name and
-    /// `.partial`.
+    /// The recording, for `frixel fit`: CSV, or Parquet by the name DATA.parquet. Until the end, what a board reports is
+    /// CSV in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
+    /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
+    #[arg(long, value_name = "CODE", value_parser = super::argument::participant)]
+    participant: Option<String>,
     /// Replace an earlier recording.
     #[arg(long)]
     overwrite: bool,
@@ -58,6 +65,7 @@ pub(super) struct CalibrateArgs {
 }
 
 pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
+    parquet::check_participant(&args.output, args.participant.as_deref())?;
     let inputs = Inputs::new(&args.forces);
     let recording = Recording::new(&args.output, "-o", &inputs, args.overwrite, CUT_OFF)?;
     if args.finish {
@@ -71,11 +79,11 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
         forces::read(path)?;
     }
     let recorded = if args.port == "sim" {
-        recorded::on_simulator(args, &recording, &interrupt)
+        recorded::on_simulator(args, &recording, &interrupt).map(|recorded| (recorded, None))
     } else {
-        recorded::on_port(args, &recording, &interrupt, partial)
+        recorded::on_port(args, &recording, &interrupt, partial).map(|(recorded, hello)| (recorded, Some(hello)))
     };
-    let written = recorded.and_then(|(board, forces)| write(args, &recording, &board, &forces));
+    let written = recorded.and_then(|(recorded, hello)| write(args, &recording, &recorded, hello.as_ref()));
     written.map_err(|error| experiment::cut_off(&recording, error))
 }
 
@@ -85,20 +93,28 @@ fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<(), CommandErro
     let board = read_board(text.as_bytes())?;
     let copied = forces::copy(args)?.partial();
     let forces = forces::read(args.forces.as_deref().unwrap_or(&copied))?;
-    write(args, recording, &board, &forces)
+    write(args, recording, &(board, forces), None)
 }
 
 /// Joins what board and sensor saw, and writes it.
 fn write(
     args: &CalibrateArgs,
     recording: &Recording,
-    board: &[BoardRow],
-    forces: &[ForceRow],
+    (board, forces): &Recorded,
+    hello: Option<&Hello>,
 ) -> Result<(), CommandError> {
     let rows = align(board, forces)?;
     let (output, mut bytes) = (recording.output(), Vec::new());
     write_csv(&mut bytes, &rows)?;
-    output.write(&bytes)?;
+    if parquet::is_named_so(&args.output) {
+        // What was cut off is of a board: a simulator needs no file until the end.
+        let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
+        let rig = if hello.is_none() && is_simulated { "sim" } else { "board" };
+        let metadata = parquet::metadata(rig, hello, is_simulated, args.participant.as_deref());
+        parquet::write(output, &bytes, calibration_fields(), metadata)?;
+    } else {
+        output.write(&bytes)?;
+    }
     recording.discard_partial();
     forces::copy(args)?.discard_partial();
     let path = output.path().display();

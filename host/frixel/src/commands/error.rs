@@ -245,6 +245,8 @@ pub(crate) enum CommandError {
     Stopped { port: String, reason: StopReason },
     #[error("{}: {source}", path.display())]
     Recording { path: PathBuf, source: RecordingError },
+    #[error("--participant goes into a Parquet file, and {} is none by its name: give one that ends in .parquet", path.display())]
+    ParticipantInTable { path: PathBuf },
     #[error("{} cannot be played again: {reason}", path.display())]
     NoReplay { path: PathBuf, reason: String },
     #[error(

@@ -13,6 +13,7 @@ mod interrupt;
 mod jobs;
 mod model;
 mod new;
+mod parquet;
 mod play;
 mod ports;
 mod profiles;

@@ -9,11 +9,14 @@ use crate::output_file::{FileWriter, Inputs, Recording};
 use clap::Args;
 use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
 use frixel_felt::recorder::Observation;
+use frixel_lab::recording::stroke_fields;
 use frixel_lab::table::{Column, Table, TableError};
+use frixel_wire::hello::Hello;
 
 use super::error::CommandError;
 use super::experiment::cut_off;
 use super::interrupt::Interrupt;
+use super::parquet;
 use super::terminal::{note, say};
 use super::waiting;
 
@@ -30,10 +33,13 @@ pub(super) struct RecordArgs {
     /// Path of the board's serial port.
     #[arg(long, required_unless_present = "finish")]
     port: Option<String>,
-    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`. Until the end, its rows are
-    /// in a file of the same name and `.partial`.
+    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`, or a Parquet file by the name
+    /// FILE.parquet. Until the end, its rows are CSV in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
+    /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
+    #[arg(long, value_name = "CODE", value_parser = super::argument::participant)]
+    participant: Option<String>,
     /// Replace an earlier recording.
     #[arg(long)]
     overwrite: bool,
@@ -46,11 +52,12 @@ pub(super) struct RecordArgs {
 }
 
 pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
+    parquet::check_participant(&args.output, args.participant.as_deref())?;
     let recording = Recording::new(&args.output, "-o", &Inputs::default(), args.overwrite, CUT_OFF)?;
     if args.finish {
         let (writer, text) = recording.resume()?;
         let other = |error: TableError| CommandError::OtherRow { partial: recording.partial(), found: error.found() };
-        return finish(&recording, writer, touched(&text).map_err(other)?);
+        return finish(args, &recording, writer, touched(&text).map_err(other)?, None);
     }
     // Without a port, the recording is finished above.
     let port = args.port.as_deref().unwrap_or_default();
@@ -60,7 +67,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
     let mut device = waiting::watch(device, &interrupt);
     let mut rows = Rows::new(writer, device.hello().tick_hz)?;
     match record(args, &mut device, &interrupt, &mut rows) {
-        Ok(()) => finish(&recording, rows.writer, rows.touched),
+        Ok(()) => finish(args, &recording, rows.writer, rows.touched, Some(device.hello())),
         Err(error) => {
             drop(rows);
             Err(cut_off(&recording, error))
@@ -108,12 +115,27 @@ fn touched(text: &str) -> Result<u64, TableError> {
     Ok(touched)
 }
 
-/// Gives the file its name.
-fn finish(recording: &Recording, writer: FileWriter, touched: u64) -> Result<(), CommandError> {
+/// Gives the file its name, as CSV or as Parquet.
+fn finish(
+    args: &RecordArgs,
+    recording: &Recording,
+    writer: FileWriter,
+    touched: u64,
+    board: Option<&Hello>,
+) -> Result<(), CommandError> {
     if touched == 0 {
         return Err(CommandError::NothingRecorded);
     }
-    writer.commit()?;
+    if parquet::is_named_so(&args.output) {
+        drop(writer);
+        let (_rows, text) = recording.resume()?;
+        let is_simulated = board.is_some_and(|hello| hello.board.is_simulated());
+        let metadata = parquet::metadata("board", board, is_simulated, args.participant.as_deref());
+        parquet::write(recording.output(), text.as_bytes(), stroke_fields(), metadata)?;
+        recording.discard_partial();
+    } else {
+        writer.commit()?;
+    }
     let (output, seconds) = (recording.output(), touched as f64 / f64::from(ROWS_HZ));
     say(output, format_args!("  {:<16} {}, {seconds:.1} s of touch", "wrote", output.path().display()))
 }

@@ -6,6 +6,8 @@ use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
+use frixel_lab::recording::Recording;
+
 use super::folders::{VirtualBoard, until};
 use super::{ANSWERS, Folder, Ran};
 
@@ -117,6 +119,30 @@ fn a_killed_record_leaves_its_rows_which_the_next_one_names_and_finishes() {
     assert!(folder.read("me.csv.partial").is_none());
     let ran = folder.run("record --finish -o other.csv");
     assert!(ran.code == Some(1) && ran.notes.contains("leave --finish out"), "{}", ran.notes);
+}
+
+/// The rows are CSV until the recording is whole, so that what was cut off is kept in the same way.
+#[test]
+fn a_recorded_stroke_is_parquet_by_its_name_also_after_a_kill() {
+    let folder = Folder::new();
+    let board = VirtualBoard::start(&folder, "sim --out board --from 10,20 --to 90,20");
+    let line = format!("record --port {} -o me.parquet --participant P07", board.port);
+    let ran = run_in_time(&folder, &format!("{line} --seconds 0.5"));
+    assert!(ran.code == Some(0) && ran.said.contains("me.parquet, 0."), "{}{}", ran.said, ran.notes);
+    assert!(folder.read("me.parquet.partial").is_none());
+    let read = || Recording::read_parquet(folder.read("me.parquet").unwrap()).unwrap();
+    let metadata = read().metadata;
+    assert_eq!((metadata.rig.as_str(), metadata.is_simulated, metadata.tick_hz), ("board", true, 40_000));
+    assert_eq!((metadata.participant.as_deref(), metadata.board.kind.as_str()), (Some("P07"), "simulator"));
+
+    kill_at(&folder, &line, "me.parquet.partial", 100, "");
+    let rows = folder.text("me.parquet.partial");
+    drop(board);
+    let ran = folder.run("record --finish --overwrite -o me.parquet");
+    assert_eq!(ran.code, Some(0), "{}", ran.notes);
+    assert_eq!(read().rows(), rows.lines().count() - 1);
+    assert!(!read().metadata.is_simulated, "nobody says that it was simulated");
+    assert_eq!(folder.run("play scene.toml --seconds 0.3 --stroke me.parquet").code, Some(0));
 }
 
 #[test]

@@ -42,6 +42,9 @@ pub enum RecordingError {
     /// A column that the metadata does not describe.
     #[error("its columns are not those that its metadata names: take another copy, or record anew")]
     OtherColumns,
+    /// A table that cannot be read.
+    #[error("its table cannot be read ({0}): correct or delete the row")]
+    Table(csv::Error),
     /// It cannot be written.
     #[error("it cannot be written ({0})")]
     Write(ParquetError),

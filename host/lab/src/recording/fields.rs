@@ -16,6 +16,13 @@ pub struct Field {
     pub kind: Kind,
 }
 
+impl Field {
+    /// A column by its name, its unit, its meaning and what its values are.
+    fn of((name, unit, meaning, kind): (&str, &str, &str, Kind)) -> Self {
+        Self { name: name.to_owned(), unit: unit.to_owned(), meaning: meaning.to_owned(), kind }
+    }
+}
+
 /// What the values of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -47,6 +54,17 @@ impl Values {
             Kind::Integer => Self::Integers(Vec::new()),
             Kind::Text => Self::Texts(Vec::new()),
         }
+    }
+
+    /// Adds the value of a cell of a table; false if it is none.
+    pub(super) fn push(&mut self, cell: &str) -> bool {
+        let is_empty = cell.is_empty();
+        match self {
+            Self::Numbers(values) => values.push(cell.parse().ok().filter(|number: &f64| number.is_finite())),
+            Self::Integers(values) => values.push(cell.parse().ok()),
+            Self::Texts(values) => values.push((!is_empty).then(|| cell.to_owned())),
+        }
+        is_empty || self.bits(self.len() - 1).is_some()
     }
 
     /// Number of values.
@@ -131,17 +149,42 @@ const PLAY: [(&str, &str, &str, Source); 12] = [
     ),
 ];
 
+/// The columns of a stroke that `frixel record` writes.
+const STROKE: [(&str, &str, &str, Kind); 3] = [
+    ("t_s", "s", "time since the first touch", Kind::Number),
+    ("x_mm", "mm", "the finger's place from the left edge of the screen", Kind::Number),
+    ("y_mm", "mm", "the finger's place from the top edge of the screen", Kind::Number),
+];
+
+/// The columns of a calibration.
+const CALIBRATION: [(&str, &str, &str, Kind); 6] = [
+    ("time_s", "s", "time on the board's clock", Kind::Number),
+    ("stroke", "", "name of the stroke", Kind::Text),
+    ("voltage_v_rms", "V", "rms voltage of the envelope", Kind::Number),
+    ("normal_force_n", "N", "force of the finger on the screen", Kind::Number),
+    ("friction_n", "N", "friction that the sensor measured", Kind::Number),
+    ("speed_mm_s", "mm/s", "the finger's sliding speed", Kind::Number),
+];
+
+/// The columns of a stroke.
+pub fn stroke_fields() -> Vec<Field> {
+    STROKE.map(Field::of).into()
+}
+
+/// The columns of a calibration.
+pub fn calibration_fields() -> Vec<Field> {
+    CALIBRATION.map(Field::of).into()
+}
+
 /// The columns of a play.
 pub fn play_fields() -> Vec<Field> {
-    let field = |(name, unit, meaning, source): &(&str, &str, &str, Source)| Field {
-        name: (*name).to_owned(),
-        unit: (*unit).to_owned(),
-        meaning: (*meaning).to_owned(),
-        kind: match source {
-            Source::Number(_) => Kind::Number,
-            Source::Integer(_) => Kind::Integer,
-            Source::Text(_) => Kind::Text,
-        },
+    let kind = |source: &Source| match source {
+        Source::Number(_) => Kind::Number,
+        Source::Integer(_) => Kind::Integer,
+        Source::Text(_) => Kind::Text,
+    };
+    let field = |(name, unit, meaning, source): &(&'static str, &'static str, &'static str, Source)| {
+        Field::of((name, unit, meaning, kind(source)))
     };
     PLAY.iter().map(field).collect()
 }

@@ -16,8 +16,9 @@ use std::fmt::{self, Display};
 use frixel_felt::recorder::FeltRow;
 
 pub use error::RecordingError;
-pub use fields::{Field, Kind, Values, play_fields, play_values};
+pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
 pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
+pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::ParquetWriter;
 
@@ -52,6 +53,26 @@ impl Recording {
         Self { metadata, columns, is_cut_off: false }
     }
 
+    /// The recording of a table in CSV, with commas between columns and points in numbers, that has these columns.
+    pub fn of_csv(metadata: Metadata, csv: &[u8], fields: Vec<Field>) -> Result<Self, RecordingError> {
+        let mut reader = csv::Reader::from_reader(csv);
+        let header = reader.headers().map_err(RecordingError::Table)?.clone();
+        let place = |field: &Field| header.iter().position(|name| name == field.name);
+        let places: Vec<usize> =
+            fields.iter().map(|field| place(field).ok_or(RecordingError::OtherColumns)).collect::<Result<_, _>>()?;
+        let column = |field: Field| Column { values: Values::none(field.kind), field };
+        let mut columns: Vec<Column> = fields.into_iter().map(column).collect();
+        for row in reader.records() {
+            let row = row.map_err(RecordingError::Table)?;
+            for (column, place) in columns.iter_mut().zip(&places) {
+                if !column.values.push(row.get(*place).unwrap_or_default()) {
+                    return Err(RecordingError::OtherColumns);
+                }
+            }
+        }
+        Ok(Self { metadata, columns, is_cut_off: false })
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())
@@ -60,6 +81,17 @@ impl Recording {
     /// The column of a name.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.field.name == name)
+    }
+
+    /// The columns as CSV text with a header, every number with all of its digits; an unknown value is an empty cell.
+    pub fn to_csv(&self) -> Vec<u8> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        // Writing into memory does not fail, and every row has as many cells as the header.
+        let _ = writer.write_record(self.columns.iter().map(|column| column.field.name.as_str()));
+        for row in 0..self.rows() {
+            let _ = writer.write_record(self.columns.iter().map(|column| column.values.text(row)));
+        }
+        writer.into_inner().unwrap_or_default()
     }
 
     /// The first row in which another recording differs by a bit, and the first column there; `None` if there is none.

@@ -17,7 +17,7 @@ use super::parquet_writer::{
 use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values};
 
 /// First and last bytes of a Parquet file.
-const MAGIC: &[u8; 4] = b"PAR1";
+pub(crate) const MAGIC: &[u8; 4] = b"PAR1";
 
 impl Recording {
     /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. Of a file whose writer was killed,

@@ -4,6 +4,7 @@ use frixel_felt::recorder::{FeltRow, MarkedEvent, Marker};
 use frixel_wire::fault::Flags;
 
 use super::*;
+use crate::stroke_file::StrokeFile;
 
 /// Rows in which every column has known and unknown values.
 fn rows(count: u32) -> Vec<FeltRow> {
@@ -89,6 +90,34 @@ fn every_number_has_a_unit_and_every_column_a_meaning() {
             unit.is_empty() || name.contains("_v_rms") || unit.to_lowercase().ends_with(ending),
             "{name} in {unit}"
         );
+    }
+}
+
+/// What reads tables reads recordings, to the last bit.
+#[test]
+fn a_recording_is_a_stroke_and_its_table_has_every_digit() {
+    let written = recording(100);
+    let text = String::from_utf8(written.to_csv()).unwrap();
+    assert_eq!(text.lines().nth(2), Some("0.002,10.0002,,,,,0.250000001,,,,-6,saturated+still"));
+    let places: Vec<FeltRow> = rows(100).into_iter().map(|row| FeltRow { y_mm: row.x_mm, ..row }).collect();
+    let bytes = bytes(&Recording::of_rows(metadata(true), &places));
+    let read = StrokeFile::read(bytes.as_slice()).unwrap();
+    assert_eq!((read.ignored_columns.len(), read.understood), (0, None));
+    let row = &places[50];
+    let x_m = row.x_mm.map(|x_mm| (x_mm / 1e3).to_bits());
+    assert_eq!(read.stroke.at(row.t_s).map(|finger| finger.x_m.to_bits()), x_m);
+    let error = StrokeFile::read(&bytes[..bytes.len() - 1]).unwrap_err().to_string();
+    assert!(error.contains("its end is missing"), "{error}");
+}
+
+#[test]
+fn a_table_is_a_recording_if_its_cells_are_what_its_columns_say() {
+    let read = |csv: &str| Recording::of_csv(metadata(true), csv.as_bytes(), stroke_fields());
+    let whole = read("y_mm,t_s,x_mm,note\n3,0.005,2,a\n,0.010,,b\n").unwrap();
+    assert_eq!(whole.column("x_mm").unwrap().values, Values::Numbers(vec![Some(2.0), None]));
+    assert_eq!((whole.rows(), whole.columns.len()), (2, 3));
+    for wrong in ["t_s,x_mm\n", "t_s,x_mm,y_mm\n0,one,2\n", "t_s,x_mm,y_mm\n0,inf,2\n", "t_s,x_mm,y_mm\n0,1\n"] {
+        assert!(read(wrong).is_err(), "{wrong}");
     }
 }
 

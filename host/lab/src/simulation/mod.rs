@@ -63,7 +63,7 @@ pub struct Simulated {
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, SimulationError> {
-    run(program, simulation, recorder(program, simulation)?, None, feed)
+    run(program, simulation, recorder(program, simulation)?, None, feed, &mut || ControlFlow::Continue(()))
 }
 
 /// As [`simulate`], under a finger that is not the program's if there is one, and with a reference that goes through the
@@ -73,7 +73,22 @@ pub fn simulate_through_finger(
     simulation: &Simulation,
     own_finger: Option<FrictionLaw>,
 ) -> Result<Simulated, SimulationError> {
-    run(program, simulation, recorder(program, simulation)?.through_finger(), own_finger, None)
+    let recorder = recorder(program, simulation)?.through_finger();
+    run(program, simulation, recorder, own_finger, None, &mut || ControlFlow::Continue(()))
+}
+
+/// As [`simulate`], or as [`simulate_through_finger`] with `through_finger`. `goes_on` is asked many times a second of the
+/// play; when it breaks, the record ends there.
+pub fn simulate_while(
+    program: &Program,
+    simulation: &Simulation,
+    own_finger: Option<FrictionLaw>,
+    through_finger: bool,
+    goes_on: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<Simulated, SimulationError> {
+    let recorder = recorder(program, simulation)?;
+    let recorder = if through_finger { recorder.through_finger() } else { recorder };
+    run(program, simulation, recorder, own_finger, None, goes_on)
 }
 
 fn recorder(program: &Program, simulation: &Simulation) -> Result<Recorder, PlayError> {
@@ -88,6 +103,7 @@ fn run(
     recorder: Recorder,
     own_finger: Option<FrictionLaw>,
     feed: Option<Feed>,
+    goes_on: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> Result<Simulated, SimulationError> {
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
@@ -100,7 +116,7 @@ fn run(
     if let Some(feed) = feed {
         player.stream(feed)?;
     }
-    while player.recorder_mut().ticks_left() > 0 {
+    while player.recorder_mut().ticks_left() > 0 && goes_on().is_continue() {
         player.step(Duration::MAX)?;
     }
     player.stop()?;

@@ -9,6 +9,7 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger, simulation_seed};
 use frixel_lab::simulation::SimStream;
 use frixel_model::LoadedContact;
+use frixel_wire::hello::Hello;
 
 use super::plan::{Plan, ROW_HZ};
 use super::{CalibrateArgs, CommandError, experiment, forces};
@@ -77,7 +78,7 @@ pub(super) fn on_port(
     recording: &Recording,
     interrupt: &Interrupt,
     mut partial: Option<FileWriter>,
-) -> Result<Recorded, CommandError> {
+) -> Result<(Recorded, Hello), CommandError> {
     let Some(forces) = &args.forces else { return Err(CommandError::NoForces { port: args.port.clone() }) };
     if args.finger_seed.is_some() {
         return Err(CommandError::FingerOnBoard { port: args.port.clone() });
@@ -107,5 +108,5 @@ pub(super) fn on_port(
         }
         None => forces::read(forces)?,
     };
-    Ok((board, forces))
+    Ok(((board, forces), hello))
 }

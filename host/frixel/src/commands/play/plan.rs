@@ -4,11 +4,11 @@ use std::io::stdin;
 use std::path::Path;
 use std::time::Duration;
 
-use crate::default_stroke;
 use crate::output::{Effects, WorldReport};
 use crate::stream;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
+use frixel_lab::default_stroke::default_stroke;
 use frixel_play::Feed;
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};

@@ -8,6 +8,7 @@ use frixel_lab::recording::{LaterScene, Metadata, ParquetWriter, ROWS_PER_GROUP,
 
 use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, Recording};
 
+use super::super::parquet;
 use super::{CommandError, PlayArgs};
 
 /// The option that names the file.
@@ -20,8 +21,7 @@ const PERSON_GROUP_S: u32 = 10;
 /// The file that `--record` names; none without that option.
 pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFile>, CommandError> {
     let Some(path) = &args.record else { return Ok(None) };
-    let is_parquet = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"));
-    if !is_parquet && path != Path::new("-") && !path.starts_with("/dev") {
+    if !parquet::is_named_so(path) && path != Path::new("-") && !path.starts_with("/dev") {
         return Err(CommandError::NotParquetName { path: path.clone() });
     }
     if args.overwrite {

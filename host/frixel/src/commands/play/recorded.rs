@@ -5,12 +5,12 @@ use std::path::Path;
 
 use frixel_driver::{Device, Link};
 use frixel_lab::recording::{Metadata, SourceFile};
-use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use serde::{Deserialize, Serialize};
 
 use crate::input;
 use crate::scene_file::SceneFiles;
 
+use super::super::parquet;
 use super::super::stroke::RecordedStroke;
 use super::plan::Plan;
 use super::{CommandError, PlayArgs};
@@ -22,11 +22,6 @@ pub(super) const SCREEN: &str = "screen";
 pub(super) const TOUCH: &str = "touch";
 /// Before the name of a file that the scene names.
 pub(super) const OF_SCENE: &str = "scene/";
-
-/// The version that a recording is played again with.
-pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// The commit, if whoever builds says it.
-const REVISION: Option<&str> = option_env!("FRIXEL_REVISION");
 
 /// The options of a play, without the paths of files.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -115,21 +110,11 @@ pub(super) fn metadata<L: Link>(
     device: &Device<L>,
     is_simulated: bool,
 ) -> Metadata {
-    let hello = device.hello();
     Metadata {
-        frixel: VERSION.to_owned(),
-        git_revision: REVISION.map(str::to_owned),
-        protocol: format!("{PROTOCOL_MAJOR}.{PROTOCOL_MINOR}"),
-        rig: plan.target.name().to_owned(),
-        is_simulated,
-        board: hello.into(),
-        tick_hz: hello.tick_hz,
         ticks_per_row: plan.ticks_per_row(),
-        participant: args.participant.clone(),
         play: serde_json::to_value(sources.options(args)).unwrap_or_default(),
         scene: sources.scene.clone(),
         files: sources.files.clone(),
-        later_scenes: Vec::new(),
-        markers: Vec::new(),
+        ..parquet::metadata(plan.target.name(), Some(device.hello()), is_simulated, args.participant.as_deref())
     }
 }

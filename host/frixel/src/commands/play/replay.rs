@@ -15,9 +15,10 @@ use frixel_scene::{FingerProfile, Scene, Screen, parse_touch_source};
 use crate::input;
 use crate::scene_file::SceneFileError;
 
+use super::super::parquet::VERSION;
 use super::super::profiles::TouchArgs;
 use super::super::terminal::print_line;
-use super::recorded::{FINGER, OF_SCENE, PlayOptions, SCREEN, STROKE, TOUCH, VERSION};
+use super::recorded::{FINGER, OF_SCENE, PlayOptions, SCREEN, STROKE, TOUCH};
 use super::rigs::simulator;
 use super::{CommandError, PlayArgs, note};
 

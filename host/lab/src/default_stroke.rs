@@ -185,23 +185,35 @@ impl Middles {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
-    use std::path::Path;
+    use std::path::{Path, PathBuf};
+    use std::{fs, io};
 
     use frixel_hil_sim::{FingerState, RigConfig};
     use frixel_scene::reference::{Context, Reference, direction_of};
-    use frixel_scene::{Scene, compile};
+    use frixel_scene::{FileUnavailable, Files, Scene, compile};
 
     use super::*;
-    use crate::scene_file;
+
+    /// The folder of the bundled scenes.
+    struct Scenes(PathBuf);
+
+    impl Files for Scenes {
+        fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+            let reason = |error: io::Error| FileUnavailable::Unreadable { reason: error.to_string() };
+            fs::read(self.0.join(name)).map_err(reason)
+        }
+    }
 
     #[test]
     fn the_default_stroke_crosses_the_middle_of_every_layer_of_every_bundled_scene() {
-        for file in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")).unwrap() {
+        let scenes = Scenes(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
+        for file in fs::read_dir(&scenes.0).unwrap() {
             let path = file.unwrap().path();
             if path.extension().is_none_or(|extension| extension != "toml") {
                 continue;
             }
-            let (missed, seconds) = missed(&scene_file::load(&path).unwrap());
+            let text = fs::read(&path).unwrap();
+            let (missed, seconds) = missed(&Scene::parse_bytes(&text, "scene.toml", &scenes).unwrap());
             assert!(missed.is_empty(), "{}: {missed:?}", path.display());
             assert!(seconds < 10.0, "{}: {seconds} s", path.display());
         }

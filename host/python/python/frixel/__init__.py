@@ -1,0 +1,33 @@
+"""frixel: a touchscreen's friction made programmable.
+
+`frixel.model` is the contact model over arrays; `Scene` is what is felt where; `docs/python.md` has the first steps.
+"""
+
+from . import errors, model
+from ._frixel import __version__
+from .errors import FrixelError, Mistake, ParameterError, PlayError, SceneError
+from .profiles import Finger, Screen, TouchSource
+from .recording import COLUMNS, Recording
+from .scene import Scene
+from .simulator import Simulator, run
+from .stroke import Stroke
+
+__all__ = [
+    "COLUMNS",
+    "Finger",
+    "FrixelError",
+    "Mistake",
+    "ParameterError",
+    "PlayError",
+    "Recording",
+    "Scene",
+    "SceneError",
+    "Screen",
+    "Simulator",
+    "Stroke",
+    "TouchSource",
+    "__version__",
+    "errors",
+    "model",
+    "run",
+]

@@ -1,0 +1,62 @@
+"""Dictionaries as the text of a TOML file."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from .errors import ParameterError
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def dumps(tables: Mapping[str, Any]) -> str:
+    """The text of a file with these fields: values first, then tables, then lists of tables."""
+    values: list[str] = []
+    single: list[str] = []
+    repeated: list[str] = []
+    for key, value in tables.items():
+        plain = _plain(value)
+        if isinstance(plain, Mapping):
+            single.append(f"\n[{_key(key)}]\n{_lines(plain)}")
+        elif isinstance(plain, list) and plain and all(isinstance(item, Mapping) for item in plain):
+            repeated.extend(f"\n[[{_key(key)}]]\n{_lines(item)}" for item in plain)
+        else:
+            values.append(f"{_key(key)} = {_inline(plain)}\n")
+    return "".join(values + single + repeated)
+
+
+def _lines(table: Mapping[str, Any]) -> str:
+    return "".join(f"{_key(key)} = {_inline(_plain(value))}\n" for key, value in table.items())
+
+
+def _plain(value: Any) -> Any:
+    """NumPy's numbers and arrays as Python's."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _key(key: object) -> str:
+    if not isinstance(key, str):
+        raise ParameterError(f"a field has a text as its name, found {key!r}")
+    return key if _BARE_KEY.fullmatch(key) else _text(key)
+
+
+def _text(text: str) -> str:
+    # TOML also wants the delete character escaped.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _inline(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(key)} = {_inline(_plain(item))}" for key, item in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_inline(_plain(item)) for item in value) + "]"
+    raise ParameterError(f"a scene has texts, numbers, lists and tables, found {value!r}")

@@ -1,0 +1,155 @@
+"""What answers say: threshold with interval, or that they are no better than guessing."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TextIO
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._psychometric import Array, Grid, Task
+
+EVIDENCE_MIN = 9.21
+"""Least ``2 ln(likelihood ratio)`` against guessing: 1 % of those who guess have more (chi square of two degrees)."""
+
+
+class Answers:
+    """Correct answers at each level. The order of the trials does not matter to an estimate."""
+
+    def __init__(self, trials: Iterable[tuple[float, bool]] = ()) -> None:
+        self._counts: dict[float, tuple[int, int]] = {}
+        for level, correct in trials:
+            self.add(level, correct)
+
+    def add(self, level: float, correct: bool) -> None:
+        """Adds a trial at a level, from 0."""
+        if not (np.isfinite(level) and level >= 0.0):
+            raise ValueError(f"a level is a number from 0, and this one is {level}")
+        right, total = self._counts.get(level, (0, 0))
+        self._counts[level] = (right + bool(correct), total + 1)
+
+    def __len__(self) -> int:
+        return sum(total for _, total in self._counts.values())
+
+    @property
+    def levels(self) -> list[float]:
+        """The levels, from the smallest."""
+        return sorted(self._counts)
+
+    @property
+    def table(self) -> list[tuple[float, int, int]]:
+        """Rows of (level, correct, total) by level: the data that ``psignifit`` takes."""
+        return [(level, *self._counts[level]) for level in sorted(self._counts)]
+
+    def write_csv(self, file: TextIO) -> None:
+        """Writes :attr:`table` with the header ``level,correct,total``."""
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("level", "correct", "total"))
+        writer.writerows(self.table)
+
+    def log_likelihood(self, task: Task, grid: Grid) -> Array:
+        """Logarithm of the likelihood for each combination of the grid's parameters, as :meth:`Grid.correct`."""
+        total = np.zeros_like(grid.correct(0.0, task))
+        for level, right, count in self.table:
+            # Where a share is 0 or 1, an answer that it excludes has no likelihood.
+            share = np.clip(grid.correct(level, task), 1e-12, 1.0 - 1e-12)
+            total += right * np.log(share) + (count - right) * np.log1p(-share)
+        return np.asarray(total, dtype=np.float64)
+
+    def log_likelihood_of_guessing(self, task: Task) -> float:
+        """Logarithm of the largest likelihood of one and the same guess rate at every level."""
+        rows = self.table
+        right, total = sum(row[1] for row in rows), len(self)
+        rates = np.asarray(task.guess_rates)
+        if not task.is_guess_rate_known:
+            # Of one who says "different" whatever was presented, any share can come.
+            rates = np.array([right / total]) if total else rates
+        rates = np.clip(rates, 1e-12, 1.0 - 1e-12)
+        return float(np.max(right * np.log(rates) + (total - right) * np.log1p(-rates)))
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What answers say of a person."""
+
+    threshold: float | None
+    """Level at which the person, without lapses, is 1 - 1/e of the way from guessing to always right: median of the
+    posterior. ``None`` for answers that are no better than guessing."""
+    interval: tuple[float, float] | None
+    """95 % interval of the threshold: it holds 95 % of the posterior, and each side beyond it 2.5 %."""
+    evidence: float
+    """Twice the logarithm of the likelihood ratio of the best psychometric function to guessing."""
+    trials: int
+    """Number of trials."""
+    is_bounded: bool
+    """Whether the interval lies within the levels that were presented. Where it does not, it rests on the shape of the
+    psychometric function, and more extreme levels are needed."""
+
+    def __str__(self) -> str:
+        if self.threshold is None or self.interval is None:
+            return (
+                f"no better than guessing: {self.trials} trials have an evidence of {self.evidence:.1f}, "
+                f"and {EVIDENCE_MIN} is needed"
+            )
+        low, high = self.interval
+        more = "" if self.is_bounded else "; it reaches beyond the levels that were presented: present others"
+        return f"threshold {self.threshold:.3g}, {low:.3g} to {high:.3g} (95 %), of {self.trials} trials{more}"
+
+
+def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate:
+    """The threshold that answers show.
+
+    >>> from frixel.experiment import TWO_ALTERNATIVES, Answers, estimate
+    >>> trials = [(0.4, True)] * 30 + [(0.1, True)] * 24 + [(0.1, False)] * 6
+    >>> trials += [(0.02, True)] * 16 + [(0.02, False)] * 14
+    >>> found = estimate(Answers(trials), TWO_ALTERNATIVES)
+    >>> 0.05 < found.interval[0] < found.threshold < found.interval[1] < 0.3
+    True
+    >>> print(estimate(Answers([(0.4, True)] * 15 + [(0.4, False)] * 15), TWO_ALTERNATIVES))
+    no better than guessing: 30 trials have an evidence of 0.0, and 9.21 is needed
+    """
+    grid = grid or Grid()
+    log_likelihood = answers.log_likelihood(task, grid)
+    evidence = 2.0 * (float(log_likelihood.max()) - answers.log_likelihood_of_guessing(task)) if len(answers) else 0.0
+    evidence = max(evidence, 0.0)
+    if evidence < EVIDENCE_MIN:
+        return Estimate(None, None, evidence, len(answers), False)
+    posterior = np.exp(log_likelihood - log_likelihood.max()).sum(axis=(1, 2, 3))
+    low, middle, high = quantiles(grid.thresholds, posterior, (0.025, 0.5, 0.975))
+    present = [level for level in answers.levels if level > 0.0]
+    is_bounded = low > min(present) and high < max(present)
+    return Estimate(middle, (low, high), evidence, len(answers), is_bounded)
+
+
+def quantiles(thresholds: Array, posterior: Array, parts: Iterable[float]) -> list[float]:
+    """Quantiles of a density over the logarithm of the thresholds, between whose points it is a straight line."""
+    places = np.log(thresholds)
+    density = posterior / posterior.max()
+    areas = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(places))))
+    return [float(np.exp(np.interp(part * areas[-1], areas, places))) for part in parts]
+
+
+def magnitude_exponent(levels: ArrayLike, ratings: ArrayLike, *, seed: int = 0) -> tuple[float, tuple[float, float]]:
+    """Exponent of a magnitude estimation, and its 95 % interval: the slope of ln(rating) over ln(level).
+
+    ``levels`` and ``ratings`` are above zero and of one length; the interval is the bootstrap's over trials, 2,000
+    draws by ``seed`` (Stevens 1957, doi:10.1037/h0046162).
+    """
+    x, y = np.asarray(levels, dtype=np.float64), np.asarray(ratings, dtype=np.float64)
+    if x.shape != y.shape or x.ndim != 1 or not (np.isfinite([x, y]).all() and (np.stack([x, y]) > 0.0).all()):
+        raise ValueError("levels and ratings are two lists of one length of numbers above zero")
+    x, y = np.log(x), np.log(y)
+    if np.unique(x).size < 3:
+        raise ValueError(f"an exponent needs three levels or more, and here are {np.unique(x).size}")
+
+    def slope(index: np.ndarray) -> float:
+        centred = x[index] - x[index].mean()
+        return float(centred @ y[index] / (centred @ centred)) if centred.any() else float("nan")
+
+    rng = np.random.default_rng(seed)
+    drawn = [slope(rng.integers(x.size, size=x.size)) for _ in range(2000)]
+    low, high = np.nanquantile(drawn, (0.025, 0.975))
+    return slope(np.arange(x.size)), (float(low), float(high))

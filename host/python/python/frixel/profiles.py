@@ -1,0 +1,117 @@
+"""Fingers, screens and touch sources: what a scene is played on, each the text of a TOML file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from . import _frixel, _toml
+from .errors import SceneError
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+__all__ = ["Finger", "Screen", "TouchSource"]
+
+
+@dataclass(frozen=True)
+class _Profile:
+    text: str | None
+    """The text of the file; `None` of one that comes with the package."""
+    name: str
+    """What messages call it."""
+
+    kind: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        _frixel.check_profile(self.kind, self)
+
+    @classmethod
+    def bundled(cls, name: str) -> Self:
+        """One that comes with the package, by its name.
+
+        Raises
+        ------
+        ParameterError
+            There is none of this name.
+        """
+        return cls(None, name)
+
+    @classmethod
+    def bundled_names(cls) -> list[str]:
+        """The names of those that come with the package."""
+        return _frixel.bundled_profiles(cls.kind)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Self:
+        """Read a file.
+
+        Raises
+        ------
+        SceneError
+            The file cannot be read, or has mistakes.
+        """
+        return cls(read_bytes(path, f"this {cls.kind}").decode(errors="replace"), str(path))
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read the text of a file.
+
+        Raises
+        ------
+        SceneError
+            The text has mistakes.
+        """
+        return cls(text, f"<{cls.kind}>")
+
+    @classmethod
+    def from_dict(cls, fields: Mapping[str, Any]) -> Self:
+        """Make it from the fields of its file.
+
+        Raises
+        ------
+        SceneError
+            A field is missing, unknown, or out of range.
+        """
+        return cls.parse(_toml.dumps(fields))
+
+    @classmethod
+    def of(cls, profile: Self | str | Mapping[str, Any]) -> Self:
+        """One as arguments name it: itself, the name of a bundled one, or the fields of its file."""
+        if isinstance(profile, str):
+            return cls.bundled(profile)
+        return cls.from_dict(profile) if isinstance(profile, Mapping) else profile
+
+
+class Finger(_Profile):
+    """A finger's numbers on a screen, and what they rest on (`docs/scene.md`, `[finger]`).
+
+    >>> Finger.from_dict({"friction_coefficient": 0.5, "normal_load_n": 0.5, "radius_mm": 8, "skin_gap_um": 4.74,
+    ...                   "stiffness_pa_per_m": 1.8e7, "origin": "assumed"}).name
+    '<finger>'
+    """
+
+    kind = "finger"
+
+
+class Screen(_Profile):
+    """A screen: its size, its coating, the limits of its drive (`docs/scene.md`, `[screen]`)."""
+
+    kind = "screen"
+
+
+class TouchSource(_Profile):
+    """How often, how late and how reliably a touchscreen reports the finger (`docs/touch.md`)."""
+
+    kind = "touch source"
+
+
+def read_bytes(path: str | PathLike[str], what: str) -> bytes:
+    """The bytes of a file that messages call `what`."""
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise SceneError(f"{path}: {what} cannot be read ({error.strerror}): check the path") from error

@@ -1,0 +1,172 @@
+"""Scenes: what is felt where on a screen."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _frixel, _toml
+from .profiles import Finger, Screen, TouchSource, read_bytes
+
+__all__ = ["Scene"]
+
+
+class Scene:
+    """A scene without mistakes, for its screen and finger (`docs/scene.md`).
+
+    Made by `load`, `parse` or `from_dict`. It can be pickled, with the files that it names.
+    """
+
+    def __init__(
+        self,
+        text: bytes,
+        name: str,
+        *,
+        folder: str | None = None,
+        files: Mapping[str, bytes] | None = None,
+        finger: Finger | None = None,
+        screen: Screen | None = None,
+    ) -> None:
+        self._text, self.name, self._finger, self._screen = text, name, finger, screen
+        self.compiled = _frixel.Scene(text, name, folder, dict(files or {}), finger, screen)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Scene:
+        """Read a scene file, and the pictures and profiles that it names, from its folder.
+
+        Raises
+        ------
+        SceneError
+            The file cannot be read, or it has mistakes: all of them, each with line and column.
+        """
+        return cls(read_bytes(path, "this scene file"), str(path), folder=str(Path(path).parent))
+
+    @classmethod
+    def parse(cls, text: str, *, files: Mapping[str, bytes] | None = None) -> Scene:
+        """Read the text of a scene file. `files` has the bytes of the pictures and profiles that it names.
+
+        Raises
+        ------
+        SceneError
+            The text has mistakes.
+        """
+        return cls(text.encode(), "<scene>", files=files)
+
+    @classmethod
+    def from_dict(cls, tables: Mapping[str, Any], *, files: Mapping[str, bytes] | None = None) -> Scene:
+        """Make a scene from the tables of its file; `version` is 2 unless it is given.
+
+        Raises
+        ------
+        SceneError
+            A table has mistakes. Lines and columns are those of `Scene.dict_text(tables)`.
+        """
+        return cls.parse(cls.dict_text(tables), files=files)
+
+    @staticmethod
+    def dict_text(tables: Mapping[str, Any]) -> str:
+        """The text of the scene file with these tables."""
+        return _toml.dumps({"version": 2, **tables})
+
+    def with_finger(self, finger: Finger | str | Mapping[str, Any]) -> Scene:
+        """The scene for another finger: one, the name of a bundled one, or the fields of its file."""
+        return self._for(Finger.of(finger), self._screen)
+
+    def with_screen(self, screen: Screen | str | Mapping[str, Any]) -> Scene:
+        """The scene on another screen: one, the name of a bundled one, or the fields of its file."""
+        return self._for(self._finger, Screen.of(screen))
+
+    def _for(self, finger: Finger | None, screen: Screen | None) -> Scene:
+        return Scene(self._text, self.name, files=self.compiled.files, finger=finger, screen=screen)
+
+    @property
+    def text(self) -> str:
+        """The text of the scene file."""
+        return self._text.decode()
+
+    @property
+    def screen_mm(self) -> tuple[float, float]:
+        """Width and height of the screen, mm."""
+        return self.compiled.screen_mm
+
+    @property
+    def layers(self) -> list[str]:
+        """Titles of the layers, from the bottom."""
+        return self.compiled.layers
+
+    @property
+    def reach_n(self) -> tuple[float, float]:
+        """Friction of the finger that the drive can reach, N: without voltage, and at the largest voltage."""
+        return self.compiled.reach_n
+
+    @property
+    def refusals(self) -> list[str]:
+        """Why a board refuses the scene, a sentence each. The simulator plays it as a draft, clamped."""
+        return self.compiled.refusals
+
+    @property
+    def notes(self) -> list[str]:
+        """Reasons to doubt the scene, and what was rounded or clamped, a sentence each."""
+        return self.compiled.notes
+
+    def check(self, *, touch: TouchSource | str | Mapping[str, Any] = "100", board: bool = False) -> dict[str, Any]:
+        """What the scene costs and what a finger will feel of it, as `frixel scene check --json` prints it.
+
+        Parameters
+        ----------
+        touch
+            The touch source: one, the name of a bundled one, or the fields of its file.
+        board
+            Also the smallest firmware image that plays the scene.
+
+        Raises
+        ------
+        SceneError
+            A board refuses the scene.
+        """
+        report: dict[str, Any] = json.loads(self.compiled.check(TouchSource.of(touch), board))
+        return report
+
+    def map(self, width: int = 1000, height: int = 800, *, speed_mm_s: float = 100.0) -> NDArray[np.float64]:
+        """The electric friction that the scene asks for over the screen.
+
+        Parameters
+        ----------
+        width, height
+            Largest size in pixels; the map has the proportions of the screen.
+        speed_mm_s
+            Sliding speed of the finger, mm/s, for layers that depend on it.
+
+        Returns
+        -------
+        numpy.ndarray
+            Electric friction at the middle of each pixel, N, of shape (rows, columns), from the top left. Vibrations
+            and streams are at their largest.
+        """
+        return self.compiled.map(width, height, 1e-3 * speed_mm_s)[0]
+
+    def __repr__(self) -> str:
+        width, height = self.screen_mm
+        return f"<frixel.Scene {self.name}: {len(self.layers)} layers on {width:g} mm x {height:g} mm>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and self._state() == other._state()
+
+    def __hash__(self) -> int:
+        return hash(self._text)
+
+    def _state(self) -> tuple[bytes, str, dict[str, bytes], Finger | None, Screen | None]:
+        return self._text, self.name, self.compiled.files, self._finger, self._screen
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, self._state()
+
+
+def _restored(text: bytes, name: str, files: dict[str, bytes], finger: Finger | None, screen: Screen | None) -> Scene:
+    return Scene(text, name, files=files, finger=finger, screen=screen)

@@ -1,0 +1,122 @@
+"""Plays on the simulated board, under a simulated finger, in virtual time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from . import _frixel
+from .errors import ParameterError
+from .profiles import Finger, Screen, TouchSource
+from .recording import Recording
+from .scene import Scene
+from .stroke import Stroke
+
+__all__ = ["Simulator", "run"]
+
+
+class Simulator:
+    """A simulated board with a finger on its screen. The same settings give the same bits, on every machine.
+
+    Parameters
+    ----------
+    scene
+        What is felt where: a scene, or the tables of its file.
+    finger
+        The finger that the scene is compiled for, in place of the scene's own: one, the name of a bundled one, or the
+        fields of its file.
+    screen
+        The screen, in place of the scene's own.
+    stroke
+        Where the finger goes. Without it, a sweep over the screen that then visits each layer that it missed.
+    seed
+        Seed of the world's noise, from 0.
+    person
+        Seed of a simulated person, whose finger the board does not know; without it, the finger is the scene's.
+    touch
+        How the touchscreen reports the finger; without it, 100 reports a second, 10 ms late.
+    ideal
+        A world without load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
+    leakage
+        Whether charge leaks through the skin below 250 Hz; measurements disagree (`docs/truth.md`).
+    rows_per_s
+        Rows of the recording a second; divides 40,000.
+
+    Raises
+    ------
+    SceneError
+        The scene, the finger, the screen or the touch source has mistakes.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | Mapping[str, Any],
+        *,
+        finger: Finger | str | Mapping[str, Any] | None = None,
+        screen: Screen | str | Mapping[str, Any] | None = None,
+        stroke: Stroke | None = None,
+        seed: int = 1,
+        person: int | None = None,
+        touch: TouchSource | str | Mapping[str, Any] | None = None,
+        ideal: bool = False,
+        leakage: bool = True,
+        rows_per_s: int = 1000,
+    ) -> None:
+        if not (stroke is None or isinstance(stroke, Stroke)):
+            raise ParameterError(f"a stroke is made by Stroke.straight, human or from_arrays, found {stroke!r}")
+        scene = Scene.from_dict(scene) if isinstance(scene, Mapping) else scene
+        if screen is not None:
+            scene = scene.with_screen(screen)
+        if finger is not None:
+            scene = scene.with_finger(finger)
+        self.scene = scene
+        self.stroke = stroke
+        self.seed, self.person = seed, person
+        self.touch = None if touch is None else TouchSource.of(touch)
+        self.ideal, self.leakage, self.rows_per_s = ideal, leakage, rows_per_s
+
+    def run(self, seconds: float | None = None) -> Recording:
+        """Play the scene from its beginning.
+
+        Parameters
+        ----------
+        seconds
+            Duration, s; without it, as long as the stroke.
+
+        Returns
+        -------
+        Recording
+            What the finger felt, what the scene wanted there, and what the board did.
+
+        Raises
+        ------
+        ParameterError
+            The stroke, the duration or the rate is not taken.
+        PlayError
+            The simulated board does not take the scene, or stopped.
+        KeyboardInterrupt
+            Ctrl-C, at once.
+        """
+        columns = _frixel.simulate(self.scene.compiled, self, seconds)
+        settings = {
+            "scene": self.scene.name,
+            "seed": self.seed,
+            "person": self.person,
+            "ideal": self.ideal,
+            "frixel_version": _frixel.__version__,
+        }
+        return Recording(columns, {name: value for name, value in settings.items() if value is not None})
+
+
+def run(cell: Mapping[str, Any]) -> Recording:
+    """Play one cell of a study: the arguments of `Simulator`, and `seconds`.
+
+    A pure function of values that can be pickled, so that `map(frixel.run, cells)` works with processes, Dask and
+    Slurm.
+
+    >>> run({"scene": {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}, "seconds": 0.01}).rows
+    10
+    """
+    arguments = dict(cell)
+    seconds = arguments.pop("seconds", None)
+    return Simulator(**arguments).run(seconds)

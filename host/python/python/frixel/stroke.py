@@ -1,0 +1,105 @@
+"""Where the simulated finger goes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import ParameterError
+
+__all__ = ["Stroke"]
+
+
+class Stroke:
+    """The motion of a finger over a screen. Made by `straight`, `human` or `from_arrays`.
+
+    Places are in mm from the top left corner of the screen.
+    """
+
+    @staticmethod
+    def straight(
+        from_mm: tuple[float, float],
+        to_mm: tuple[float, float],
+        *,
+        speed_mm_s: float = 100.0,
+        minimum_jerk: bool = False,
+    ) -> Stroke:
+        """From one place straight to another.
+
+        Parameters
+        ----------
+        from_mm, to_mm
+            Start and end: x and y, mm.
+        speed_mm_s
+            Mean speed, mm/s.
+        minimum_jerk
+            Start and end at rest, as a hand does, rather than at constant speed.
+        """
+        return _Straight(tuple(from_mm), tuple(to_mm), float(speed_mm_s), bool(minimum_jerk))
+
+    @staticmethod
+    def human(seed: int, *, seconds: float | None = None, rough: bool = False) -> Stroke:
+        """The touches of a person, others for every seed.
+
+        Parameters
+        ----------
+        seed
+            Seed of the person's motion.
+        seconds
+            Duration, s; without it, that of the play, or else 10 s.
+        rough
+            With the accelerations of recorded strokes before smoothing, 2 to 5 times as much.
+        """
+        return _Human(int(seed), seconds, bool(rough))
+
+    @staticmethod
+    def from_arrays(t_s: ArrayLike, x_mm: ArrayLike, y_mm: ArrayLike, load_n: ArrayLike | None = None) -> Stroke:
+        """Through places at times, straight and at constant speed between them.
+
+        Parameters
+        ----------
+        t_s
+            Times from the start, s, rising; shape (n,), at least 2.
+        x_mm, y_mm
+            Places, mm, shape (n,); not a number while the finger is off the screen.
+        load_n
+            Normal loads, N, shape (n,); not a number where none is known.
+
+        Raises
+        ------
+        ParameterError
+            The arrays are not of one length.
+        """
+        columns = [np.array(values, dtype=np.float64) for values in (t_s, x_mm, y_mm)]
+        load = None if load_n is None else np.array(load_n, dtype=np.float64)
+        shapes = {column.shape for column in [*columns, *([] if load is None else [load])]}
+        if len(shapes) > 1 or columns[0].ndim != 1 or columns[0].size < 2:
+            raise ParameterError(f"a stroke has arrays of one length, at least 2, found shapes {sorted(shapes)}")
+        if not np.array_equal(np.isnan(columns[1]), np.isnan(columns[2])):
+            raise ParameterError("x_mm and y_mm are both numbers, or neither is, while the finger is off the screen")
+        return _Rows(columns[0], columns[1], columns[2], load)
+
+
+@dataclass(frozen=True)
+class _Straight(Stroke):
+    from_mm: tuple[float, ...]
+    to_mm: tuple[float, ...]
+    speed_mm_s: float
+    minimum_jerk: bool
+
+
+@dataclass(frozen=True)
+class _Human(Stroke):
+    seed: int
+    seconds: float | None
+    rough: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows(Stroke):
+    t_s: NDArray[np.float64] = field(repr=False)
+    x_mm: NDArray[np.float64] = field(repr=False)
+    y_mm: NDArray[np.float64] = field(repr=False)
+    load_n: NDArray[np.float64] | None = field(repr=False)

@@ -1,0 +1,42 @@
+//! Errors as the exceptions of `python/frixel/errors.py`.
+
+use std::fmt::Display;
+
+use frixel_model::ParameterError;
+use frixel_scene::{CompileError, Diagnostic};
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+/// The module that has the exceptions.
+const MODULE: &str = "frixel.errors";
+
+/// A value that is not taken.
+pub(crate) fn parameter_error(py: Python<'_>, error: impl Display) -> PyErr {
+    raised(py, "ParameterError", (error.to_string(),))
+}
+
+/// A parameter of the contact model that is not taken.
+pub(crate) fn model_error(error: ParameterError) -> PyErr {
+    Python::attach(|py| parameter_error(py, error))
+}
+
+/// The mistakes of a scene, or of a file that it names.
+pub(crate) fn scene_error(py: Python<'_>, error: &CompileError) -> PyErr {
+    let mistakes = error.diagnostics.iter().map(|diagnostic| mistake(py, diagnostic)).collect::<PyResult<Vec<_>>>();
+    match mistakes.and_then(|mistakes| PyList::new(py, mistakes)) {
+        Ok(mistakes) => raised(py, "SceneError", (error.to_string(), mistakes)),
+        Err(error) => error,
+    }
+}
+
+fn mistake<'py>(py: Python<'py>, diagnostic: &Diagnostic) -> PyResult<Bound<'py, PyAny>> {
+    let Diagnostic { file, line, column, text, .. } = diagnostic;
+    let class = py.import(MODULE)?.getattr("Mistake")?;
+    class.call1((file, line, column, text, diagnostic.nearest(), diagnostic.sentence()))
+}
+
+/// An exception of this class.
+pub(crate) fn raised<'py>(py: Python<'py>, class: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyErr {
+    let exception = py.import(MODULE).and_then(|module| module.getattr(class)).and_then(|class| class.call1(arguments));
+    exception.map_or_else(|error| error, PyErr::from_value)
+}

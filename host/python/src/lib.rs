@@ -1,0 +1,35 @@
+//! The compiled part of the Python module `frixel`: what the Python files beside it (`python/frixel`) call.
+//!
+//! Values cross as arrays, texts and plain objects; the types and documents for people are those of the Python
+//! files. Python's lock is released wherever something is computed.
+#![forbid(unsafe_code)]
+#![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take what was converted for them")]
+
+mod error;
+mod model;
+mod profile;
+mod scene;
+mod simulator;
+
+use pyo3::prelude::*;
+
+/// Contact model, scenes and simulator, for the Python files beside it.
+#[pymodule(gil_used = false)]
+mod _frixel {
+    #[pymodule_export]
+    use super::model::{contact_scales, eval_contact, invert_contact};
+    #[pymodule_export]
+    use super::profile::{bundled_profiles, check_profile};
+    #[pymodule_export]
+    use super::scene::Scene;
+    #[pymodule_export]
+    use super::simulator::simulate;
+
+    use pyo3::types::PyModuleMethods;
+    use pyo3::{Bound, PyResult};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, pyo3::types::PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,136 @@
+//! The contact model over arrays.
+
+use frixel_model::{Contact, ContactModel, Finger, InverseError, ParameterError, SoftContact, SoftFinger, StateError};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use super::error::{model_error, parameter_error};
+
+/// A finger on a coating, an object of `python/frixel/model.py`.
+#[derive(FromPyObject)]
+pub(crate) enum AnyContact {
+    /// On springs of one stiffness.
+    Springs {
+        radius_m: f64,
+        stiffness_pa_per_m: f64,
+        friction_coefficient: f64,
+        gap_m: f64,
+        outer_radius_m: Option<f64>,
+    },
+    /// Of a soft material.
+    Soft {
+        radius_m: f64,
+        modulus_pa: f64,
+        stress_exponent: f64,
+        shape_constant: f64,
+        friction_coefficient: f64,
+        gap_m: f64,
+    },
+}
+
+/// A finger on a coating whose parameters were checked.
+enum Checked {
+    Springs(Contact<f64>, Option<f64>),
+    Soft(SoftContact<f64>),
+}
+
+impl AnyContact {
+    fn checked(&self) -> Result<Checked, ParameterError> {
+        match *self {
+            Self::Springs { radius_m, stiffness_pa_per_m, friction_coefficient, gap_m, outer_radius_m } => {
+                let contact = Contact::new(&Finger { radius_m, stiffness_pa_per_m, friction_coefficient }, gap_m)?;
+                Ok(Checked::Springs(contact, outer_radius_m))
+            }
+            Self::Soft { radius_m, modulus_pa, stress_exponent, shape_constant, friction_coefficient, gap_m } => {
+                let finger = SoftFinger { radius_m, modulus_pa, stress_exponent, shape_constant, friction_coefficient };
+                finger.on_gap(gap_m).map(Checked::Soft)
+            }
+        }
+    }
+}
+
+impl Checked {
+    /// The contact under a load. A negative load pulls a finger on springs without an outer radius; the others refuse it.
+    fn under_load(&self, normal_load_n: f64) -> Result<Box<dyn ContactModel<f64>>, ParameterError> {
+        Ok(match self {
+            Self::Springs(contact, Some(outer_radius_m)) => Box::new(contact.within(*outer_radius_m, normal_load_n)?),
+            Self::Springs(contact, None) if normal_load_n < 0.0 => Box::new(contact.under_pull(-normal_load_n)?),
+            Self::Springs(contact, None) => Box::new(contact.under_load(normal_load_n)?),
+            Self::Soft(contact) => Box::new(contact.under_load(normal_load_n)?),
+        })
+    }
+}
+
+/// Arrays of equal length: contact radius, stiffness, friction and electric friction.
+type States<'py> = [Bound<'py, PyArray1<f64>>; 4];
+
+/// The contact at each voltage under the load beside it; not a number where there is none.
+#[pyfunction]
+pub(crate) fn eval_contact<'py>(
+    py: Python<'py>,
+    contact: AnyContact,
+    voltage_v_rms: PyReadonlyArray1<'py, f64>,
+    normal_load_n: PyReadonlyArray1<'py, f64>,
+) -> PyResult<States<'py>> {
+    let (voltages, loads) = (voltage_v_rms.as_array().to_vec(), normal_load_n.as_array().to_vec());
+    let columns = py.detach(|| {
+        let contact = contact.checked()?;
+        let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(voltages.len()));
+        for (voltage_v_rms, normal_load_n) in voltages.into_iter().zip(loads) {
+            let state = match contact.under_load(normal_load_n)?.state(voltage_v_rms) {
+                Ok(state) => {
+                    [state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, state.electric_friction_n]
+                }
+                Err(StateError::Parameter(error)) => return Err(error),
+                Err(_) => [f64::NAN; 4],
+            };
+            for (column, value) in columns.iter_mut().zip(state) {
+                column.push(value);
+            }
+        }
+        Ok(columns)
+    });
+    Ok(columns.map_err(|error| parameter_error(py, error))?.map(|column| column.into_pyarray(py)))
+}
+
+/// The rms voltage for each friction under the load beside it; not a number where there is none.
+#[pyfunction]
+pub(crate) fn invert_contact<'py>(
+    py: Python<'py>,
+    contact: AnyContact,
+    friction_n: PyReadonlyArray1<'py, f64>,
+    normal_load_n: PyReadonlyArray1<'py, f64>,
+    is_electric: bool,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (frictions, loads) = (friction_n.as_array().to_vec(), normal_load_n.as_array().to_vec());
+    let voltages = py.detach(|| {
+        let contact = contact.checked()?;
+        let voltage = |(friction_n, normal_load_n): (f64, f64)| {
+            let loaded = contact.under_load(normal_load_n)?;
+            let voltage = if is_electric {
+                loaded.voltage_for_electric_friction(friction_n)
+            } else {
+                loaded.voltage_for_friction(friction_n)
+            };
+            match voltage {
+                Ok(voltage_v_rms) => Ok(voltage_v_rms),
+                Err(InverseError::Parameter(error)) => Err(error),
+                Err(_) => Ok(f64::NAN),
+            }
+        };
+        frictions.into_iter().zip(loads).map(voltage).collect::<Result<Vec<f64>, ParameterError>>()
+    });
+    Ok(voltages.map_err(|error| parameter_error(py, error))?.into_pyarray(py))
+}
+
+/// Scales of voltage, friction and load of a finger on springs; `None` of a soft one. Refuses parameters that the model
+/// does not take.
+#[pyfunction]
+pub(crate) fn contact_scales(contact: AnyContact) -> PyResult<Option<(f64, f64, f64)>> {
+    Ok(match contact.checked().map_err(model_error)? {
+        Checked::Springs(contact, _) => {
+            Some((contact.voltage_scale_v_rms(), contact.friction_scale_n(), contact.load_scale_n()))
+        }
+        Checked::Soft(_) => None,
+    })
+}

@@ -1,0 +1,169 @@
+//! Scenes: read, compiled, checked and drawn.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use frixel_felt::check::SceneCheck;
+use frixel_felt::{FrictionMap, Preview};
+use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_lab::simulation::board_costs;
+use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+
+use super::error::{raised, scene_error};
+use super::profile::ProfileText;
+
+/// Pictures and profiles by the names that a scene has for them.
+type NamedFiles = BTreeMap<String, Vec<u8>>;
+
+/// A scene without mistakes, compiled for the simulated board. What a board refuses of it is clamped.
+#[pyclass(frozen, module = "frixel._frixel")]
+pub(crate) struct Scene {
+    parsed: ParsedScene,
+    program: Program,
+    files: NamedFiles,
+}
+
+impl Scene {
+    /// The scene as it was read, for its screen and finger.
+    pub(crate) fn parsed(&self) -> &ParsedScene {
+        &self.parsed
+    }
+
+    /// The compiled scene. What a board refuses of it is clamped.
+    pub(crate) fn program(&self) -> &Program {
+        &self.program
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// Reads the bytes of a scene, which messages call `name`. The files that it names are in `folder`, or else in
+    /// `files`.
+    #[new]
+    #[pyo3(signature = (text, name, folder, files, finger, screen))]
+    fn new(
+        py: Python<'_>,
+        text: Vec<u8>,
+        name: String,
+        folder: Option<PathBuf>,
+        files: NamedFiles,
+        finger: Option<ProfileText>,
+        screen: Option<ProfileText>,
+    ) -> PyResult<Self> {
+        let screen = screen.map(|screen| Ok::<_, PyErr>((screen.screen(py)?, screen))).transpose()?;
+        let finger = finger.map(|finger| Ok::<_, PyErr>((finger.finger(py)?, finger))).transpose()?;
+        let read = py.detach(|| {
+            let files = ReadFiles { folder, read: RefCell::new(files) };
+            let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
+            if let Some((screen, text)) = screen {
+                parsed = parsed.with_screen(screen, text.name())?;
+            }
+            if let Some((finger, text)) = finger {
+                parsed = parsed.with_finger(finger, text.name())?;
+            }
+            let board = RigConfig::default().board;
+            let program = compile_draft(&parsed, &board.limits, board.tick_hz)?;
+            Ok::<_, CompileError>(Self { parsed, program, files: files.read.into_inner() })
+        });
+        read.map_err(|error| scene_error(py, &error))
+    }
+
+    /// The files that were read with the scene.
+    #[getter]
+    fn files(&self) -> NamedFiles {
+        self.files.clone()
+    }
+
+    /// Width and height of the screen, mm.
+    #[getter]
+    fn screen_mm(&self) -> (f64, f64) {
+        (self.parsed.screen().width_mm, self.parsed.screen().height_mm)
+    }
+
+    /// Titles of the layers, from the bottom.
+    #[getter]
+    fn layers(&self) -> Vec<String> {
+        self.program.titles.iter().map(ToString::to_string).collect()
+    }
+
+    /// Friction that the drive can reach on the finger, N: without voltage, and at the largest voltage.
+    #[getter]
+    fn reach_n(&self) -> (f64, f64) {
+        (self.program.reach.friction_min_n(), self.program.reach.friction_max_n())
+    }
+
+    /// Why a board refuses the scene, a sentence each.
+    #[getter]
+    fn refusals(&self) -> Vec<String> {
+        self.program.refusals().map(ToString::to_string).collect()
+    }
+
+    /// Reasons to doubt the scene, and what was rounded or clamped, a sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.program.warnings().map(ToString::to_string).chain(self.program.notes().map(str::to_owned)).collect()
+    }
+
+    /// What `frixel scene check --json` prints.
+    fn check(&self, py: Python<'_>, touch: Option<ProfileText>, with_board: bool) -> PyResult<String> {
+        let touch = touch.map_or(Ok(TouchConfig::REALISTIC), |touch| touch.touch_source(py))?;
+        let rig = RigConfig::default();
+        let program = py.detach(|| compile(&self.parsed, &rig.board.limits, rig.board.tick_hz));
+        let program = program.map_err(|error| scene_error(py, &error))?;
+        let json = py.detach(|| {
+            let check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, &touch);
+            Ok((if with_board { check.with_board(&program) } else { check }).to_json())
+        });
+        json.map_err(|error: frixel_lab::simulation::RehearsalError| raised(py, "PlayError", (error.to_string(),)))
+    }
+
+    /// Electric friction over the screen, N, row after row from the top, within a size in pixels; and sentences that a
+    /// person needs to read it.
+    fn map<'py>(
+        &self,
+        py: Python<'py>,
+        width: u32,
+        height: u32,
+        speed_m_per_s: f64,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<String>)> {
+        let FrictionMap { grid, mut parts_of_reach, caption } =
+            py.detach(|| FrictionMap::new(&self.program, &Preview { speed_m_per_s, map_max: (width, height) }));
+        for part in &mut parts_of_reach {
+            *part *= self.program.reach.electric_friction_max_n;
+        }
+        let map = PyArray1::from_vec(py, parts_of_reach).reshape([grid.height, grid.width])?;
+        Ok((map, caption))
+    }
+}
+
+/// Keeps what it reads from a folder, so that the scene can be sent elsewhere.
+struct ReadFiles {
+    folder: Option<PathBuf>,
+    read: RefCell<NamedFiles>,
+}
+
+impl Files for ReadFiles {
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+        let mut read = self.read.borrow_mut();
+        if let (Some(folder), false) = (&self.folder, read.contains_key(name)) {
+            read.insert(name.to_owned(), read_in(folder, name)?);
+        }
+        read.bytes(name)
+    }
+}
+
+fn read_in(folder: &Path, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+    let path = folder.join(name);
+    if path.exists() {
+        return fs::read(path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
+    }
+    let searched = path.parent().unwrap_or(folder);
+    let entries = fs::read_dir(searched).into_iter().flatten();
+    let mut files: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    files.sort();
+    Err(FileUnavailable::Missing { place: searched.display().to_string(), files })
+}

@@ -1,0 +1,362 @@
+"""Methods, estimates, the simulated observer, and sessions that are cut off."""
+
+import doctest
+import io
+import json
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from frixel.experiment import (
+    SAME_DIFFERENT,
+    TWO_ALTERNATIVES,
+    Answers,
+    ConstantStimuli,
+    ExperimentError,
+    Grid,
+    Method,
+    Observer,
+    QuestPlus,
+    Session,
+    Task,
+    Trial,
+    UpDown,
+    _estimate,
+    estimate,
+    magnitude_exponent,
+)
+from frixel.experiment.coverage import LEVELS, measure, methods
+from numpy.typing import NDArray
+
+from .conftest import REPOSITORY
+
+TEXTS = {"bars.toml": "version = 2\n"}
+
+
+def level_of(method: Method) -> float:
+    """The next level of a method that has not ended."""
+    level = method.next_level()
+    assert level is not None
+    return level
+
+
+def test_every_level_of_constant_stimuli_comes_once_in_each_round() -> None:
+    method = ConstantStimuli([0.1, 0.2, 0.4], 4, seed=3)
+    levels = []
+    while (level := method.next_level()) is not None:
+        levels.append(level)
+        method.answer(level, True)
+    assert [sorted(levels[start : start + 3]) for start in range(0, 12, 3)] == [[0.1, 0.2, 0.4]] * 4
+    assert len({tuple(levels[start : start + 3]) for start in range(0, 12, 3)}) > 1
+
+
+def test_a_staircase_goes_down_after_so_many_right_answers_and_up_after_a_wrong_one() -> None:
+    method = UpDown(0.8, trials=20, down=3, step=1.25)
+    levels = []
+    for correct in [True] * 6 + [False] + [True] * 3:
+        levels.append(level_of(method))
+        method.answer(0.0, correct)
+    fast, slow = 1.25**2, 1.25
+    down_twice = 0.8 / fast / fast
+    expected = [0.8] * 3 + [0.8 / fast] * 3 + [down_twice] + [down_twice * slow] * 3
+    assert levels == pytest.approx(expected)
+    assert method.next_level() == pytest.approx(down_twice)
+
+
+def test_a_staircase_gathers_where_levitt_says() -> None:
+    observer = Observer(0.12, lapse=0.0, seed=5)
+    method = UpDown(0.8, trials=6000, down=2, step=1.1)
+    levels = []
+    for _ in range(6000):
+        level = level_of(method)
+        levels.append(level)
+        method.answer(level, observer.answers(level, TWO_ALTERNATIVES))
+    middle = float(np.exp(np.mean(np.log(levels[1000:]))))
+    assert observer.correct_share(middle, TWO_ALTERNATIVES) == pytest.approx(0.707, abs=0.02)
+
+
+def test_quest_plus_chooses_what_leaves_the_least_entropy() -> None:
+    grid = Grid(np.geomspace(0.01, 1.0, 12), np.array([1.0, 2.0]), np.array([0.0, 0.04]))
+    method = QuestPlus(LEVELS, TWO_ALTERNATIVES, trials=5, grid=grid)
+    for correct in [True, False, True]:
+        method.answer(level_of(method), correct)
+    prior = method.posterior.ravel()
+
+    def entropy(density: NDArray[np.float64]) -> float:
+        return -float(np.sum(density * np.log(np.maximum(density, 1e-300))))
+
+    def left(level: float) -> float:
+        right = grid.correct(level, TWO_ALTERNATIVES).ravel()
+        share = float(right @ prior)
+        return share * entropy(right * prior / share) + (1 - share) * entropy((1 - right) * prior / (1 - share))
+
+    assert method.next_level() == min(LEVELS, key=left)
+    assert method.expected_information() == pytest.approx([entropy(prior) - left(level) for level in LEVELS], abs=1e-9)
+
+
+def test_quest_plus_agrees_with_another_implementation() -> None:
+    questplus = pytest.importorskip("questplus", reason="questplus is not installed: pip install questplus")
+    thresholds, slopes, lapses = np.geomspace(0.01, 1.0, 15), np.array([1.0, 1.6, 2.5]), np.array([0.0, 0.04])
+    levels = [float(level) for level in np.geomspace(0.02, 0.9, 10)]
+    for seed in range(SEQUENCES):
+        own = QuestPlus(levels, TWO_ALTERNATIVES, trials=20, grid=Grid(thresholds, slopes, lapses))
+        other = questplus.QuestPlus(
+            stim_domain={"intensity": levels},
+            param_domain={"threshold": thresholds, "slope": slopes, "lower_asymptote": [0.5], "lapse_rate": lapses},
+            outcome_domain={"response": ["right", "wrong"]},
+            func="weibull",
+            stim_scale="linear",
+        )
+        observer = Observer(0.12, seed=seed)
+        for _ in range(20):
+            level = level_of(own)
+            assert other.next_stim["intensity"] == pytest.approx(level)
+            correct = observer.answers(level, TWO_ALTERNATIVES)
+            own.answer(level, correct)
+            other.update(stim={"intensity": level}, outcome={"response": "right" if correct else "wrong"})
+        theirs = other.posterior.squeeze().transpose("threshold", "slope", "lapse_rate").values
+        assert own.posterior[..., 0] == pytest.approx(theirs, abs=1e-9)
+
+
+SEQUENCES = 5
+
+
+def test_psignifit_reads_the_table_and_finds_the_same_threshold() -> None:
+    psignifit = pytest.importorskip("psignifit", reason="psignifit is not installed: pip install psignifit")
+    observer = Observer(0.12, lapse=0.0, seed=2)
+    answers = Answers()
+    method = ConstantStimuli([0.03, 0.08, 0.15, 0.3, 0.6], 80, seed=2)
+    while (level := method.next_level()) is not None:
+        correct = observer.answers(level, TWO_ALTERNATIVES)
+        method.answer(level, correct)
+        answers.add(level, correct)
+    found = estimate(answers, TWO_ALTERNATIVES)
+    fitted = psignifit.psignifit(
+        np.array(answers.table), experiment_type="2AFC", sigmoid="weibull", stimulus_range=[0.02, 1.0]
+    )
+    # At our place on the way from guessing to always right: theirs is in the middle.
+    theirs, intervals = fitted.threshold(1 - math.exp(-1), unscaled=True)
+    assert found.interval is not None
+    assert found.threshold is not None
+    low, high = intervals["0.95"]
+    assert found.interval[0] < theirs < found.interval[1]
+    assert low < found.threshold < high
+
+
+@pytest.mark.parametrize("task", [TWO_ALTERNATIVES, SAME_DIFFERENT], ids=lambda task: task.name)
+@pytest.mark.parametrize("name", list(methods(TWO_ALTERNATIVES, 0)))
+def test_intervals_contain_the_truth_and_guessers_get_no_threshold(task: Task, name: str) -> None:
+    people = 60
+    coverage, bias, refused, fooled = measure(task, name, range(2000, 2000 + people))
+    # Of 60 intervals that contain the truth with 95 %, fewer than 51 do once in 1,600 runs.
+    assert coverage * (people - refused) >= 51 - refused
+    assert abs(bias) < 0.2
+    assert refused <= 4
+    # Of 60 guessers, 1 % each: more than 4 are fooled once in 2,700 runs.
+    assert fooled <= 4
+
+
+def test_an_observer_that_compares_frictions_is_right_as_often_as_one_that_compares_levels() -> None:
+    observer = Observer(0.12, lapse=0.0, seed=9)
+    right = sum(observer.stronger(0.28, 0.28 * 1.15) for _ in range(4000)) / 4000
+    # Four standard deviations of a share of 4,000.
+    assert right == pytest.approx(observer.correct_share(0.15, TWO_ALTERNATIVES), abs=0.026)
+
+
+def test_a_guesser_is_told_so() -> None:
+    observer = Observer(math.inf, lapse=0.0, seed=4)
+    found = estimate(
+        Answers((level, observer.answers(level, TWO_ALTERNATIVES)) for level in LEVELS * 4), TWO_ALTERNATIVES
+    )
+    assert found.threshold is None
+    assert found.interval is None
+    assert str(found).startswith("no better than guessing: 96 trials have an evidence of ")
+    assert str(estimate(Answers(), TWO_ALTERNATIVES)).startswith("no better than guessing: 0 trials")
+
+
+def test_levels_that_are_all_felt_bound_a_threshold_on_one_side_only() -> None:
+    found = estimate(Answers([(0.5, True)] * 40), TWO_ALTERNATIVES)
+    assert found.threshold is not None
+    assert not found.is_bounded
+    assert "present others" in str(found)
+
+
+def test_the_threshold_of_an_observer_is_where_its_answers_say() -> None:
+    observer = Observer(0.1)
+    for task in (TWO_ALTERNATIVES, SAME_DIFFERENT):
+        guess = observer.correct_share(0.0, task)
+        share = observer.correct_share(observer.threshold(task), task)
+        assert share == pytest.approx(guess + (1 - guess) * (1 - math.exp(-1)))
+    assert math.isnan(observer.threshold(task)) is False
+    with pytest.raises(ValueError, match="noise above 0"):
+        Observer(0.0)
+
+
+def test_an_exponent_is_recovered_with_its_interval() -> None:
+    rng = np.random.default_rng(1)
+    levels = np.repeat(np.geomspace(0.05, 0.8, 6), 8)
+    ratings = 10.0 * levels**0.8 * np.exp(rng.normal(0.0, 0.15, levels.size))
+    exponent, (low, high) = magnitude_exponent(levels, ratings)
+    assert low < 0.8 < high
+    assert high - low < 0.15
+    assert low < exponent < high
+    for wrong in ([0.0, 1.0, 2.0], [1.0, 1.0, 2.0]):
+        with pytest.raises(ValueError, match=r"above zero|three levels"):
+            magnitude_exponent(wrong, [1.0, 2.0, 3.0])
+
+
+def test_the_table_of_answers_is_that_of_psignifit() -> None:
+    answers = Answers([(0.2, True), (0.1, False), (0.2, False), (0.1, True), (0.2, True)])
+    assert answers.table == [(0.1, 1, 2), (0.2, 2, 3)]
+    file = io.StringIO()
+    answers.write_csv(file)
+    assert file.getvalue() == "level,correct,total\n0.1,1,2\n0.2,2,3\n"
+    with pytest.raises(ValueError, match="a number from 0"):
+        answers.add(float("nan"), True)
+
+
+# Sessions
+
+
+class Person:
+    """Answers by a simulated observer, and counts what was presented."""
+
+    def __init__(self, fails_at: int | None = None) -> None:
+        self.presented: list[Trial] = []
+        self._fails_at = fails_at
+
+    def play(self, trial: Trial) -> None:
+        if trial.number == self._fails_at:
+            raise KeyboardInterrupt
+        self.presented.append(trial)
+
+    def answer(self, trial: Trial) -> int:
+        observer = Observer(0.12, seed=trial.number)
+        return trial.target if observer.answers(trial.level, TWO_ALTERNATIVES) else 1 - trial.target
+
+
+def opened(folder: Path, **changed: Any) -> Session:
+    settings: dict[str, Any] = {"participant": "p01", "task": TWO_ALTERNATIVES, "seed": 7, "played": TEXTS, **changed}
+    return Session(folder, **settings)
+
+
+def run(session: Session, person: Person) -> Answers:
+    method = QuestPlus(LEVELS, TWO_ALTERNATIVES, trials=12, grid=Grid(np.geomspace(0.01, 1.0, 15)))
+    return session.run(method, person.play, person.answer, practice=[1.0, 1.0], catch_every=5)
+
+
+def test_a_session_that_was_cut_off_goes_on_without_repeating_an_answer(tmp_path: Path) -> None:
+    with opened(tmp_path / "whole") as session:
+        whole, person = run(session, Person()), Person()
+        rows = session.rows
+    with opened(tmp_path / "cut") as session, pytest.raises(KeyboardInterrupt):
+        run(session, Person(fails_at=6))
+    # As a crash in the middle of a write leaves it.
+    with (tmp_path / "cut" / "trials.jsonl").open("ab") as file:
+        file.write(b'{"number": 6, "bl')
+    with opened(tmp_path / "cut") as session:
+        assert len(session.rows) == 6
+        assert run(session, person).table == whole.table
+        without_times = [{key: value for key, value in row.items() if not key.endswith("_s")} for row in session.rows]
+    assert [trial.number for trial in person.presented] == list(range(6, 16))
+    assert without_times == [{key: value for key, value in row.items() if not key.endswith("_s")} for row in rows]
+    assert sum(row["is_practice"] for row in rows) == 2
+    assert [row["level"] for row in rows if row["is_catch"]] == [0.0, 0.0]
+
+
+def test_a_killed_session_has_lost_at_most_the_trial_that_ran(tmp_path: Path) -> None:
+    program = f"""
+import os
+from frixel.experiment import *
+def play(trial):
+    if trial.number == 4:
+        os.kill(os.getpid(), 9)
+with Session({str(tmp_path)!r}, "p01", TWO_ALTERNATIVES, seed=7, played={TEXTS!r}) as session:
+    session.run(ConstantStimuli([0.1, 0.2], 5), play, lambda trial: trial.target)
+"""
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode != 0
+    with opened(tmp_path) as session:
+        assert [row["number"] for row in session.rows] == [0, 1, 2, 3]
+
+
+def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) -> None:
+    opened(tmp_path).close()
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    assert manifest["played"] == {"bars.toml": "436f6de28726501973ddd9fb91fa92c6ec6225e5c28d8fbdb698dc1720e43714"}
+    assert str(tmp_path) not in (tmp_path / "manifest.json").read_text()
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"participant": "p02"}, "participant is 'p01' there, and 'p02' here"),
+        ({"seed": 8}, "seed is 7 there"),
+        ({"played": {"bars.toml": "version = 1\n"}}, "played is"),
+        ({"participant": "Jane Doe"}, "give a code"),
+    ]
+    for changed, said in wrong:
+        with pytest.raises(ExperimentError, match=said):
+            opened(tmp_path, **changed)
+
+
+def test_a_session_has_one_writer(tmp_path: Path) -> None:
+    with opened(tmp_path), pytest.raises(ExperimentError, match="another process writes"):
+        opened(tmp_path)
+    opened(tmp_path).close()
+
+
+def test_another_method_is_not_gone_on_with(tmp_path: Path) -> None:
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1, 0.2], 2), lambda trial: None, lambda trial: 0)
+    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="trial 0 had level"):
+        session.run(ConstantStimuli([0.3, 0.4], 2), lambda trial: None, lambda trial: 0)
+
+
+def test_a_full_disk_keeps_the_trials_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1], 2), lambda trial: None, lambda trial: 0)
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="No space left on device"):
+        session.run(ConstantStimuli([0.1], 3), lambda trial: None, lambda trial: 0)
+    assert len((tmp_path / "trials.jsonl").read_bytes().splitlines()) == 2
+
+
+def test_an_answer_that_is_none_is_refused(tmp_path: Path) -> None:
+    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="an answer is 0 or 1, and this one is 2"):
+        session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 2)
+    assert not (tmp_path / "trials.jsonl").exists()
+
+
+def test_breaks_come_between_trials_and_not_while_answers_are_read_again(tmp_path: Path) -> None:
+    breaks: list[int] = []
+    settings: dict[str, Any] = {"break_every": 2, "on_break": breaks.append}
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
+    assert breaks == [2, 4]
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
+    assert breaks == [2, 4, 4]
+
+
+# The document
+
+
+def test_the_experiment_of_the_document_finds_its_observers(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (REPOSITORY / "docs/experiments.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    exec(compile(block, "docs/experiments.md", "exec"), {})
+    lines = capsys.readouterr().out.splitlines()
+    numbers = [re.search(r"threshold (\S+), (\S+) to (\S+) ", line) for line in lines]
+    intervals = [(float(found[2]), float(found[3])) for found in numbers if found]
+    assert len(intervals) == len(lines) == 10
+    # Of ten intervals of 95 %, fewer than seven contain the truth once in 1,000 runs.
+    assert sum(low < Observer(0.06).threshold(TWO_ALTERNATIVES) < high for low, high in intervals) >= 7
+
+
+def test_the_examples_in_docstrings_are_true() -> None:
+    assert doctest.testmod(_estimate) == doctest.TestResults(failed=0, attempted=6)

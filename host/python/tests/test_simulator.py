@@ -1,0 +1,137 @@
+"""Plays on the simulator, and their recordings."""
+
+from __future__ import annotations
+
+import csv
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import frixel
+import numpy as np
+import pytest
+from frixel import ParameterError, Scene, Simulator, Stroke
+
+FLAT = {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}
+DECIMALS = {"t_s": 6, "x_mm": 4, "y_mm": 4, "speed_mm_s": 3, "wanted_n": 9, "asked_n": 9, "felt_n": 9}
+
+
+def felt_csv(tmp_path: Path, scene: Path, *options: str) -> list[dict[str, str]]:
+    """The rows that the command writes."""
+    command = [os.environ["FRIXEL"], "play", str(scene), "--port", "sim", "--out", str(tmp_path / "out"), *options]
+    subprocess.run(command, check=True, capture_output=True)
+    with (tmp_path / "out" / "felt.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "arguments", "seconds"),
+    [
+        ("brick", [], {}, None),
+        ("slider", ["--seed", "7", "--seconds", "1.5"], {"seed": 7}, 1.5),
+        ("brick", ["--finger-seed", "3", "--touch", "500", "--seconds", "1"], {"person": 3, "touch": "500"}, 1),
+        ("brick", ["--ideal", "--csv-hz", "500", "--seconds", "1"], {"ideal": True, "rows_per_s": 500}, 1),
+        ("brick", ["--no-leakage", "--seconds", "1"], {"leakage": False}, 1),
+        ("brick", ["--finger", "dry", "--seconds", "1"], {"finger": "dry"}, 1),
+        ("brick", ["--stroke", "human", "--seed", "5", "--seconds", "2"], {"stroke": Stroke.human(5), "seed": 5}, 2),
+        (
+            "brick",
+            ["--from", "10,20", "--to", "100,60", "--speed", "80", "--minimum-jerk"],
+            {"stroke": Stroke.straight((10, 20), (100, 60), speed_mm_s=80, minimum_jerk=True)},
+            None,
+        ),
+    ],
+)
+def test_a_play_has_the_bits_of_the_command(
+    tmp_path: Path, scenes: Path, name: str, options: list[str], arguments: dict[str, object], seconds: float | None
+) -> None:
+    path = scenes / f"{name}.toml"
+    rows = felt_csv(tmp_path, path, *options)
+    recording = frixel.run({"scene": Scene.load(path), "seconds": seconds, **arguments})
+    assert recording.rows == len(rows) > 400
+    for column, decimals in {**DECIMALS, "voltage_v_rms": 4, "dac_code": 0}.items():
+        written = np.array([float(row[column] or "nan") for row in rows])
+        # Half a step of the file is the most that its rounding takes away.
+        np.testing.assert_allclose(recording[column], written, rtol=0, atol=0.5001 * 10.0**-decimals, err_msg=column)
+    assert np.isfinite(recording["felt_n"]).sum() > 100
+
+
+def test_the_same_settings_give_the_same_bits_here_and_in_another_process() -> None:
+    cell = {"scene": FLAT, "seed": 3, "person": 1, "stroke": Stroke.human(2), "seconds": 0.5}
+    here = frixel.run(cell)
+    assert all(np.array_equal(here[name], frixel.run(cell)[name], equal_nan=True) for name in here)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        there = pool.submit(frixel.run, cell).result()
+    assert all(np.array_equal(here[name], there[name], equal_nan=True) for name in here)
+    other = frixel.run({**cell, "seed": 4})
+    assert not np.array_equal(here["felt_n"], other["felt_n"], equal_nan=True)
+
+
+def test_a_stroke_from_arrays_goes_where_it_says() -> None:
+    t_s = np.linspace(0, 1, 11)
+    x_mm = 10 + 50 * t_s
+    x_mm[5] = np.nan
+    stroke = Stroke.from_arrays(t_s, x_mm, np.where(np.isnan(x_mm), np.nan, 30.0), load_n=np.full(11, 0.7))
+    recording = Simulator(FLAT, stroke=stroke, ideal=True).run()
+    at = np.searchsorted(recording["t_s"], 0.25)
+    assert recording["x_mm"][at] == pytest.approx(22.5, abs=0.1)
+    assert np.isnan(recording["x_mm"][np.searchsorted(recording["t_s"], 0.5)])
+    light = Simulator(FLAT, stroke=Stroke.from_arrays([0, 1], [10, 60], [30, 30], [0.2, 0.2]), ideal=True).run()
+    assert light["felt_n"][at] < recording["felt_n"][at], "a light finger has less friction"
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: Simulator(FLAT, stroke=Stroke.straight((500, 20), (600, 20))).run(), "never on the screen"),
+        (lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (60, 20), speed_mm_s=0)).run(), "speed"),
+        (lambda: Simulator(FLAT, rows_per_s=7).run(1), "rows_per_s divides 40000 evenly, found 7"),
+        (lambda: Simulator(FLAT).run(-1), "a play lasts from a tick"),
+        (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from a tick"),
+        (lambda: Simulator(FLAT, stroke="human"), "a stroke is made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]
+        (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
+        (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), "both numbers, or neither"),
+        (lambda: Simulator(FLAT, stroke=Stroke.from_arrays([1, 0], [1, 2], [1, 2])).run(), "rising"),
+        (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is called `50`"),
+    ],
+)
+def test_what_is_not_taken_is_said(make: object, sentence: str) -> None:
+    assert callable(make)
+    with pytest.raises(ParameterError, match=sentence):
+        make()
+
+
+def test_a_recording_becomes_tables() -> None:
+    recording = Simulator(FLAT, seed=2).run(0.1)
+    frame = recording.to_pandas()
+    assert list(frame.columns) == list(frixel.COLUMNS) == list(recording)
+    assert len(frame) == recording.rows == 100
+    assert frame.attrs["seed"] == 2
+    dataset = recording.to_xarray()
+    assert dataset.felt_n.attrs["units"] == "N"
+    np.testing.assert_array_equal(dataset.t_s, recording["t_s"])
+    copy = pickle.loads(pickle.dumps(recording))
+    np.testing.assert_array_equal(copy["felt_n"], recording["felt_n"])
+    assert "100 rows, 0.100 s" in repr(recording)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are sent as on Unix")
+def test_an_interrupt_ends_a_long_run() -> None:
+    program = (
+        "import frixel\nprint('begun', flush=True)\n"
+        "scene = {'layer': [{'kind': 'constant', 'friction_fraction': 0.5}]}\n"
+        "try:\n    frixel.run({'scene': scene, 'seconds': 80000})\n"
+        "except KeyboardInterrupt:\n    print('interrupted')\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert child.stdout is not None
+    assert child.stdout.readline() == "begun\n"
+    time.sleep(0.5)
+    child.send_signal(signal.SIGINT)
+    assert child.communicate()[0] == "interrupted\n"

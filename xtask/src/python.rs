@@ -1,0 +1,73 @@
+//! The checks of the Python module: its wheel, built and installed into a fresh virtual environment, with types, lints,
+//! tests and examples.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::command::{cargo_in, root, run, target_folder};
+use crate::inputs::{self, Package};
+use crate::needs::Need;
+use crate::results;
+
+/// The package of its compiled part.
+const MODULE: &str = "frixel-python";
+/// The folder of the module.
+const FOLDER: &str = "host/python";
+/// What the checks need.
+pub(crate) const NEEDS: [Need; 2] = [Need::Python, Need::Git];
+
+/// What the checks read: the module, the crates that it is made of, the command that it is compared with, and the
+/// documents whose examples are run.
+pub(crate) fn inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
+    let more = ["docs", "scenes", "xtask"].map(str::to_owned);
+    inputs::of_libraries(&["frixel", MODULE], packages).into_iter().chain(more).collect()
+}
+
+/// Builds the wheel, installs it into a fresh virtual environment, and checks it there.
+pub(crate) fn check() -> Result<(), String> {
+    let target = absolute(&target_folder())?.join("python");
+    let (environment, wheels) = (target.join("environment"), target.join("wheels"));
+    for made_before in [&environment, &wheels] {
+        if made_before.exists() {
+            fs::remove_dir_all(made_before).map_err(|error| format!("{}: {error}", made_before.display()))?;
+        }
+    }
+    let in_environment = |program: &str| {
+        let mut command = Command::new(environment.join("bin").join(program));
+        command.current_dir(root().join(FOLDER)).env("CARGO_TARGET_DIR", &target);
+        // Nothing of the caller's own Python is in it.
+        command.env("VIRTUAL_ENV", &environment).env_remove("PYTHONPATH").env_remove("PYTHONHOME");
+        command
+    };
+    run("virtual environment", Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
+    let install = ["install", "--quiet", "--disable-pip-version-check"];
+    run("packages", in_environment("pip").args(install).args(["--requirement", "requirements.txt"]))?;
+    run("format of Python", in_environment("ruff").args(["format", "--check", "."]))?;
+    run("lints of Python", in_environment("ruff").args(["check", "."]))?;
+    let build = ["build", "--quiet", "--locked", "--profile", "wheel", "--out"];
+    run("wheel", in_environment("maturin").args(build).arg(&wheels))?;
+    let wheel = only_file(&wheels)?;
+    run("installation", in_environment("pip").args(install).args(["--no-index", "--no-deps"]).arg(wheel))?;
+    run("types", in_environment("mypy").args(["--package", "frixel"]))?;
+    run("types of tests", in_environment("mypy").args(["tests", "examples"]))?;
+    // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
+    run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--workspace", "--bin", "frixel"]))?;
+    let frixel = absolute(&target_folder().join("debug/frixel"))?;
+    results::run("tests of the Python module", in_environment("pytest").arg("--quiet").env("FRIXEL", frixel))
+}
+
+/// The one file in a folder.
+fn only_file(folder: &Path) -> Result<PathBuf, String> {
+    let explain = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let mut files = fs::read_dir(folder).map_err(explain)?;
+    match (files.next(), files.next()) {
+        (Some(Ok(file)), None) => Ok(file.path()),
+        _ => Err(format!("{}: expected one wheel", folder.display())),
+    }
+}
+
+fn absolute(path: &Path) -> Result<PathBuf, String> {
+    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
+}
