@@ -7,13 +7,11 @@ use frixel_scene::reference::{Context, Reference};
 
 use super::likeness::Likeness;
 use super::moment::{MOMENT_HZ, Moment};
-use super::{BTreeMap, FINGERTIP_M, NoticedBorder, Sums, near_count, starts_on};
+use super::{BTreeMap, FINGERTIP_M, NoticedBorder, Sums, starts_on};
 use crate::perception::{border_reference, border_sides, total_n, visible_layers};
 
 /// Longest way on either side of a border, m.
 const SIDE_MAX_M: f64 = 0.01;
-/// A fingertip resolves 1 mm, half of which is on either side of a border, m: texture that is finer has its mean there.
-const EDGE_M: f64 = 5e-4;
 /// Longest time on either side of a border, in moments: 200 ms.
 const SIDE_MAX: usize = 400;
 /// A shorter time on one side is a corner, in moments: 2 ms.
@@ -31,7 +29,7 @@ pub(super) struct Crossings {
 #[derive(Clone, Copy, Debug, Default)]
 struct Crossed {
     count: f64,
-    /// Friction on either side, electric, the mean over [`EDGE_M`], N.
+    /// Friction on either side, electric, N.
     sides_n: [f64; 2],
     /// The layers that are only on that side, a bit each.
     layers: [u64; 2],
@@ -60,33 +58,21 @@ impl Crossings {
             let first = side(run.iter().take(border).rev(), before.len());
             let second = side(run.iter().skip(border), after.len());
             if let (Some(first), Some(second)) = (first, second) {
-                self.cross(run, border, [first, second]);
+                self.cross(run, border - first.end..border - first.start, border + second.start..border + second.end);
             }
         }
     }
 
-    /// Adds a border that is crossed at a moment, with the moments before and after it that count, from the border away.
-    fn cross(&mut self, run: &[Moment], border: usize, [first, second]: [Range<usize>; 2]) {
-        let (edge, behind_edge) =
-            (near_count(run.iter().take(border).rev(), EDGE_M), near_count(run.iter().skip(border), EDGE_M));
-        let near = border - edge.clamp(1, first.end)..border + behind_edge.clamp(1, second.end);
-        let (before, after) = (border - first.end..border - first.start, border + second.start..border + second.end);
-        let side = |moments: Range<usize>| {
-            let moments = run.get(moments)?;
-            let electric_n = |moment: &Moment| {
-                let context = Context { t_s: 0.0, ..moment.context };
-                total_n(&self.program, self.reference.electric_friction_at_n(&context))
-                    - self.program.reach.natural_friction_n
-            };
-            let mean_n = moments.iter().map(electric_n).sum::<f64>() / moments.len() as f64;
-            let Context { x_m, y_m, .. } = moments.first()?.context;
-            Some((visible_layers(&self.reference, x_m, y_m), mean_n))
+    /// Adds a border with the moments before and after it.
+    fn cross(&mut self, run: &[Moment], before: Range<usize>, after: Range<usize>) {
+        let (Some(last), Some(first)) = (run.get(before.end - 1), run.get(after.start)) else { return };
+        let side = |moment: &Moment| {
+            let context = Context { t_s: 0.0, ..moment.context };
+            let electric_n = total_n(&self.program, self.reference.electric_friction_at_n(&context))
+                - self.program.reach.natural_friction_n;
+            (visible_layers(&self.reference, context.x_m, context.y_m), electric_n)
         };
-        let (Some((before_layers, before_n)), Some((after_layers, after_n))) =
-            (side(near.start..border), side(border..near.end))
-        else {
-            return;
-        };
+        let ((before_layers, before_n), (after_layers, after_n)) = (side(last), side(first));
         let (sides, is_turned) = border_sides(before_layers, after_layers);
         let turned = |pair: [f64; 2]| if is_turned { [pair[1], pair[0]] } else { pair };
         let only = [before_layers & !after_layers, after_layers & !before_layers];
@@ -109,7 +95,7 @@ impl Crossings {
     pub(super) fn noticed(&self) -> Vec<NoticedBorder> {
         let noticed = |(sides, crossed): (&[Option<usize>; 2], &Crossed)| {
             let friction_n = crossed.sides_n.map(|sum_n| sum_n / crossed.count);
-            let step = crossed.sums.felt_step(friction_n, crossed.likeness.part_of_scene(), self.program.reach);
+            let step = crossed.sums.felt_step(friction_n, crossed.likeness.part_of_scene());
             NoticedBorder { sides: *sides, layers: crossed.layers, step }
         };
         self.borders.iter().map(noticed).collect()

@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use frixel_layers::{Direction, Layer};
+use frixel_scene::Program;
 use frixel_scene::reference::Reference;
-use frixel_scene::{Program, Reach};
 use serde::Serialize;
 
 use crate::fidelity::FidelitySample;
@@ -30,9 +30,8 @@ use moment::{MOMENT_HZ, Moment, context, electric_n, runs};
 
 /// The longest way of which the contrast is taken, m: a change over a longer one is not noticed. Assumed.
 const WAY_MAX_M: f64 = 0.05;
-/// A shorter touch of a layer says nothing, in moments: 64 ms. No texture is sought in it, and most of what was felt of it
-/// at the longest delay, 40 ms, was felt behind it.
-const TOUCH_MIN: usize = texture::MOMENTS_MIN;
+/// A shorter touch of a layer says nothing, in moments: 20 ms.
+const TOUCH_MIN: usize = 40;
 /// Nearer to a border a fingertip does not tell on which side a change is, m (its spatial resolution is 1 to 2 mm).
 const FINGERTIP_M: f64 = 0.002;
 /// From one place at which a change of the scene is sought to the next, in samples: 1 ms.
@@ -65,7 +64,7 @@ pub struct NoticedLayer {
     /// The most noticeable texture; absent where there is none.
     pub texture: Option<Texture>,
     /// Mean of the total friction where no other layer is above, farther than a fingertip's resolution from where the layer
-    /// ends; absent if the finger was there for less than 64 ms.
+    /// ends; absent if the finger was there for less than 20 ms.
     pub level: Option<Level>,
     /// Whether the scene has the same friction throughout the layer.
     pub is_flat: bool,
@@ -119,7 +118,6 @@ struct Touches {
 struct Sums {
     count: f64,
     scene_n: f64,
-    wanted_n: f64,
     felt_n: f64,
     natural_n: f64,
 }
@@ -128,18 +126,14 @@ impl Sums {
     fn add(&mut self, moment: &Moment) {
         self.count += 1.0;
         self.scene_n += moment.scene_n;
-        self.wanted_n += moment.wanted_n;
         self.felt_n += moment.felt_n;
         self.natural_n += moment.natural_n;
     }
 
-    /// The step between two electric frictions of the scene, of which a part is felt: at most as much as the drive can give
-    /// this finger. A large part of next to nothing is no more.
-    fn felt_step(&self, [from_n, to_n]: [f64; 2], part: f64, reach: Reach) -> Step {
+    /// The step between two electric frictions of the scene, of which a part is felt.
+    fn felt_step(&self, [from_n, to_n]: [f64; 2], part: f64) -> Step {
         let [scene_n, felt_n, natural_n] = [self.scene_n, self.felt_n, self.natural_n].map(|sum| sum / self.count);
-        let load = if self.scene_n > 0.0 { (self.wanted_n / self.scene_n).max(1.0) } else { 1.0 };
-        let most_n = load * reach.electric_friction_max_n;
-        let total_n = |electric_n: f64| natural_n + (felt_n + part * (electric_n - scene_n)).clamp(0.0, most_n);
+        let total_n = |electric_n: f64| natural_n + (felt_n + part * (electric_n - scene_n)).max(0.0);
         Step::new(total_n(from_n), total_n(to_n))
     }
 }
@@ -217,11 +211,8 @@ impl Noticing {
 
     /// The layers that the finger touched, from bottom to top.
     pub fn layers(&self) -> Vec<NoticedLayer> {
-        let touched =
-            self.layers.iter().enumerate().filter(|(_, touches)| {
-                touches.moments >= std::env::var("SFT").map_or(TOUCH_MIN, |v| v.parse().unwrap())
-            });
-        touched.map(|(layer, touches)| touches.noticed(layer, self.program.reach)).collect()
+        let touched = self.layers.iter().enumerate().filter(|(_, touches)| touches.moments >= TOUCH_MIN);
+        touched.map(|(layer, touches)| touches.noticed(layer, self.program.reach.natural_friction_n)).collect()
     }
 
     /// The borders that the finger crossed, those of lower layers first.
@@ -269,14 +260,13 @@ impl Touches {
         if scene_n.abs() > CHANGE_MIN_N { (felt_n / scene_n).max(0.0) } else { self.likeness.slope() }
     }
 
-    fn noticed(&self, layer: usize, reach: Reach) -> NoticedLayer {
-        let scenes_natural_n = reach.natural_friction_n;
+    fn noticed(&self, layer: usize, scenes_natural_n: f64) -> NoticedLayer {
         let Self { sums, uppermost, widest_n, texture, .. } = self;
         let widest_n = widest_n.unwrap_or_default();
         let [least_n, most_n] = widest_n.map(|electric_n| scenes_natural_n + electric_n);
         NoticedLayer {
             layer,
-            contrast: sums.felt_step(widest_n, self.felt_part(), reach),
+            contrast: sums.felt_step(widest_n, self.felt_part()),
             texture: *texture,
             level: (uppermost.count >= TOUCH_MIN as f64).then(|| Level {
                 scene_n: scenes_natural_n + uppermost.scene_n / uppermost.count,

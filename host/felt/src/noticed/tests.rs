@@ -138,27 +138,6 @@ fn directions_are_compared_between_slides() {
     }
 }
 
-/// Two fine textures with the same mean have no step, in whatever phase they meet, and what a display makes of them is
-/// none of the scene.
-#[test]
-fn a_display_adds_no_step_to_a_border() {
-    let fine = |x_mm: u32, wavelength_mm: f64| {
-        format!(
-            "[[layer]]\nkind = \"grating\"\nregion = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 60, height_mm = 80 }}\n\
-             wavelength_mm = {wavelength_mm}\nlow_n = 0.0\nhigh_n = 0.1\n"
-        )
-    };
-    let fine = program(&[&fine(0, 0.37), &fine(60, 0.3)]);
-    let middle_s = (0.06 - 0.005) / SPEED_M_PER_S;
-    let noticing = slide_over(&fine, |t_s| if t_s < middle_s { 0.0 } else { 0.1 });
-    let [border] = noticing.borders()[..] else { panic!("{:?}", noticing.borders()) };
-    assert!(border.step.weber_steps.abs() < 0.3, "{border:?}");
-    let plate = program(&[PLATE]);
-    let [natural_n, most_n] = [plate.reach.natural_friction_n, plate.reach.electric_friction_max_n];
-    let strong = slide(&plate, 5.0, 0.0).borders()[0].step.weber_steps;
-    assert!((strong - Step::new(natural_n, natural_n + most_n).weber_steps).abs() < 0.1, "{strong}");
-}
-
 /// A late display has the level of a plate, and a bar that is as narrow as a fingertip resolves has none.
 #[test]
 fn a_level_is_that_inside_a_layer() {
@@ -174,14 +153,6 @@ fn a_level_is_that_inside_a_layer() {
     let plate = layers.last().and_then(|layer| layer.level).unwrap();
     assert!((plate.felt_n - plate.scene_n).abs() < 1e-9, "{plate:?}");
     assert!(layers.iter().rev().skip(1).all(|bar| bar.level.is_none()), "{layers:?}");
-}
-
-/// Of a touch of 50 ms, in which no texture is sought, nothing is said, and of one of 100 ms there is.
-#[test]
-fn a_touch_that_is_too_short_is_none() {
-    let plate = |width_mm: u32| program(&[&PLATE.replace("width_mm = 30", &format!("width_mm = {width_mm}"))]);
-    assert!(slide(&plate(4), 1.0, 0.0).layers().is_empty());
-    assert_eq!(slide(&plate(8), 1.0, 0.0).layers().len(), 1);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::spectrum::Spectrum;
 /// Moments of which a spectrum is taken: 256 ms, in which the speed of a hand changes little.
 const MOMENTS: usize = 512;
 /// A shorter touch has no texture, in moments: 64 ms.
-pub(super) const MOMENTS_MIN: usize = 128;
+const MOMENTS_MIN: usize = 128;
 
 /// The most noticeable texture in each quarter of a second of a touch of a layer. `own_n` is the friction of the scene
 /// without the layers above it.
