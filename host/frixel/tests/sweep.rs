@@ -66,6 +66,24 @@ fn any_number_of_parts_makes_the_same_bytes() {
     assert!(rows[2].starts_with("\"plate.toml\",,\"100\",0.9,\"layer 1 \"\"plate\"\"\",3,2,1,"), "{layers}");
 }
 
+/// Parts that run side by side, and one that is played twice, as a scheduler does after a worker was lost.
+#[test]
+fn parts_side_by_side_do_not_disturb_one_another() {
+    let folder = Folder::new(PLAN);
+    folder.run("sweep plan.toml -o whole").unwrap();
+    std::thread::scope(|scope| {
+        let parts = [1, 2, 3, 1, 2, 3];
+        let folder = &folder;
+        let run = move |part: u32| folder.run(&format!("sweep plan.toml -o parts --jobs 1 --shard {part}/3"));
+        let runs: Vec<_> = parts.into_iter().map(|part| scope.spawn(move || run(part))).collect();
+        for ran in runs {
+            ran.join().unwrap().unwrap();
+        }
+    });
+    folder.run("sweep merge parts").unwrap();
+    assert!(folder.results("parts") == folder.results("whole"));
+}
+
 /// A killed sweep has lost the cells that were being played, and no other.
 #[test]
 fn what_is_there_is_not_played_again() {

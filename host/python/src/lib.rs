@@ -6,8 +6,10 @@
 #![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take what was converted for them")]
 
 mod error;
+mod fit;
 mod model;
 mod profile;
+mod recording;
 mod scene;
 mod simulator;
 
@@ -17,9 +19,13 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _frixel {
     #[pymodule_export]
+    use super::fit::fit_finger;
+    #[pymodule_export]
     use super::model::{contact_scales, eval_contact, invert_contact};
     #[pymodule_export]
     use super::profile::{bundled_profiles, check_profile};
+    #[pymodule_export]
+    use super::recording::{play_fields, write_parquet};
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]

@@ -17,7 +17,7 @@ use super::error::{raised, scene_error};
 use super::profile::ProfileText;
 
 /// Pictures and profiles by the names that a scene has for them.
-type NamedFiles = BTreeMap<String, Vec<u8>>;
+pub(crate) type NamedFiles = BTreeMap<String, Vec<u8>>;
 
 /// A scene without mistakes, compiled for the simulated board. What a board refuses of it is clamped.
 #[pyclass(frozen, module = "frixel._frixel")]

@@ -3,20 +3,21 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{
     Person, Point, RigConfig, Stroke as SimulatedStroke, StrokeError, StrokeRow, TouchConfig, WorldConfig,
 };
 use frixel_lab::default_stroke::default_stroke;
+use frixel_lab::recording::{play_fields, play_values};
 use frixel_lab::simulation::{Simulation, simulate_while};
 use frixel_model::FrictionLaw;
 use frixel_scene::Program;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::error::{parameter_error, raised, scene_error};
 use super::profile::ProfileText;
+use super::recording::columns;
 use super::scene::Scene;
 
 const M_PER_MM: f64 = 1e-3;
@@ -196,35 +197,5 @@ pub(crate) fn simulate<'py>(
         return Err(signal);
     }
     let recorder = played.map_err(|error| raised(py, "PlayError", (error.to_string(),)))?;
-    columns(py, recorder.rows())
-}
-
-/// The cells of one column, by row.
-type Cell = fn(&FeltRow) -> Option<f64>;
-
-/// Columns of numbers by their names.
-const COLUMNS: [(&str, Cell); 11] = [
-    ("t_s", |row| Some(row.t_s)),
-    ("x_mm", |row| row.x_mm),
-    ("y_mm", |row| row.y_mm),
-    ("speed_mm_s", |row| row.speed_mm_s),
-    ("wanted_n", |row| row.wanted_n),
-    ("asked_n", |row| row.asked_n),
-    ("felt_n", |row| row.felt_n),
-    ("natural_n", |row| row.natural_n),
-    ("electrode_v_rms", |row| row.electrode_v_rms),
-    ("voltage_v_rms", |row| row.voltage_v_rms),
-    ("dac_code", |row| row.dac_code.map(f64::from)),
-];
-
-/// The rows of a record as arrays, not a number where nothing is known.
-fn columns<'py>(py: Python<'py>, rows: &[FeltRow]) -> PyResult<Bound<'py, PyDict>> {
-    let columns = PyDict::new(py);
-    for (name, cell) in COLUMNS {
-        let values: Vec<f64> = rows.iter().map(|row| cell(row).unwrap_or(f64::NAN)).collect();
-        columns.set_item(name, values.into_pyarray(py))?;
-    }
-    let flags: Vec<u16> = rows.iter().map(|row| row.flags.map_or(0, |flags| flags.0)).collect();
-    columns.set_item("flags", flags.into_pyarray(py))?;
-    Ok(columns)
+    columns(py, &play_fields(), play_values(recorder.rows()))
 }

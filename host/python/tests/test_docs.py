@@ -19,8 +19,11 @@ from .conftest import REPOSITORY
 EXAMPLES = sorted((REPOSITORY / "host/python/examples").glob("*.py"))
 
 
-def test_the_blocks_of_the_document_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_blocks_of_the_document_run_one_after_the_other(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     mpl.use("agg")
+    monkeypatch.chdir(tmp_path)
     text = (REPOSITORY / "docs/python.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert len(blocks) >= 5
@@ -30,6 +33,7 @@ def test_the_blocks_of_the_document_run_one_after_the_other(capsys: pytest.Captu
     printed = capsys.readouterr().out
     assert "nan" in printed
     assert "3 8 " in printed, "the place of the mistake"
+    assert (tmp_path / "play.parquet").stat().st_size > 0
     np.testing.assert_allclose(names["recordings"][2]["t_s"][-1], 0.5)
 
 

@@ -15,11 +15,17 @@ from pathlib import Path
 
 import frixel
 import numpy as np
+import pyarrow.parquet as parquet
 import pytest
 from frixel import ParameterError, Scene, Simulator, Stroke
 
 FLAT = {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}
 DECIMALS = {"t_s": 6, "x_mm": 4, "y_mm": 4, "speed_mm_s": 3, "wanted_n": 9, "asked_n": 9, "felt_n": 9}
+
+
+def bits(recording: frixel.Recording) -> dict[str, bytes]:
+    """The bytes of each column."""
+    return {name: values.tobytes() for name, values in recording.items()}
 
 
 def felt_csv(tmp_path: Path, scene: Path, *options: str) -> list[dict[str, str]]:
@@ -55,6 +61,7 @@ def test_a_play_has_the_bits_of_the_command(
     rows = felt_csv(tmp_path, path, *options)
     recording = frixel.run({"scene": Scene.load(path), "seconds": seconds, **arguments})
     assert recording.rows == len(rows) > 400
+    assert [row["flags"] for row in rows] == recording["flags"].tolist()
     for column, decimals in {**DECIMALS, "voltage_v_rms": 4, "dac_code": 0}.items():
         written = np.array([float(row[column] or "nan") for row in rows])
         # Half a step of the file is the most that its rounding takes away.
@@ -65,12 +72,12 @@ def test_a_play_has_the_bits_of_the_command(
 def test_the_same_settings_give_the_same_bits_here_and_in_another_process() -> None:
     cell = {"scene": FLAT, "seed": 3, "person": 1, "stroke": Stroke.human(2), "seconds": 0.5}
     here = frixel.run(cell)
-    assert all(np.array_equal(here[name], frixel.run(cell)[name], equal_nan=True) for name in here)
+    assert bits(here) == bits(frixel.run(cell))
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         there = pool.submit(frixel.run, cell).result()
-    assert all(np.array_equal(here[name], there[name], equal_nan=True) for name in here)
+    assert bits(here) == bits(there)
     other = frixel.run({**cell, "seed": 4})
-    assert not np.array_equal(here["felt_n"], other["felt_n"], equal_nan=True)
+    assert bits(here) != bits(other)
 
 
 def test_a_stroke_from_arrays_goes_where_it_says() -> None:
@@ -98,6 +105,19 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
         (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), "both numbers, or neither"),
         (lambda: Simulator(FLAT, stroke=Stroke.from_arrays([1, 0], [1, 2], [1, 2])).run(), "rising"),
+        (lambda: Simulator("brick.toml"), "Scene.load reads a file, found 'brick.toml'"),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, seed=-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
+        (lambda: Simulator(FLAT, person=1.5), "person is a whole number from 0 to 18446744073709551615, found 1.5"),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, rows_per_s=0), "rows_per_s is a whole number from 1 to 40000, found 0"),
+        (
+            lambda: Simulator(FLAT, rows_per_s=2**40).run(1),
+            "rows_per_s is a whole number from 1 to 40000, found 1099511627776",
+        ),
+        (lambda: Simulator(FLAT, finger="me.toml"), "Finger.load reads a file"),
+        (lambda: Simulator(FLAT, finger=3), "a finger is a Finger, a name, or a table, found 3"),  # type: ignore[arg-type]
+        (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 10000, found 0"),
+        (lambda: Stroke.straight((1,), (2, 3)), "a place is x and y in mm"),  # type: ignore[arg-type]
+        (lambda: Stroke.human(-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
         (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is called `50`"),
     ],
 )
@@ -113,12 +133,32 @@ def test_a_recording_becomes_tables() -> None:
     assert list(frame.columns) == list(frixel.COLUMNS) == list(recording)
     assert len(frame) == recording.rows == 100
     assert frame.attrs["seed"] == 2
+    assert frame["flags"].iloc[-1] == str(recording["flags"][-1])
     dataset = recording.to_xarray()
     assert dataset.felt_n.attrs["units"] == "N"
     np.testing.assert_array_equal(dataset.t_s, recording["t_s"])
     copy = pickle.loads(pickle.dumps(recording))
     np.testing.assert_array_equal(copy["felt_n"], recording["felt_n"])
     assert "100 rows, 0.100 s" in repr(recording)
+
+
+def test_a_recording_as_parquet_has_what_the_command_records(tmp_path: Path, scenes: Path) -> None:
+    path, ours, theirs = scenes / "brick.toml", tmp_path / "ours.parquet", tmp_path / "theirs.parquet"
+    felt_csv(tmp_path, path, "--seconds", "0.5", "--record", str(theirs))
+    recording = Simulator(Scene.load(path)).run(0.5)
+    recording.to_parquet(ours)
+    one, other = (parquet.read_table(file) for file in (ours, theirs))
+    assert one.column_names == other.column_names == list(frixel.COLUMNS)
+    assert one.num_rows == 500
+    assert one.equals(other), "the same bits"
+    metadata = parquet.read_metadata(ours).metadata
+    assert metadata[b"frixel.scene"].decode() == path.read_text(encoding="utf-8")
+    assert b"textures/" in metadata[b"frixel.files"]
+    copy = pickle.loads(pickle.dumps(recording))
+    copy.to_parquet(tmp_path / "copy.parquet")
+    assert (tmp_path / "copy.parquet").read_bytes() == ours.read_bytes()
+    with pytest.raises(frixel.FrixelError, match="this file cannot be written"):
+        recording.to_parquet(tmp_path / "nowhere" / "ours.parquet")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent as on Unix")

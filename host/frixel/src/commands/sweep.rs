@@ -1,9 +1,11 @@
 //! `frixel sweep`: studies of many simulated fingers.
 
 use std::collections::BTreeSet;
-use std::fs::create_dir_all;
+use std::fs::{self, create_dir_all};
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 use frixel_hil_sim::TouchConfig;
@@ -19,13 +21,17 @@ use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
 use crate::output::draw_sweep_svg;
-use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
+use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, commit_all};
 use crate::scene_file::gathered;
 
 /// The folder of the results of cells, each in a file of its key.
 const CELLS: &str = "cells";
 /// The file in that folder that names the cells of the plan that was played last.
 const PLAN: &str = "plan.json";
+
+/// Time between two tries to write a file that another process writes, and the longest time for all of them.
+const WAIT: Duration = Duration::from_millis(10);
+const WAIT_MAX: Duration = Duration::from_secs(10);
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -92,7 +98,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
     let keys = Keys { cells: cells.iter().map(Cell::key).collect() };
     let folder = out.join(CELLS);
     create_dir_all(&folder).map_err(CommandError::writing(&folder))?;
-    OutputFile::new(&out.join(CELLS).join(PLAN), "-o", &inputs)?.write(json(&keys).as_bytes())?;
+    write_shared(&OutputFile::new(&out.join(CELLS).join(PLAN), "-o", &inputs)?, &json(&keys))?;
 
     let (part, parts) = args.shard.unwrap_or((1, 1));
     let own: Vec<(usize, &Cell)> = cells.iter().enumerate().filter(|(number, _)| number % parts == part - 1).collect();
@@ -102,7 +108,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
     args.jobs.run(|| {
         left.par_iter().try_for_each(|(number, cell)| {
             let result = cell.play().map_err(|source| CommandError::Cell { cell: title(cell), source })?;
-            OutputFile::new(&path(*number), "-o", &inputs)?.write(json(&result).as_bytes())?;
+            write_shared(&OutputFile::new(&path(*number), "-o", &inputs)?, &json(&result))?;
             if let Some(bar) = &bar {
                 bar.inc(1);
             }
@@ -115,6 +121,20 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
     let had = own.len() - left.len();
     print_line(format_args!("  {:<30} {} played, {had} were there, of {}", "cells", left.len(), cells.len()))?;
     if parts == 1 { merge(out, &inputs) } else { Ok(()) }
+}
+
+/// Writes a file that other processes of the same sweep may write at the same moment, with the same content.
+fn write_shared(file: &OutputFile, text: &str) -> Result<(), CommandError> {
+    let begin = Instant::now();
+    loop {
+        if fs::read(file.path()).is_ok_and(|there| there == text.as_bytes()) {
+            return Ok(());
+        }
+        match file.write(text.as_bytes()) {
+            Err(OutputFileError::Busy { .. }) if begin.elapsed() < WAIT_MAX => thread::sleep(WAIT),
+            written => return Ok(written?),
+        }
+    }
 }
 
 /// The cells of a plan, whose files are named from its folder.

@@ -5,7 +5,8 @@
 
 from . import errors, model
 from ._frixel import __version__
-from .errors import FrixelError, Mistake, ParameterError, PlayError, SceneError
+from .errors import FitError, FrixelError, Mistake, ParameterError, PlayError, SceneError
+from .fitting import Fit, fit
 from .profiles import Finger, Screen, TouchSource
 from .recording import COLUMNS, Recording
 from .scene import Scene
@@ -15,6 +16,8 @@ from .stroke import Stroke
 __all__ = [
     "COLUMNS",
     "Finger",
+    "Fit",
+    "FitError",
     "FrixelError",
     "Mistake",
     "ParameterError",
@@ -28,6 +31,7 @@ __all__ = [
     "TouchSource",
     "__version__",
     "errors",
+    "fit",
     "model",
     "run",
 ]

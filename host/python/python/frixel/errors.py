@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import index
 
-__all__ = ["FrixelError", "Mistake", "ParameterError", "PlayError", "SceneError"]
+__all__ = ["FitError", "FrixelError", "Mistake", "ParameterError", "PlayError", "SceneError"]
 
 
 class FrixelError(Exception):
@@ -14,6 +15,21 @@ class FrixelError(Exception):
 
 class ParameterError(FrixelError, ValueError):
     """A value that is not taken: the message says what was found, and what is expected."""
+
+
+def whole(name: str, value: object, least: int, most: int = 2**64 - 1) -> int:
+    """A whole number from `least` to `most`; `name` is what the message calls it."""
+    try:
+        number = index(value)  # type: ignore[arg-type]
+    except TypeError:
+        number = None
+    if number is None or not least <= number <= most:
+        raise ParameterError(f"{name} is a whole number from {least} to {most}, found {value!r}")
+    return number
+
+
+class FitError(FrixelError, ValueError):
+    """Measured friction does not give a finger: the message says why, and what to measure."""
 
 
 class PlayError(FrixelError):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from . import _frixel, _toml
-from .errors import SceneError
+from .errors import ParameterError, SceneError
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -82,8 +82,16 @@ class _Profile:
     def of(cls, profile: Self | str | Mapping[str, Any]) -> Self:
         """One as arguments name it: itself, the name of a bundled one, or the fields of its file."""
         if isinstance(profile, str):
+            if profile.endswith(".toml"):
+                raise ParameterError(
+                    f"{profile}: a text is the name of a bundled {cls.kind}: {cls.__name__}.load reads a file"
+                )
             return cls.bundled(profile)
-        return cls.from_dict(profile) if isinstance(profile, Mapping) else profile
+        if isinstance(profile, Mapping):
+            return cls.from_dict(profile)
+        if not isinstance(profile, cls):
+            raise ParameterError(f"a {cls.kind} is a {cls.__name__}, a name, or a table, found {profile!r}")
+        return profile
 
 
 class Finger(_Profile):

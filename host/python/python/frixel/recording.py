@@ -2,46 +2,44 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from html import escape
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from . import _display, _frixel
+from .scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["COLUMNS", "Recording"]
 
-COLUMNS: Mapping[str, tuple[str, str]] = {
-    "t_s": ("s", "Time since the scene began to play, at the end of the row"),
-    "x_mm": ("mm", "The finger's place from the left edge of the screen"),
-    "y_mm": ("mm", "The finger's place from the top edge of the screen"),
-    "speed_mm_s": ("mm/s", "The finger's speed"),
-    "wanted_n": ("N", "The reference: friction of the scene at the finger's place, mean over the row"),
-    "asked_n": ("N", "The board's target, mean over the row"),
-    "felt_n": ("N", "Friction that the finger felt, mean over the row"),
-    "natural_n": ("N", "The part of the felt friction that the finger has without the drive"),
-    "electrode_v_rms": ("V", "Rms voltage on the electrode over the row"),
-    "voltage_v_rms": ("V", "Rms voltage of the envelope"),
-    "dac_code": ("1", "The last code in the row that went to the DAC"),
-    "flags": ("1", "Every flag that the board reported in the row, as bits (docs/outputs.md)"),
-}
+COLUMNS: Mapping[str, tuple[str, str]] = {name: (unit, meaning) for name, unit, meaning in _frixel.play_fields()}
 """Unit and meaning of each column."""
+
+TICKS_PER_S = 40_000
+"""Ticks of the simulated board a second."""
 
 
 @dataclass(frozen=True, eq=False)
 class Recording(Mapping[str, NDArray[Any]]):
-    """Columns of equal length, by name: `recording["felt_n"]`. What is unknown is not a number.
+    """Columns of equal length, by name: `recording["felt_n"]`.
 
-    `COLUMNS` has the unit and the meaning of each.
+    `COLUMNS` has the unit and the meaning of each. A number that is unknown is not a number; `flags` are texts.
     """
 
     columns: dict[str, NDArray[Any]]
     """The columns, each of shape (rows,)."""
-    settings: dict[str, Any] = field(default_factory=dict)
-    """What made the recording."""
+    settings: dict[str, Any]
+    """How the play was made, and by which version."""
+    scene: Scene
+    """The scene that was played."""
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
@@ -73,6 +71,25 @@ class Recording(Mapping[str, NDArray[Any]]):
         variables = {name: ("t_s", values, described[name]) for name, values in self.columns.items() if name != "t_s"}
         times = ("t_s", self.columns["t_s"], described["t_s"])
         return xr.Dataset(variables, coords={"t_s": times}, attrs=dict(self.settings))
+
+    def to_parquet(self, path: str | PathLike[str]) -> None:
+        """Write the columns as Parquet, in the format of `frixel play --record` (`docs/outputs.md`).
+
+        The scene, the files that it names, and the settings are in the metadata of the file.
+
+        Raises
+        ------
+        FrixelError
+            The file cannot be written.
+        """
+        columns = {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.items()}
+        settings = json.dumps({"python": self.settings})
+        ticks_per_row = TICKS_PER_S // int(self.settings["rows_per_s"])
+        _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, settings, ticks_per_row)
+
+    def _repr_html_(self) -> str:
+        lines = {"wanted_n": ("#888", self["wanted_n"]), "felt_n": ("#c33", self["felt_n"])}
+        return f"<p>{escape(repr(self)[1:-1])}</p>" + _display.chart(self["t_s"], lines, ("friction, N,", "time, s,"))
 
     def __repr__(self) -> str:
         end_s = self.columns["t_s"][-1] if self.rows else 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,10 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _frixel, _toml
+from . import _display, _frixel, _toml
+from .errors import whole
 from .profiles import Finger, Screen, TouchSource, read_bytes
 
 __all__ = ["Scene"]
+
+MAP_MAX_PX = 10_000
+"""Largest width and height of a map, pixels."""
 
 
 class Scene:
@@ -149,11 +154,22 @@ class Scene:
             Electric friction at the middle of each pixel, N, of shape (rows, columns), from the top left. Vibrations
             and streams are at their largest.
         """
-        return self.compiled.map(width, height, 1e-3 * speed_mm_s)[0]
+        return self.compiled.map(
+            whole("width", width, 1, MAP_MAX_PX), whole("height", height, 1, MAP_MAX_PX), 1e-3 * speed_mm_s
+        )[0]
 
     def __repr__(self) -> str:
         width, height = self.screen_mm
         return f"<frixel.Scene {self.name}: {len(self.layers)} layers on {width:g} mm x {height:g} mm>"
+
+    def _repr_html_(self) -> str:
+        natural, most = self.reach_n
+        return (
+            f"<p>{escape(repr(self)[1:-1])}; black is {1e3 * (most - natural):.3g} mN of electric friction</p>"
+            + _display.friction_map(self.map(480, 320), most - natural)
+            + _display.sentences("A board refuses it:", self.refusals)
+            + _display.sentences("Notes:", self.notes)
+        )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self._state() == other._state()

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from . import _frixel
-from .errors import ParameterError
+from .errors import ParameterError, whole
 from .profiles import Finger, Screen, TouchSource
-from .recording import Recording
+from .recording import TICKS_PER_S, Recording
 from .scene import Scene
 from .stroke import Stroke
 
@@ -65,15 +67,19 @@ class Simulator:
         if not (stroke is None or isinstance(stroke, Stroke)):
             raise ParameterError(f"a stroke is made by Stroke.straight, human or from_arrays, found {stroke!r}")
         scene = Scene.from_dict(scene) if isinstance(scene, Mapping) else scene
+        if not isinstance(scene, Scene):
+            raise ParameterError(f"a scene is a Scene or its tables, and Scene.load reads a file, found {scene!r}")
         if screen is not None:
             scene = scene.with_screen(screen)
         if finger is not None:
             scene = scene.with_finger(finger)
         self.scene = scene
         self.stroke = stroke
-        self.seed, self.person = seed, person
+        self.seed = whole("seed", seed, 0)
+        self.person = None if person is None else whole("person", person, 0)
         self.touch = None if touch is None else TouchSource.of(touch)
-        self.ideal, self.leakage, self.rows_per_s = ideal, leakage, rows_per_s
+        self.ideal, self.leakage = bool(ideal), bool(leakage)
+        self.rows_per_s = whole("rows_per_s", rows_per_s, 1, TICKS_PER_S)
 
     def run(self, seconds: float | None = None) -> Recording:
         """Play the scene from its beginning.
@@ -99,13 +105,19 @@ class Simulator:
         """
         columns = _frixel.simulate(self.scene.compiled, self, seconds)
         settings = {
+            "frixel": _frixel.__version__,
             "scene": self.scene.name,
+            "stroke": None if self.stroke is None else repr(self.stroke),
+            "seconds": seconds,
             "seed": self.seed,
             "person": self.person,
+            "touch": None if self.touch is None else self.touch.name,
             "ideal": self.ideal,
-            "frixel_version": _frixel.__version__,
+            "leakage": self.leakage,
+            "rows_per_s": self.rows_per_s,
         }
-        return Recording(columns, {name: value for name, value in settings.items() if value is not None})
+        given = {name: value for name, value in settings.items() if value is not None}
+        return Recording({name: np.asarray(values) for name, values in columns.items()}, given, self.scene)
 
 
 def run(cell: Mapping[str, Any]) -> Recording:

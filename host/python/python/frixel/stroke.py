@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ParameterError
+from .errors import ParameterError, whole
 
 __all__ = ["Stroke"]
 
@@ -37,7 +37,7 @@ class Stroke:
         minimum_jerk
             Start and end at rest, as a hand does, rather than at constant speed.
         """
-        return _Straight(tuple(from_mm), tuple(to_mm), float(speed_mm_s), bool(minimum_jerk))
+        return _Straight(_place(from_mm), _place(to_mm), float(speed_mm_s), bool(minimum_jerk))
 
     @staticmethod
     def human(seed: int, *, seconds: float | None = None, rough: bool = False) -> Stroke:
@@ -52,7 +52,7 @@ class Stroke:
         rough
             With the accelerations of recorded strokes before smoothing, 2 to 5 times as much.
         """
-        return _Human(int(seed), seconds, bool(rough))
+        return _Human(whole("seed", seed, 0), seconds, bool(rough))
 
     @staticmethod
     def from_arrays(t_s: ArrayLike, x_mm: ArrayLike, y_mm: ArrayLike, load_n: ArrayLike | None = None) -> Stroke:
@@ -82,10 +82,16 @@ class Stroke:
         return _Rows(columns[0], columns[1], columns[2], load)
 
 
+def _place(place: tuple[float, float]) -> tuple[float, float]:
+    if len(place) != 2:
+        raise ParameterError(f"a place is x and y in mm, found {place!r}")
+    return float(place[0]), float(place[1])
+
+
 @dataclass(frozen=True)
 class _Straight(Stroke):
-    from_mm: tuple[float, ...]
-    to_mm: tuple[float, ...]
+    from_mm: tuple[float, float]
+    to_mm: tuple[float, float]
     speed_mm_s: float
     minimum_jerk: bool
 

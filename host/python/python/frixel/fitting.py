@@ -1,0 +1,128 @@
+"""A finger's profile from measured friction."""
+
+from __future__ import annotations
+
+import datetime
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _frixel
+from .errors import ParameterError
+from .profiles import Finger, Screen
+
+__all__ = ["Fit", "fit"]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted finger."""
+
+    finger: Finger
+    """The finger, for `Scene.with_finger` and `Simulator`; `finger.text` is its file."""
+    summary: dict[str, Any]
+    """The numbers of `frixel fit --json`, with their intervals of 95 %."""
+    words: str
+    """The summary in words: the results, what they say about the model, and what the data cannot tell."""
+
+    def __str__(self) -> str:
+        return self.words
+
+
+@dataclass(frozen=True)
+class _Rows:
+    voltage_v_rms: list[float]
+    normal_force_n: list[float]
+    friction_n: list[float]
+    time_s: list[float] | None
+    stroke: list[str] | None
+    speed_mm_s: list[float] | None
+
+
+@dataclass(frozen=True)
+class _Settings:
+    empirical: bool
+    voltage_v_rms: float
+    normal_load_n: float | None
+    without: list[str]
+    seed: int
+    date: str
+    method: str
+    screen: Screen
+
+
+def fit(
+    data: Mapping[str, ArrayLike],
+    *,
+    law: Literal["contact", "empirical"] = "contact",
+    screen: Screen | str | Mapping[str, Any] = "example",
+    voltage_v_rms: float = 150.0,
+    normal_load_n: float | None = None,
+    without: Sequence[str] = (),
+    method: str = "load cell, strokes with the drive switched on and off",
+    date: datetime.date | None = None,
+    seed: int = 1,
+) -> Fit:
+    """Fit a finger to the samples of a force sensor, as `frixel fit` does.
+
+    Parameters
+    ----------
+    data
+        Columns of shape (n,), for example a `pandas.DataFrame`: `voltage_v_rms` (V), `normal_force_n` and `friction_n`
+        (N), and if they are known `time_s` (s), `stroke` (the name or number of each stroke) and `speed_mm_s` (mm/s).
+        The finger slides in strokes, while the drive is switched on and off.
+    law
+        `contact` for the contact model, which data that contradict it refuse; `empirical` for a law of its own.
+    screen
+        The screen that friction was measured on.
+    voltage_v_rms
+        Voltage at which the contact model's electric friction is stated, V rms.
+    normal_load_n
+        Normal load of the profile, N; without it, the median of the data.
+    without
+        Names of strokes to leave out.
+    method, date
+        How and when friction was measured, for the profile; the day is today unless it is given.
+    seed
+        Seed of the bootstrap that gives the intervals.
+
+    Raises
+    ------
+    ParameterError
+        A column is missing, or of another length.
+    FitError
+        The data do not give a finger.
+    """
+    if law not in ("contact", "empirical"):
+        raise ParameterError(f"the law is 'contact' or 'empirical', found {law!r}")
+    forces = [_column(data, name) for name in ("voltage_v_rms", "normal_force_n", "friction_n")]
+    times, speeds = [_column(data, name) if name in data else None for name in ("time_s", "speed_mm_s")]
+    strokes = [str(name) for name in np.asarray(data["stroke"]).reshape(-1)] if "stroke" in data else None
+    lengths = {len(column) for column in (*forces, times, strokes, speeds) if column is not None}
+    if len(lengths) > 1:
+        raise ParameterError(f"columns have one length, found {sorted(lengths)}")
+    day = (date or datetime.datetime.now().astimezone().date()).isoformat()
+    settings = _Settings(
+        law == "empirical",
+        float(voltage_v_rms),
+        normal_load_n,
+        [str(name) for name in without],
+        seed,
+        day,
+        method,
+        Screen.of(screen),
+    )
+    rows = _Rows(forces[0], forces[1], forces[2], times, strokes, speeds)
+    summary, words, profile = _frixel.fit_finger(rows, settings)
+    return Fit(Finger.parse(profile), json.loads(summary), words)
+
+
+def _column(data: Mapping[str, ArrayLike], name: str) -> list[float]:
+    if name not in data:
+        raise ParameterError(f"the data have no column {name} (they have {', '.join(map(str, data))})")
+    values: list[float] = np.asarray(data[name], dtype=np.float64).reshape(-1).tolist()
+    return values

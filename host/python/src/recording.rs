@@ -1,0 +1,93 @@
+//! Recordings: columns as arrays, and as Parquet.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::PathBuf;
+
+use frixel_hil_sim::RigConfig;
+use frixel_lab::recording::{Column, Field, Kind, Metadata, Recording, SourceFile, Values, play_fields as fields};
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::Value;
+
+use super::error::raised;
+use super::scene::NamedFiles;
+
+/// Name, unit and meaning of each column of a play.
+#[pyfunction]
+pub(crate) fn play_fields() -> Vec<(String, String, String)> {
+    fields().into_iter().map(|field| (field.name, field.unit, field.meaning)).collect()
+}
+
+/// Columns as arrays by their names: numbers, not a number where nothing is known, and lists of texts.
+pub(crate) fn columns<'py>(py: Python<'py>, fields: &[Field], values: Vec<Values>) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    for (field, values) in fields.iter().zip(values) {
+        let numbers: Vec<f64> = match values {
+            Values::Numbers(values) => values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
+            Values::Integers(values) => values.into_iter().map(|value| value.map_or(f64::NAN, f64::from)).collect(),
+            Values::Texts(values) => {
+                let texts: Vec<String> = values.into_iter().map(Option::unwrap_or_default).collect();
+                columns.set_item(&field.name, texts)?;
+                continue;
+            }
+        };
+        columns.set_item(&field.name, numbers.into_pyarray(py))?;
+    }
+    Ok(columns)
+}
+
+/// The values of a column of this kind.
+fn values(kind: Kind, column: &Bound<'_, PyAny>) -> PyResult<Values> {
+    Ok(match kind {
+        Kind::Number => Values::Numbers(numbers(column)?.collect()),
+        Kind::Integer => Values::Integers(numbers(column)?.map(|value| value.map(|value| value as i32)).collect()),
+        Kind::Text => Values::Texts(column.extract::<Vec<String>>()?.into_iter().map(Some).collect()),
+    })
+}
+
+fn numbers(column: &Bound<'_, PyAny>) -> PyResult<impl Iterator<Item = Option<f64>>> {
+    let column: PyReadonlyArray1<f64> = column.extract()?;
+    Ok(column.as_array().to_vec().into_iter().map(|value| value.is_finite().then_some(value)))
+}
+
+/// Writes a simulated play as Parquet, as `frixel play --record` does. `settings` is a JSON object that says how the play
+/// was made.
+#[pyfunction]
+pub(crate) fn write_parquet(
+    py: Python<'_>,
+    path: PathBuf,
+    columns: Bound<'_, PyDict>,
+    scene: String,
+    files: NamedFiles,
+    settings: &str,
+    ticks_per_row: u32,
+) -> PyResult<()> {
+    let failed = |error: &dyn std::fmt::Display| {
+        raised(py, "FrixelError", (format!("{}: this file cannot be written ({error})", path.display()),))
+    };
+    let mut taken = Vec::new();
+    for field in fields() {
+        let Some(column) = columns.get_item(&field.name)? else {
+            return Err(failed(&format!("the recording has no column {}", field.name)));
+        };
+        taken.push(Column { values: values(field.kind, &column)?, field });
+    }
+    let named = files.iter().map(|(name, bytes)| (format!("scene/{name}"), bytes.as_slice()));
+    let metadata = Metadata {
+        frixel: env!("CARGO_PKG_VERSION").to_owned(),
+        rig: "sim".to_owned(),
+        is_simulated: true,
+        tick_hz: RigConfig::default().board.tick_hz,
+        ticks_per_row,
+        play: serde_json::from_str::<Value>(settings).map_err(|error| failed(&error))?,
+        scene,
+        files: SourceFile::all(named),
+        ..Metadata::default()
+    };
+    let recording = Recording { metadata, columns: taken, is_cut_off: false };
+    let file = File::create(&path).map_err(|error| failed(&error))?;
+    let written = py.detach(|| recording.write_parquet(BufWriter::new(file)));
+    written.map_err(|error| failed(&error))
+}

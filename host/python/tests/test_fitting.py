@@ -1,0 +1,62 @@
+"""Fits of fingers."""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from frixel import FitError, ParameterError, Scene, fit, model
+
+DAY = datetime.date(2026, 11, 23)
+
+
+def measured() -> dict[str, np.ndarray]:
+    """Strokes of a made-up finger, with the drive on in every second half, and a sensor's noise."""
+    noise = np.random.default_rng(7)
+    finger = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=10e-6)
+    stroke = np.repeat(np.arange(24), 200)
+    voltage = np.where(np.arange(4800) % 200 < 100, 0.0, np.array([75.0, 100.0, 150.0])[stroke % 3])
+    load = np.array([0.46, 0.49, 0.51, 0.54])[stroke % 4]
+    friction = model.eval(finger, voltage, load).friction_n * (1 + 0.01 * noise.standard_normal(4800))
+    return {"voltage_v_rms": voltage, "normal_force_n": load, "friction_n": friction, "stroke": stroke}
+
+
+def test_a_fit_is_that_of_the_command(tmp_path: Path) -> None:
+    data = measured()
+    fitted = fit(data, date=DAY)
+    assert fitted.summary["friction_coefficient"] == pytest.approx(0.5, rel=0.01)
+    with (tmp_path / "data.csv").open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(data)
+        writer.writerows(zip(*(column.tolist() for column in data.values()), strict=True))
+    command = [os.environ["FRIXEL"], "fit", str(tmp_path / "data.csv"), "--json"]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert json.loads(printed) == fitted.summary
+    assert "2026-11-23" in (fitted.finger.text or "")
+    scene = Scene.from_dict({"layer": [{"kind": "constant", "friction_fraction": 0.5}]})
+    natural, _ = scene.with_finger(fitted.finger).reach_n
+    assert natural == pytest.approx(0.5 * fitted.summary["normal_load_n"], rel=0.01)
+    assert str(fitted) == fitted.words
+
+
+def test_a_finger_with_a_law_of_its_own_is_fitted() -> None:
+    fitted = fit(measured(), law="empirical", date=DAY)
+    assert "empirical" in (fitted.finger.text or "")
+
+
+def test_data_that_give_no_finger_are_refused() -> None:
+    data = measured()
+    with pytest.raises(FitError):
+        fit({**data, "voltage_v_rms": np.zeros(4800)})
+    with pytest.raises(ParameterError, match="no column friction_n \\(they have voltage_v_rms, normal_force_n"):
+        fit({name: data[name] for name in ("voltage_v_rms", "normal_force_n")})
+    with pytest.raises(ParameterError, match="columns have one length, found"):
+        fit({**data, "friction_n": data["friction_n"][1:]})
+    with pytest.raises(ParameterError, match="found 'power'"):
+        fit(data, law="power")  # type: ignore[arg-type]
