@@ -139,11 +139,16 @@ fn levels_are_told_apart_as_far_as_they_differ() {
     };
     let apart = |fraction: f64| {
         let lines = lines(&plates(fraction), &["--stroke", "sweep"]);
-        lines.iter().find(|(name, _)| name == "told apart").map(|(_, text)| text.clone()).unwrap()
+        lines.iter().find(|(name, _)| name == "levels").map(|(_, text)| text.clone()).unwrap()
     };
+    // A plate has no contrast to speak of.
+    let lines = lines(&plates(0.1), &["--stroke", "sweep"]);
+    let (_, row) = lines.iter().find(|(name, _)| name.starts_with("layer 2")).unwrap();
+    assert!(row.starts_with("felt by 1 of 1; step onto it from layer 1 \"left\" "), "{row}");
+    assert!(row.ends_with(" Weber steps"), "{row}");
     let pair = "layer 1 \"left\" and layer 2 \"right\"";
-    assert!(apart(0.1).starts_with(&format!("{pair}: felt by 1 of 1; ")), "{}", apart(0.1));
-    assert!(apart(0.9).starts_with(&format!("{pair}: felt by 0 of 1; ")), "{}", apart(0.9));
+    assert!(apart(0.1).starts_with(&format!("{pair}: told apart by 1 of 1; ")), "{}", apart(0.1));
+    assert!(apart(0.9).starts_with(&format!("{pair}: told apart by 0 of 1; ")), "{}", apart(0.9));
 }
 
 /// Each person has a finger and strokes of their own, and the same people come again.

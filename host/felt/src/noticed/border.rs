@@ -7,13 +7,11 @@ use frixel_scene::reference::{Context, Reference};
 
 use super::likeness::Likeness;
 use super::moment::{MOMENT_HZ, Moment};
-use super::{BTreeMap, NoticedBorder, Sums, starts_on};
+use super::{BTreeMap, FINGERTIP_M, NoticedBorder, Sums, starts_on};
 use crate::perception::{border_reference, border_sides, total_n, visible_layers};
 
 /// Longest way on either side of a border, m.
 const SIDE_MAX_M: f64 = 0.01;
-/// Nearer to a border a fingertip does not tell on which side a change is, m (its spatial resolution is 1 to 2 mm).
-const FINGERTIP_M: f64 = 0.002;
 /// Longest time on either side of a border, in moments: 200 ms.
 const SIDE_MAX: usize = 400;
 /// A shorter time on one side is a corner, in moments: 2 ms.

@@ -32,6 +32,8 @@ use moment::{MOMENT_HZ, Moment, context, electric_n, runs};
 const WAY_MAX_M: f64 = 0.05;
 /// A shorter touch of a layer says nothing, in moments: 20 ms.
 const TOUCH_MIN: usize = 40;
+/// Nearer to a border a fingertip does not tell on which side a change is, m (its spatial resolution is 1 to 2 mm).
+const FINGERTIP_M: f64 = 0.002;
 /// From one place at which a change of the scene is sought to the next, in samples: 1 ms.
 const PLACE_SAMPLES: usize = 4;
 /// A smaller change of the scene's friction is none, N: the least amplitude with a threshold is 0.2 mN.
@@ -61,7 +63,8 @@ pub struct NoticedLayer {
     pub contrast: Step,
     /// The most noticeable texture; absent where there is none.
     pub texture: Option<Texture>,
-    /// Mean of the total friction where no other layer is above; absent where there always is one.
+    /// Mean of the total friction where no other layer is above, farther than a fingertip's resolution from where the layer
+    /// ends; absent if the finger was there for less than 20 ms.
     pub level: Option<Level>,
     /// Whether the scene has the same friction throughout the layer.
     pub is_flat: bool,
@@ -99,7 +102,7 @@ impl NoticedLayer {
 struct Touches {
     moments: usize,
     sums: Sums,
-    /// Where no layer is above.
+    /// Where no layer is above, without what a fingertip does not tell from what lies beside.
     uppermost: Sums,
     likeness: Likeness,
     /// The largest contrast of the scene on a way over the layer: least and largest electric friction, N. Of a layer
@@ -177,9 +180,10 @@ impl Noticing {
         let own_n: Vec<f64> = on_layer.iter().map(|moment| moment.electric_n(uncovered, program)).collect();
         for moment in on_layer {
             touches.sums.add(moment);
-            if moment.visible.checked_ilog2() == u32::try_from(layer).ok() {
-                touches.uppermost.add(moment);
-            }
+        }
+        let is_uppermost = |moment: &Moment| moment.visible.checked_ilog2() == u32::try_from(layer).ok();
+        for moment in stretches(on_layer, is_uppermost).into_iter().flat_map(|stretch| inner(&on_layer[stretch])) {
+            touches.uppermost.add(moment);
         }
         for way in ways(on_layer) {
             let Some(way_n) = own_n.get(way.clone()) else { continue };
@@ -264,7 +268,7 @@ impl Touches {
             layer,
             contrast: sums.felt_step(widest_n, self.felt_part()),
             texture: *texture,
-            level: (uppermost.count > 0.0).then(|| Level {
+            level: (uppermost.count >= TOUCH_MIN as f64).then(|| Level {
                 scene_n: scenes_natural_n + uppermost.scene_n / uppermost.count,
                 felt_n: (uppermost.natural_n + uppermost.felt_n) / uppermost.count,
             }),
@@ -294,6 +298,22 @@ fn stretches(run: &[Moment], is_wanted: impl Fn(&Moment) -> bool) -> Vec<std::op
     }
     found.extend(start.map(|first| first..run.len()));
     found
+}
+
+/// The moments of a stretch that are farther from both of its ends than a fingertip's resolution.
+fn inner(stretch: &[Moment]) -> &[Moment] {
+    let from = near_count(stretch.iter(), FINGERTIP_M);
+    let to = stretch.len() - near_count(stretch.iter().rev(), FINGERTIP_M);
+    stretch.get(from..to).unwrap_or_default()
+}
+
+/// How many moments of a way are nearer to its beginning than a distance.
+fn near_count<'m>(way: impl Iterator<Item = &'m Moment>, distance_m: f64) -> usize {
+    let ways_m = way.scan(0.0, |way_m, moment| {
+        *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
+        Some(*way_m)
+    });
+    ways_m.take_while(|way_m| *way_m < distance_m).count()
 }
 
 /// Parts of a touch that are at most [`WAY_MAX_M`] long.

@@ -23,6 +23,12 @@ fn program(layers: &[&str]) -> Program {
 /// A finger that slides along a row, over a display that plays the place where the finger was `late_s` ago with a gain.
 fn slide(program: &Program, gain: f64, late_s: f64) -> Noticing {
     let reference = Reference::new(program);
+    slide_over(program, |t_s| gain * reference.electric_friction_n(0.005 + SPEED_M_PER_S * (t_s - late_s), 0.041))
+}
+
+/// A finger that slides along a row, over a display that gives an electric friction at each time.
+fn slide_over(program: &Program, felt_electric_n: impl Fn(f64) -> f64) -> Noticing {
+    let reference = Reference::new(program);
     let natural_n = program.reach.natural_friction_n;
     let sample = |number: u32| {
         let t_s = f64::from(number) / crate::fidelity::SAMPLE_HZ;
@@ -33,7 +39,7 @@ fn slide(program: &Program, gain: f64, late_s: f64) -> Noticing {
             y_m: 0.041,
             speed_m_per_s: Some(SPEED_M_PER_S),
             reference_n: natural_n + electric_n(t_s),
-            felt_n: natural_n + gain * electric_n(t_s - late_s),
+            felt_n: natural_n + felt_electric_n(t_s),
             natural_n,
             is_driven: true,
         }
@@ -130,6 +136,23 @@ fn directions_are_compared_between_slides() {
     for (plays, along_n, against_n) in [([1.0, -1.0], 0.05, 0.05), ([1.0, -1.0], 0.1, 0.01), ([1.0, 1.0], 0.01, 0.1)] {
         assert_eq!(noticed(&plays, along_n, against_n).verdict(), Verdict::NotFelt, "{plays:?}");
     }
+}
+
+/// A late display has the level of a plate, and a bar that is as narrow as a fingertip resolves has none.
+#[test]
+fn a_level_is_that_inside_a_layer() {
+    let bar = |x_mm: u32, width_mm: u32| {
+        format!(
+            "[[layer]]\nkind = \"constant\"\nregion = {{ x_mm = {x_mm}, y_mm = 0, width_mm = {width_mm}, height_mm = 80 }}\n\
+             above = \"natural\"\nfriction_n = 0.1\n"
+        )
+    };
+    let program =
+        program(&[&bar(20, 1), &bar(22, 1), &bar(24, 1), &bar(26, 1), &bar(28, 1), &bar(30, 1), &bar(50, 20)]);
+    let layers = slide(&program, 1.0, 0.02).layers();
+    let plate = layers.last().and_then(|layer| layer.level).unwrap();
+    assert!((plate.felt_n - plate.scene_n).abs() < 1e-9, "{plate:?}");
+    assert!(layers.iter().rev().skip(1).all(|bar| bar.level.is_none()), "{layers:?}");
 }
 
 #[test]

@@ -37,7 +37,8 @@ pub(crate) use spectrum::component_power;
 use thresholds::lag_gain;
 pub(crate) use thresholds::{MAYBE, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n, texture_range_n};
 pub use thresholds::{
-    NATURAL_NOISE_RMS_N, Verdict, texture_threshold_n, weber_steps, weber_steps_safe, weber_steps_text,
+    NATURAL_NOISE_RMS_N, THRESHOLD_UNCERTAINTY, Verdict, texture_threshold_n, weber_steps, weber_steps_safe,
+    weber_steps_text,
 };
 
 /// Sliding speeds at which textures are judged, m/s: slow, usual and fast exploration. Assumed.

@@ -44,7 +44,7 @@ const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
 
 /// Factor by which the threshold may be wrong in either direction: people differ by a factor of 2, and the thresholds
 /// were measured with a vibrating probe, not with friction. Assumed.
-pub(super) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
+pub const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 
 /// What *maybe* means, for a person. It is about a range of contrast, from the smallest Weber fraction of the studies to
 /// the largest one, or a factor of 3 on both sides of a texture's threshold; no study says which share of people is how

@@ -1,7 +1,9 @@
 //! How many simulated fingers notice each layer, and tell two levels apart.
 
+use std::cmp::Ordering;
+
 use frixel_felt::noticed::{Level, NoticedBorder, NoticedLayer, Noticing};
-use frixel_felt::perception::{Step, Texture, Verdict, weber_steps};
+use frixel_felt::perception::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict, weber_steps, weber_steps_safe};
 use frixel_scene::{LayerTitle, Program};
 use serde::Serialize;
 
@@ -114,6 +116,14 @@ pub struct LevelScore {
     pub weber_steps: f64,
 }
 
+impl LevelScore {
+    /// Orders pairs of levels by how surely they are told apart, and then by their distance.
+    pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
+        let by_verdict = self.simulated_fingers.cmp_felt(&other.simulated_fingers);
+        by_verdict.then(self.weber_steps.total_cmp(&other.weber_steps))
+    }
+}
+
 /// A row for each layer that a finger touched, from bottom to top.
 pub(super) fn layers(program: &Program, fingers: &[Finger]) -> Vec<LayerScore> {
     let titles = program.titles.iter().enumerate();
@@ -140,14 +150,35 @@ fn layer_score(layer: usize, title: &LayerTitle, program: &Program, fingers: &[F
     })
 }
 
-impl LayerScore {
-    /// The layer that the smallest share of the fingers that touched it notices: of copies, it stands for all of them.
-    pub(super) fn least<'l>(layers: impl IntoIterator<Item = &'l Self>) -> Option<&'l Self> {
-        let share = |layer: &Self| {
-            let Verdicts { touched, felt, felt_by_some, .. } = layer.simulated_fingers;
-            (felt as f64 + 1e-3 * felt_by_some as f64) / touched as f64
+impl Verdicts {
+    /// Orders by the share of the fingers that touched it which notice it, and then by the share near the threshold.
+    pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
+        let share = |count: fn(&Self) -> usize| {
+            let shares = [self, other].map(|verdicts| count(verdicts) as f64 / verdicts.touched as f64);
+            shares[0].total_cmp(&shares[1])
         };
-        layers.into_iter().min_by(|one, other| share(one).total_cmp(&share(other)))
+        share(|verdicts| verdicts.felt).then(share(|verdicts| verdicts.felt_by_some))
+    }
+}
+
+impl LayerScore {
+    /// Orders layers by how surely they are noticed, and then by the size of what is felt of them.
+    pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
+        let by_verdict = self.simulated_fingers.cmp_felt(&other.simulated_fingers);
+        by_verdict.then(self.size().total_cmp(&other.size()))
+    }
+
+    /// The largest of contrast, step and texture, as a part of what is surely felt.
+    fn size(&self) -> f64 {
+        let Self { contrast_weber_steps, border, texture, .. } = self;
+        let step = border.as_ref().map_or(0.0, |border| border.weber_steps.abs());
+        let texture = texture.map_or(0.0, |texture| texture.salience() / THRESHOLD_UNCERTAINTY);
+        (contrast_weber_steps.abs().max(step) / weber_steps_safe()).max(texture)
+    }
+
+    /// The layer that is noticed the least surely: of copies, it stands for all of them.
+    pub(super) fn least<'l>(layers: impl IntoIterator<Item = &'l Self>) -> Option<&'l Self> {
+        layers.into_iter().min_by(|one, other| one.cmp_felt(other))
     }
 }
 
@@ -204,7 +235,7 @@ pub(super) fn borders(program: &Program, fingers: &[Finger]) -> Vec<BorderScore>
 }
 
 /// A row for each two levels that are next to one another. A level is that of the flat layers with the same friction in
-/// the scene.
+/// the scene, of which a finger felt the inside: narrower ones have none.
 pub(super) fn levels(program: &Program, fingers: &[Finger]) -> Vec<LevelScore> {
     let level = |layer: usize| {
         let touched = || fingers.iter().filter_map(|finger| finger.on(layer));

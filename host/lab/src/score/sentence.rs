@@ -15,7 +15,21 @@ impl Score {
         let untouched: Vec<&LayerTitle> = self.untouched_layers.iter().collect();
         let untouched = (!self.layers.is_empty() && !untouched.is_empty())
             .then(|| format!("no stroke says anything about {}", listed(fold_copies(&untouched))));
-        [Some(self.noticed()), alike, untouched].into_iter().flatten().collect::<Vec<String>>().join("; ")
+        [Some(self.touched() + &self.noticed()), alike, untouched]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<String>>()
+            .join("; ")
+    }
+
+    /// How many of the layers were touched, unless all or none were.
+    fn touched(&self) -> String {
+        let (touched, all) = (self.layers.len(), self.layers.len() + self.untouched_layers.len());
+        match touched {
+            touched if touched == 0 || touched == all => String::new(),
+            1 => format!("1 of {all} layers was touched: "),
+            touched => format!("{touched} of {all} layers were touched: "),
+        }
     }
 
     fn noticed(&self) -> String {
@@ -48,17 +62,26 @@ impl Score {
     }
 }
 
-/// Layers with how many fingers notice them. Copies of a layer are listed together.
+/// Layers with how many fingers notice them. Copies of a layer are listed together, those first that are noticed the least
+/// surely; a single finger's by its verdict.
 fn named(layers: &[&LayerScore], fingers: usize) -> String {
     let copies = layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
-    let parts = copies.filter_map(|copies| {
-        let titles: Vec<&LayerTitle> = copies.iter().map(|layer| &layer.layer).collect();
-        let least = LayerScore::least(copies.iter().copied())?;
-        let same = copies.iter().all(|layer| layer.simulated_fingers == least.simulated_fingers);
-        let text = words(&least.simulated_fingers, fingers);
-        let more = if same { "" } else { " at least" };
-        let titles = listed(fold_copies(&titles));
-        Some(if fingers == 1 { format!("{text} {titles}") } else { format!("{titles} by {text}{more}") })
+    let parts = copies.flat_map(|copies| {
+        let mut copies = copies.to_vec();
+        copies.sort_by(|one, other| one.cmp_felt(other));
+        let same = |one: &&LayerScore, other: &&LayerScore| one.simulated_fingers == other.simulated_fingers;
+        let titles = |copies: &[&LayerScore]| {
+            listed(fold_copies(&copies.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
+        };
+        let by_verdict = |copies: &[&LayerScore]| {
+            let text = copies.first().map(|least| words(&least.simulated_fingers, fingers)).unwrap_or_default();
+            if fingers == 1 {
+                return format!("{text} {}", titles(copies));
+            }
+            let more = if copies.chunk_by(same).count() > 1 { " at least" } else { "" };
+            format!("{} by {text}{more}", titles(copies))
+        };
+        if fingers == 1 { copies.chunk_by(same).map(by_verdict).collect() } else { vec![by_verdict(&copies)] }
     });
     listed(parts.collect())
 }
@@ -110,6 +133,7 @@ fn shortened(mut parts: Vec<String>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use frixel_felt::perception::Verdict;
     use frixel_hil_sim::TouchConfig;
     use frixel_scene::LayerNumber;
 
@@ -188,8 +212,38 @@ mod tests {
         touched.untouched_layers = nothing.untouched_layers;
         assert_eq!(
             touched.sentence(),
-            "2 of 2 simulated fingers notice every layer that was touched; no stroke says anything about layer 1 \"far\""
+            "2 of 3 layers were touched: 2 of 2 simulated fingers notice every layer that was touched; no stroke says anything about layer 1 \"far\""
         );
+    }
+
+    /// Copies are counted by their verdicts, and the least of each group is named, by its verdict and then by its size.
+    #[test]
+    fn copies_are_counted_by_their_verdicts() {
+        let detent = |(copy, contrast_weber_steps): (usize, f64)| {
+            let steps = Verdict::of_step(contrast_weber_steps);
+            let detent = layer(title(5, Some(copy), &format!("detent {copy}")), [steps].into_iter().collect());
+            LayerScore { contrast_weber_steps, ..detent }
+        };
+        let contrasts = [3.1, 2.4, 2.31, 1.7, 1.2, 0.9, 0.7, 1.4, 0.3];
+        let detents = score(1, (1..).zip(contrasts).map(detent).collect(), Vec::new());
+        assert_eq!(
+            detents.sentence(),
+            "the simulated finger notices every layer but 6: not layer 5.9 \"detent 9\" with 2 more copies and \
+             maybe layer 5.5 \"detent 5\" with 2 more copies"
+        );
+        let (least, copies) = detents.layer_rows().next().unwrap();
+        assert_eq!((least.layer.as_str(), copies), ("layer 5.9 \"detent 9\"", 9));
+    }
+
+    /// Of many layers, the least sure ones have lines, in a summary that fits a terminal.
+    #[test]
+    fn a_summary_of_many_layers_is_short() {
+        let key = |table: usize| layer(title(table, None, &format!("key {table}")), verdicts(40, table, 0));
+        let summary = score(40, (1..=37).rev().map(key).collect(), Vec::new()).summary();
+        let lines: Vec<&str> = summary.lines().filter(|line| line.contains("layer")).collect();
+        assert!(lines[0].contains("\"key 1\"") && lines[9].contains("\"key 10\""), "{summary}");
+        assert!(lines[10].contains("and 27 more layers") && lines[10].contains("score-layers.csv"), "{summary}");
+        assert!(!summary.contains("\"key 11\" "), "{summary}");
     }
 
     /// Thirty keys that some notice are one part of the sentence, and of many layers a few are named.
@@ -198,7 +252,7 @@ mod tests {
         let key = |copy| layer(title(1, Some(copy), &format!("key {copy}")), verdicts(4, copy % 3, 0));
         assert_eq!(
             score(4, (1..=30).map(key).collect(), Vec::new()).sentence(),
-            "there is no layer that 4 of 4 simulated fingers notice: layer 1.1 \"key 1\" with 29 more copies by 0 at least"
+            "there is no layer that 4 of 4 simulated fingers notice: layer 1.3 \"key 3\" with 29 more copies by 0 at least"
         );
         let bar = |table| layer(title(table, None, "bar"), verdicts(4, 1, 0));
         let sentence = score(4, (1..=37).map(bar).collect(), Vec::new()).sentence();

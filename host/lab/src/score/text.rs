@@ -1,5 +1,6 @@
 //! A score as text, JSON and CSV.
 
+use std::cmp::Ordering;
 use std::fmt::Write;
 
 use frixel_felt::perception::weber_steps_text;
@@ -8,12 +9,18 @@ use frixel_scene::{LayerTitle, fold_copies};
 use super::metric::{METRICS, Metric};
 use super::{Goal, LayerBorder, LayerScore, LevelScore, MetricScore, Score, Verdicts};
 
+/// Most lines about layers: the whole summary fits a terminal of 40 lines.
+const LAYER_LINES_MAX: usize = 10;
+/// Most lines about levels.
+const LEVEL_LINES_MAX: usize = 4;
+/// A smaller contrast, in Weber steps, is that of a flat layer, of which a step or a texture says more.
+const CONTRAST_MIN_WEBER_STEPS: f64 = 0.1;
 /// Most characters of a line's first column.
 const NAME_WIDTH: usize = 30;
 
 impl Score {
     /// The score as a table, a line for each number, for each layer with its copies and for each two levels, and a last
-    /// sentence.
+    /// sentence. Of many layers and levels, only those that are noticed the least surely have a line.
     pub fn summary(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: &str| {
@@ -25,19 +32,29 @@ impl Score {
         for metric in &self.metrics {
             line(metric.title, &value_text(metric));
         }
-        for (layer, copies) in self.layer_rows() {
-            let more = if copies > 1 { format!(", the least of {copies} copies") } else { String::new() };
-            line(layer.layer.as_str(), &format!("{}{more}", layer_text(layer)));
+        let mut layers: Vec<(&LayerScore, usize)> = self.layer_rows().collect();
+        let more = keep_least(&mut layers, LAYER_LINES_MAX, |(one, _), (other, _)| one.cmp_felt(other));
+        for (layer, copies) in layers {
+            let least = if copies > 1 { format!(", the least of {copies} copies") } else { String::new() };
+            line(layer.layer.as_str(), &format!("{}{least}", layer_text(layer)));
         }
-        for level in &self.levels {
-            line("told apart", &level_text(level));
+        if more > 0 {
+            line(&format!("and {more} more layers"), "noticed more surely: score-layers.csv");
+        }
+        let mut levels: Vec<&LevelScore> = self.levels.iter().collect();
+        let more = keep_least(&mut levels, LEVEL_LINES_MAX, |one, other| one.cmp_felt(other));
+        for level in levels {
+            line("levels", &level_text(level));
+        }
+        if more > 0 {
+            line(&format!("and {more} more pairs of levels"), "told apart more surely: --json");
         }
         line("verdict", &self.verdict);
         text
     }
 
-    /// A row for each layer, with the number of its copies: of these, the row is that of the copy that the smallest share of
-    /// the fingers notices.
+    /// A row for each layer, with the number of its copies: of these, the row is that of the copy that is noticed the least
+    /// surely.
     pub fn layer_rows(&self) -> impl Iterator<Item = (&LayerScore, usize)> {
         let tables = self.layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
         tables.filter_map(|copies| Some((LayerScore::least(copies)?, copies.len())))
@@ -99,6 +116,16 @@ impl Score {
     }
 }
 
+/// Keeps the least of more rows than there are lines for, in their order, and says how many are left out.
+fn keep_least<T>(rows: &mut Vec<T>, lines_max: usize, cmp: impl FnMut(&T, &T) -> Ordering) -> usize {
+    let more = rows.len().saturating_sub(lines_max);
+    if more > 0 {
+        rows.sort_by(cmp);
+        rows.truncate(lines_max);
+    }
+    more
+}
+
 fn value_text(metric: &MetricScore) -> String {
     let MetricScore { mean, interval, unit, human, goal, .. } = metric;
     let interval = interval.map_or(String::new(), |[low, high]| format!(" ({low:.2} to {high:.2})"));
@@ -126,30 +153,34 @@ fn side(border: &LayerBorder) -> &str {
 /// How many fingers notice a layer, and of what size it is for the one in the middle.
 fn layer_text(layer: &LayerScore) -> String {
     let LayerScore { simulated_fingers, contrast_weber_steps, texture, border, .. } = layer;
-    let contrast = format!("contrast {} Weber steps", weber_steps_text(*contrast_weber_steps));
+    let is_flat = contrast_weber_steps.abs() < CONTRAST_MIN_WEBER_STEPS && (border.is_some() || texture.is_some());
+    let contrast = (!is_flat).then(|| format!("contrast {} Weber steps", weber_steps_text(*contrast_weber_steps)));
+    let unit = if is_flat { " Weber steps" } else { "" };
     let border = border
         .iter()
-        .map(|border| format!("step onto it from {} {}", side(border), weber_steps_text(border.weber_steps)));
+        .map(|border| format!("step onto it from {} {}{unit}", side(border), weber_steps_text(border.weber_steps)));
     let texture = texture.iter().map(|texture| {
         let threshold = texture.threshold_n.map_or("no threshold known".to_owned(), |threshold_n| {
             format!("threshold about {:.1} mN", 1e3 * threshold_n)
         });
         format!("texture {:.1} mN at {:.0} Hz, {threshold}", 1e3 * texture.amplitude_n, texture.frequency_hz)
     });
-    let sizes: Vec<String> = std::iter::once(contrast).chain(border).chain(texture).collect();
-    format!("{}; {}", felt_by(simulated_fingers), sizes.join(", "))
+    let sizes: Vec<String> = contrast.into_iter().chain(border).chain(texture).collect();
+    format!("felt by {}; {}", counts(simulated_fingers), sizes.join(", "))
 }
 
 fn level_text(level: &LevelScore) -> String {
     let titles = |titles: &[LayerTitle]| fold_copies(&titles.iter().collect::<Vec<_>>()).join(", ");
     let LevelScore { lower, higher, simulated_fingers, weber_steps } = level;
     let steps = weber_steps_text(*weber_steps);
-    format!("{} and {}: {}; {steps} Weber steps", titles(lower), titles(higher), felt_by(simulated_fingers))
+    let [lower, higher] = [titles(lower), titles(higher)];
+    format!("{lower} and {higher}: told apart by {}; {steps} Weber steps", counts(simulated_fingers))
 }
 
-fn felt_by(verdicts: &Verdicts) -> String {
+/// By how many fingers of those that touched it.
+fn counts(verdicts: &Verdicts) -> String {
     let Verdicts { touched, felt, felt_by_some, unknown, .. } = verdicts;
     let maybe = (*felt_by_some > 0).then(|| format!(", maybe by {felt_by_some}"));
     let unknown = (*unknown > 0).then(|| format!(", unknown for {unknown}"));
-    format!("felt by {felt} of {touched}{}{}", maybe.unwrap_or_default(), unknown.unwrap_or_default())
+    format!("{felt} of {touched}{}{}", maybe.unwrap_or_default(), unknown.unwrap_or_default())
 }
