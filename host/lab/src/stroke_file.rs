@@ -86,8 +86,8 @@ pub struct StrokeFile {
 
 impl StrokeFile {
     /// Reads a stroke from CSV with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
-    /// known, in N and above 0. The finger is off the screen in a row whose cells `x_mm` and `y_mm` are empty, as in
-    /// `felt.csv`.
+    /// known, in N and above 0; an empty cell is an unknown load. The finger is off the screen in a row whose cells `x_mm`
+    /// and `y_mm` are empty, as in `felt.csv`.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
@@ -118,6 +118,18 @@ impl StrokeFile {
     }
 }
 
+/// The text of a file that [`StrokeFile::read`] reads to the bit: of each row the time in s, the place in mm, and the normal
+/// load in N; what is not known is not a number.
+pub fn to_csv(rows: impl IntoIterator<Item = [f64; 4]>) -> String {
+    let mut text = String::from("t_s,x_mm,y_mm,force_n\n");
+    for row in rows {
+        let cells = row.map(|number| if number.is_nan() { String::new() } else { number.to_string() });
+        text += &cells.join(",");
+        text.push('\n');
+    }
+    text
+}
+
 fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<StrokeRow, StrokeFileError> {
     row.check_length()?;
     let t_s = row.real(t)?;
@@ -125,7 +137,7 @@ fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<S
         return Ok(StrokeRow { t_s, place: None, normal_load_n: None });
     }
     let place = Point { x_m: row.real(x)? / MM_PER_M, y_m: row.real(y)? / MM_PER_M };
-    let normal_load_n = load.map(|load| row.real(load)).transpose()?;
+    let normal_load_n = load.map(|load| row.real_if_filled(load)).transpose()?.flatten();
     match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= LOAD_MAX_N)) {
         Some(found_n) => Err(StrokeFileError::NoLoad { row: row.number(), found_n }),
         None => Ok(StrokeRow { t_s, place: Some(place), normal_load_n }),
@@ -134,7 +146,33 @@ fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<S
 
 #[cfg(test)]
 mod tests {
-    use super::StrokeFile;
+    use frixel_hil_sim::{Point, Stroke, StrokeRow};
+
+    use super::{StrokeFile, to_csv};
+
+    #[test]
+    fn rows_are_written_and_read_to_the_bit() {
+        let rows = [
+            [0.0, 10.0 / 3.0, 1e-17, 0.7],
+            [0.1 + 0.2, 12_345.678_9, -1.5, f64::NAN],
+            [0.5, f64::NAN, f64::NAN, f64::NAN],
+            [1e21, 7.0, 8.0, 0.1],
+            [2e21, 7.0, 8.0, 0.3],
+        ];
+        let text = to_csv(rows);
+        assert_eq!(text.lines().nth(3), Some("0.5,,,"));
+        let read = StrokeFile::read(text.as_bytes()).unwrap();
+        assert_eq!((read.ignored_columns.len(), read.understood), (0, None));
+        let place = |row: [f64; 4]| (!row[1].is_nan()).then(|| Point { x_m: row[1] / 1e3, y_m: row[2] / 1e3 });
+        let load = |row: [f64; 4]| (!row[3].is_nan()).then_some(row[3]);
+        let of_rows = rows.map(|row| StrokeRow { t_s: row[0], place: place(row), normal_load_n: load(row) });
+        let stroke = Stroke::through_rows(&of_rows).unwrap();
+        for t_s in [0.0, 0.1, 0.3, 0.4, 1.5e21] {
+            assert_eq!(read.stroke.at(t_s), stroke.at(t_s), "{t_s} s");
+            assert_eq!(read.stroke.normal_load_n(t_s), stroke.normal_load_n(t_s), "{t_s} s");
+        }
+        assert!(stroke.at(0.1).is_some() && stroke.normal_load_n(1.5e21).is_some());
+    }
 
     #[test]
     fn columns_may_stand_in_any_order_among_others_with_quotes_spaces_and_windows_line_ends() {

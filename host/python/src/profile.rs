@@ -14,6 +14,16 @@ pub(crate) struct ProfileText {
 }
 
 impl ProfileText {
+    /// The name of a bundled profile.
+    pub(crate) fn bundled_name(&self) -> Option<&str> {
+        if self.text.is_none() { Some(&self.name) } else { None }
+    }
+
+    /// The text of its file; `None` of a bundled one.
+    pub(crate) fn text(&self) -> Option<&str> {
+        self.text.as_deref()
+    }
+
     /// The finger.
     pub(crate) fn finger(&self, py: Python<'_>) -> PyResult<FingerProfile> {
         self.read(py, "finger", FingerProfile::bundled, FingerProfile::bundled_names(), FingerProfile::parse)

@@ -1,18 +1,30 @@
 //! Recordings: columns as arrays, and as Parquet.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
-use frixel_hil_sim::RigConfig;
-use frixel_lab::recording::{Column, Field, Kind, Metadata, Recording, SourceFile, Values, play_fields as fields};
+use frixel_felt::recorder::Marker;
+use frixel_lab::recording::{
+    Column, Field, Kind, Metadata, PlayOptions, Recording, SourceFile, Values, play_fields as fields,
+};
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
 
 use super::error::raised;
 use super::scene::NamedFiles;
+
+/// How a play was made, beside its scene: with it, a recording is played again. Python keeps it as JSON.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Made {
+    pub(crate) metadata: Metadata,
+    /// Texts of finger, screen, touch source and stroke.
+    pub(crate) files: BTreeMap<String, String>,
+    pub(crate) markers: Vec<Marker>,
+}
 
 /// Name, unit and meaning of each column of a play.
 #[pyfunction]
@@ -52,8 +64,7 @@ fn numbers(column: &Bound<'_, PyAny>) -> PyResult<impl Iterator<Item = Option<f6
     Ok(column.as_array().to_vec().into_iter().map(|value| value.is_finite().then_some(value)))
 }
 
-/// Writes a simulated play as Parquet, as `frixel play --record` does. `settings` is a JSON object that says how the play
-/// was made.
+/// Writes a simulated play as Parquet, as `frixel play --record` does. `made` is what [`super::simulator::simulate`] says of it.
 #[pyfunction]
 pub(crate) fn write_parquet(
     py: Python<'_>,
@@ -61,8 +72,7 @@ pub(crate) fn write_parquet(
     columns: Bound<'_, PyDict>,
     scene: String,
     files: NamedFiles,
-    settings: &str,
-    ticks_per_row: u32,
+    made: &str,
 ) -> PyResult<()> {
     let failed = |error: &dyn std::fmt::Display| {
         raised(py, "FrixelError", (format!("{}: this file cannot be written ({error})", path.display()),))
@@ -74,18 +84,11 @@ pub(crate) fn write_parquet(
         };
         taken.push(Column { values: values(field.kind, &column)?, field });
     }
-    let named = files.iter().map(|(name, bytes)| (format!("scene/{name}"), bytes.as_slice()));
-    let metadata = Metadata {
-        frixel: env!("CARGO_PKG_VERSION").to_owned(),
-        rig: "sim".to_owned(),
-        is_simulated: true,
-        tick_hz: RigConfig::default().board.tick_hz,
-        ticks_per_row,
-        play: serde_json::from_str::<Value>(settings).map_err(|error| failed(&error))?,
-        scene,
-        files: SourceFile::all(named),
-        ..Metadata::default()
-    };
+    let made: Made = serde_json::from_str(made).map_err(|error| failed(&error))?;
+    let own = made.files.iter().map(|(name, text)| (name.clone(), text.as_bytes()));
+    let of_scene = files.iter().map(|(name, bytes)| (format!("{}{name}", PlayOptions::OF_SCENE), bytes.as_slice()));
+    let files = SourceFile::all(own.chain(of_scene));
+    let metadata = Metadata { scene, files, markers: made.markers, ..made.metadata };
     let recording = Recording { metadata, columns: taken, is_cut_off: false };
     let file = File::create(&path).map_err(|error| failed(&error))?;
     let written = py.detach(|| recording.write_parquet(BufWriter::new(file)));

@@ -25,12 +25,24 @@ pub(crate) struct Scene {
     parsed: ParsedScene,
     program: Program,
     files: NamedFiles,
+    finger: Option<ProfileText>,
+    screen: Option<ProfileText>,
 }
 
 impl Scene {
     /// The scene as it was read, for its screen and finger.
     pub(crate) fn parsed(&self) -> &ParsedScene {
         &self.parsed
+    }
+
+    /// The finger in place of the scene's own.
+    pub(crate) fn own_finger(&self) -> Option<&ProfileText> {
+        self.finger.as_ref()
+    }
+
+    /// The screen in place of the scene's own.
+    pub(crate) fn own_screen(&self) -> Option<&ProfileText> {
+        self.screen.as_ref()
     }
 
     /// The compiled scene. What a board refuses of it is clamped.
@@ -59,15 +71,19 @@ impl Scene {
         let read = py.detach(|| {
             let files = ReadFiles { folder, read: RefCell::new(files) };
             let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
+            let (mut own_finger, mut own_screen) = (None, None);
             if let Some((screen, text)) = screen {
                 parsed = parsed.with_screen(screen, text.name())?;
+                own_screen = Some(text);
             }
             if let Some((finger, text)) = finger {
                 parsed = parsed.with_finger(finger, text.name())?;
+                own_finger = Some(text);
             }
             let board = RigConfig::default().board;
             let program = compile_draft(&parsed, &board.limits, board.tick_hz)?;
-            Ok::<_, CompileError>(Self { parsed, program, files: files.read.into_inner() })
+            let files = files.read.into_inner();
+            Ok::<_, CompileError>(Self { parsed, program, files, finger: own_finger, screen: own_screen })
         });
         read.map_err(|error| scene_error(py, &error))
     }

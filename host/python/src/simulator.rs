@@ -1,14 +1,14 @@
 //! Plays on the simulated board, in virtual time.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use frixel_hil_sim::{
-    Person, Point, RigConfig, Stroke as SimulatedStroke, StrokeError, StrokeRow, TouchConfig, WorldConfig,
-};
+use frixel_hil_sim::{Person, RigConfig, Stroke as SimulatedStroke, TouchConfig, WorldConfig};
 use frixel_lab::default_stroke::default_stroke;
-use frixel_lab::recording::{play_fields, play_values};
-use frixel_lab::simulation::{Simulation, simulate_while};
+use frixel_lab::recording::{Metadata, PlayOptions, StrokeOptions, play_fields, play_values};
+use frixel_lab::simulation::{Simulated, Simulation, simulate_while};
+use frixel_lab::stroke_file::{self, StrokeFile};
 use frixel_model::FrictionLaw;
 use frixel_scene::Program;
 use numpy::PyReadonlyArray1;
@@ -17,12 +17,10 @@ use pyo3::types::PyDict;
 
 use super::error::{parameter_error, raised, scene_error};
 use super::profile::ProfileText;
-use super::recording::columns;
+use super::recording::{Made, columns};
 use super::scene::Scene;
 
 const M_PER_MM: f64 = 1e-3;
-/// Duration of a person's stroke unless another is given, s.
-const HUMAN_S: f64 = 10.0;
 /// Time between two places of a stroke that are looked at, s.
 const CHECK_PERIOD_S: f64 = 1e-3;
 /// Longest play, s: a day.
@@ -47,42 +45,41 @@ pub(crate) enum Stroke<'py> {
 }
 
 impl Stroke<'_> {
-    fn on(&self, program: &Program, seconds: Option<f64>) -> Result<SimulatedStroke, StrokeError> {
+    /// The options that a recording has of it.
+    fn options(&self) -> StrokeOptions {
         match self {
             Self::Straight { from_mm, to_mm, speed_mm_s, minimum_jerk } => {
-                let [from, to] = [from_mm, to_mm].map(|(x, y)| point(*x, *y));
-                let stroke = SimulatedStroke::constant_speed(from, to, M_PER_MM * speed_mm_s)?;
-                let duration_s = stroke.duration_s();
-                if *minimum_jerk { SimulatedStroke::minimum_jerk(from, to, duration_s) } else { Ok(stroke) }
+                let place_m = |(x_mm, y_mm): &(f64, f64)| Some([M_PER_MM * x_mm, M_PER_MM * y_mm]);
+                StrokeOptions {
+                    from_m: place_m(from_mm),
+                    to_m: place_m(to_mm),
+                    speed_m_per_s: Some(M_PER_MM * speed_mm_s),
+                    minimum_jerk: *minimum_jerk,
+                    ..StrokeOptions::default()
+                }
             }
-            Self::Human { seed, seconds: own, rough } => {
-                let (width_m, height_m) = screen_m(program);
-                let human = if *rough { SimulatedStroke::human_rough } else { SimulatedStroke::human };
-                human(width_m, height_m, own.or(seconds).unwrap_or(HUMAN_S), None, *seed)
+            Self::Human { seed, seconds, rough } => {
+                let name = if *rough { StrokeOptions::HUMAN_ROUGH } else { StrokeOptions::HUMAN };
+                let (human_seed, human_seconds) = (Some(*seed), *seconds);
+                StrokeOptions { name: Some(name.into()), human_seed, human_seconds, ..StrokeOptions::default() }
             }
-            Self::Rows { t_s, x_mm, y_mm, load_n } => {
-                let (t_s, x_mm, y_mm) = (t_s.as_array(), x_mm.as_array(), y_mm.as_array());
-                let load_n = load_n.as_ref().map(PyReadonlyArray1::as_array);
-                let places = t_s.iter().zip(x_mm).zip(y_mm).enumerate();
-                let rows: Vec<StrokeRow> = places
-                    .map(|(row, ((t_s, x_mm), y_mm))| StrokeRow {
-                        t_s: *t_s,
-                        place: (!x_mm.is_nan()).then(|| point(*x_mm, *y_mm)),
-                        normal_load_n: load_n.and_then(|load_n| load_n.get(row).copied()).filter(|load| !load.is_nan()),
-                    })
-                    .collect();
-                SimulatedStroke::through_rows(&rows)
-            }
+            Self::Rows { .. } => StrokeOptions { name: Some(PlayOptions::FILE.into()), ..StrokeOptions::default() },
         }
+    }
+
+    /// The rows as the text of a file.
+    fn csv(&self) -> Option<String> {
+        let Self::Rows { t_s, x_mm, y_mm, load_n } = self else { return None };
+        let (t_s, x_mm, y_mm) = (t_s.as_array(), x_mm.as_array(), y_mm.as_array());
+        let load_n = load_n.as_ref().map(PyReadonlyArray1::as_array);
+        let load_n = |row: usize| load_n.and_then(|load_n| load_n.get(row).copied()).unwrap_or(f64::NAN);
+        let places = t_s.iter().zip(x_mm).zip(y_mm).enumerate();
+        Some(stroke_file::to_csv(places.map(|(row, ((t_s, x_mm), y_mm))| [*t_s, *x_mm, *y_mm, load_n(row)])))
     }
 }
 
-fn point(x_mm: f64, y_mm: f64) -> Point {
-    Point { x_m: M_PER_MM * x_mm, y_m: M_PER_MM * y_mm }
-}
-
-fn screen_m(program: &Program) -> (f64, f64) {
-    (program.header.screen_width_m.into(), program.header.screen_height_m.into())
+fn screen_m(program: &Program) -> [f64; 2] {
+    [program.header.screen_width_m.into(), program.header.screen_height_m.into()]
 }
 
 /// Settings of a play, an object of `python/frixel/simulator.py`.
@@ -100,6 +97,9 @@ pub(crate) struct Settings<'py> {
 /// A play with all that it needs, checked.
 struct Play<'s> {
     program: &'s Program,
+    options: PlayOptions,
+    /// Texts of finger, screen, touch source and stroke.
+    files: BTreeMap<String, String>,
     simulation: Simulation,
     own_finger: Option<FrictionLaw>,
     through_finger: bool,
@@ -116,10 +116,14 @@ impl Settings<'_> {
             if is_playable { Ok(seconds) } else { Err(parameter_error(py, message())) }
         };
         seconds.map_or(Ok(0.0), checked)?;
-        let refused = |error: StrokeError| parameter_error(py, error);
-        let stroke = match &self.stroke {
-            Some(stroke) => stroke.on(program, seconds).map_err(refused)?,
-            None => default_stroke(program, seconds).map_err(refused)?,
+        let (options, files) = (self.options(scene, seconds), self.files(scene));
+        let file = files.get(PlayOptions::STROKE).map(|csv| StrokeFile::read(csv.as_bytes())).transpose();
+        let file = file.map_err(|error| parameter_error(py, error))?;
+        let generated = options.stroke.generated(screen_m(program), seconds, self.seed);
+        let generated = generated.map_err(|error| parameter_error(py, error))?;
+        let stroke = match file.map(|file| file.stroke).or(generated) {
+            Some(stroke) => stroke,
+            None => default_stroke(program, seconds).map_err(|error| parameter_error(py, error))?,
         };
         let seconds = checked(seconds.unwrap_or(stroke.duration_s()))?;
         let mut rig = RigConfig::default();
@@ -147,7 +151,40 @@ impl Settings<'_> {
         let through_finger = !self.ideal || person.is_some() || stroke.has_loads();
         let ticks_per_row = tick_hz / self.rows_per_s;
         let simulation = Simulation { rig, stroke, seconds, seed: self.seed, ticks_per_row };
-        Ok(Play { program, simulation, own_finger: person.map(|(_, contact)| contact.into()), through_finger })
+        let own_finger = person.map(|(_, contact)| contact.into());
+        Ok(Play { program, options, files, simulation, own_finger, through_finger })
+    }
+
+    /// The options that a recording has, with which `frixel replay` plays the same.
+    fn options(&self, scene: &Scene, seconds: Option<f64>) -> PlayOptions {
+        let name = |profile: &ProfileText| profile.bundled_name().unwrap_or(PlayOptions::FILE).to_owned();
+        PlayOptions {
+            seconds,
+            seed: self.seed,
+            ideal: self.ideal,
+            no_leakage: !self.leakage,
+            finger_seed: self.person,
+            rows_hz: self.rows_per_s,
+            finger: scene.own_finger().map(name),
+            screen: scene.own_screen().map(name),
+            touch: self.touch.as_ref().map(name),
+            stroke: self.stroke.as_ref().map(Stroke::options).unwrap_or_default(),
+            control: false,
+            stream: false,
+            interrupted: false,
+        }
+    }
+
+    /// The texts of what the options name [`PlayOptions::FILE`].
+    fn files(&self, scene: &Scene) -> BTreeMap<String, String> {
+        let text = |profile: Option<&ProfileText>| profile.and_then(ProfileText::text).map(str::to_owned);
+        let texts = [
+            (PlayOptions::FINGER, text(scene.own_finger())),
+            (PlayOptions::SCREEN, text(scene.own_screen())),
+            (PlayOptions::TOUCH, text(self.touch.as_ref())),
+            (PlayOptions::STROKE, self.stroke.as_ref().and_then(Stroke::csv)),
+        ];
+        texts.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))).collect()
     }
 
     fn world(&self, ideal: WorldConfig, person: Option<&Person>, touch: Option<TouchConfig>) -> WorldConfig {
@@ -161,7 +198,7 @@ impl Settings<'_> {
     }
 }
 
-fn is_on_screen(stroke: &SimulatedStroke, (width_m, height_m): (f64, f64), seconds: f64) -> bool {
+fn is_on_screen(stroke: &SimulatedStroke, [width_m, height_m]: [f64; 2], seconds: f64) -> bool {
     let end_s = seconds.min(stroke.duration_s());
     let mut times = (0..).map(|step| CHECK_PERIOD_S * f64::from(step)).take_while(|t_s| *t_s <= end_s);
     times.any(|t_s| {
@@ -170,15 +207,16 @@ fn is_on_screen(stroke: &SimulatedStroke, (width_m, height_m): (f64, f64), secon
     })
 }
 
-/// Plays a scene on the simulated board. Returns the columns of the record.
+/// Plays a scene on the simulated board. Returns the columns of the record, and what [`super::recording::write_parquet`]
+/// needs beside them.
 #[pyfunction]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     scene: &Scene,
     settings: Settings<'py>,
     seconds: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let Play { program, simulation, own_finger, through_finger } = settings.play(py, scene, seconds)?;
+) -> PyResult<(Bound<'py, PyDict>, String)> {
+    let Play { program, options, files, simulation, own_finger, through_finger } = settings.play(py, scene, seconds)?;
     let mut signal = None;
     let played = py.detach(|| {
         let mut looked_at = Instant::now();
@@ -191,11 +229,18 @@ pub(crate) fn simulate<'py>(
             }
             if signal.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
-        .map(|simulated| simulated.recorder)
     });
     if let Some(signal) = signal {
         return Err(signal);
     }
-    let recorder = played.map_err(|error| raised(py, "PlayError", (error.to_string(),)))?;
-    columns(py, &play_fields(), play_values(recorder.rows()))
+    let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (error.to_string(),));
+    let Simulated { recorder, board, .. } = played.map_err(|error| failed(&error))?;
+    let metadata = Metadata {
+        ticks_per_row: simulation.ticks_per_row,
+        play: serde_json::to_value(&options).map_err(|error| failed(&error))?,
+        ..Metadata::new("sim", Some(&board), true, None)
+    };
+    let made = Made { metadata, files, markers: recorder.markers().to_vec() };
+    let made = serde_json::to_string(&made).map_err(|error| failed(&error))?;
+    Ok((columns(py, &play_fields(), play_values(recorder.rows()))?, made))
 }

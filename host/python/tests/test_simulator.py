@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
+import json
 import os
 import pickle
 import signal
@@ -12,6 +14,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import frixel
 import numpy as np
@@ -103,6 +106,10 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from a tick"),
         (lambda: Simulator(FLAT, stroke="human"), "a stroke is made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
+        (lambda: Stroke.from_arrays([-1, 1], [1, 2], [1, 2]), "t_s has finite times from 0"),
+        (lambda: Stroke.from_arrays([0, np.nan], [1, 2], [1, 2]), "t_s has finite times from 0"),
+        (lambda: Stroke.from_arrays([0, 1], [1, 2], [1, 2], [0.5, 500]), "at most 50, found 500"),
+        (lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (5, 20))).run(), "give two places that differ"),
         (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), "both numbers, or neither"),
         (lambda: Simulator(FLAT, stroke=Stroke.from_arrays([1, 0], [1, 2], [1, 2])).run(), "rising"),
         (lambda: Simulator("brick.toml"), "Scene.load reads a file, found 'brick.toml'"),  # type: ignore[arg-type]
@@ -147,10 +154,10 @@ def test_a_recording_as_parquet_has_what_the_command_records(tmp_path: Path, sce
     felt_csv(tmp_path, path, "--seconds", "0.5", "--record", str(theirs))
     recording = Simulator(Scene.load(path)).run(0.5)
     recording.to_parquet(ours)
+    assert ours.read_bytes() == theirs.read_bytes(), "the same play has the same file"
     one, other = (parquet.read_table(file) for file in (ours, theirs))
     assert one.column_names == other.column_names == list(frixel.COLUMNS)
     assert one.num_rows == 500
-    assert one.equals(other), "the same bits"
     metadata = parquet.read_metadata(ours).metadata
     assert metadata[b"frixel.scene"].decode() == path.read_text(encoding="utf-8")
     assert b"textures/" in metadata[b"frixel.files"]
@@ -159,6 +166,68 @@ def test_a_recording_as_parquet_has_what_the_command_records(tmp_path: Path, sce
     assert (tmp_path / "copy.parquet").read_bytes() == ours.read_bytes()
     with pytest.raises(frixel.FrixelError, match="this file cannot be written"):
         recording.to_parquet(tmp_path / "nowhere" / "ours.parquet")
+
+
+T_S = np.linspace(0, 0.6, 61)
+X_MM = np.where(np.arange(61) == 30, np.nan, 10 + 50 * np.sqrt(T_S))
+TOUCH = {"reports_per_s": 120, "latency_ms": 8, "lost_share": 0.05}
+FINGER = {
+    "friction_coefficient": 0.6,
+    "normal_load_n": 0.45,
+    "radius_mm": 7.7,
+    "skin_gap_um": 4.1,
+    "stiffness_pa_per_m": 1.7e7,
+    "origin": "assumed",
+}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "seconds"),
+    [
+        ({}, None),
+        ({"seed": 2**64 - 1, "ideal": True, "rows_per_s": 500}, 0.3),
+        ({"person": 7, "touch": TOUCH, "stroke": Stroke.human(3, rough=True)}, 0.5),
+        ({"stroke": Stroke.human(3, seconds=0.7), "seed": 11, "leakage": False}, None),
+        ({"stroke": Stroke.straight((10.1, 20.3), (33.3, 21.7), speed_mm_s=77.7, minimum_jerk=True)}, None),
+        ({"finger": FINGER, "screen": "example", "touch": "500", "rows_per_s": 40_000}, 0.2),
+        ({"stroke": Stroke.from_arrays(T_S, X_MM, np.where(np.isnan(X_MM), np.nan, 100 / 3))}, None),
+        ({"stroke": Stroke.from_arrays(T_S, 2 * X_MM, X_MM, np.where(T_S < 0.2, np.nan, 0.3 + T_S / 3))}, None),
+    ],
+)
+def test_the_command_plays_a_recording_again(
+    tmp_path: Path, scenes: Path, arguments: dict[str, Any], seconds: float | None
+) -> None:
+    recording = Simulator(Scene.load(scenes / "brick.toml"), **arguments).run(seconds)
+    recording.to_parquet(tmp_path / "me.parquet")
+    assert replayed(tmp_path) == (0, f"me.parquet: the same bits, {recording.rows} rows of 12 columns")
+    felt_n = recording["felt_n"].copy()
+    row = int(np.flatnonzero(np.isfinite(felt_n))[7])
+    felt_n[row] = np.nextafter(felt_n[row], 1)
+    changed = dataclasses.replace(recording, columns={**recording.columns, "felt_n": felt_n})
+    changed.to_parquet(tmp_path / "me.parquet")
+    code, said = replayed(tmp_path)
+    assert (code, f"plays other bits: row {row + 1}, column felt_n: " in said) == (1, True), said
+
+
+def replayed(folder: Path) -> tuple[int, str]:
+    """The exit code of `frixel replay`, and what it says last."""
+    command = [os.environ["FRIXEL"], "replay", "me.parquet"]
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return ended.returncode, (ended.stdout or ended.stderr).splitlines()[-1]
+
+
+def test_the_command_says_why_it_does_not_play_a_recording_again(tmp_path: Path) -> None:
+    recording = Simulator(FLAT).run(0.1)
+    made = json.loads(recording.made)
+    made["metadata"]["frixel"] = "0.0.9"
+    dataclasses.replace(recording, made=json.dumps(made)).to_parquet(tmp_path / "me.parquet")
+    code, said = replayed(tmp_path)
+    assert (code, "frixel 0.0.9 recorded it, and this is " in said) == (1, True), said
+    # Beyond 4 MiB, a recording has the hash of a file.
+    t_s = np.linspace(0, 1, 200_000)
+    Simulator(FLAT, stroke=Stroke.from_arrays(t_s, 10 + t_s, 20 + t_s)).run(0.1).to_parquet(tmp_path / "me.parquet")
+    code, said = replayed(tmp_path)
+    assert (code, "only the hash of the file stroke" in said) == (1, True), said
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent as on Unix")

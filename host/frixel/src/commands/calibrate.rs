@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use frixel_lab::calibration::{CalibrationError, align, read_board, write_csv};
-use frixel_lab::recording::calibration_fields;
+use frixel_lab::recording::{Metadata, calibration_fields};
 use frixel_wire::hello::Hello;
 
 use super::error::CommandError;
@@ -110,7 +110,7 @@ fn write(
         // What was cut off is of a board: a simulator needs no file until the end.
         let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
         let rig = if hello.is_none() && is_simulated { "sim" } else { "board" };
-        let metadata = parquet::metadata(rig, hello, is_simulated, args.participant.as_deref());
+        let metadata = Metadata::new(rig, hello, is_simulated, args.participant.as_deref());
         parquet::write(output, &bytes, calibration_fields(), metadata)?;
     } else {
         output.write(&bytes)?;

@@ -9,7 +9,7 @@ use crate::output_file::{FileWriter, Inputs, Recording};
 use clap::Args;
 use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
 use frixel_felt::recorder::Observation;
-use frixel_lab::recording::stroke_fields;
+use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_wire::hello::Hello;
 
@@ -130,7 +130,7 @@ fn finish(
         drop(writer);
         let (_rows, text) = recording.resume()?;
         let is_simulated = board.is_some_and(|hello| hello.board.is_simulated());
-        let metadata = parquet::metadata("board", board, is_simulated, args.participant.as_deref());
+        let metadata = Metadata::new("board", board, is_simulated, args.participant.as_deref());
         parquet::write(recording.output(), text.as_bytes(), stroke_fields(), metadata)?;
         recording.discard_partial();
     } else {

@@ -4,28 +4,18 @@ use std::path::{Path, PathBuf};
 
 use crate::input;
 use clap::Args;
-use frixel_hil_sim::{Point, Stroke, StrokeError};
+use frixel_hil_sim::{Point, Stroke};
+use frixel_lab::recording::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 use frixel_lab::stroke_file::StrokeFile;
-use serde::{Deserialize, Serialize};
 
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
 use super::terminal::{note, note_understood};
 
-/// Longest stroke: one day, in s.
-const STROKE_MAX_S: f64 = 86_400.0;
 /// Time between two positions of a stroke that are checked, s.
 const CHECK_PERIOD_S: f64 = 1e-3;
 /// Largest number of positions of a stroke that are checked.
 const CHECKS_MAX: f64 = 1e6;
-/// Time between two places of a minimum-jerk stroke that goes back and forth, s.
-const SAMPLE_PERIOD_S: f64 = 1e-3;
-/// Names of the strokes of a person in place of a file.
-const HUMAN: &str = "human";
-const HUMAN_ROUGH: &str = "human-rough";
-/// Duration of a person's stroke unless another is given, s, and the longest.
-const HUMAN_S: f64 = 10.0;
-const HUMAN_MAX_S: f64 = 600.0;
 
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
@@ -51,61 +41,34 @@ pub(super) struct StrokeArgs {
     /// Start and end a straight stroke at rest, as a hand does, rather than at constant speed.
     #[arg(long, alias = "natural", requires = "from")]
     minimum_jerk: bool,
-    /// The stroke that a recording has, in place of that of a file.
+    /// The stroke of a recording, in place of all options.
     #[arg(skip)]
-    recorded: Option<Stroke>,
-}
-
-/// The options of a stroke as a recording has them, without the path of a file.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct RecordedStroke {
-    /// `human`, `human-rough`, or `file`, whose bytes are among the files of the recording.
-    name: Option<String>,
-    from_m: Option<[f64; 2]>,
-    to_m: Option<[f64; 2]>,
-    speed_m_per_s: Option<f64>,
-    times: Option<u32>,
-    minimum_jerk: bool,
-}
-
-/// The name of a stroke from a file, in a recording.
-const FILE: &str = "file";
-
-impl RecordedStroke {
-    pub(super) fn of(args: &StrokeArgs) -> Self {
-        let place = |point: Point| [point.x_m, point.y_m];
-        let name = |path: &PathBuf| if human(path).is_some() { path.display().to_string() } else { FILE.to_owned() };
-        Self {
-            name: args.stroke.as_ref().map(name),
-            from_m: args.from.map(place),
-            to_m: args.to.map(place),
-            speed_m_per_s: args.speed,
-            times: args.times,
-            minimum_jerk: args.minimum_jerk,
-        }
-    }
-
-    /// Whether the stroke is that of a file.
-    pub(super) fn is_from_file(&self) -> bool {
-        self.name.as_deref() == Some(FILE)
-    }
-
-    /// The options; `file` is the stroke of a file.
-    pub(super) fn into_args(self, file: Option<Stroke>) -> StrokeArgs {
-        let point = |[x_m, y_m]: [f64; 2]| Point { x_m, y_m };
-        StrokeArgs {
-            stroke: self.name.filter(|name| name != FILE).map(PathBuf::from),
-            from: self.from_m.map(point),
-            to: self.to_m.map(point),
-            speed: self.speed_m_per_s,
-            times: self.times,
-            minimum_jerk: self.minimum_jerk,
-            recorded: file,
-        }
-    }
+    recorded: Option<(StrokeOptions, Option<Stroke>)>,
 }
 
 impl StrokeArgs {
+    /// The stroke of a recorded play; `file` is that of its file.
+    pub(super) fn of_recording(options: StrokeOptions, file: Option<Stroke>) -> Self {
+        Self { recorded: Some((options, file)), ..Self::default() }
+    }
+
+    /// The options as a recording has them, without the path of a file.
+    pub(super) fn options(&self) -> StrokeOptions {
+        let place = |point: Point| [point.x_m, point.y_m];
+        let name = |path: &PathBuf| {
+            path.to_str().filter(|name| StrokeOptions::is_generated(name)).unwrap_or(PlayOptions::FILE).to_owned()
+        };
+        StrokeOptions {
+            name: self.stroke.as_ref().map(name),
+            from_m: self.from.map(place),
+            to_m: self.to.map(place),
+            speed_m_per_s: self.speed,
+            times: self.times,
+            minimum_jerk: self.minimum_jerk,
+            ..StrokeOptions::default()
+        }
+    }
+
     /// Whether any option is given.
     pub(super) fn is_given(&self) -> bool {
         self.stroke.is_some() || self.from.is_some()
@@ -113,7 +76,7 @@ impl StrokeArgs {
 
     /// The file of the stroke.
     pub(super) fn file(&self) -> Option<&Path> {
-        self.stroke.as_deref().filter(|path| human(path).is_none())
+        self.stroke.as_deref().filter(|path| !path.to_str().is_some_and(StrokeOptions::is_generated))
     }
 
     /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width
@@ -124,20 +87,19 @@ impl StrokeArgs {
         seconds: Option<f64>,
         seed: u64,
     ) -> Result<Option<Stroke>, CommandError> {
-        if let Some(stroke) = &self.recorded {
-            return Ok(Some(stroke.clone()));
-        }
-        match (&self.stroke, self.from, self.to) {
-            (Some(path), ..) => match human(path) {
-                Some(human) => {
-                    let [width_m, height_m] = screen_m;
-                    let seconds = seconds.unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
-                    human(width_m, height_m, seconds, None, seed).map(Some).map_err(CommandError::GeneratedStroke)
-                }
-                None => from_file(path).map(Some),
-            },
-            (None, Some(from), Some(to)) => self.straight(from, to).map(Some),
-            _ => Ok(None),
+        let generated = |options: &StrokeOptions| {
+            options.generated(screen_m, seconds, seed).map_err(|error| match error {
+                StrokeOptionsError::InPlace => CommandError::StrokeInPlace,
+                StrokeOptionsError::TooLong { seconds } => CommandError::StrokeTooLong { name: self.name(), seconds },
+                StrokeOptionsError::Straight(source) => CommandError::StraightStroke(source),
+                StrokeOptionsError::Human(source) => CommandError::GeneratedStroke(source),
+            })
+        };
+        match (&self.recorded, self.file()) {
+            (Some((_, Some(stroke))), _) => Ok(Some(stroke.clone())),
+            (Some((options, None)), _) => generated(options),
+            (None, Some(path)) => from_file(path).map(Some),
+            (None, None) => generated(&self.options()),
         }
     }
 
@@ -145,54 +107,6 @@ impl StrokeArgs {
     pub(super) fn name(&self) -> String {
         self.stroke.as_ref().map_or_else(|| "the stroke".to_owned(), |path| path.display().to_string())
     }
-
-    fn straight(&self, from: Point, to: Point) -> Result<Stroke, CommandError> {
-        if from == to {
-            return Err(CommandError::StrokeInPlace);
-        }
-        let (speed_m_per_s, times) = (self.speed.unwrap_or(0.1), self.times.unwrap_or(1));
-        let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(straight_error)?;
-        let once_s = once.duration_s();
-        let seconds = f64::from(times) * once_s;
-        if seconds > STROKE_MAX_S {
-            return Err(CommandError::StrokeTooLong { name: self.name(), seconds });
-        }
-        let once =
-            if self.minimum_jerk { Stroke::minimum_jerk(from, to, once_s).map_err(straight_error)? } else { once };
-        if times == 1 { Ok(once) } else { back_and_forth(&once, times, self.minimum_jerk).map_err(straight_error) }
-    }
-}
-
-/// Makes the stroke of a person, as [`Stroke::human`] does.
-pub(super) type Human = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
-
-/// The strokes of a person with this name, if it is not that of a file.
-pub(super) fn human(name: &Path) -> Option<Human> {
-    if name == Path::new(HUMAN) {
-        Some(Stroke::human)
-    } else if name == Path::new(HUMAN_ROUGH) {
-        Some(Stroke::human_rough)
-    } else {
-        None
-    }
-}
-
-/// Goes along a stroke `times` times, back and forth.
-fn back_and_forth(once: &Stroke, times: u32, is_curved_in_time: bool) -> Result<Stroke, StrokeError> {
-    let once_s = once.duration_s();
-    let steps = if is_curved_in_time { (once_s / SAMPLE_PERIOD_S).ceil().max(1.0) as u32 } else { 1 };
-    let place = |number: u32| {
-        let (round, step) = (number / steps, number % steps);
-        let part = f64::from(step) / f64::from(steps);
-        let finger = once.at(once_s * if round.is_multiple_of(2) { part } else { 1.0 - part });
-        let t_s = once_s * (f64::from(round) + part);
-        (t_s, finger.map(|finger| Point { x_m: finger.x_m, y_m: finger.y_m }))
-    };
-    Stroke::through(&(0..=times * steps).map(place).collect::<Vec<_>>())
-}
-
-fn straight_error(source: StrokeError) -> CommandError {
-    CommandError::StraightStroke(source)
 }
 
 pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {

@@ -3,12 +3,15 @@
 use std::collections::BTreeMap;
 
 use frixel_felt::recorder::Marker;
-use frixel_wire::hello::Hello;
+use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// Bytes of all files of a recording that are kept as they are; of further ones, only the hash is.
 const EMBEDDED_MAX_BYTES: usize = 4 << 20;
+
+/// The commit, if whoever builds says it.
+const REVISION: Option<&str> = option_env!("FRIXEL_REVISION");
 
 /// What made a recording, and what happened meanwhile.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -31,7 +34,7 @@ pub struct Metadata {
     pub ticks_per_row: u32,
     /// Code of the participant, if one was given.
     pub participant: Option<String>,
-    /// How the play was made, in the words of the program that made it: what plays it again reads this.
+    /// How the play was made, a [`super::PlayOptions`]: what plays it again reads this.
     pub play: Value,
     /// Text of the scene's file.
     #[serde(skip)]
@@ -46,6 +49,26 @@ pub struct Metadata {
     /// What happened, in its order.
     #[serde(skip)]
     pub markers: Vec<Marker>,
+}
+
+impl Metadata {
+    /// The version that makes recordings, and that plays them again.
+    pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
+
+    /// What every recording says of the program and of the board, as far as that is known.
+    pub fn new(rig: &str, board: Option<&Hello>, is_simulated: bool, participant: Option<&str>) -> Self {
+        Self {
+            frixel: Self::VERSION.to_owned(),
+            git_revision: REVISION.map(str::to_owned),
+            protocol: format!("{PROTOCOL_MAJOR}.{PROTOCOL_MINOR}"),
+            rig: rig.to_owned(),
+            is_simulated,
+            board: board.map(Into::into).unwrap_or_default(),
+            tick_hz: board.map_or(0, |hello| hello.tick_hz),
+            participant: participant.map(str::to_owned),
+            ..Self::default()
+        }
+    }
 }
 
 /// The board of a recording.

@@ -10,6 +10,7 @@ mod fields;
 mod metadata;
 mod parquet_reader;
 mod parquet_writer;
+mod play_options;
 
 use std::fmt::{self, Display};
 
@@ -21,6 +22,7 @@ pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
 pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::ParquetWriter;
+pub use play_options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.
 pub const ROWS_PER_GROUP: usize = 65_536;

@@ -9,6 +9,7 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
 use frixel_model::FrictionLaw;
 use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
+use frixel_wire::hello::Hello;
 use thiserror::Error;
 
 mod rehearsal;
@@ -53,6 +54,8 @@ pub struct Simulation {
 pub struct Simulated {
     /// Recorder with the felt friction and its reference.
     pub recorder: Recorder,
+    /// What the board said of itself.
+    pub board: Hello,
     /// Traffic counters of the serial line.
     pub counters: Counters,
     /// Final status of the stream; `None` without one.
@@ -120,8 +123,9 @@ fn run(
         player.step(Duration::MAX)?;
     }
     player.stop()?;
-    let (counters, stream) = (player.device().counters(), player.device().stream_status());
-    Ok(Simulated { recorder: player.into_recorder(), counters, stream })
+    let device = player.device();
+    let (board, counters, stream) = (*device.hello(), device.counters(), device.stream_status());
+    Ok(Simulated { recorder: player.into_recorder(), board, counters, stream })
 }
 
 #[cfg(test)]

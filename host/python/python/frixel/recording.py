@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -40,6 +39,8 @@ class Recording(Mapping[str, NDArray[Any]]):
     """How the play was made, and by which version."""
     scene: Scene
     """The scene that was played."""
+    made: str = field(repr=False)
+    """What `frixel replay` needs beside the scene, JSON."""
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
@@ -75,7 +76,8 @@ class Recording(Mapping[str, NDArray[Any]]):
     def to_parquet(self, path: str | PathLike[str]) -> None:
         """Write the columns as Parquet, in the format of `frixel play --record` (`docs/outputs.md`).
 
-        The scene, the files that it names, and the settings are in the metadata of the file.
+        All that made the play is in the metadata of the file, so that `frixel replay` plays it again: the scene with
+        its files, finger, screen, touch source, stroke, seeds, rate and versions.
 
         Raises
         ------
@@ -83,9 +85,7 @@ class Recording(Mapping[str, NDArray[Any]]):
             The file cannot be written.
         """
         columns = {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.items()}
-        settings = json.dumps({"python": self.settings})
-        ticks_per_row = TICKS_PER_S // int(self.settings["rows_per_s"])
-        _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, settings, ticks_per_row)
+        _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made)
 
     def _repr_html_(self) -> str:
         lines = {"wanted_n": ("#888", self["wanted_n"]), "felt_n": ("#c33", self["felt_n"])}

@@ -103,7 +103,7 @@ class Simulator:
         KeyboardInterrupt
             Ctrl-C, at once.
         """
-        columns = _frixel.simulate(self.scene.compiled, self, seconds)
+        columns, made = _frixel.simulate(self.scene.compiled, self, seconds)
         settings = {
             "frixel": _frixel.__version__,
             "scene": self.scene.name,
@@ -117,7 +117,7 @@ class Simulator:
             "rows_per_s": self.rows_per_s,
         }
         given = {name: value for name, value in settings.items() if value is not None}
-        return Recording({name: np.asarray(values) for name, values in columns.items()}, given, self.scene)
+        return Recording({name: np.asarray(values) for name, values in columns.items()}, given, self.scene, made)
 
 
 def run(cell: Mapping[str, Any]) -> Recording:

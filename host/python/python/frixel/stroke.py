@@ -11,6 +11,9 @@ from .errors import ParameterError, whole
 
 __all__ = ["Stroke"]
 
+LOAD_MAX_N = 50.0
+"""Largest normal load of a finger, N."""
+
 
 class Stroke:
     """The motion of a finger over a screen. Made by `straight`, `human` or `from_arrays`.
@@ -61,16 +64,16 @@ class Stroke:
         Parameters
         ----------
         t_s
-            Times from the start, s, rising; shape (n,), at least 2.
+            Times from the start, s, from 0 and rising; shape (n,), at least 2.
         x_mm, y_mm
             Places, mm, shape (n,); not a number while the finger is off the screen.
         load_n
-            Normal loads, N, shape (n,); not a number where none is known.
+            Normal loads, N, above 0 and at most 50, shape (n,); not a number where none is known.
 
         Raises
         ------
         ParameterError
-            The arrays are not of one length.
+            The arrays are not of one length, times do not rise, or a load is none of a finger.
         """
         columns = [np.array(values, dtype=np.float64) for values in (t_s, x_mm, y_mm)]
         load = None if load_n is None else np.array(load_n, dtype=np.float64)
@@ -79,6 +82,12 @@ class Stroke:
             raise ParameterError(f"a stroke has arrays of one length, at least 2, found shapes {sorted(shapes)}")
         if not np.array_equal(np.isnan(columns[1]), np.isnan(columns[2])):
             raise ParameterError("x_mm and y_mm are both numbers, or neither is, while the finger is off the screen")
+        if not (columns[0][0] >= 0 and np.isfinite(columns[0]).all() and (np.diff(columns[0]) > 0).all()):
+            raise ParameterError("t_s has finite times from 0, each later than the one before: sort them, rising")
+        known = np.empty(0) if load is None else load[~np.isnan(load)]
+        wrong = known[~((known > 0) & (known <= LOAD_MAX_N))]
+        if wrong.size > 0:
+            raise ParameterError(f"load_n has newtons, above 0 and at most {LOAD_MAX_N:g}, found {wrong[0]:g}")
         return _Rows(columns[0], columns[1], columns[2], load)
 
 

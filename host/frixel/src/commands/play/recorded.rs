@@ -4,49 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use frixel_driver::{Device, Link};
-use frixel_lab::recording::{Metadata, SourceFile};
-use serde::{Deserialize, Serialize};
+use frixel_lab::recording::{Metadata, PlayOptions, SourceFile};
 
 use crate::input;
 use crate::scene_file::SceneFiles;
 
-use super::super::parquet;
-use super::super::stroke::RecordedStroke;
 use super::plan::Plan;
 use super::{CommandError, PlayArgs};
-
-/// Names of the files of a recording beside the scene's own.
-pub(super) const STROKE: &str = "stroke";
-pub(super) const FINGER: &str = "finger";
-pub(super) const SCREEN: &str = "screen";
-pub(super) const TOUCH: &str = "touch";
-/// Before the name of a file that the scene names.
-pub(super) const OF_SCENE: &str = "scene/";
-
-/// The options of a play, without the paths of files.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
-pub(super) struct PlayOptions {
-    pub(super) seconds: Option<f64>,
-    pub(super) seed: u64,
-    pub(super) ideal: bool,
-    pub(super) no_leakage: bool,
-    pub(super) finger_seed: Option<u64>,
-    pub(super) rows_hz: u32,
-    /// The finger in place of the scene's own: the name of a bundled one, or `file`.
-    pub(super) finger: Option<String>,
-    /// The screen in place of the scene's own, in the same way.
-    pub(super) screen: Option<String>,
-    /// The touch source, in the same way.
-    pub(super) touch: Option<String>,
-    pub(super) stroke: RecordedStroke,
-    /// Whether lines on standard input changed the play.
-    pub(super) control: bool,
-    /// Whether samples were streamed, which the recording does not have.
-    pub(super) stream: bool,
-    /// Whether the play ended before its time.
-    pub(super) interrupted: bool,
-}
 
 /// What a play is made from, apart from its options.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +26,12 @@ impl Sources {
     pub(super) fn new(args: &PlayArgs, scene: &SceneFiles) -> Result<Self, CommandError> {
         let names = args.profiles.names();
         let (finger, screen) = (names.finger_file(), names.screen_file());
-        let profiles = [(FINGER, finger), (SCREEN, screen), (TOUCH, args.touch.file()), (STROKE, args.stroke.file())];
+        let profiles = [
+            (PlayOptions::FINGER, finger),
+            (PlayOptions::SCREEN, screen),
+            (PlayOptions::TOUCH, args.touch.file()),
+            (PlayOptions::STROKE, args.stroke.file()),
+        ];
         let mut read = Vec::new();
         for (name, path) in profiles {
             if let Some(path) = path {
@@ -70,10 +39,12 @@ impl Sources {
                 read.push((name.to_owned(), bytes));
             }
         }
-        let named = scene.named_bytes().iter().map(|(name, bytes)| (format!("{OF_SCENE}{name}"), bytes.as_slice()));
+        let of_scene = |name: &String| format!("{}{name}", PlayOptions::OF_SCENE);
+        let named = scene.named_bytes().iter().map(|(name, bytes)| (of_scene(name), bytes.as_slice()));
         let files = SourceFile::all(read.iter().map(|(name, bytes)| (name.clone(), bytes.as_slice())).chain(named));
-        let name =
-            |name: &Option<String>, file: Option<&Path>| file.map_or_else(|| name.clone(), |_| Some("file".into()));
+        let name = |name: &Option<String>, file: Option<&Path>| {
+            file.map_or_else(|| name.clone(), |_| Some(PlayOptions::FILE.into()))
+        };
         Ok(Self {
             scene: scene.scene_text(),
             files,
@@ -83,7 +54,7 @@ impl Sources {
     }
 
     fn options(&self, args: &PlayArgs) -> PlayOptions {
-        let touch = args.touch.bundled_name().or(args.touch.file().map(|_| "file"));
+        let touch = args.touch.bundled_name().or(args.touch.file().map(|_| PlayOptions::FILE));
         PlayOptions {
             seconds: args.seconds,
             seed: args.seed,
@@ -94,7 +65,7 @@ impl Sources {
             finger: self.finger.clone(),
             screen: self.screen.clone(),
             touch: touch.map(str::to_owned),
-            stroke: RecordedStroke::of(&args.stroke),
+            stroke: args.stroke.options(),
             control: args.control,
             stream: args.stream.is_some(),
             interrupted: false,
@@ -115,6 +86,6 @@ pub(super) fn metadata<L: Link>(
         play: serde_json::to_value(sources.options(args)).unwrap_or_default(),
         scene: sources.scene.clone(),
         files: sources.files.clone(),
-        ..parquet::metadata(plan.target.name(), Some(device.hello()), is_simulated, args.participant.as_deref())
+        ..Metadata::new(plan.target.name(), Some(device.hello()), is_simulated, args.participant.as_deref())
     }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use clap::Args;
 use frixel_hil_sim::{BoardMemory, Stroke, TouchConfig};
-use frixel_lab::recording::{Metadata, Recording};
+use frixel_lab::recording::{Metadata, PlayOptions, Recording};
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_play::Player;
 use frixel_scene::{FingerProfile, Scene, Screen, parse_touch_source};
@@ -15,16 +15,15 @@ use frixel_scene::{FingerProfile, Scene, Screen, parse_touch_source};
 use crate::input;
 use crate::scene_file::SceneFileError;
 
-use super::super::parquet::VERSION;
 use super::super::profiles::TouchArgs;
+use super::super::stroke::StrokeArgs;
 use super::super::terminal::print_line;
-use super::recorded::{FINGER, OF_SCENE, PlayOptions, SCREEN, STROKE, TOUCH};
 use super::rigs::simulator;
 use super::{CommandError, PlayArgs, note};
 
 #[derive(Debug, Args)]
 pub(in crate::commands) struct ReplayArgs {
-    /// A recording of `frixel play --record` on the simulator.
+    /// A recording of a play on the simulator, by `frixel play --record` or Python's `Recording.to_parquet`.
     recording: PathBuf,
 }
 
@@ -56,8 +55,8 @@ fn options(metadata: &Metadata) -> Result<PlayOptions, String> {
         _ if metadata.is_simulated => return Err("it is of a virtual board at a port, which runs in real time".into()),
         _ => return Err("it is of a board at a port, under a person's finger".into()),
     }
-    if frixel != VERSION {
-        return Err(format!("frixel {frixel} recorded it, and this is {VERSION}: use that version"));
+    if frixel != Metadata::VERSION {
+        return Err(format!("frixel {frixel} recorded it, and this is {}: use that version", Metadata::VERSION));
     }
     let Ok(options) = serde_json::from_value::<PlayOptions>(play.clone()) else {
         return Err("it does not say how it was played".into());
@@ -104,35 +103,37 @@ fn play(
 
 /// The scene, with the finger and the screen that replaced its own.
 fn scene(metadata: &Metadata, options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result<Scene, CommandError> {
-    let of_scene = |(name, bytes): (&String, &Vec<u8>)| Some((name.strip_prefix(OF_SCENE)?.to_owned(), bytes.clone()));
+    let of_scene = |(name, bytes): (&String, &Vec<u8>)| {
+        Some((name.strip_prefix(PlayOptions::OF_SCENE)?.to_owned(), bytes.clone()))
+    };
     let named: BTreeMap<String, Vec<u8>> = files.iter().filter_map(of_scene).collect();
     let mut scene = Scene::parse(&metadata.scene, "the recorded scene", &named)?;
     if let Some(name) = &options.screen {
-        let screen = match files.get(SCREEN) {
-            Some(bytes) => Screen::parse(&String::from_utf8_lossy(bytes), SCREEN)?,
-            None => bundled(Screen::bundled(name), SCREEN, name)?,
+        let screen = match files.get(PlayOptions::SCREEN) {
+            Some(bytes) => Screen::parse(&String::from_utf8_lossy(bytes), PlayOptions::SCREEN)?,
+            None => bundled(Screen::bundled(name), PlayOptions::SCREEN, name)?,
         };
-        scene = scene.with_screen(screen, SCREEN)?;
+        scene = scene.with_screen(screen, PlayOptions::SCREEN)?;
     }
     if let Some(name) = &options.finger {
-        let finger = match files.get(FINGER) {
-            Some(bytes) => FingerProfile::parse(&String::from_utf8_lossy(bytes), FINGER)?,
-            None => bundled(FingerProfile::bundled(name), FINGER, name)?,
+        let finger = match files.get(PlayOptions::FINGER) {
+            Some(bytes) => FingerProfile::parse(&String::from_utf8_lossy(bytes), PlayOptions::FINGER)?,
+            None => bundled(FingerProfile::bundled(name), PlayOptions::FINGER, name)?,
         };
-        scene = scene.with_finger(finger, FINGER)?;
+        scene = scene.with_finger(finger, PlayOptions::FINGER)?;
     }
     Ok(scene)
 }
 
 fn play_args(options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result<PlayArgs, CommandError> {
-    let stroke = match files.get(STROKE).filter(|_| options.stroke.is_from_file()) {
+    let stroke = match files.get(PlayOptions::STROKE).filter(|_| options.stroke.is_from_file()) {
         Some(bytes) => Some(stroke(bytes)?),
         None => None,
     };
-    let touch = match (&options.touch, files.get(TOUCH)) {
+    let touch = match (&options.touch, files.get(PlayOptions::TOUCH)) {
         (None, _) => None,
-        (Some(_), Some(bytes)) => Some(parse_touch_source(&String::from_utf8_lossy(bytes), TOUCH)?),
-        (Some(name), None) => Some(bundled(TouchConfig::bundled(name), TOUCH, name)?),
+        (Some(_), Some(bytes)) => Some(parse_touch_source(&String::from_utf8_lossy(bytes), PlayOptions::TOUCH)?),
+        (Some(name), None) => Some(bundled(TouchConfig::bundled(name), PlayOptions::TOUCH, name)?),
     };
     Ok(PlayArgs {
         seconds: options.seconds,
@@ -141,7 +142,7 @@ fn play_args(options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result
         no_leakage: options.no_leakage,
         finger_seed: options.finger_seed,
         csv_hz: options.rows_hz,
-        stroke: options.stroke.clone().into_args(stroke),
+        stroke: StrokeArgs::of_recording(options.stroke.clone(), stroke),
         touch: TouchArgs::of_recording(touch),
         ..PlayArgs::ideal(Path::new("the recorded scene"), Path::new(""))
     })
@@ -149,7 +150,7 @@ fn play_args(options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result
 
 fn stroke(bytes: &[u8]) -> Result<Stroke, CommandError> {
     let read = StrokeFile::read(bytes);
-    Ok(read.map_err(|source| CommandError::Stroke { path: STROKE.into(), source })?.stroke)
+    Ok(read.map_err(|source| CommandError::Stroke { path: PlayOptions::STROKE.into(), source })?.stroke)
 }
 
 /// A bundled profile, which the same version has.

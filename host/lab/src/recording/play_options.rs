@@ -1,0 +1,236 @@
+//! The options of a play, which a recording has so that it can be played again.
+
+use frixel_hil_sim::{Point, Stroke, StrokeError};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Longest stroke: one day, in s.
+pub const STROKE_MAX_S: f64 = 86_400.0;
+/// Duration of a person's stroke unless another is given, s, and the longest.
+const HUMAN_S: f64 = 10.0;
+const HUMAN_MAX_S: f64 = 600.0;
+/// Speed of a straight stroke unless another is given, m/s.
+const STRAIGHT_M_PER_S: f64 = 0.1;
+/// Time between two places of a minimum-jerk stroke that goes back and forth, s.
+const SAMPLE_PERIOD_S: f64 = 1e-3;
+
+/// The options of a play, without the paths of files: `frixel play --record` and the Python module write them, `frixel
+/// replay` reads them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
+pub struct PlayOptions {
+    /// Duration, s; `None` for as long as the stroke.
+    pub seconds: Option<f64>,
+    /// Seed of the simulator's random numbers.
+    pub seed: u64,
+    /// A world without load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
+    pub ideal: bool,
+    /// Skin through which no charge leaks.
+    pub no_leakage: bool,
+    /// Seed of a simulated person, whose finger the board does not know.
+    pub finger_seed: Option<u64>,
+    /// Rows a second.
+    pub rows_hz: u32,
+    /// The finger in place of the scene's own: the name of a bundled one, or [`Self::FILE`].
+    pub finger: Option<String>,
+    /// The screen in place of the scene's own, in the same way.
+    pub screen: Option<String>,
+    /// The touch source, in the same way.
+    pub touch: Option<String>,
+    /// Where the finger goes.
+    pub stroke: StrokeOptions,
+    /// Whether the scene was changed while it played, which the recording does not have.
+    pub control: bool,
+    /// Whether samples were streamed, which the recording does not have.
+    pub stream: bool,
+    /// Whether the play ended before its time.
+    pub interrupted: bool,
+}
+
+impl PlayOptions {
+    /// In place of a name: the bytes are among the files of the recording.
+    pub const FILE: &'static str = "file";
+    /// Name of the stroke among the files of a recording.
+    pub const STROKE: &'static str = "stroke";
+    /// Name of the finger among them.
+    pub const FINGER: &'static str = "finger";
+    /// Name of the screen among them.
+    pub const SCREEN: &'static str = "screen";
+    /// Name of the touch source among them.
+    pub const TOUCH: &'static str = "touch";
+    /// Stands among them before the name of a file that the scene names.
+    pub const OF_SCENE: &'static str = "scene/";
+}
+
+/// The options of a stroke. Without any, the stroke is the default one of the scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StrokeOptions {
+    /// `human`, `human-rough`, or [`PlayOptions::FILE`].
+    pub name: Option<String>,
+    /// Start of a straight stroke from the top left corner of the screen, m.
+    pub from_m: Option<[f64; 2]>,
+    /// Its end, m.
+    pub to_m: Option<[f64; 2]>,
+    /// Its mean speed, m/s.
+    pub speed_m_per_s: Option<f64>,
+    /// How many times the finger goes along it, back and forth.
+    pub times: Option<u32>,
+    /// Whether it starts and ends at rest.
+    pub minimum_jerk: bool,
+    /// Seed of a person's stroke; `None` for that of the play.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub human_seed: Option<u64>,
+    /// Duration of a person's stroke, s; `None` for that of the play.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub human_seconds: Option<f64>,
+}
+
+/// Why options describe no stroke.
+#[derive(Debug, Error)]
+pub enum StrokeOptionsError {
+    /// Start and end are the same.
+    #[error("the stroke starts and ends at the same place: give two places that differ")]
+    InPlace,
+    /// It takes too long.
+    #[error("the stroke lasts {seconds} s, longer than a day (86400 s): give a shorter one")]
+    TooLong {
+        /// Its duration, s.
+        seconds: f64,
+    },
+    /// A straight stroke cannot be made.
+    #[error(transparent)]
+    Straight(StrokeError),
+    /// A person's stroke cannot be made on this screen.
+    #[error(transparent)]
+    Human(StrokeError),
+}
+
+/// Makes the stroke of a person, as [`Stroke::human`] does.
+type Human = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
+
+impl StrokeOptions {
+    /// The name of a person's stroke.
+    pub const HUMAN: &'static str = "human";
+    /// The name of a person's stroke with the accelerations before smoothing.
+    pub const HUMAN_ROUGH: &'static str = "human-rough";
+
+    /// Whether a stroke of this name is generated, and not that of a file.
+    pub fn is_generated(name: &str) -> bool {
+        human(name).is_some()
+    }
+
+    /// Whether the stroke is that of a file.
+    pub fn is_from_file(&self) -> bool {
+        self.name.as_deref() == Some(PlayOptions::FILE)
+    }
+
+    /// The stroke that the options describe; `None` without options, and for that of a file. A person's stroke covers a
+    /// screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
+    pub fn generated(
+        &self,
+        [width_m, height_m]: [f64; 2],
+        seconds: Option<f64>,
+        seed: u64,
+    ) -> Result<Option<Stroke>, StrokeOptionsError> {
+        if let Some(human) = self.name.as_deref().and_then(human) {
+            let seconds = self.human_seconds.or(seconds).unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
+            let stroke = human(width_m, height_m, seconds, None, self.human_seed.unwrap_or(seed));
+            return stroke.map(Some).map_err(StrokeOptionsError::Human);
+        }
+        let point = |[x_m, y_m]: [f64; 2]| Point { x_m, y_m };
+        match self.from_m.zip(self.to_m) {
+            Some((from_m, to_m)) => self.straight(point(from_m), point(to_m)).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    fn straight(&self, from: Point, to: Point) -> Result<Stroke, StrokeOptionsError> {
+        if from == to {
+            return Err(StrokeOptionsError::InPlace);
+        }
+        let failed = StrokeOptionsError::Straight;
+        let (speed_m_per_s, times) = (self.speed_m_per_s.unwrap_or(STRAIGHT_M_PER_S), self.times.unwrap_or(1));
+        let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(failed)?;
+        let once_s = once.duration_s();
+        let seconds = f64::from(times) * once_s;
+        if seconds > STROKE_MAX_S {
+            return Err(StrokeOptionsError::TooLong { seconds });
+        }
+        let once = if self.minimum_jerk { Stroke::minimum_jerk(from, to, once_s).map_err(failed)? } else { once };
+        if times == 1 { Ok(once) } else { back_and_forth(&once, times, self.minimum_jerk).map_err(failed) }
+    }
+}
+
+/// The strokes of a person with this name, if it is not that of a file.
+fn human(name: &str) -> Option<Human> {
+    match name {
+        StrokeOptions::HUMAN => Some(Stroke::human),
+        StrokeOptions::HUMAN_ROUGH => Some(Stroke::human_rough),
+        _ => None,
+    }
+}
+
+/// Goes along a stroke `times` times, back and forth.
+fn back_and_forth(once: &Stroke, times: u32, is_curved_in_time: bool) -> Result<Stroke, StrokeError> {
+    let once_s = once.duration_s();
+    let steps = if is_curved_in_time { (once_s / SAMPLE_PERIOD_S).ceil().max(1.0) as u32 } else { 1 };
+    let place = |number: u32| {
+        let (round, step) = (number / steps, number % steps);
+        let part = f64::from(step) / f64::from(steps);
+        let finger = once.at(once_s * if round.is_multiple_of(2) { part } else { 1.0 - part });
+        let t_s = once_s * (f64::from(round) + part);
+        (t_s, finger.map(|finger| Point { x_m: finger.x_m, y_m: finger.y_m }))
+    };
+    Stroke::through(&(0..=times * steps).map(place).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCREEN_M: [f64; 2] = [0.12, 0.08];
+
+    fn human(seed: Option<u64>, seconds: Option<f64>) -> StrokeOptions {
+        let name = Some(StrokeOptions::HUMAN.to_owned());
+        StrokeOptions { name, human_seed: seed, human_seconds: seconds, ..StrokeOptions::default() }
+    }
+
+    /// Places of the finger, by their bits.
+    fn places(options: &StrokeOptions, seconds: Option<f64>, seed: u64) -> (u64, Vec<Option<u64>>) {
+        let stroke = options.generated(SCREEN_M, seconds, seed).unwrap().unwrap();
+        let place = |step: u32| stroke.at(0.01 * f64::from(step)).map(|finger| finger.x_m.to_bits());
+        (stroke.duration_s().to_bits(), (0..100).map(place).collect())
+    }
+
+    #[test]
+    fn a_person_has_the_seed_and_the_duration_of_the_play_unless_they_have_their_own() {
+        let of_play = places(&human(None, None), Some(2.0), 5);
+        assert_eq!(of_play, places(&human(Some(5), Some(2.0)), Some(9.0), 1));
+        assert_ne!(of_play, places(&human(Some(6), None), Some(2.0), 5));
+        assert_ne!(of_play, places(&human(None, Some(3.0)), Some(2.0), 5));
+    }
+
+    #[test]
+    fn the_options_of_a_recording_that_did_not_have_a_persons_seed_are_read() {
+        let older =
+            r#"{"name":"human","from_m":null,"to_m":null,"speed_m_per_s":null,"times":null,"minimum_jerk":false}"#;
+        let read: StrokeOptions = serde_json::from_str(older).unwrap();
+        assert_eq!(read, human(None, None));
+        assert_eq!(serde_json::to_string(&read).unwrap(), older);
+    }
+
+    #[test]
+    fn a_stroke_in_place_or_longer_than_a_day_is_refused() {
+        let straight = |to_m, speed_m_per_s| StrokeOptions {
+            from_m: Some([0.01, 0.02]),
+            to_m: Some(to_m),
+            speed_m_per_s: Some(speed_m_per_s),
+            ..StrokeOptions::default()
+        };
+        let refused = |options: &StrokeOptions| options.generated(SCREEN_M, None, 1).unwrap_err();
+        assert!(matches!(refused(&straight([0.01, 0.02], 0.1)), StrokeOptionsError::InPlace));
+        assert!(matches!(refused(&straight([0.1, 0.02], 1e-7)), StrokeOptionsError::TooLong { .. }));
+        assert!(matches!(refused(&straight([0.1, 0.02], 0.0)), StrokeOptionsError::Straight(_)));
+        assert!(StrokeOptions::default().generated(SCREEN_M, None, 1).unwrap().is_none());
+    }
+}
