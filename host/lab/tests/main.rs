@@ -3,6 +3,7 @@
 
 mod coverage;
 mod empirical;
+mod examples;
 mod person;
 mod refusals;
 mod simulated;

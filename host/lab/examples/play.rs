@@ -1,0 +1,59 @@
+//! Plays a scene file on the simulated board, under a simulated finger, in virtual time:
+//!
+//! ```sh
+//! cargo run -p frixel-lab --example play scenes/brick.toml
+//! ```
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::{env, fs};
+
+use frixel_hil_sim::RigConfig;
+use frixel_lab::default_stroke::default_stroke;
+use frixel_lab::simulation::{Simulation, simulate_through_finger};
+use frixel_scene::{FileUnavailable, Files, Scene, compile};
+
+/// The pictures and profiles that a scene names, in its folder.
+struct Folder(PathBuf);
+
+impl Files for Folder {
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+        fs::read(self.0.join(name)).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() })
+    }
+}
+
+fn main() -> ExitCode {
+    match play() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn play() -> Result<(), Box<dyn Error>> {
+    let path = PathBuf::from(env::args().nth(1).ok_or("give the path of a scene, for example scenes/brick.toml")?);
+    let files = Folder(path.parent().unwrap_or(Path::new(".")).to_owned());
+    let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let scene = Scene::parse_bytes(&bytes, &path.display().to_string(), &files)?;
+
+    // A program is compiled for the limits of one board: here the simulated one, in a world with noise and losses.
+    let mut rig = RigConfig::default();
+    rig.world = rig.world.realistic();
+    let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
+    let stroke = default_stroke(&program, None)?;
+    let seconds = stroke.duration_s();
+    let ticks_per_row = rig.board.tick_hz / 1000;
+    let played = simulate_through_finger(&program, &Simulation { rig, stroke, seconds, seed: 1, ticks_per_row }, None)?;
+
+    let rows = played.recorder.rows();
+    let felt_n: Vec<f64> = rows.iter().filter_map(|row| row.felt_n).collect();
+    let mean_n = felt_n.iter().sum::<f64>() / felt_n.len() as f64;
+    let error = played.recorder.summary().friction_error.ok_or("the finger was never on the screen")?;
+    println!("{} rows of a millisecond, {} layers", rows.len(), program.records.len());
+    println!("{:.0} mN felt on average, {:.1} mN rms from the scene", 1e3 * mean_n, 1e3 * error.rms_n);
+    Ok(())
+}
