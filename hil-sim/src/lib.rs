@@ -35,7 +35,7 @@ mod world;
 pub use amplifier::{AmplifierConfig, Decay};
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger};
-pub use frixel_control::Drive;
+pub use frixel_control::{Board, Drive};
 pub use frixel_session::TableRows;
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};

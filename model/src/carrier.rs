@@ -85,6 +85,11 @@ impl Carrier {
         square.sqrt().to_f32()
     }
 
+    /// The frequency in Hz.
+    pub fn carrier_hz(&self) -> f32 {
+        0.5 / self.half_period_s
+    }
+
     /// Largest current into a capacitance of `capacitance_f` farads at a peak `U` of `drive_v_peak` volts at the DAC,
     /// for any scene. Infinite without lag.
     ///
@@ -94,7 +99,7 @@ impl Carrier {
     /// direct current, make it jump.
     pub fn electrode_current(&self, capacitance_f: f32, drive_v_peak: f32) -> ElectrodeCurrent {
         let swing_c = 2.0 * capacitance_f * drive_v_peak;
-        let carrier_hz = 0.5 / self.half_period_s;
+        let carrier_hz = self.carrier_hz();
         ElectrodeCurrent {
             a_rms: swing_c * DoubleSingle::from(carrier_hz / self.edge_time_constant_s).sqrt().to_f32(),
             a_peak: swing_c / self.edge_time_constant_s,

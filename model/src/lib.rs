@@ -10,7 +10,8 @@
 //! friction. On a device, [`InverseTable`] computes the voltage without root or division. The crate works with the
 //! **electric friction** `F_T - mu F_N` throughout: under a load it is small compared to the total friction, and
 //! computing it as a difference of totals would lose its digits. [`Carrier`], which is not part of the paper, models
-//! the losses between the DAC and the electrode.
+//! the losses between the DAC and the electrode, and [`TouchBound`] the voltage at which a person who touches the
+//! electrode through a bridged or a thin coating is still safe.
 //!
 //! # Where each equation is
 //!
@@ -121,6 +122,7 @@ mod shear;
 mod soft;
 mod state;
 mod table;
+mod touch_current;
 
 pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
 pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attraction_pa, effective_gap_m};
@@ -137,4 +139,7 @@ pub use state::{ContactModel, ContactState, Sensitivity};
 pub use table::{
     EmpiricalTableFilling, FixedTable, InverseTable, InverseTableFilling, Precision, SizedTable, TableBuilder,
     TableError, TableShape,
+};
+pub use touch_current::{
+    Coating, SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound, TouchCurrent, TouchPath,
 };

@@ -1,9 +1,7 @@
-//! Identity and limits of this board. The numbers here belong to the parts that `docs/hardware.md` lists: another
-//! amplifier or electrode needs other numbers.
+//! Identity, stores and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them, too.
 
-use frixel_control::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
+use frixel_control::{AmplifierSpec, Board};
 use frixel_drivers::monitor::MonitorScale;
-use frixel_layers::BITMAP_POOL_LEN;
 use frixel_session::store::{Ceilings, Flash, Slot, check_ceilings, load_limits};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
@@ -22,41 +20,16 @@ pub const RECEIVE_WINDOW: usize = 4096;
 pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
 /// Limits until bring-up has stored others.
-pub const LIMITS: BoardLimits = BoardLimits {
-    bitmap_pool_bytes: BITMAP_POOL_LEN as u32,
-    records_max: RECORDS_MAX as u8,
-    receive_window_bytes: RECEIVE_WINDOW as u16,
-    // Until the board has been measured.
-    voltage_max_v_peak: 50.0,
-    // 10 V of the DAC behind an amplifier of gain 20.
-    full_scale_v_peak: 200.0,
-    // The one lag that takes as much of the mean square as 68 kOhm in series with the electrode below, 36 us, behind an
-    // amplifier of 20 kHz, 8 us.
-    edge_time_constant_s: 37.5e-6,
-    // 2 cm^2 of bare 10 um polymer, relative permittivity 3.
-    electrode_capacitance_max_f: 0.53e-9,
-    // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.
-    current_max_a_rms: 0.5e-3,
-    // The current through the series resistor when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
-    current_max_a_peak: 1.8e-3,
-    touch_report_period_s: 10e-3,
-    tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
-};
+pub const LIMITS: BoardLimits =
+    BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..Board::NUCLEO_G474RE.limits };
 
 const _: () = assert!(check_ceilings(&LIMITS).is_ok());
 
 /// Whether stored limits above the ceilings are refused.
 pub const CEILINGS: Ceilings =
     if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
-/// The amplifier, as `docs/hardware.md` demands it.
-pub const AMPLIFIER: AmplifierSpec = AmplifierSpec {
-    // A large-signal bandwidth of 20 kHz. The series resistor is behind the monitor.
-    time_constant_s: 8e-6,
-    // Assumed.
-    turn_on: SwitchingTime::from_s(1e-3),
-    turn_off: SwitchingTime::from_s(1e-3),
-    ready_while_disabled: ReadyWhileDisabled::High,
-};
+/// The amplifier.
+pub const AMPLIFIER: AmplifierSpec = Board::NUCLEO_G474RE.amplifier;
 
 /// Where the limits are stored: the first two pages of bank 2.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
@@ -72,13 +45,14 @@ const _: () = assert!(
 /// The board's description, with the cause of the last reset.
 pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
     let (limits, notices) = load_limits(flash, LIMITS_SLOT, &LIMITS, CEILINGS);
+    // Field by field: the rest of `Board::NUCLEO_G474RE` copied would take 90 bytes of flash.
     Board {
         kind: BoardKind::NucleoG474re,
         id: unique_number(),
         tick_hz: TICK_HZ,
         limits,
         amplifier: AMPLIFIER,
-        hold_to_run: true,
+        hold_to_run: Board::NUCLEO_G474RE.hold_to_run,
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,

@@ -116,7 +116,7 @@ unsafe fn DefaultHandler(number: i16) {
 unsafe fn NonMaskableInt() {
     if !flash::take_unreadable() {
         end(Fault::HardFault, 0, &mut |text| {
-            text.text("a non-maskable interrupt: the image's flash or RAM cannot be read, or the clock failed");
+            text.text("a non-maskable interrupt: flash or RAM cannot be read, or the clock failed");
         })
     }
 }

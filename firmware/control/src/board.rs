@@ -62,6 +62,8 @@ impl Board {
             current_max_a_peak: 15e-3,
             touch_report_period_s: 10e-3,
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
+            // Nobody touches it.
+            series_resistance_ohm: f32::INFINITY,
         },
         // The edges' 20 us contain the amplifier's own time constant. It switches at once.
         amplifier: AmplifierSpec {
@@ -78,6 +80,52 @@ impl Board {
         touch_from_host: false,
         notices: 0,
     };
+
+    /// The NUCLEO-G474RE with the parts that `docs/hardware.md` lists, until bring-up has stored other limits. Another
+    /// amplifier, series resistor or electrode needs other numbers.
+    pub const NUCLEO_G474RE: Self = Self {
+        kind: BoardKind::NucleoG474re,
+        id: [0; 12],
+        limits: BoardLimits {
+            // Until the board has been measured.
+            voltage_max_v_peak: 50.0,
+            // 10 V of the DAC behind an amplifier of gain 20.
+            full_scale_v_peak: 200.0,
+            // The one lag that takes as much of the mean square as 68 kOhm in series with the electrode below, 36 us,
+            // behind an amplifier of 20 kHz, 8 us.
+            edge_time_constant_s: 37.5e-6,
+            // 2 cm^2 of bare 10 um polymer, relative permittivity 3.
+            electrode_capacitance_max_f: 0.53e-9,
+            // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.
+            current_max_a_rms: 0.5e-3,
+            // The current through the series resistor when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
+            current_max_a_peak: 1.8e-3,
+            // Two resistors of 34 kOhm, 1 %. They leave 28.7 V peak at a carrier of 125 Hz, 43.9 V at 1 kHz, and 50 V from
+            // 2.2 kHz on (`frixel_model::TouchBound`).
+            series_resistance_ohm: 68e3,
+            ..Self::SIMULATOR.limits
+        },
+        // As `docs/hardware.md` demands it.
+        amplifier: AmplifierSpec {
+            // A large-signal bandwidth of 20 kHz. The series resistor is behind the monitor.
+            time_constant_s: 8e-6,
+            // Assumed.
+            turn_on: SwitchingTime::from_s(1e-3),
+            turn_off: SwitchingTime::from_s(1e-3),
+            ready_while_disabled: ReadyWhileDisabled::High,
+        },
+        hold_to_run: true,
+        touch_from_host: true,
+        ..Self::SIMULATOR
+    };
+
+    /// The real board of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        (name == "nucleo-g474re").then_some(Self::NUCLEO_G474RE)
+    }
+
+    /// The names that [`Self::named`] knows.
+    pub const NAMES: [&'static str; 1] = ["nucleo-g474re"];
 
     /// Seconds between two ticks.
     pub fn tick_period_s(&self) -> f32 {

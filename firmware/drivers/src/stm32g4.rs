@@ -56,8 +56,8 @@ const RESET_PIN_IN_AND_OUT: u32 = 0b11 << 28;
 pub fn option_byte_warnings(flash_optr: u32) -> impl Iterator<Item = &'static str> {
     let checks = [
         (flash_optr & BROWN_OUT_LEVEL == BROWN_OUT_LEVEL_4, "BOR_LEV is not 4: below 2.8 V the processor runs on"),
-        (flash_optr & SOFTWARE_WATCHDOG == 0, "IWDG_SW is 1: no watchdog runs until the firmware has started it"),
-        (flash_optr & NO_RAM_PARITY != 0, "SRAM_PE is 0: the fault record is read before it is written, and faults"),
+        (flash_optr & SOFTWARE_WATCHDOG == 0, "IWDG_SW is 1: no watchdog runs until the firmware starts it"),
+        (flash_optr & NO_RAM_PARITY != 0, "SRAM_PE is 0: the fault record is read before it is written"),
         (flash_optr & RESET_PIN_MODE == RESET_PIN_IN_AND_OUT, "NRST_MODE is not 3: NRST does not show every reset"),
     ];
     checks.into_iter().filter(|(is_right, _)| !is_right).map(|(_, warning)| warning)

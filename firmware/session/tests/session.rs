@@ -9,7 +9,7 @@ use frixel_layers::{Constant, Grating, HEADER_LEN, Header, Layer, RECORD_LEN, Re
 use frixel_session::Touch;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
-use frixel_wire::hello::feature;
+use frixel_wire::hello::{BoardLimits, feature};
 #[cfg(feature = "telemetry")]
 use frixel_wire::message::TickTimes;
 use frixel_wire::message::{Accepted, Command, ConfigField, FromBoard, Refusal};
@@ -130,6 +130,43 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
         field(&mut board, HEADER, Layer::Constant(Constant { electric_friction_n: f32::NAN })),
         Some(ConfigField::Friction)
     );
+}
+
+/// The bound for a person whom no coating protects, at each carrier frequency that the board can give: 68 kOhm allow 28.7 V
+/// peak at 125 Hz, 43.9 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
+#[test]
+fn a_peak_that_would_hurt_through_a_bridged_coating_is_refused_at_every_carrier() {
+    let limits = BoardLimits { series_resistance_ohm: 68e3, current_max_a_rms: 1.0, ..Board::SIMULATOR.limits };
+    let mut board = TestBoard::of(Board { limits, ..Board::SIMULATOR });
+    board.hello();
+    for (carrier_hz, bound_v_peak) in [(125.0, 28.688), (250.0, 30.855), (1_000.0, 43.86), (5_000.0, 65.62)] {
+        for (voltage_max_v_peak, is_taken) in [(bound_v_peak - 0.01, true), (bound_v_peak + 0.01, false)] {
+            // The rms limit does not matter: the carrier bounds its volt-seconds by the peak.
+            let header = Header { carrier_hz, voltage_max_v_peak, voltage_max_v_rms: 20.0, ..HEADER };
+            let answer = board.load(&scene(&header, &[constant(0.001)]));
+            match answer {
+                Ok(_) => assert!(is_taken, "{voltage_max_v_peak} V at {carrier_hz} Hz"),
+                Err(Refusal::Config(refusal)) => {
+                    assert!(!is_taken && refusal.field == ConfigField::VoltagePeak, "{refusal}");
+                    assert!((refusal.max - bound_v_peak).abs() < 1e-3, "{refusal}");
+                }
+                Err(other) => panic!("{other:?}"),
+            }
+        }
+    }
+}
+
+/// The carrier that counts is the one of whole ticks: 4.4 kHz is played as 4 kHz, whose bound is lower.
+#[test]
+fn the_bound_is_that_of_the_carrier_as_it_is_played() {
+    let limits = BoardLimits { series_resistance_ohm: 68e3, current_max_a_rms: 1.0, ..Board::SIMULATOR.limits };
+    let mut board = TestBoard::of(Board { limits, ..Board::SIMULATOR });
+    board.hello();
+    let header = Header { carrier_hz: 4_400.0, voltage_max_v_peak: 61.0, voltage_max_v_rms: 20.0, ..HEADER };
+    match board.load(&scene(&header, &[constant(0.001)])) {
+        Err(Refusal::Config(refusal)) => assert!((refusal.max - 60.18).abs() < 1e-3, "{refusal}"),
+        other => panic!("{other:?}"),
+    }
 }
 
 /// What PROTOCOL.md says of `00 00 00 80`.

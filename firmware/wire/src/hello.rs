@@ -263,6 +263,10 @@ pub struct BoardLimits {
     /// Limit on the estimated processor cycles of a scene's longest tick. The board refuses a scene whose estimate
     /// exceeds it at any position.
     pub tick_cycles_max: u32,
+    /// Resistance between the amplifier and the electrode, Ohm. It bounds the current through a person whom no coating
+    /// protects, and with it the peak voltage at each carrier frequency (`frixel_model::TouchBound`). Infinite on a
+    /// board that nobody can touch, such as a simulated one. Since protocol 1.4; boards before it have no such bound.
+    pub series_resistance_ohm: f32,
 }
 
 impl BoardLimits {
@@ -285,5 +289,6 @@ impl BoardLimits {
         current_max_a_peak: 0.0,
         touch_report_period_s: 0.0,
         tick_cycles_max: Self::SMALLEST_TICK_CYCLES_MAX,
+        series_resistance_ohm: f32::INFINITY,
     };
 }

@@ -49,11 +49,12 @@ fn the_layout_is_frozen() {
             current_max_a_peak: 4.0,
             touch_report_period_s: 5.0,
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
+            series_resistance_ohm: f32::INFINITY,
         },
         notices: 0,
     };
     assert_eq!(Hello::parse(&bytes), Ok(hello));
-    let appended = from_hex("0b 04 f6 09 00 00  0c 01 00");
+    let appended = from_hex("0b 04 f6 09 00 00  0c 01 00  0d 04 00 00 80 7f");
     let mut expected = [bytes, appended.clone()].concat();
     expected[LIMITS_LEN_AT] += appended.len() as u8;
     assert_eq!(expected.len(), HELLO_LEN);
@@ -70,10 +71,10 @@ fn a_hello_of_the_future_is_read() {
     bytes[36] = 201;
     bytes[37] = 202;
     bytes[42] = 203;
-    let unknown = [200, 3, 1, 2, 3, 201, 0, 1, 2, 0xff, 0xff, 4, 1, 0xff];
+    let unknown = [200, 1, 7, 201, 0, 1, 2, 0xff, 0xff, 4, 1, 0xff];
     bytes.splice(LIMITS_AT..LIMITS_AT, unknown);
     bytes[LIMITS_LEN_AT] += unknown.len() as u8;
-    bytes.extend([0x55; 6]);
+    bytes.extend([0x55; 2]);
     assert!(bytes.len() <= HELLO_MAX_LEN);
     let read = Hello::parse(&bytes).unwrap();
     let expected = Hello {
@@ -101,16 +102,19 @@ fn limits_that_are_left_out_allow_nothing() {
     assert_eq!((limits.edge_time_constant_s, limits.touch_report_period_s), (0.0, 0.0));
     assert!(limits.electrode_capacitance_max_f.is_infinite());
     assert_eq!(limits.tick_cycles_max, BoardLimits::SMALLEST_TICK_CYCLES_MAX);
+    assert!(limits.series_resistance_ohm.is_infinite());
     assert_eq!(Hello::parse(&bytes).unwrap().notices, 0);
 }
 
-/// A host of protocol 1.3 ignores the notices by their tag; they end the hello, so that what it knows stays in place.
+/// A host of protocol 1.3 ignores the notices by their tag; they are behind the limits that it knows.
 #[test]
-fn notices_are_the_last_value_of_the_hello() {
+fn notices_follow_the_limits_of_protocol_1_3() {
     let with = Hello { notices: notice::STORED_SCENE_SKIPPED, ..hello() };
     assert_eq!(Hello::parse(&with.write()), Ok(with));
-    assert_eq!(with.write()[HELLO_LEN - 3..], [12, 1, 1]);
-    assert_eq!(with.write()[..HELLO_LEN - 1], hello().write()[..HELLO_LEN - 1]);
+    let at = HELLO_LEN - 9;
+    assert_eq!(with.write()[at..at + 3], [12, 1, 1]);
+    assert_eq!(with.write()[..at + 2], hello().write()[..at + 2]);
+    assert_eq!(with.write()[at + 3..], hello().write()[at + 3..]);
 }
 
 /// An omitted limit has its default value; the others have the values sent.
@@ -140,7 +144,7 @@ fn each_limit_is_read_by_its_tag() {
         at += len;
         tags += 1;
     }
-    assert_eq!(tags, 12);
+    assert_eq!(tags, 13);
 }
 
 /// A hello truncated at any byte is an error.

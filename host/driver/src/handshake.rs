@@ -37,7 +37,7 @@ pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Res
     Err(DeviceError::NoHello { port: link.name().into(), waited: link.now().saturating_sub(started), heard_bytes })
 }
 
-/// Refuses limits that no scene can be compiled for. A capacitance that is not stated is infinite.
+/// Refuses limits that no scene can be compiled for. A capacitance and a resistance that are not stated are infinite.
 fn check_limits(hello: &Hello, port: String) -> Result<(), DeviceError> {
     let limits = &hello.limits;
     let numbers = [
@@ -52,6 +52,7 @@ fn check_limits(hello: &Hello, port: String) -> Result<(), DeviceError> {
         ),
         ("current_max_a_rms", limits.current_max_a_rms.into(), is_limit(limits.current_max_a_rms)),
         ("current_max_a_peak", limits.current_max_a_peak.into(), is_limit(limits.current_max_a_peak)),
+        ("series_resistance_ohm", limits.series_resistance_ohm.into(), limits.series_resistance_ohm >= 0.0),
         ("touch_report_period_s", limits.touch_report_period_s.into(), is_limit(limits.touch_report_period_s)),
     ];
     match numbers.into_iter().find(|(.., is_limit)| !is_limit) {

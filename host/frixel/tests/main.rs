@@ -19,6 +19,7 @@ mod play_command;
 mod processes;
 mod recording;
 mod report;
+mod safety;
 mod scene_command;
 mod score;
 mod server_credit;

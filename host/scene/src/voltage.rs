@@ -1,7 +1,7 @@
 //! The limits of the drive, and what raising them would reach.
 
 use frixel_layers::Header;
-use frixel_model::Carrier;
+use frixel_model::{Carrier, TouchBound};
 use frixel_wire::hello::BoardLimits;
 
 use super::file::Scene;
@@ -14,6 +14,19 @@ use super::springs::Springs;
 /// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
 /// the peak limit the tighter one.
 const PEAK_MARGIN: f64 = 1.001;
+
+/// The peak voltage that a board allows at a carrier, in V, and why, if that is less than at other carriers.
+fn board_v_peak(limits: &BoardLimits, carrier: &Carrier) -> (f64, &'static str) {
+    let whole_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
+    let touch_bound = TouchBound::behind(limits.series_resistance_ohm);
+    // Rounded down, so that the board finds no more in its own arithmetic.
+    let touch_v_peak = (10.0 * f64::from(touch_bound.voltage_max_v_peak(carrier.carrier_hz()))).floor() / 10.0;
+    if touch_v_peak < whole_v_peak {
+        (touch_v_peak, " at this carrier, which lets at most 0.7 mA through a bridged or thin coating")
+    } else {
+        (whole_v_peak, "")
+    }
+}
 
 /// The limits of the drive: the least of those of scene, screen and board.
 pub(super) struct Voltage {
@@ -31,11 +44,11 @@ pub(super) struct Voltage {
 impl Voltage {
     pub(super) fn of(scene: &Scene, limits: &BoardLimits, carrier: &Carrier, log: &mut Log) -> Self {
         let (drive, screen) = (&scene.drive, scene.screen());
-        let board_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
+        let (board_v_peak, why) = board_v_peak(limits, carrier);
         if let Some(found) = drive.voltage_max_v_peak.filter(|found| *found > board_v_peak) {
             log.add(
                 drive.places.field("voltage_max_v_peak"),
-                FitMistake::PeakAboveBoard { found, board: board_v_peak },
+                FitMistake::PeakAboveBoard { found, board: board_v_peak, why },
             );
         }
         let peak_per_rms = f64::from(carrier.peak_per_rms());
@@ -53,9 +66,10 @@ impl Voltage {
         let max_v_rms = scene_max_v_rms.min(max_v_peak / peak_per_rms);
         if max_v_rms < scene_max_v_rms {
             let note = format!(
-                "drive: {scene_max_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak allows \
+                "drive: {scene_max_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak{} allows \
                  {max_v_rms:.1} V rms",
-                peak_per_rms * scene_max_v_rms
+                peak_per_rms * scene_max_v_rms,
+                if max_v_peak >= board_v_peak { why } else { "" }
             );
             log.note(drive.places.field("voltage_max_v_peak"), note);
         }

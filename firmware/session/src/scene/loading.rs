@@ -5,7 +5,7 @@ use frixel_layers::cost::{LayerCosts, Worst};
 use frixel_layers::{FingerLaw, Grid, Header, Point, Scene, active_bytes, within};
 use frixel_model::{
     Carrier, EmpiricalLaw, EmpiricalTableFilling, Finger, InverseTable, InverseTableFilling, LawError, LawPoint,
-    TableError, Waveform,
+    TableError, TouchBound, Waveform,
 };
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
@@ -159,11 +159,14 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let drive_v_peak = voltage_max_v_rms * peak_per_rms;
     let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
-    for (field, found_a, max_a) in [
+    // The carrier bounds its volt-seconds by the peak of the header, not by what the scene drives.
+    let bound_v_peak = TouchBound::behind(limits.series_resistance_ohm).voltage_max_v_peak(carrier.carrier_hz());
+    for (field, found, max) in [
         (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
         (ConfigField::CurrentPeak, current.a_peak, limits.current_max_a_peak),
+        (ConfigField::VoltagePeak, header.voltage_max_v_peak, bound_v_peak),
     ] {
-        within(field, found_a, 0.0, max_a, ConfigRefusal::WHOLE_SCENE)?;
+        within(field, found, 0.0, max, ConfigRefusal::WHOLE_SCENE)?;
     }
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;

@@ -16,9 +16,8 @@ pub const LIMITS_LEN: usize = 28;
 
 /// Largest voltage that is stored, in V peak.
 ///
-/// Behind 68 kOhm, a square carrier of 1 kHz and 200 V peak puts 0.60 mA peak through an intact coating, weighted as
-/// IEC 60990 does (Fig. 4, unread), of the 0.7 mA that IEC 61010-1, 6.3.1 (unread) allows in normal use: a margin of
-/// 14 %. A bridged coating, a single fault, lets 2.36 mA through, of the 5 mA of 6.3.2 (unread).
+/// It is what the parts of `docs/hardware.md` are rated for. What a person bears is another limit, which the series
+/// resistance gives and nobody stores (`frixel_model::TouchBound`).
 pub const VOLTAGE_CEILING_V_PEAK: f32 = 200.0;
 /// Largest rms current that is stored, in A: what IEC 61010-1, 6.3.1 (unread) allows in normal use.
 ///

@@ -8,10 +8,10 @@ use crate::fault::{Fault, State};
 
 /// Number of bytes before the limits.
 pub(super) const FIXED_LEN: usize = 44;
-/// Bytes of all the limits that this crate knows, tags and lengths included: one of 1 byte, one of 2, nine of 4.
+/// Bytes of the limits before the notices, tags and lengths included: one of 1 byte, one of 2, nine of 4.
 const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
-/// Bytes of the limits and of the notices.
-pub(super) const VALUES_LEN: usize = LIMITS_LEN + 2 + 1;
+/// Bytes of the limits, of the notices, and of the limit behind them.
+pub(super) const VALUES_LEN: usize = LIMITS_LEN + (2 + 1) + (2 + 4);
 
 const TAG_BITMAP_POOL_BYTES: u8 = 1;
 const TAG_RECORDS_MAX: u8 = 2;
@@ -25,6 +25,7 @@ const TAG_CURRENT_MAX_A_PEAK: u8 = 9;
 const TAG_TOUCH_REPORT_PERIOD_S: u8 = 10;
 const TAG_TICK_CYCLES_MAX: u8 = 11;
 const TAG_NOTICES: u8 = 12;
+const TAG_SERIES_RESISTANCE_OHM: u8 = 13;
 
 /// Why bytes are not a hello of any protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,7 +77,9 @@ impl Hello {
         put_u8::<42, _>(&mut b, self.state.number());
         put_u8::<43, _>(&mut b, VALUES_LEN as u8);
         put::<FIXED_LEN, LIMITS_LEN, _>(&mut b, self.limits.write());
-        put::<{ FIXED_LEN + LIMITS_LEN }, 3, _>(&mut b, [TAG_NOTICES, 1, self.notices]);
+        let values = [TAG_NOTICES, 1, self.notices, TAG_SERIES_RESISTANCE_OHM, 4];
+        put::<{ FIXED_LEN + LIMITS_LEN }, 5, _>(&mut b, values);
+        put_u32::<{ FIXED_LEN + LIMITS_LEN + 5 }, _>(&mut b, self.limits.series_resistance_ohm.to_bits());
         b
     }
 
@@ -158,6 +161,7 @@ impl BoardLimits {
             TAG_CURRENT_MAX_A_RMS => Some(&mut self.current_max_a_rms),
             TAG_CURRENT_MAX_A_PEAK => Some(&mut self.current_max_a_peak),
             TAG_TOUCH_REPORT_PERIOD_S => Some(&mut self.touch_report_period_s),
+            TAG_SERIES_RESISTANCE_OHM => Some(&mut self.series_resistance_ohm),
             _ => None,
         }
     }

@@ -99,6 +99,7 @@ pub fn hello() -> Hello {
             current_max_a_peak: 0.1,
             touch_report_period_s: 0.01,
             tick_cycles_max: 2_000,
+            series_resistance_ohm: 68e3,
         },
         notices: 0,
     }

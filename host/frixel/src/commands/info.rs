@@ -3,7 +3,8 @@
 use clap::Args;
 use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
 use frixel_layers::feature_names;
-use frixel_wire::hello::Hello;
+use frixel_model::TouchBound;
+use frixel_wire::hello::{BoardLimits, Hello};
 
 use super::error::CommandError;
 use super::terminal::print;
@@ -38,6 +39,7 @@ fn describe(hello: &Hello) -> String {
         ("last reset", hello.reset_cause.to_string()),
         ("last fault", fault),
         ("largest voltage", format!("{} V peak", limits.voltage_max_v_peak)),
+        ("touch bound", touch_bound(limits)),
         (
             "largest current",
             format!("{} mA rms, {} mA peak", 1e3 * limits.current_max_a_rms, 1e3 * limits.current_max_a_peak),
@@ -52,6 +54,17 @@ fn describe(hello: &Hello) -> String {
     lines.fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
 }
 
+/// The largest voltage for a person whom no coating protects, at the slowest, the usual and the fastest carrier.
+fn touch_bound(limits: &BoardLimits) -> String {
+    let series_ohm = limits.series_resistance_ohm;
+    if series_ohm.is_infinite() {
+        return "none: nobody may touch the electrode".to_owned();
+    }
+    let [slow, usual, fast] =
+        [125.0, 1_000.0, 5_000.0].map(|carrier_hz| TouchBound::behind(series_ohm).voltage_max_v_peak(carrier_hz));
+    format!("{slow:.1} V peak at 125 Hz, {usual:.1} V at 1 kHz, {fast:.1} V at 5 kHz behind {} kOhm", 1e-3 * series_ohm)
+}
+
 /// Names of the firmware's features; unknown features are printed as bits.
 fn features(bits: u32) -> String {
     let named = feature_names().filter(|(bit, _)| bits & bit != 0);
@@ -64,7 +77,7 @@ fn features(bits: u32) -> String {
 #[cfg(test)]
 mod tests {
     use frixel_wire::fault::State;
-    use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause, notice};
+    use frixel_wire::hello::{BoardKind, ResetCause, notice};
 
     use super::*;
 

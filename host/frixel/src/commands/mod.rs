@@ -19,6 +19,7 @@ mod ports;
 mod profiles;
 mod record;
 mod report;
+mod safety;
 mod scene;
 mod score;
 mod selftest;
@@ -95,6 +96,9 @@ enum Command {
     Threshold(threshold::ThresholdArgs),
     /// Fit a finger's profile to measured friction.
     Fit(fit::FitArgs),
+    /// Compute the current through a finger on an intact, a scratched and a bridged coating, and the voltages that keep it
+    /// within its limit.
+    Safety(safety::SafetyArgs),
     /// Draw the contact model, its error and its cost on one page.
     Report(report::ReportArgs),
 }
@@ -154,6 +158,7 @@ impl Cli {
             Some(Command::Calibrate(args)) => calibrate::run(&args),
             Some(Command::Threshold(args)) => threshold::run(&args),
             Some(Command::Fit(args)) => fit::run(&args),
+            Some(Command::Safety(args)) => safety::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
     }

@@ -189,8 +189,7 @@ impl ProfileNames {
     /// A scene with this finger and screen.
     pub(crate) fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
-            let screen = profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)?;
-            scene = scene.with_screen(screen, name)?;
+            scene = scene.with_screen(screen(name)?, name)?;
         }
         if let Some(name) = &self.finger {
             let names = FingerProfile::bundled_names();
@@ -199,6 +198,11 @@ impl ProfileNames {
         }
         Ok(scene)
     }
+}
+
+/// The bundled screen of a name, or that in the file of that name.
+pub(crate) fn screen(name: &str) -> Result<Screen, SceneFileError> {
+    profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)
 }
 
 /// The bundled touch source of a name, or that in the file of that name.

@@ -146,12 +146,16 @@ pub enum FitMistake {
         pitch_mm: f64,
     },
     /// The peak voltage is above the board's limit.
-    #[error("`voltage_max_v_peak = {found}` is above the board's limit of {board} V peak: lower it or leave it out")]
+    #[error(
+        "`voltage_max_v_peak = {found}` is above the board's limit of {board} V peak{why}: lower it or leave it out"
+    )]
     PeakAboveBoard {
         /// The peak voltage, as written, V.
         found: f64,
-        /// The board's limit, V.
+        /// The board's limit at the scene's carrier, V.
         board: f64,
+        /// Where the limit is from, if from the carrier; otherwise empty.
+        why: &'static str,
     },
     /// The carrier is too fast for the board's tick.
     #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected at most {max} Hz")]

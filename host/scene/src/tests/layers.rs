@@ -383,3 +383,29 @@ fn a_board_of_an_older_protocol_gets_no_flag_that_it_does_not_know() {
         assert_eq!(scene.header().layers_fixed, layers_fixed, "{protocol:?}");
     }
 }
+
+/// A real board bounds the voltage at each carrier, for a finger on a bridged or thin coating.
+#[test]
+fn the_touch_bound_of_a_board_is_the_peak_at_the_scenes_carrier() {
+    let limits = Board::NUCLEO_G474RE.limits;
+    let reached = |drive: &str| {
+        let text =
+            format!("{}[[layer]]\nkind = \"constant\"\nfriction_n = 0.25\n", HEAD.replace("# layers follow", drive));
+        let scene = Scene::parse(&text, "test.toml", &BTreeMap::new()).expect("it reads");
+        compile(&scene, &limits, TICK_HZ)
+    };
+    for (drive, expected) in [
+        ("[carrier]\nfrequency_hz = 125", 28.6),
+        ("", 43.8),
+        ("[carrier]\nfrequency_hz = 2500", 50.0),
+        ("[carrier]\nfrequency_hz = 125\n[drive]\nvoltage_max_v_peak = 28.6", 28.6),
+    ] {
+        let program = reached(drive).expect("it compiles");
+        close(&[program.header.voltage_max_v_peak.into()], &[expected], 1e-6);
+        assert!(program.header.check(&limits, TICK_HZ).is_ok());
+    }
+    let refused = reached("[drive]\nvoltage_max_v_peak = 49").expect_err("it is above the bound").to_string();
+    assert!(refused.contains("limit of 43.8 V peak at this carrier"), "{refused}");
+    let refused = reached("[drive]\nvoltage_max_v_peak = 51\n[carrier]\nfrequency_hz = 2500").expect_err("above");
+    assert!(refused.to_string().contains("limit of 50 V peak: lower it"), "{refused}");
+}

@@ -1,0 +1,240 @@
+//! `frixel safety`: the current through a finger on an electrode, by coating, voltage and carrier frequency.
+
+use std::fmt::Write;
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use frixel_hil_sim::Board;
+use frixel_model::{
+    Carrier, Coating, SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound, TouchPath,
+    VACUUM_PERMITTIVITY_F_PER_M, Waveform,
+};
+
+use super::argument;
+use super::error::CommandError;
+use super::terminal::print;
+use crate::scene_file;
+
+/// Largest contact of a fingertip, m2: that of the boards' worst-case electrode (assumed).
+const CONTACT_M2: f64 = 2e-4;
+/// A scratch, Ohm: a moist fingertip on bare metal through a scratch of some square millimetres (assumed).
+const SCRATCH_OHM: f64 = 10e3;
+/// Carriers of the tables, Hz: the slowest, the usual one and the fastest among them.
+const CARRIERS_HZ: [f64; 6] = [125.0, 250.0, 500.0, 1_000.0, 2_000.0, 5_000.0];
+/// Series resistances that are tried for a voltage, kOhm, and their step.
+const SERIES_KOHM_MAX: u32 = 2_000;
+const SERIES_KOHM_STEP: u32 = 10;
+
+#[derive(Debug, Args)]
+pub(super) struct SafetyArgs {
+    /// The board whose limits and series resistance count.
+    #[arg(long, value_name = "NAME", default_value = Board::NAMES[0], value_parser = PossibleValuesParser::new(Board::NAMES))]
+    board: String,
+    /// Another resistance between amplifier and electrode, kOhm.
+    #[arg(long, value_name = "KOHM", value_parser = argument::positive, allow_negative_numbers = true)]
+    series_kohm: Option<f64>,
+    /// The screen whose coating is touched: a screen's file, or `example`.
+    #[arg(long, value_name = "FILE", default_value = "example")]
+    screen: String,
+    /// The voltage for which the least series resistance is looked for, V rms.
+    #[arg(long, value_name = "V", default_value_t = 150.0, value_parser = argument::positive, allow_negative_numbers = true)]
+    voltage_v_rms: f64,
+}
+
+pub(super) fn run(args: &SafetyArgs) -> Result<(), CommandError> {
+    let gap_m = 1e-6 * scene_file::screen(&args.screen)?.coating_gap_um();
+    let board = Board::named(&args.board).unwrap_or(Board::NUCLEO_G474RE);
+    let series_ohm = args.series_kohm.map_or(f64::from(board.limits.series_resistance_ohm), |kohm| 1e3 * kohm);
+    let table = Table { board, series_ohm, capacitance_f: VACUUM_PERMITTIVITY_F_PER_M * CONTACT_M2 / gap_m };
+    print(format!(
+        "{}\n{}\n{}\n{}",
+        table.assumptions(args),
+        table.currents(),
+        table.faults(),
+        table.resistances(args.voltage_v_rms)
+    ))
+}
+
+/// What the tables are computed for.
+struct Table {
+    board: Board,
+    series_ohm: f64,
+    /// Capacitance of the screen's coating to a fingertip, F.
+    capacitance_f: f64,
+}
+
+impl Table {
+    fn path(&self, coating: Coating) -> TouchPath {
+        TouchPath { series_ohm: self.series_ohm, coating }
+    }
+
+    fn bound_v_peak(&self, carrier_hz: f64) -> f64 {
+        f64::from(TouchBound::behind(self.series_ohm as f32).voltage_max_v_peak(carrier_hz as f32))
+    }
+
+    fn assumptions(&self, args: &SafetyArgs) -> String {
+        let Self { board, series_ohm, capacitance_f } = self;
+        let limits = &board.limits;
+        [
+            ("board", format!("{}, at most {} V peak", board.kind, limits.voltage_max_v_peak)),
+            ("series", format!("{} kOhm between amplifier and electrode", 1e-3 * series_ohm)),
+            ("screen", format!("{}: {:.2} nF to a fingertip of 2 cm2", args.screen, 1e9 * capacitance_f)),
+            (
+                "person",
+                "500 Ohm, and 1.5 kOhm beside 0.22 uF for the skin; currents are weighted for perception and reaction \
+                 (IEC 60990:2016, Fig. 4, unread), and nothing resists on the way back"
+                    .to_owned(),
+            ),
+            (
+                "allowed",
+                format!(
+                    "{:.1} mA peak in normal use (IEC 61010-1:2010, 6.3.1, unread), {:.0} mA peak in a single-fault \
+                     condition (6.3.2, unread)",
+                    1e3 * TOUCH_CURRENT_MAX_A_PEAK,
+                    1e3 * SINGLE_FAULT_CURRENT_MAX_A_PEAK
+                ),
+            ),
+            (
+                "bound",
+                "the largest peak voltage that the board takes, so that no coating, thin or bridged, and no envelope \
+                 lets more through; the board refuses a scene above it"
+                    .to_owned(),
+            ),
+        ]
+        .iter()
+        .fold(String::new(), |text, (name, value)| text + &format!("{name:8} {value}\n"))
+    }
+
+    /// Currents at the bound, and at the board's largest voltage.
+    fn currents(&self) -> String {
+        let intact = Coating::Intact { capacitance_f: self.capacitance_f };
+        let scratched = Coating::Scratched { capacitance_f: self.capacitance_f, leak_ohm: SCRATCH_OHM };
+        let mut text = String::from(
+            "Weighted current, mA peak: a steady square carrier, and the worst envelope\n carrier     drive       intact    \
+             scratched    bridged      worst coating\n",
+        );
+        let largest_v_peak = f64::from(self.board.limits.voltage_max_v_peak);
+        for carrier_hz in CARRIERS_HZ {
+            let worst = TouchPath::worst_coating(self.series_ohm, carrier_hz);
+            let bound_v_peak = self.bound_v_peak(carrier_hz);
+            let drives = [("bound", bound_v_peak), ("", largest_v_peak)];
+            for (name, drive_v_peak) in drives.into_iter().take(if bound_v_peak < largest_v_peak { 2 } else { 1 }) {
+                let cells = [self.path(intact), self.path(scratched), self.path(Coating::Bridged), worst].map(|path| {
+                    format!(
+                        "{:.2} {:.2}",
+                        1e3 * path.steady(drive_v_peak, carrier_hz).weighted_a_peak,
+                        1e3 * path.any_envelope_a_peak(drive_v_peak, carrier_hz)
+                    )
+                });
+                // Writing to a string cannot fail.
+                let _ = writeln!(
+                    text,
+                    "{carrier_hz:5.0} Hz  {drive_v_peak:5.1} V {name:5}  {:11}  {:11}  {:11}  {:9} {}",
+                    cells[0],
+                    cells[1],
+                    cells[2],
+                    cells[3],
+                    coating_text(worst.coating)
+                );
+            }
+        }
+        text + &format!("A scratch has {} kOhm here.\n", 1e-3 * SCRATCH_OHM)
+    }
+
+    /// Currents of single faults beside a bridged coating.
+    fn faults(&self) -> String {
+        let full_scale_v_peak = f64::from(self.board.limits.full_scale_v_peak);
+        let (usual_hz, direct_hz) = (1_000.0, 1.0);
+        let bridged = |series_ohm: f64, drive_v_peak: f64, carrier_hz: f64| {
+            let path = TouchPath { series_ohm, coating: Coating::Bridged };
+            1e3 * path.any_envelope_a_peak(drive_v_peak, carrier_hz)
+        };
+        format!(
+            "Faults beside a bridged coating, mA peak of {:.0}\n{:.2}  one of two equal series resistors shorted, at the \
+             bound at 1 kHz\n{:.2}  the amplifier stuck at {full_scale_v_peak} V\n{:.2}  both (the amplifier's own current \
+             limit is the hardware for it)\n",
+            1e3 * SINGLE_FAULT_CURRENT_MAX_A_PEAK,
+            bridged(0.5 * self.series_ohm, self.bound_v_peak(usual_hz), usual_hz),
+            bridged(self.series_ohm, full_scale_v_peak, direct_hz),
+            bridged(0.5 * self.series_ohm, full_scale_v_peak, direct_hz),
+        )
+    }
+
+    /// The least series resistance at which a voltage is within the bound, by carrier.
+    fn resistances(&self, voltage_v_rms: f64) -> String {
+        let mut text = format!(
+            "Least series resistance for {voltage_v_rms} V rms at the electrode, edges of {:.2} nF included\n",
+            1e9 * self.board.limits.electrode_capacitance_max_f
+        );
+        for carrier_hz in CARRIERS_HZ {
+            let found = (1..=SERIES_KOHM_MAX / SERIES_KOHM_STEP)
+                .map(|step| 1e3 * f64::from(step * SERIES_KOHM_STEP))
+                .map(|series_ohm| Behind::new(&self.board, series_ohm, carrier_hz, voltage_v_rms))
+                .find(|behind| behind.drive_v_peak <= behind.bound_v_peak);
+            let full_scale_v_peak = f64::from(self.board.limits.full_scale_v_peak);
+            let said = match found {
+                Some(found) if found.drive_v_peak <= full_scale_v_peak => found.to_string(),
+                _ => format!("none: the edges would ask for more than the {full_scale_v_peak} V peak of the amplifier"),
+            };
+            let _ = writeln!(text, "{carrier_hz:5.0} Hz  {said}");
+        }
+        text
+    }
+}
+
+/// A square carrier behind a series resistance.
+struct Behind {
+    series_ohm: f64,
+    edge_time_constant_s: f64,
+    /// Peak at the amplifier for the voltage at the electrode, V.
+    drive_v_peak: f64,
+    bound_v_peak: f64,
+    /// Part of the mean square that the edges take.
+    edges_part: f64,
+}
+
+impl Behind {
+    fn new(board: &Board, series_ohm: f64, carrier_hz: f64, voltage_v_rms: f64) -> Self {
+        let electrode_s = series_ohm * f64::from(board.limits.electrode_capacitance_max_f);
+        let amplifier_s = f64::from(board.amplifier.time_constant_s);
+        // Two lags in a row as one, as `Carrier` documents.
+        let edge_time_constant_s = electrode_s + amplifier_s - electrode_s * amplifier_s / (electrode_s + amplifier_s);
+        let half_period_s = 0.5 / carrier_hz;
+        let carrier = Carrier {
+            waveform: Waveform::Square,
+            half_period_s: half_period_s as f32,
+            half_period_ticks: (half_period_s * f64::from(board.tick_hz)).round() as u32,
+            edge_time_constant_s: edge_time_constant_s as f32,
+        };
+        let peak_per_rms = f64::from(carrier.peak_per_rms());
+        Self {
+            series_ohm,
+            edge_time_constant_s,
+            drive_v_peak: voltage_v_rms * peak_per_rms,
+            bound_v_peak: TouchBound::behind(series_ohm as f32).voltage_max_v_peak(carrier_hz as f32).into(),
+            edges_part: 1.0 - 1.0 / (peak_per_rms * peak_per_rms),
+        }
+    }
+}
+
+impl std::fmt::Display for Behind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { series_ohm, edge_time_constant_s, drive_v_peak, bound_v_peak, edges_part } = self;
+        write!(
+            f,
+            "{:4.0} kOhm: {drive_v_peak:.1} V peak of {bound_v_peak:.1} V; edges of {:.0} us take {:.0} % of the mean square",
+            1e-3 * series_ohm,
+            1e6 * edge_time_constant_s,
+            100.0 * edges_part
+        )
+    }
+}
+
+fn coating_text(coating: Coating) -> String {
+    match coating {
+        Coating::Bridged => "bridged".to_owned(),
+        Coating::Intact { capacitance_f } | Coating::Scratched { capacitance_f, .. } => {
+            format!("{:.1} nF", 1e9 * capacitance_f)
+        }
+    }
+}
