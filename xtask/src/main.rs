@@ -11,6 +11,7 @@ mod inputs;
 mod licences;
 mod needs;
 mod outcome;
+mod packages;
 mod portability;
 mod python;
 mod results;

@@ -9,7 +9,7 @@ use crate::command::cargo_in;
 use crate::needs::{self, Need};
 use crate::outcome::Outcome;
 use crate::stages::Stages;
-use crate::{fuzz, results};
+use crate::{fuzz, packages, results};
 
 /// How long each fuzz target runs.
 const FUZZ_TIME: Duration = Duration::from_mins(15);
@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 8] = [
+const PARTS: [Part; 9] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -65,6 +65,12 @@ const PARTS: [Part; 8] = [
         what: "each fuzz target for 15 minutes, with libFuzzer",
         needs: &[Need::CppCompiler],
         run: fuzz_targets,
+    },
+    Part {
+        name: "packages",
+        what: "every crate that others use, compiled from its package as cargo publishes it",
+        needs: &[],
+        run: packages::check,
     },
 ];
 

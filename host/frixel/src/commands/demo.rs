@@ -11,9 +11,9 @@ use super::play::{self, PlayArgs};
 use super::terminal::print_line;
 
 /// The scene and its picture are embedded in the executable, so that the demo needs no files.
-pub(super) const SCENE: &str = include_str!("../../../../scenes/brick.toml");
+pub(super) const SCENE: &str = include_str!("../../scenes/brick.toml");
 pub(super) const PICTURE_NAME: &str = "textures/brick.png";
-pub(super) const PICTURE: &[u8] = include_bytes!("../../../../scenes/textures/brick.png");
+pub(super) const PICTURE: &[u8] = include_bytes!("../../scenes/brick.png");
 
 /// Folder of the results.
 const FOLDER: &str = "frixel-out";

@@ -4,10 +4,10 @@ use super::{Elasticity, Evidence, FingerProfile};
 
 /// Name and text of each profile.
 pub(super) const TEXTS: [(&str, &str); 4] = [
-    ("example", include_str!("../../../../scenes/fingers/example.toml")),
-    ("dry", include_str!("../../../../scenes/fingers/dry.toml")),
-    ("moist", include_str!("../../../../scenes/fingers/moist.toml")),
-    ("light", include_str!("../../../../scenes/fingers/light.toml")),
+    ("example", include_str!("../../fingers/example.toml")),
+    ("dry", include_str!("../../fingers/dry.toml")),
+    ("moist", include_str!("../../fingers/moist.toml")),
+    ("light", include_str!("../../fingers/light.toml")),
 ];
 
 /// The first profile of [`TEXTS`], which a test compares with its text.
