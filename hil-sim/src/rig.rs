@@ -54,7 +54,13 @@ pub struct RigConfig {
 
 impl Default for RigConfig {
     fn default() -> Self {
-        let board = Board::SIMULATOR;
+        Self::of(Board::SIMULATOR)
+    }
+}
+
+impl RigConfig {
+    /// A rig of a board in the default world.
+    pub fn of(board: Board) -> Self {
         let world = WorldConfig {
             tick_hz: board.tick_hz,
             full_scale_v_peak: f64::from(board.limits.full_scale_v_peak),

@@ -124,6 +124,19 @@ impl Board {
         (name == "nucleo-g474re").then_some(Self::NUCLEO_G474RE)
     }
 
+    /// This board with another resistance between amplifier and electrode, whose bring-up has stored the full scale as
+    /// largest voltage: what is left are the edges that the resistance makes, and the bound that it gives.
+    #[must_use]
+    pub fn behind(self, series_resistance_ohm: f32) -> Self {
+        let electrode_s = series_resistance_ohm * self.limits.electrode_capacitance_max_f;
+        let amplifier_s = self.amplifier.time_constant_s;
+        // Two lags in a row as one (`frixel_model::Carrier`).
+        let edge_time_constant_s = electrode_s + amplifier_s - electrode_s * amplifier_s / (electrode_s + amplifier_s);
+        let voltage_max_v_peak = self.limits.full_scale_v_peak;
+        let limits = BoardLimits { voltage_max_v_peak, edge_time_constant_s, series_resistance_ohm, ..self.limits };
+        Self { limits, ..self }
+    }
+
     /// The names that [`Self::named`] knows.
     pub const NAMES: [&'static str; 1] = ["nucleo-g474re"];
 

@@ -1,7 +1,20 @@
 //! `frixel safety`: the tables of touch currents, as a person prints them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+use std::fmt::Write;
+use std::fs;
+use std::path::PathBuf;
 use std::process::{Command, Output};
+
+use frixel::scene_file::SceneFolder;
+use frixel_felt::perception::{Perception, Verdict, weber_steps};
+use frixel_hil_sim::{Board, TouchConfig};
+use frixel_model::TouchBound;
+use frixel_scene::{FingerProfile, Program, Scene, compile_draft};
+use frixel_testkit::golden;
+use frixel_wire::hello::BoardLimits;
+
+use crate::processes::repository;
 
 fn frixel(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_frixel")).arg("safety").args(args).output().unwrap()
@@ -79,5 +92,125 @@ fn wrong_input_is_refused_with_what_was_expected() {
         assert_eq!(output.status.code(), Some(code), "{args:?}");
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(stderr.contains(said), "{stderr}");
+    }
+}
+
+const PAGE: &str = include_str!("../../../docs/safety.md");
+
+#[test]
+fn every_test_that_the_page_names_exists() {
+    let names: Vec<&str> = PAGE.split('`').filter(|name| name.contains(".rs::")).collect();
+    assert!(names.len() >= 25, "{names:?}");
+    for name in names {
+        let (file, test) = name.split_once("::").unwrap();
+        let text = fs::read_to_string(repository().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let before = text.split_once(&format!("fn {test}(")).unwrap_or_else(|| panic!("no {name}")).0;
+        let attributes = before.rsplit_once('}').map_or(before, |(_, attributes)| attributes);
+        assert!(attributes.contains("#[test]") || before.contains("proptest!"), "{name} is no test");
+    }
+}
+
+/// A drive, as a board gives it.
+struct Drive {
+    name: &'static str,
+    limits: BoardLimits,
+    carrier_hz: u32,
+}
+
+fn drives() -> [Drive; 4] {
+    let board = Board::NUCLEO_G474RE;
+    let nobody = BoardLimits { series_resistance_ohm: f32::INFINITY, ..board.limits };
+    [
+        Drive { name: "as built in, 43.8 V peak at 1 kHz", limits: board.limits, carrier_hz: 1_000 },
+        Drive { name: "50 V peak at 1 kHz, above the bound", limits: nobody, carrier_hz: 1_000 },
+        Drive { name: "50 V peak at 2.5 kHz", limits: board.limits, carrier_hz: 2_500 },
+        Drive { name: "150 V rms at 250 Hz behind 370 kOhm", limits: board.behind(370e3).limits, carrier_hz: 250 },
+    ]
+}
+
+/// A scene as a drive gives it: clamped to what it can.
+fn draft(text: &str, finger: &str, drive: &Drive) -> Program {
+    let carrier = format!("[carrier]\nfrequency_hz = {}\n", drive.carrier_hz);
+    let text = match text.split_once("[carrier]") {
+        None => format!("{text}\n{carrier}"),
+        // The next table begins behind an empty line.
+        Some((before, after)) => format!("{before}{carrier}{}", &after[after.find("\n\n").unwrap()..]),
+    };
+    let pictures = SceneFolder(repository().join("scenes"));
+    let scene = Scene::parse(&text, "scene.toml", &pictures).unwrap();
+    let scene = scene.with_finger(FingerProfile::bundled(finger).unwrap(), finger).unwrap();
+    let program = compile_draft(&scene, &drive.limits, Board::NUCLEO_G474RE.tick_hz).unwrap();
+    let is_bounded = drive.limits.series_resistance_ohm.is_finite();
+    let bound = TouchBound::behind(drive.limits.series_resistance_ohm).voltage_max_v_peak(drive.carrier_hz as f32);
+    assert!(!is_bounded || program.header.voltage_max_v_peak <= bound, "{}", drive.name);
+    program
+}
+
+fn fingers() -> String {
+    let names = ["example", "dry", "moist", "light"];
+    let mut text = format!("| drive | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    for drive in drives() {
+        let steps = names.map(|finger| {
+            let scene = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n";
+            let reach = draft(scene, finger, &drive).reach;
+            format!("{:.2}", weber_steps(reach.natural_friction_n, reach.friction_max_n()))
+        });
+        let _ = writeln!(text, "| {} | {} |", drive.name, steps.join(" | "));
+    }
+    text
+}
+
+fn gallery() -> String {
+    let drives = drives();
+    let names = drives.each_ref().map(|drive| drive.name);
+    let mut text = format!("| scene | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    let folder = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> = folder.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    paths.sort();
+    for path in paths {
+        let scene = fs::read_to_string(&path).unwrap();
+        let cells = drives.each_ref().map(|drive| {
+            let perception = Perception::of(&draft(&scene, "example", drive), &TouchConfig::REALISTIC);
+            let count = |verdict| perception.layers.iter().filter(|layer| layer.verdict == verdict).count();
+            let counts = [
+                (Verdict::Felt, "felt"),
+                (Verdict::NearThreshold, "maybe"),
+                (Verdict::NotFelt, "not felt"),
+                (Verdict::Unknown, "unknown"),
+            ]
+            .map(|(verdict, word)| (count(verdict), word));
+            let said = counts.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}"));
+            said.collect::<Vec<_>>().join(", ")
+        });
+        let name = path.file_stem().unwrap().to_string_lossy();
+        let _ = writeln!(text, "| {name} | {} |", cells.join(" | "));
+    }
+    text
+}
+
+#[test]
+fn the_page_says_what_is_felt_within_the_limits() {
+    let mut page = PAGE.to_owned();
+    for (mark, table) in [("<!-- fingers", fingers()), ("<!-- gallery", gallery())] {
+        let start = page.find(mark).unwrap();
+        let start = start + page[start..].find('\n').unwrap() + 1;
+        let end = start + page[start..].find("<!-- end -->").unwrap();
+        page.replace_range(start..end, &format!("\n{table}\n"));
+    }
+    golden::hold(&repository().join("docs/safety.md"), &page);
+}
+
+/// The page's other numbers are printed by its command.
+#[test]
+fn the_page_has_the_numbers_of_the_command() {
+    let text = printed(&[]);
+    for (found, said) in [
+        ("125 Hz   28.7 V bound", "the bound is 28.7 V"),
+        ("1.21  one of two", "1.21 mA at the bound at 1 kHz"),
+        ("2.86  the amplifier stuck", "2.9 mA through 68 kOhm"),
+        ("5.56  both", "5.6 mA by the resistors"),
+        ("250 Hz   370 kOhm: 167.3 V peak", "167 V peak"),
+    ] {
+        assert!(text.contains(found) && PAGE.replace('\n', " ").contains(said), "{found}: {text}");
     }
 }

@@ -44,7 +44,7 @@ impl Files {
     }
 
     fn check(&self, rest: &str) -> Value {
-        serde_json::from_str(&succeed(&repository(), &["scene", "check", &self.scene(rest), "--json", "--board"]))
+        serde_json::from_str(&succeed(&repository(), &["scene", "check", &self.scene(rest), "--json", "--image"]))
             .unwrap()
     }
 }
@@ -227,7 +227,7 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
     let written = [files.scene(stream), files.write("empirical.toml", empirical), files.write("drift.toml", drift)];
     for scene in every.chain(written) {
         let check: Value =
-            serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json", "--board"])).unwrap();
+            serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json", "--image"])).unwrap();
         let names: Vec<String> = serde_json::from_value(check["board"]["features"].clone()).unwrap();
         let command = check["board"]["command"].as_str().unwrap();
         assert!(command.contains("--no-default-features") && command.ends_with(&names.join(",")), "{command}");
@@ -260,7 +260,7 @@ fn wrong_input_is_said_as_play_says_it() {
     for scene in [&wrong, &empty, &binary, &missing, &folder] {
         let message = refused(&["scene", "check", scene]);
         assert!(message.starts_with(&format!("frixel: {scene}:")), "{message}");
-        let json = frixel(&["scene", "check", scene, "--json", "--board"]);
+        let json = frixel(&["scene", "check", scene, "--json", "--image"]);
         assert_eq!((json.status.code(), String::from_utf8(json.stderr).unwrap()), (Some(1), message.clone()));
         assert_eq!(message, refused(&["scene", "preview", scene, "-o", &files.path("map.png")]));
         assert_eq!(message, refused(&["play", scene, "--out", &files.path("out")]));

@@ -195,21 +195,18 @@ struct Behind {
 
 impl Behind {
     fn new(board: &Board, series_ohm: f64, carrier_hz: f64, voltage_v_rms: f64) -> Self {
-        let electrode_s = series_ohm * f64::from(board.limits.electrode_capacitance_max_f);
-        let amplifier_s = f64::from(board.amplifier.time_constant_s);
-        // Two lags in a row as one, as `Carrier` documents.
-        let edge_time_constant_s = electrode_s + amplifier_s - electrode_s * amplifier_s / (electrode_s + amplifier_s);
+        let edge_time_constant_s = board.behind(series_ohm as f32).limits.edge_time_constant_s;
         let half_period_s = 0.5 / carrier_hz;
         let carrier = Carrier {
             waveform: Waveform::Square,
             half_period_s: half_period_s as f32,
             half_period_ticks: (half_period_s * f64::from(board.tick_hz)).round() as u32,
-            edge_time_constant_s: edge_time_constant_s as f32,
+            edge_time_constant_s,
         };
         let peak_per_rms = f64::from(carrier.peak_per_rms());
         Self {
             series_ohm,
-            edge_time_constant_s,
+            edge_time_constant_s: edge_time_constant_s.into(),
             drive_v_peak: voltage_v_rms * peak_per_rms,
             bound_v_peak: TouchBound::behind(series_ohm as f32).voltage_max_v_peak(carrier_hz as f32).into(),
             edges_part: 1.0 - 1.0 / (peak_per_rms * peak_per_rms),

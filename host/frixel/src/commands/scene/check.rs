@@ -3,11 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use frixel_felt::check::SceneCheck;
-use frixel_hil_sim::{RigConfig, TouchConfig};
+use clap::builder::PossibleValuesParser;
+use frixel_felt::check::{SceneCheck, feel};
+use frixel_felt::perception::{Perception, weber_steps, weber_steps_text};
+use frixel_hil_sim::{Board, RigConfig, TouchConfig};
 use frixel_lab::simulation::board_costs;
-use frixel_scene::{compile, printable};
+use frixel_layers::Header;
+use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 
+use super::super::argument;
 use super::super::error::CommandError;
 use super::super::profiles::{ProfileArgs, TouchArgs};
 use super::super::terminal::{print, print_line};
@@ -20,20 +24,37 @@ pub(in super::super) struct CheckArgs {
     profiles: ProfileArgs,
     #[command(flatten)]
     touch: TouchArgs,
+    /// Check for a real board: what it cannot take, and what is felt within its limits. Without it, the simulated board
+    /// counts, which nobody touches.
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Board::NAMES))]
+    board: Option<String>,
+    /// That board with another resistance between amplifier and electrode, kOhm, and up to its full scale: what its touch
+    /// bound leaves (`frixel safety`).
+    #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
+    series_kohm: Option<f64>,
     /// Also report the smallest firmware build that plays it.
     #[arg(long)]
-    board: bool,
+    image: bool,
     /// Print one JSON object in place of the summary; of a scene with mistakes, all of them.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
-    // The simulated board has the limits of the smallest board.
-    let rig = RigConfig::default();
+    let board = args.board.as_deref().and_then(Board::named);
+    let board = board.map(|board| args.series_kohm.map_or(board, |kohm| board.behind(1e3 * kohm as f32)));
+    let rig = board.map_or_else(RigConfig::default, RigConfig::of);
     let touch = args.touch.source(false)?.unwrap_or(TouchConfig::REALISTIC);
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    let compiled = scene.and_then(|scene| Ok(compile(&scene, &rig.board.limits, rig.board.tick_hz)?));
+    let compiled = scene.and_then(|scene| {
+        compile(&scene, &rig.board.limits, rig.board.tick_hz).map_err(|error| {
+            if board.is_some() && !args.json {
+                // Said beside the refusal, and nothing where there is no draft.
+                let _ = say_draft(&scene, &rig, &touch);
+            }
+            error.into()
+        })
+    });
     let program = match compiled {
         Err(error) if args.json => {
             print_line(error.to_json())?;
@@ -46,6 +67,33 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
         let path = printable(&path.display().to_string()).into_owned();
         format!("{path} is outside of the scene's folder: give it along with the scene")
     }));
-    let check = if args.board { check.with_board(&program) } else { check };
-    if args.json { print_line(check.to_json()) } else { print(check.summary()) }
+    let check = if args.image { check.with_board(&program) } else { check };
+    if args.json {
+        return print_line(check.to_json());
+    }
+    if board.is_some() {
+        print(board_line(&rig.board, &program, "takes it"))?;
+    }
+    print(check.summary())
+}
+
+/// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
+fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<(), CommandError> {
+    let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
+    let lines = feel::lines(&Perception::of(&draft, touch));
+    let felt = lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"));
+    print(board_line(&rig.board, &draft, "refuses it; clamped to what it can give") + &felt)
+}
+
+/// The board, the voltage that it gives at the scene's carrier, and the friction of the scene's finger there.
+fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
+    let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
+    format!(
+        "  board            {} behind {} kOhm {verdict}\n  voltage          {voltage_max_v_peak:.1} V peak, \
+         {voltage_max_v_rms:.1} V rms at {carrier_hz:.0} Hz: up to {:.1} mN above natural, {} Weber steps\n",
+        board.kind,
+        (1e-3 * board.limits.series_resistance_ohm).round(),
+        1e3 * program.reach.electric_friction_max_n,
+        weber_steps_text(weber_steps(program.reach.natural_friction_n, program.reach.friction_max_n())),
+    )
 }
