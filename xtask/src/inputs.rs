@@ -39,7 +39,7 @@ const READS: [Reads; 7] = [
     Reads {
         package: "xtask",
         source: &["LICENSE-APACHE", "LICENSE-MIT", "firmware", "fuzz", "hil-sim", "host", "model", "research"],
-        tests: &[],
+        tests: &["docs", "hardware"],
     },
 ];
 

@@ -7,6 +7,7 @@ mod command;
 #[cfg(test)]
 mod dependency_uses;
 mod fuzz;
+mod hardware;
 mod inputs;
 mod licences;
 mod needs;
@@ -45,6 +46,7 @@ cargo xtask studio-test
                      types and lints of the studio's scripts, and the studio in a browser: needs node,
                      npm and Chromium
 cargo xtask python   the Python module in a fresh virtual environment: wheel, types, lints, tests, examples
+cargo xtask hardware docs/wiring.md, from hardware/carrier.toml
 cargo xtask fuzz SECONDS
                      each fuzz target for this time, with libFuzzer; needs a C++ compiler
 cargo xtask programs PACE FIRST COUNT
@@ -84,6 +86,7 @@ fn main() -> ExitCode {
             results::print();
             result
         }
+        ["hardware"] => hardware::write(),
         ["fuzz", seconds] => match seconds.parse() {
             Ok(seconds) => require(&[Need::CppCompiler]).and_then(|()| fuzz::run_for(Duration::from_secs(seconds))),
             Err(_) => Err(format!("expected a number of seconds, found `{seconds}`\n{USAGE}")),

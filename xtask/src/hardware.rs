@@ -1,0 +1,287 @@
+//! `cargo xtask hardware`: writes `docs/wiring.md` from `hardware/carrier.toml`.
+
+use std::fmt::Write;
+use std::fs;
+
+use serde::Deserialize;
+
+use crate::command::root;
+
+const CARRIER: &str = "hardware/carrier.toml";
+const PAGE: &str = "docs/wiring.md";
+/// The processor board among the parts.
+const BOARD: &str = "U1";
+
+/// Pins, parts and nets.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Carrier {
+    pin: Vec<Pin>,
+    supply: Vec<Supply>,
+    part: Vec<Part>,
+    net: Vec<Net>,
+}
+
+/// A pin of the processor that the firmware uses.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Pin {
+    pin: String,
+    /// Connector and number, such as `CN7-1`.
+    position: String,
+    function: String,
+    /// The module of the board's firmware that uses it, and the constant there that has its number.
+    module: String,
+    constant: Option<String>,
+    /// Absent for a pin that is connected on the processor board only.
+    net: Option<String>,
+}
+
+/// Ground or a supply on the connectors.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Supply {
+    net: String,
+    positions: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Part {
+    name: String,
+    what: String,
+    part: String,
+    ratings: String,
+    /// Ohm or farad.
+    value: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Net {
+    name: String,
+    why: String,
+    /// `PART.PIN` of all that is connected.
+    nodes: Vec<String>,
+}
+
+/// Writes the page.
+pub(crate) fn write() -> Result<(), String> {
+    let page = page(&read()?);
+    fs::write(root().join(PAGE), page).map_err(|error| format!("{PAGE}: {error}"))
+}
+
+fn read() -> Result<Carrier, String> {
+    let text = fs::read_to_string(root().join(CARRIER)).map_err(|error| format!("{CARRIER}: {error}"))?;
+    toml::from_str(&text).map_err(|error| format!("{CARRIER}: {error}"))
+}
+
+/// Connector and number of a position, by which positions are in order.
+fn place(position: &str) -> Option<(u32, u32)> {
+    let (connector, number) = position.strip_prefix("CN")?.split_once('-')?;
+    Some((connector.parse().ok()?, number.parse().ok()?))
+}
+
+fn page(carrier: &Carrier) -> String {
+    let mut text = String::from(
+        "# Wiring\n\nWritten by `cargo xtask hardware` from `hardware/carrier.toml`; a test holds it. Read \
+         [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before anything is \
+         switched on. Nobody has built this yet.\n\n\
+         ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before you \
+         solder. Every row goes to all other nodes of its net.\n\n\
+         | position | pin | net | to | function | module |\n|---|---|---|---|---|---|\n",
+    );
+    let others = |name: &str| {
+        let net = carrier.net.iter().find(|net| net.name == name);
+        let is_outside = |node: &&String| !node.starts_with(&format!("{BOARD}."));
+        let nodes = net.into_iter().flat_map(|net| &net.nodes).filter(is_outside).cloned();
+        nodes.collect::<Vec<_>>().join(", ")
+    };
+    let mut pins: Vec<&Pin> = carrier.pin.iter().collect();
+    pins.sort_by_key(|pin| place(&pin.position));
+    for Pin { pin, position, function, module, constant, net } in pins {
+        let net = net.as_deref().unwrap_or_default();
+        let to = if net.is_empty() { "on the NUCLEO".to_owned() } else { others(net) };
+        // Writing to a string cannot fail.
+        let constant = constant.as_ref().map_or(String::new(), |constant| format!("::{constant}"));
+        let _ = writeln!(text, "| {position} | {pin} | {net} | {to} | {function} | `{module}{constant}` |");
+    }
+    for Supply { net, positions } in &carrier.supply {
+        let _ = writeln!(text, "| {} | | {net} | {} | | |", positions.join(", "), others(net));
+    }
+    text += "\n## Nets\n\n| net | nodes | |\n|---|---|---|\n";
+    for Net { name, why, nodes } in &carrier.net {
+        let _ = writeln!(text, "| {name} | {} | {why} |", nodes.join(", "));
+    }
+    text += "\n## Bill of materials\n\nWhere a part is \"any\", the ratings decide.\n\n\
+             | name | what | value | part | ratings |\n|---|---|---|---|---|\n";
+    for Part { name, what, part, ratings, value } in &carrier.part {
+        let value = value.map_or(String::new(), |value| value_text(name, value));
+        let _ = writeln!(text, "| {name} | {what} | {value} | {part} | {ratings} |");
+    }
+    text
+}
+
+/// A resistance or a capacitance, by the first letter of the part's name.
+fn value_text(name: &str, value: f64) -> String {
+    let (unit, scales) =
+        if name.starts_with('C') { ("F", [(1e-9, "n"), (1e-6, "u")]) } else { ("Ohm", [(1e3, "k"), (1e6, "M")]) };
+    let [small, large] = scales;
+    let (scale, prefix) = if value < 0.99 * large.0 && !(unit == "F" && value >= 0.05e-6) { small } else { large };
+    let digits = format!("{:.2}", value / scale);
+    format!("{} {prefix}{unit}", digits.trim_end_matches('0').trim_end_matches('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use super::*;
+
+    const SOURCES: &str = "firmware/board-nucleo-g474re/src";
+    /// A bridge between two of these, or from one to a supply, would defeat a protection.
+    const GUARDED: [&str; 3] = ["ENABLE_MCU", "READY", "SWITCH_IN"];
+
+    fn source(module: &str) -> String {
+        let path = root().join(SOURCES).join(format!("{module}.rs"));
+        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    fn net<'a>(carrier: &'a Carrier, name: &str) -> &'a Net {
+        carrier.net.iter().find(|net| net.name == name).unwrap_or_else(|| panic!("no net {name}"))
+    }
+
+    fn value(carrier: &Carrier, name: &str) -> f64 {
+        carrier.part.iter().find(|part| part.name == name).and_then(|part| part.value).unwrap()
+    }
+
+    #[test]
+    fn the_page_is_that_of_the_table() {
+        let held = fs::read_to_string(root().join(PAGE)).unwrap();
+        assert!(held == page(&read().unwrap()), "`cargo xtask hardware` writes {PAGE} anew");
+    }
+
+    /// The tables at the top of the modules, and the constants that the code uses.
+    #[test]
+    fn pins_are_those_of_the_firmware() {
+        let carrier = read().unwrap();
+        let mut in_code = BTreeSet::new();
+        for entry in fs::read_dir(root().join(SOURCES)).unwrap() {
+            let path = entry.unwrap().path();
+            let Some(module) = path.file_stem().and_then(|stem| stem.to_str()).filter(|_| path.is_file()) else {
+                continue;
+            };
+            for row in source(module).lines().filter_map(|line| line.strip_prefix("//! | P")) {
+                let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+                in_code.insert((format!("P{}", cells[0]), cells[1].to_owned(), module.to_owned()));
+            }
+        }
+        let in_table: BTreeSet<_> =
+            carrier.pin.iter().map(|pin| (pin.pin.clone(), pin.function.clone(), pin.module.clone())).collect();
+        assert_eq!(in_table, in_code);
+        for Pin { pin, module, constant, .. } in &carrier.pin {
+            let Some(constant) = constant else { continue };
+            let (port, number) = pin[1..].split_at(1);
+            let text = source(module);
+            assert!(text.contains(&format!("const {constant}: u32 = {number};")), "{pin}: {constant} in {module}");
+            // Pins of one bus are connected in a loop.
+            assert!(text.contains(&format!("GPIO{port}")), "{pin}: no port in {module}");
+        }
+    }
+
+    #[test]
+    fn every_node_is_a_part_and_in_one_net() {
+        let carrier = read().unwrap();
+        let parts: BTreeSet<&str> = carrier.part.iter().map(|part| part.name.as_str()).collect();
+        assert_eq!(parts.len(), carrier.part.len(), "a name is used twice");
+        let mut nets = BTreeMap::new();
+        for net in &carrier.net {
+            assert!(net.nodes.len() > 1, "{} leads nowhere", net.name);
+            for node in &net.nodes {
+                let (part, _) = node.split_once('.').unwrap();
+                assert!(parts.contains(part), "{node}: no such part");
+                assert_eq!(nets.insert(node.as_str(), net.name.as_str()), None, "{node} is in two nets");
+            }
+        }
+        for part in &parts {
+            assert!(nets.keys().any(|node| node.split_once('.').unwrap().0 == *part), "{part} is not connected");
+        }
+        for Pin { pin, net, .. } in &carrier.pin {
+            assert_eq!(nets.get(format!("{BOARD}.{pin}").as_str()), net.as_deref().as_ref(), "{pin}");
+        }
+        for part in carrier.part.iter().filter(|part| part.value.is_some()) {
+            let ends = [1, 2].map(|end| nets.get(format!("{}.{end}", part.name).as_str()));
+            assert!(ends[0].is_some() && ends[1].is_some() && ends[0] != ends[1], "{}: {ends:?}", part.name);
+        }
+    }
+
+    /// Of the amplifier's enable, only the switch's second pole and a resistor to the common know; before the pole, both
+    /// one-shots must agree, and the second is fed by SYNC.
+    #[test]
+    fn the_enable_goes_through_both_one_shots_and_the_switch() {
+        let carrier = read().unwrap();
+        assert_eq!(net(&carrier, "ENABLE").nodes, ["S1.4", "A1.ENABLE", "R7.1"]);
+        assert_eq!(net(&carrier, "ENABLE_LOGIC").nodes, ["U4.Y", "S1.3"]);
+        assert_eq!(net(&carrier, "ALIVE").nodes, ["U3.Q", "U4.B"]);
+        assert!(net(&carrier, "ENABLE_MCU").nodes.iter().any(|node| node == "U4.A"));
+        assert!(net(&carrier, "SYNC").nodes.iter().any(|node| node == "U3.B"));
+        assert!(net(&carrier, "COMMON").nodes.iter().any(|node| node == "R7.2"));
+        // The monostable lives as long as R12 C2: longer than some ticks of 25 us, and at most 1 ms with 10 %.
+        let time_s = value(&carrier, "R12") * value(&carrier, "C2");
+        assert!((10.0 * 25e-6..1e-3 / 1.1).contains(&time_s), "{time_s}");
+    }
+
+    /// Pins of a double row, of which number 1 is beside 2 and 3.
+    #[test]
+    fn no_guarded_pin_has_a_neighbour_that_could_drive_it_high() {
+        let carrier = read().unwrap();
+        let mut used: BTreeMap<(u32, u32), &str> = BTreeMap::new();
+        for pin in &carrier.pin {
+            let name = pin.net.as_deref().unwrap_or("on the NUCLEO");
+            assert!(used.insert(place(&pin.position).unwrap(), name).is_none(), "{}", pin.position);
+        }
+        for supply in &carrier.supply {
+            for position in &supply.positions {
+                assert!(used.insert(place(position).unwrap(), &supply.net).is_none(), "{position}");
+            }
+        }
+        for name in GUARDED {
+            let (&(connector, number), _) = used.iter().find(|(_, net)| **net == name).unwrap();
+            let across = if number % 2 == 1 { number + 1 } else { number - 1 };
+            for beside in [Some(across), number.checked_sub(2), Some(number + 2)].into_iter().flatten() {
+                let neighbour = used.get(&(connector, beside)).copied();
+                assert!(matches!(neighbour, None | Some("COMMON")), "{name} is beside {neighbour:?}");
+            }
+        }
+    }
+
+    #[test]
+    #[allow(clippy::float_cmp, reason = "numbers of the table, as they are written")]
+    fn resistances_and_stored_charge_are_those_of_the_limits() {
+        let carrier = read().unwrap();
+        let series_ohm = value(&carrier, "R1") + value(&carrier, "R2");
+        let board = fs::read_to_string(root().join("firmware/control/src/board.rs")).unwrap();
+        let limits = board.split_once("pub const NUCLEO_G474RE").unwrap().1;
+        let said = limits.split_once("series_resistance_ohm: ").unwrap().1.split_once(',').unwrap().0;
+        assert_eq!(said.parse::<f64>().unwrap(), series_ohm);
+        assert_eq!(value(&carrier, "R1"), value(&carrier, "R2"), "each alone must meet the limit of one fault");
+        assert_eq!(value(&carrier, "R4") + value(&carrier, "R5"), 100e3);
+        // 45 uC over 400 V, and below 30 V within 10 s (docs/safety.md).
+        let (farad, ohm) = (value(&carrier, "C3"), value(&carrier, "R16"));
+        assert!(400.0 * farad <= 45e-6, "{} uC", 400e6 * farad);
+        assert!(ohm * farad * (400.0_f64 / 30.0).ln() < 10.0);
+    }
+
+    #[test]
+    fn values_are_said_in_their_unit() {
+        for (name, value, said) in [
+            ("R1", 34e3, "34 kOhm"),
+            ("R3", 10e6, "10 MOhm"),
+            ("R14", 2.2e3, "2.2 kOhm"),
+            ("C1", 10e-9, "10 nF"),
+            ("C3", 0.1e-6, "0.1 uF"),
+        ] {
+            assert_eq!(value_text(name, value), said);
+        }
+    }
+}
