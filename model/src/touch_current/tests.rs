@@ -118,3 +118,28 @@ fn no_random_envelope_exceeds_the_worst_one_and_some_come_near() {
 fn a_board_that_nobody_can_touch_has_no_bound() {
     assert!(TouchBound::behind(f32::INFINITY).voltage_max_v_peak(125.0).is_infinite());
 }
+
+/// What the bound does not cover: the firmware keeps the integral when a scene replaces another one, and a carrier of
+/// 5 kHz then drives in one direction until the integral of one of 125 Hz is within its own limit.
+#[test]
+fn a_fast_scene_in_place_of_a_slow_one_exceeds_the_limit_once_and_not_that_of_a_fault() {
+    let bound = TouchBound::behind(68e3);
+    let slow_v = f64::from(bound.voltage_max_v_peak(125.0));
+    // The board's largest voltage, which is below its bound at 5 kHz.
+    let fast_v = 50.0;
+    let step_s = 5e-6;
+    let most_ma = |capacitance_f: f64| {
+        let path = TouchPath { series_ohm: 68e3, coating: Coating::Intact { capacitance_f } };
+        let mut state = [0.0; 3];
+        for _ in 0..(8e-3 / step_s) as u32 {
+            state = path.stepped(&state, -slow_v, step_s);
+        }
+        (0..(slow_v * 4e-3 / fast_v / step_s) as u32).fold(0.0, |most: f64, _| {
+            state = path.stepped(&state, fast_v, step_s);
+            most.max(1e3 * weighted_a(&state))
+        })
+    };
+    let worst_ma = (0..40).map(|step| most_ma(1e-9 * libm::pow(10.0, 0.075 * f64::from(step)))).fold(0.0, f64::max);
+    close(worst_ma, 0.90, 0.01);
+    assert!(worst_ma < 1e3 * SINGLE_FAULT_CURRENT_MAX_A_PEAK);
+}

@@ -58,7 +58,7 @@ fn describe(hello: &Hello) -> String {
 fn touch_bound(limits: &BoardLimits) -> String {
     let series_ohm = limits.series_resistance_ohm;
     if series_ohm.is_infinite() {
-        return "none: nobody may touch the electrode".to_owned();
+        return "none stated: nobody may touch the electrode".to_owned();
     }
     let [slow, usual, fast] =
         [125.0, 1_000.0, 5_000.0].map(|carrier_hz| TouchBound::behind(series_ohm).voltage_max_v_peak(carrier_hz));
@@ -80,6 +80,14 @@ mod tests {
     use frixel_wire::hello::{BoardKind, ResetCause, notice};
 
     use super::*;
+
+    #[test]
+    fn info_says_what_a_person_whom_no_coating_protects_allows() {
+        assert!(touch_bound(&BoardLimits::UNSTATED).contains("nobody may touch"));
+        let limits = BoardLimits { series_resistance_ohm: 68e3, ..BoardLimits::UNSTATED };
+        let said = touch_bound(&limits);
+        assert_eq!(said, "28.7 V peak at 125 Hz, 43.9 V at 1 kHz, 65.6 V at 5 kHz behind 68 kOhm");
+    }
 
     #[test]
     fn info_says_each_notice_in_a_sentence_with_its_cure() {
