@@ -1,6 +1,6 @@
 //! The emulated board: the firmware image for `qemu-system-arm -M mps2-an386`, and the simulator around it.
 //!
-//! - [`Image::build`] builds the image if necessary.
+//! - [`Image::find`] finds the image that has come with the program, or builds it if necessary.
 //! - [`replay`] sends the board the inputs of a [`Journal`](crate::Journal) of the in-process rig and compares its
 //!   outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
 //! - [`LinkBoard`] lets the board tick by itself, with its serial port behind a pseudo-terminal for a real host, and a

@@ -8,6 +8,8 @@ use std::process::{Command, Stdio};
 pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
 /// Compiler target of a processor without floating point.
 pub(crate) const M3: &str = "thumbv7m-none-eabi";
+/// Compiler target of the command that needs nothing of a system.
+pub(crate) const MUSL: &str = "x86_64-unknown-linux-musl";
 /// Compiler target of the studio's page.
 pub(crate) const WASM: &str = "wasm32-unknown-unknown";
 

@@ -1,5 +1,5 @@
-//! The licences of everything that the studio's page carries: frixel's own, those of the vendored scripts, and those of
-//! the crates inside the WebAssembly module.
+//! The licences of everything that is handed on: frixel's own, those of the page's vendored scripts, and those of the
+//! crates inside of programs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,8 +7,22 @@ use std::path::{Path, PathBuf};
 
 use crate::command::{WASM, cargo_in, root, text_of};
 
-/// The crate that the module is made of.
-const MODULE: &str = "frixel-studio";
+/// A program that crates are compiled into.
+#[derive(Clone, Copy)]
+pub(crate) struct Program {
+    /// The folder of its workspace.
+    pub(crate) folder: &'static str,
+    /// Its package, if it is not that of the folder.
+    pub(crate) package: Option<&'static str>,
+    /// What it is compiled for, if not for this machine.
+    pub(crate) target: Option<&'static str>,
+}
+
+/// The WebAssembly module of the page.
+pub(crate) const PAGE: Program = Program { folder: ".", package: Some("frixel-studio"), target: Some(WASM) };
+/// The licence of the C library in static programs, from its file COPYRIGHT.
+const MUSL_LICENCE: &str = "musl, the C library in the command (MIT)\n\nCopyright © 2005-2020 Rich Felker, et al.\n\n\
+                            The text is that of frixel's MIT licence, with this line in place of its copyright.";
 /// frixel's own licences, and those of the vendored scripts.
 pub(crate) const FILES: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "host/studio/vendor/LICENCES.txt"];
 /// A line between two licences.
@@ -16,25 +30,56 @@ const RULE: &str = "------------------------------------------------------------
 /// How the names of licence files begin, in lower case.
 const FILE_STARTS: [&str; 5] = ["license", "licence", "copying", "unlicense", "notice"];
 
-/// All licences as one text.
+/// All licences of the page as one text.
 pub(crate) fn text() -> Result<String, String> {
-    let [mit, apache, vendored] = FILES.map(|name| read(&root().join(name)));
-    let parts = [
-        format!("frixel (MIT OR Apache-2.0)\n\n{}\n{RULE}\n{}", mit?, apache?),
-        format!("SCRIPTS IN THE PAGE\n\n{}", vendored?),
-        format!("CRATES IN THE MODULE\n\nRust's standard library (MIT OR Apache-2.0)\n\n{}", crates()?),
-    ];
-    Ok(parts.join(&format!("\n{RULE}\n\n")))
+    Ok(joined(&[own()?, scripts()?, crates("CRATES IN THE MODULE", &[PAGE])?]))
 }
 
-/// The licences of the module's crates: each text once, below the names of the crates that have it.
-fn crates() -> Result<String, String> {
-    let metadata = text_of(cargo_in(".").args(["metadata", "--locked", "--format-version", "1"]))?;
+/// All licences of these programs, of the page's scripts, and of the C library.
+pub(crate) fn of_dist(programs: &[Program]) -> Result<String, String> {
+    Ok(joined(&[own()?, scripts()?, MUSL_LICENCE.to_owned(), crates("CRATES IN THE PROGRAMS", programs)?]))
+}
+
+/// All licences of the Python module.
+pub(crate) fn of_wheel(module: &Program) -> Result<String, String> {
+    Ok(joined(&[own()?, crates("CRATES IN THE MODULE", &[*module])?]))
+}
+
+fn joined(parts: &[String]) -> String {
+    parts.join(&format!("\n{RULE}\n\n"))
+}
+
+fn own() -> Result<String, String> {
+    let [mit, apache, _] = FILES.map(|name| read(&root().join(name)));
+    Ok(format!("frixel (MIT OR Apache-2.0)\n\n{}\n{RULE}\n{}", mit?, apache?))
+}
+
+fn scripts() -> Result<String, String> {
+    let [.., vendored] = FILES.map(|name| read(&root().join(name)));
+    Ok(format!("SCRIPTS IN THE PAGE\n\n{}", vendored?))
+}
+
+/// The licences of the programs' crates below a title: each text once, below the names of the crates that have it.
+fn crates(title: &str, programs: &[Program]) -> Result<String, String> {
+    let mut names = BTreeMap::new();
+    for program in programs {
+        add_crates(program, &mut names)?;
+    }
+    let sections = names.iter().map(|(text, names): (&String, &BTreeSet<String>)| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        format!("{}\n\n{text}\n", names.join("\n"))
+    });
+    let sections = sections.collect::<Vec<_>>().join(&format!("{RULE}\n\n"));
+    Ok(format!("{title}\n\nRust's standard library (MIT OR Apache-2.0)\n\n{sections}"))
+}
+
+/// Adds the licence texts of a program's crates, each with the names of the crates that have it.
+fn add_crates(program: &Program, names: &mut BTreeMap<String, BTreeSet<String>>) -> Result<(), String> {
+    let metadata = text_of(cargo_in(program.folder).args(["metadata", "--locked", "--format-version", "1"]))?;
     let metadata: serde_json::Value =
         serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
     let packages = metadata["packages"].as_array().ok_or("cargo metadata names no packages")?;
-    let in_module = in_module()?;
-    let mut names: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let in_module = compiled(program)?;
     for package in packages {
         let field = |name: &str| package[name].as_str().unwrap_or_default();
         let name = format!("{} {}", field("name"), field("version"));
@@ -43,23 +88,41 @@ fn crates() -> Result<String, String> {
         }
         let folder = Path::new(field("manifest_path")).parent().unwrap_or(Path::new("."));
         let title = format!("{name} ({})", field("license"));
-        for text in texts(folder).map_err(|error| format!("{title}: {error}"))? {
-            names.entry(text).or_default().push(title.clone());
+        let mut found = texts(folder).map_err(|error| format!("{title}: {error}"))?;
+        if found.is_empty() {
+            found.push(
+                without_file(package).ok_or_else(|| format!("{title}: no licence file in {}", folder.display()))?,
+            );
+        }
+        for text in found {
+            names.entry(text).or_default().insert(title.clone());
         }
     }
-    let sections = names.iter().map(|(text, names)| format!("{}\n\n{text}\n", names.join("\n")));
-    Ok(sections.collect::<Vec<_>>().join(&format!("{RULE}\n\n")))
+    Ok(())
 }
 
-/// Name and version of each crate that is compiled into the module.
-fn in_module() -> Result<BTreeSet<String>, String> {
+/// What is said of a crate without a licence file, if its licence is one of frixel's, whose texts stand above.
+fn without_file(package: &serde_json::Value) -> Option<String> {
+    let licence =
+        package["license"].as_str().filter(|licence| ["MIT", "Apache-2.0"].iter().any(|own| licence.contains(own)))?;
+    let authors: Vec<&str> = package["authors"].as_array()?.iter().filter_map(serde_json::Value::as_str).collect();
+    let by = if authors.is_empty() { "its authors".to_owned() } else { authors.join(", ") };
+    Some(format!("Its package has no licence file. Its manifest says {licence}, by {by}; the texts stand above."))
+}
+
+/// Name and version of each crate that is compiled into a program.
+fn compiled(program: &Program) -> Result<BTreeSet<String>, String> {
     let kinds = ["--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"];
-    let tree = text_of(cargo_in(".").args(["tree", "--locked", "--package", MODULE, "--target", WASM]).args(kinds))?;
+    let mut tree = cargo_in(program.folder);
+    tree.args(["tree", "--locked"]).args(kinds);
+    tree.args(program.package.iter().flat_map(|package| ["--package", package]));
+    tree.args(program.target.iter().flat_map(|target| ["--target", target]));
+    let tree = text_of(&mut tree)?;
     let words = tree.lines().map(|line| line.split_whitespace());
     Ok(words.filter_map(|mut words| Some(format!("{} {}", words.next()?, words.next()?.strip_prefix('v')?))).collect())
 }
 
-/// The licence texts in the folder of a crate, and in its folder of licences; an error if there is none.
+/// The licence texts in the folder of a crate, and in its folder of licences.
 fn texts(folder: &Path) -> Result<Vec<String>, String> {
     let named = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -69,9 +132,6 @@ fn texts(folder: &Path) -> Result<Vec<String>, String> {
     let mut files: Vec<PathBuf> = found.iter().filter(|path| path.is_file()).cloned().collect();
     for below in found.iter().filter(|path| path.is_dir()) {
         files.extend(paths(below)?);
-    }
-    if files.is_empty() {
-        return Err(format!("no licence file in {}", folder.display()));
     }
     files.iter().map(|path| read(path)).collect()
 }
@@ -96,7 +156,7 @@ mod tests {
     #[test]
     fn each_crate_of_the_module_has_a_licence_text() {
         let text = text().unwrap();
-        for name in in_module().unwrap() {
+        for name in compiled(&PAGE).unwrap() {
             let is_own = name.starts_with("frixel");
             assert!(is_own || text.contains(&format!("{name} (")), "{name}");
         }

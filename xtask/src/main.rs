@@ -6,6 +6,7 @@ mod check;
 mod command;
 #[cfg(test)]
 mod dependency_uses;
+mod dist;
 mod fuzz;
 mod hardware;
 mod inputs;
@@ -46,6 +47,8 @@ cargo xtask studio-test
                      types and lints of the studio's scripts, and the studio in a browser: needs node,
                      npm and Chromium
 cargo xtask python   the Python module in a fresh virtual environment: wheel, types, lints, tests, examples
+cargo xtask dist FOLDER
+                     what is handed on to those who have no checkout: command, images, wheel, page, licences, checksums
 cargo xtask hardware docs/wiring.md, from hardware/carrier.toml
 cargo xtask fuzz SECONDS
                      each fuzz target for this time, with libFuzzer; needs a C++ compiler
@@ -86,6 +89,7 @@ fn main() -> ExitCode {
             results::print();
             result
         }
+        ["dist", folder] => dist::make(folder),
         ["hardware"] => hardware::write(),
         ["fuzz", seconds] => match seconds.parse() {
             Ok(seconds) => require(&[Need::CppCompiler]).and_then(|()| fuzz::run_for(Duration::from_secs(seconds))),

@@ -19,13 +19,14 @@ pub enum EmulatorError {
     },
     /// There is no compiler.
     #[error(
-        "the emulated board's image takes Rust to build, which is not installed: `curl https://sh.rustup.rs -sSf | sh`"
+        "the emulated board's image is not in the folder `images` beside this program, and takes Rust to build, which is not \
+         installed: `curl https://sh.rustup.rs -sSf | sh`"
     )]
     NoCompiler,
     /// The board's sources are not there.
     #[error(
-        "the emulated board's image is built from frixel's sources, which are not here: run this in a checkout of \
-         frixel, or set FRIXEL_CHECKOUT to the folder of one"
+        "the emulated board's image is not in the folder `images` beside this program, and frixel's sources to build it \
+         are not here: run this in a checkout of frixel, or set FRIXEL_CHECKOUT to the folder of one"
     )]
     NoSources,
     /// The image does not compile.

@@ -29,7 +29,7 @@ pub(super) fn play_on_emulator(
     plan.world = Some(simulated.report());
     plan.has_own_reference = simulated.has_own_reference(&stroke);
     let world = world(&plan.program, &simulated, stroke, args.seed)?;
-    let image = Image::build()?;
+    let image = Image::find()?;
     let (sender, records) = mpsc::channel();
     let mut board = LinkBoard::start(&image, world, move |record| {
         // The receiver is gone once the play has ended.

@@ -1,0 +1,183 @@
+//! `cargo xtask dist FOLDER`: what is handed on to those who have no checkout.
+//!
+//! | file | what |
+//! |---|---|
+//! | `frixel` | the command for Linux, static |
+//! | `images/*.elf` | the firmware of each board; that of the emulated one is what `frixel play --port qemu` runs |
+//! | `frixel-*.whl` | the Python module |
+//! | `frixel-studio.html` | the page |
+//! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
+//! | `SHA256SUMS` | for `sha256sum --check` |
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use sha2::{Digest, Sha256};
+
+use crate::check::{M4F_TARGET, WASM_TARGET};
+use crate::command::{IMAGES_TARGET_FOLDER, M4F, MUSL, cargo_in, root, run, target_folder};
+use crate::licences::{self, Program};
+use crate::needs::{self, Need};
+use crate::studio;
+
+/// What it needs of the machine.
+const NEEDS: [Need; 4] = [M4F_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python];
+/// Nearly as fast as `release`, and built in a third of the time.
+const PROFILE: &str = "wheel";
+/// The folder of the Python module.
+const PYTHON: &str = "host/python";
+/// Text in the wheel, beside frixel's own licences.
+const WHEEL_LICENCES: &str = "LICENCES.txt";
+/// Folder, program and file of each image.
+const IMAGES: [(&str, &str, &str); 3] = [
+    ("firmware/board-mps2-an386", "board-mps2-an386", "board-mps2-an386.elf"),
+    ("firmware/board-nucleo-g474re", "board-nucleo-g474re", "board-nucleo-g474re.elf"),
+    ("firmware/board-nucleo-g474re", "bring-up", "board-nucleo-g474re-bring-up.elf"),
+];
+const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL) };
+const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None };
+
+/// Makes the folder, which must be empty or new.
+pub(crate) fn make(folder: &str) -> Result<(), String> {
+    let folder = std::path::absolute(folder).map_err(|error| format!("{folder}: {error}"))?;
+    let images = folder.join("images");
+    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    if !files_below(&folder)?.is_empty() {
+        return Err(format!("{} has files in it: give a new folder, or empty it", folder.display()));
+    }
+    needs::require(&NEEDS)?;
+    fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
+
+    command(&folder)?;
+    for (sources, program, file) in IMAGES {
+        let build = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
+        run(file, cargo_in(sources).args(build))?;
+        let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(program);
+        copy(&built, &images.join(file))?;
+    }
+    wheel(&folder)?;
+    copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
+    let boards = ["firmware/board-mps2-an386", "firmware/board-nucleo-g474re"];
+    let boards = boards.map(|folder| Program { folder, package: None, target: Some(M4F) });
+    let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
+    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs)?)?;
+    write(&folder.join("SHA256SUMS"), &checksums(&folder)?)?;
+    println!("{}", folder.display());
+    Ok(())
+}
+
+/// The command, without anything that a system has to bring.
+fn command(folder: &Path) -> Result<(), String> {
+    let build = ["build", "--locked", "--profile", PROFILE, "--target", MUSL, "--package", "frixel", "--bin", "frixel"];
+    run("command", cargo_in(".").args(build))?;
+    copy(&target_folder().join(MUSL).join(PROFILE).join("frixel"), &folder.join("frixel"))
+}
+
+/// The Python module, with the licences of what is compiled into it.
+fn wheel(folder: &Path) -> Result<(), String> {
+    let environment = target_folder().join("dist-environment");
+    let requirements = root().join(PYTHON).join("requirements.txt");
+    let requirements =
+        fs::read_to_string(&requirements).map_err(|error| format!("{}: {error}", requirements.display()))?;
+    let maturin = requirements.lines().find(|line| line.starts_with("maturin==")).ok_or("no maturin is required")?;
+    run("virtual environment", Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
+    let installed = ["install", "--quiet", "--disable-pip-version-check", maturin];
+    run("maturin", Command::new(environment.join("bin/pip")).args(installed))?;
+    let licences = root().join(PYTHON).join(WHEEL_LICENCES);
+    write(&licences, &licences::of_wheel(&MODULE)?)?;
+    let mut build = Command::new(environment.join("bin/maturin"));
+    build.current_dir(root().join(PYTHON)).env("CARGO_TARGET_DIR", target_folder().join("python"));
+    let built = run("wheel", build.args(["build", "--quiet", "--locked", "--profile", PROFILE, "--out"]).arg(folder));
+    fs::remove_file(&licences).map_err(|error| format!("{}: {error}", licences.display()))?;
+    built
+}
+
+/// The lines of `sha256sum` for every file of a folder.
+fn checksums(folder: &Path) -> Result<String, String> {
+    let mut lines = String::new();
+    for path in files_below(folder)? {
+        let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        // Writing to a string cannot fail.
+        for byte in Sha256::digest(bytes) {
+            let _ = write!(lines, "{byte:02x}");
+        }
+        let _ = writeln!(lines, "  {}", path.strip_prefix(folder).unwrap_or(&path).display());
+    }
+    Ok(lines)
+}
+
+/// The files of a folder and of those in it, sorted.
+fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let explain = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(explain)? {
+        let path = entry.map_err(explain)?.path();
+        if path.is_dir() {
+            files.extend(files_below(&path)?);
+        } else {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    fs::copy(from, to).map(drop).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = root().join(format!("target/dist-of-test-{name}-{}", std::process::id()));
+        fs::create_dir_all(folder.join("images")).unwrap();
+        folder
+    }
+
+    #[test]
+    fn checksums_are_those_of_sha256sum() {
+        let folder = folder("sums");
+        fs::write(folder.join("images/b"), "abc").unwrap();
+        fs::write(folder.join("a"), "").unwrap();
+        let sums = checksums(&folder).unwrap();
+        fs::remove_dir_all(&folder).unwrap();
+        // The digest of nothing, and the example of FIPS 180-4.
+        assert_eq!(
+            sums,
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855  a\n\
+             ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  images/b\n"
+        );
+    }
+
+    #[test]
+    fn a_folder_with_files_is_left_as_it_is() {
+        let folder = folder("full");
+        fs::write(folder.join("mine"), "").unwrap();
+        let said = make(folder.to_str().unwrap()).unwrap_err();
+        let left = files_below(&folder).unwrap();
+        fs::remove_dir_all(&folder).unwrap();
+        assert!(said.ends_with("has files in it: give a new folder, or empty it"), "{said}");
+        assert_eq!(left.len(), 1);
+    }
+
+    /// The licences of everything that is compiled into what is handed on, without building it.
+    #[test]
+    fn the_licences_name_crates_of_every_program() {
+        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE]).unwrap();
+        for expected in
+            ["clap 4", "pyo3 0", "heapless 0", "musl, the C library", "uplot ", "Apache License", "flatbuffers 25"]
+        {
+            assert!(text.contains(expected), "{expected}");
+        }
+        let wheel = licences::of_wheel(&MODULE).unwrap();
+        assert!(wheel.contains("pyo3 0") && !wheel.contains("clap 4") && !wheel.contains("musl, the C library"));
+    }
+}
