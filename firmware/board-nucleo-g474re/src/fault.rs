@@ -116,7 +116,7 @@ unsafe fn DefaultHandler(number: i16) {
 unsafe fn NonMaskableInt() {
     if !flash::take_unreadable() {
         end(Fault::HardFault, 0, &mut |text| {
-            text.text("a non-maskable interrupt: flash or RAM cannot be read, or the clock failed");
+            text.text("a non-maskable interrupt: flash, RAM or clock failed");
         })
     }
 }
@@ -168,7 +168,7 @@ extern "C" fn on_hard_fault(frame: *const Frame) -> ! {
     }
     if address + size_of::<Frame>() > (&raw const _stack_start).addr() {
         end(Fault::HardFault, address as u32, &mut |text| {
-            text.text("the stack pointer was outside the stack");
+            text.text("the stack pointer left the stack");
         })
     }
     // SAFETY: the processor has stored a frame there, and it lies in the stack. The fault registers are readable.
