@@ -97,7 +97,7 @@ impl<L: Link + Recorded> Player<L> {
 
     /// The board has begun to play.
     fn begin(&mut self) -> Result<(), DeviceError> {
-        self.state = State::Active;
+        (self.state, self.fault, self.stop_reason) = (State::Active, None, None);
         self.device.link_mut().begin().map_err(|closed| DeviceError::Vanished { command: "play", closed })
     }
 
@@ -251,6 +251,11 @@ impl<L: Link + Recorded> Player<L> {
         Ok(self.feed.insert(feed).start(&mut self.device)?)
     }
 
+    /// Whether samples of [`Self::stream`] are still to be sent or played.
+    pub fn is_streaming(&self) -> bool {
+        self.feed.as_ref().is_some_and(|feed| !feed.is_over(&self.device))
+    }
+
     /// Whether the stream of [`Self::stream`] has ended and was played.
     pub fn is_stream_over(&self) -> bool {
         self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
@@ -326,6 +331,7 @@ impl<L: Link + Recorded> Player<L> {
         if self.state == State::Faulted {
             return Ok(());
         }
+        (self.feed, self.stop_reason) = (None, None);
         self.device.link_mut().keep_alive(NEVER);
         self.recorder_mut().stopped();
         let stopped = if self.state == State::Active { self.device.stop() } else { Ok(()) };

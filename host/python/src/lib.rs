@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take what was converted for them")]
 
+mod device;
 mod error;
 mod fit;
 mod model;
@@ -18,6 +19,8 @@ use pyo3::prelude::*;
 /// Contact model, scenes and simulator, for the Python files beside it.
 #[pymodule(gil_used = false)]
 mod _frixel {
+    #[pymodule_export]
+    use super::device::Device;
     #[pymodule_export]
     use super::fit::fit_finger;
     #[pymodule_export]

@@ -5,6 +5,7 @@
 
 from . import errors, model
 from ._frixel import __version__
+from .device import Device, Telemetry
 from .errors import FitError, FrixelError, Mistake, ParameterError, PlayError, SceneError
 from .fitting import Fit, fit
 from .profiles import Finger, Screen, TouchSource
@@ -15,6 +16,7 @@ from .stroke import Stroke
 
 __all__ = [
     "COLUMNS",
+    "Device",
     "Finger",
     "Fit",
     "FitError",
@@ -28,6 +30,7 @@ __all__ = [
     "Screen",
     "Simulator",
     "Stroke",
+    "Telemetry",
     "TouchSource",
     "__version__",
     "errors",

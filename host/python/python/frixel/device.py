@@ -1,0 +1,363 @@
+"""A board that plays: one at a serial port, or a simulated one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _frixel
+from .errors import FrixelError, ParameterError, whole
+from .scene import Scene
+
+__all__ = ["Device", "Telemetry"]
+
+GAIN_MAX = 100.0
+"""Largest magnitude of a gain."""
+
+TELEMETRY_PER_S_MAX = 1000
+"""Most messages a second that a board sends."""
+
+STEP_S = 0.05
+"""Longest time between two looks at an interrupt."""
+
+
+@dataclass(frozen=True)
+class Telemetry:
+    """What a board says of one tick."""
+
+    t_s: float
+    """Time since power-on, s; it begins anew after 2^32 ticks."""
+    state: str
+    """`disarmed`, `armed`, `active` or `faulted`."""
+    flags: tuple[str, ...]
+    """What limits the output, and how the finger is, a word each (`docs/outputs.md`)."""
+    x_mm: float
+    """Estimated place of the finger, from the left edge of the screen."""
+    y_mm: float
+    """Estimated place of the finger, from the top edge of the screen."""
+    speed_mm_s: float
+    """Estimated sliding speed."""
+    asked_n: float
+    """Electric friction that the scene asks for, N: what the drive adds to the friction without voltage."""
+    voltage_v_rms: float
+    """Rms voltage of the envelope, V."""
+
+
+class Device:
+    """A board, connected. Use it in a `with` block: however the block is left, the board is disarmed and let go of.
+
+    **A board plays only while the program calls.** The library pings the board for one second after each call; then the
+    board hears nothing, sets its output to zero, and the next call is a `PlayError`. So an idle notebook, a program
+    that hangs and a breakpoint lose the board. A program with nothing to say calls `wait`.
+
+    The time of `"sim"`, the simulated board, passes only in `wait` and `telemetry`, and faster than on the wall: what
+    happens on it is the same each time.
+    """
+
+    def __init__(self, device: _frixel.Device, port: str) -> None:
+        self._device, self._port = device, port
+        self._now_s, self._streaming, self._state = 0.0, False, "disarmed"
+        self._take(device.look())
+
+    @classmethod
+    def open(cls, port: str, *, arm: bool = False) -> Device:
+        """Connect to a board, which plays nothing yet.
+
+        Parameters
+        ----------
+        port
+            The path of a serial port (`frixel ports` lists them), or `"sim"` for a simulated board, under a realistic
+            finger that slides over the screen again and again.
+        arm
+            Let a board that is not simulated drive its electrode, with hundreds of volts. A person then presses and
+            holds its arm switch before `play`.
+
+        Raises
+        ------
+        PlayError
+            There is no such port, no board answers there, or it has an electrode and `arm` is not given.
+        """
+        if not isinstance(port, str):
+            raise ParameterError(f'a port is a path or "sim", found {port!r}')
+        return cls(_frixel.Device(port, bool(arm)), port)
+
+    def __enter__(self) -> Device:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        try:
+            self.close()
+        except FrixelError:
+            # The error that ends the block says more than the one of a board that is gone.
+            if kind is None:
+                raise
+
+    def close(self) -> None:
+        """Disarm the board and let go of its port. Does nothing on a closed device.
+
+        Raises
+        ------
+        PlayError
+            The board did not confirm. Its output goes to zero by itself.
+        """
+        self._state = "unknown" if self._state in ("armed", "active") else self._state
+        answer = self._device.close()
+        if answer is not None:
+            self._take(answer)
+
+    def play(self, scene: Scene | Mapping[str, Any]) -> None:
+        """Upload a scene and play it from its beginning. What played before ends.
+
+        A real board needs its arm switch: released and pressed since it was last disarmed, and held while it plays.
+
+        Raises
+        ------
+        SceneError
+            The scene has mistakes, or this board cannot play it.
+        PlayError
+            The board refuses, for example because its arm switch is not held, or is gone.
+        """
+        self._take(self._device.play(_scene(scene).compiled))
+
+    def replace(self, scene: Scene | Mapping[str, Any]) -> list[str]:
+        """Play another scene from the next tick on, without a break.
+
+        Layers of the same name keep what `set_layer` and `trigger` have set. If the board refuses the scene, the one
+        before plays on.
+
+        Returns
+        -------
+        list of str
+            What a person should know of the change, a sentence each; mostly none.
+
+        Raises
+        ------
+        SceneError
+            The scene has mistakes, or this board cannot play it.
+        PlayError
+            The board refuses, has stopped, or is gone.
+        """
+        return self._take(self._device.replace(_scene(scene).compiled))
+
+    def set_layer(self, layer: str | int, *, on: bool | None = None, gain: float | None = None) -> list[str]:
+        """Switch a layer on or off, or set the factor on its friction; what is not given stays.
+
+        Parameters
+        ----------
+        layer
+            Its name in the scene, or its number as in messages, from 1.
+        on
+            Whether it is on from now on.
+        gain
+            The factor, from -100 to 100, in place of the scene's.
+
+        Returns
+        -------
+        list of str
+            What is clamped from now on, a sentence; mostly none.
+
+        Raises
+        ------
+        ParameterError
+            There is no such layer, or the gain leads out of reach. All stays as it was.
+        PlayError
+            No scene plays, or the board has stopped, or is gone.
+        """
+        if on is None and gain is None:
+            raise ParameterError("a layer is changed by `on`, by `gain` or by both: give one")
+        if gain is not None:
+            gain = _number("gain", gain, -GAIN_MAX, GAIN_MAX)
+        return self._take(self._device.set_layer(_layer(layer), None if on is None else bool(on), gain))
+
+    def trigger(self, layer: str | int, seconds: float | None = None) -> list[str]:
+        """Switch a layer that is off on, and off again later, in a call of `wait` or `telemetry`.
+
+        Parameters
+        ----------
+        layer
+            Its name in the scene, or its number as in messages, from 1.
+        seconds
+            For how long; without it, for its pattern or its first burst, or else for 0.1 s.
+
+        Returns
+        -------
+        list of str
+            What is clamped meanwhile, a sentence; mostly none.
+
+        Raises
+        ------
+        ParameterError
+            There is no such layer, or a trigger of it plays nothing.
+        PlayError
+            No scene plays, or the board has stopped, or is gone.
+        """
+        if seconds is not None:
+            seconds = _number("seconds", seconds, 1e-6, 3600.0)
+        return self._take(self._device.trigger(_layer(layer), seconds))
+
+    def stream(self, samples: ArrayLike, sample_hz: int) -> None:
+        """Begin to stream to the stream layers of the scene that plays. The samples are sent in `wait` and `telemetry`.
+
+        Parameters
+        ----------
+        samples
+            Shape (n,): 0 is a layer's low friction, 1 its high one.
+        sample_hz
+            Samples a second, at most the board's ticks a second.
+
+        Raises
+        ------
+        ParameterError
+            A sample is not from 0 to 1, or the rate is not taken.
+        PlayError
+            No layer of the scene plays a stream, or the board has stopped, or is gone.
+        """
+        taken = np.ascontiguousarray(samples, dtype=float)
+        if taken.ndim != 1 or taken.size == 0:
+            raise ParameterError(f"samples are an array of shape (n,) with at least one, found shape {taken.shape}")
+        wrong = np.flatnonzero(~((taken >= 0) & (taken <= 1)))
+        if wrong.size:
+            raise ParameterError(f"a sample is a number from 0 to 1, found {taken[wrong[0]]} at index {wrong[0]}")
+        rate = whole("sample_hz", sample_hz, 1, self._device.ticks_per_s)
+        self._take(self._device.stream(taken, rate))
+
+    def wait(self, seconds: float | None = None) -> None:
+        """Let time pass on the board.
+
+        Parameters
+        ----------
+        seconds
+            How long; without it, until the stream is played.
+
+        Raises
+        ------
+        PlayError
+            The board stopped by itself, or is gone.
+        KeyboardInterrupt
+            Ctrl-C. The board is disarmed.
+        """
+        until_s = math.inf if seconds is None else self._now_s + _number("seconds", seconds, 0.0, math.inf)
+        with self._disarming():
+            while self._now_s < until_s and (seconds is not None or self._streaming):
+                self._take(self._device.listen(self._step_s(until_s)))
+
+    def telemetry(self, seconds: float | None = None, *, messages_per_s: int = 100) -> Iterator[Telemetry]:
+        """What the board says of itself while time passes on it: an iterator, which may be left at any time.
+
+        Parameters
+        ----------
+        seconds
+            How long; without it, without an end.
+        messages_per_s
+            Messages a second, at most 1000.
+
+        Raises
+        ------
+        PlayError
+            The board stopped by itself, or is gone.
+        KeyboardInterrupt
+            Ctrl-C. The board is disarmed.
+        """
+        lasts_s = math.inf if seconds is None else _number("seconds", seconds, 0.0, math.inf)
+        return self._messages(lasts_s, whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX))
+
+    def _messages(self, lasts_s: float, messages_per_s: int) -> Iterator[Telemetry]:
+        # What was received before is old.
+        self._take(self._device.subscribe(messages_per_s))
+        until_s = self._now_s + lasts_s
+        try:
+            while self._now_s < until_s:
+                with self._disarming():
+                    answer = self._device.listen(self._step_s(until_s))
+                self._take(answer)
+                for tick, state, flags, x_m, y_m, speed_m_s, asked_n, voltage_v_rms in answer[4]:
+                    t_s = tick / self._device.ticks_per_s
+                    place = 1e3 * x_m, 1e3 * y_m, 1e3 * speed_m_s
+                    yield Telemetry(t_s, state, tuple(flags), *place, asked_n, voltage_v_rms)
+        finally:
+            if not self._device.is_closed:
+                self._take(self._device.subscribe(0))
+
+    def stop(self) -> None:
+        """Set the output to zero and disarm the board, which stays connected: for a break. `play` arms it again.
+
+        Raises
+        ------
+        PlayError
+            The board did not confirm. Its output goes to zero by itself.
+        """
+        self._take(self._device.stop())
+
+    @property
+    def state(self) -> str:
+        """`disarmed`, `armed`, `active` or `faulted`, as the board said last; `unknown` if it was gone at the end."""
+        if not self._device.is_closed:
+            self._take(self._device.look())
+        return self._state
+
+    @property
+    def board(self) -> str:
+        """What kind of board it is."""
+        return self._device.board
+
+    @property
+    def notes(self) -> list[str]:
+        """What a person should know of the board, a sentence each; mostly none."""
+        return self._device.notes
+
+    def __repr__(self) -> str:
+        return f"<frixel.Device: {self.board} at {self._port}, {self._state}>"
+
+    def _step_s(self, until_s: float) -> float:
+        """How long to listen next, s. At least two ticks: a rest that is rounded to zero would never pass."""
+        return min(STEP_S, max(until_s - self._now_s, 2 / self._device.ticks_per_s))
+
+    @contextmanager
+    def _disarming(self) -> Iterator[None]:
+        """Disarms the board on an interrupt."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            # Of a board that is gone, the output goes to zero by itself.
+            with suppress(FrixelError):
+                self.stop()
+            raise
+
+    def _take(self, answer: _frixel.Answer) -> list[str]:
+        """Keep what the board said of itself. Returns the sentences."""
+        self._state, self._now_s, self._streaming, sentences, _ = answer
+        return sentences
+
+
+def _scene(scene: Scene | Mapping[str, Any]) -> Scene:
+    scene = Scene.from_dict(scene) if isinstance(scene, Mapping) else scene
+    if not isinstance(scene, Scene):
+        raise ParameterError(f"a scene is a Scene or its tables, and Scene.load reads a file, found {scene!r}")
+    return scene
+
+
+def _layer(layer: str | int) -> str:
+    if isinstance(layer, bool) or not isinstance(layer, (str, int)):
+        raise ParameterError(f"a layer is its name or its number, found {layer!r}")
+    return str(layer)
+
+
+def _number(name: str, value: object, least: float, most: float) -> float:
+    """A number from `least` to `most`; `name` is what the message calls it."""
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        number = math.nan
+    if not least <= number <= most:
+        limits = f"from {least:g} to {most:g}" if math.isfinite(most) else f"of at least {least:g}"
+        raise ParameterError(f"{name} is a number {limits}, found {value!r}")
+    return number

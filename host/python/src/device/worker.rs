@@ -1,0 +1,276 @@
+//! The thread that has the board: it opens it, and carries out one request after another.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender};
+use std::time::Duration;
+
+use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting};
+use frixel_felt::recorder::Recorder;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::simulation::SimStream;
+use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
+use frixel_scene::Program;
+use frixel_wire::fault::State;
+use frixel_wire::hello::Hello;
+use frixel_wire::message::Telemetry;
+use pyo3::PyErr;
+
+use super::SIMULATOR;
+use super::observed::Observed;
+
+/// Size of the screen that the simulated finger's stroke covers: that of the bundled scenes.
+const SCREEN_WIDTH_M: f64 = 0.12;
+const SCREEN_HEIGHT_M: f64 = 0.11;
+/// Duration of its stroke, s.
+const STROKE_S: f64 = 3.0;
+/// Time for which it is lifted before it repeats its stroke, s.
+const PAUSE_S: f64 = 0.2;
+/// Seed of the simulated world.
+const SEED: u64 = 1;
+/// Time for an orderly end of a wait that a signal interrupts.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// What the program asks for.
+pub(super) enum Request {
+    Play(Box<Program>),
+    Replace(Box<Program>),
+    SetLayer {
+        layer: String,
+        on: Option<bool>,
+        gain: Option<f32>,
+    },
+    Trigger {
+        layer: String,
+        duration_s: Option<f64>,
+    },
+    Stream {
+        samples: Vec<u16>,
+        sample_hz: u32,
+    },
+    Subscribe {
+        period_ticks: u32,
+    },
+    /// Lets so much time pass on the board.
+    Listen(Duration),
+    /// Asks for a report alone.
+    Look,
+    Stop,
+}
+
+/// How it stands after a request.
+pub(super) struct Report {
+    pub(super) state: State,
+    /// Time on the link's clock.
+    pub(super) now: Duration,
+    /// Whether samples of a stream are still to be played.
+    pub(super) is_streaming: bool,
+    /// What a person should know of the request.
+    pub(super) sentences: Vec<String>,
+    pub(super) telemetry: Vec<Telemetry>,
+}
+
+/// Why a request was not carried out.
+pub(super) enum Trouble {
+    /// Python's program was interrupted; the board is disarmed.
+    Signal(PyErr),
+    /// A value that is not taken; the board goes on as before.
+    Parameter(String),
+    /// The board refuses, has stopped, or is gone.
+    Play(String),
+}
+
+impl From<PlayError> for Trouble {
+    fn from(error: PlayError) -> Self {
+        match error {
+            PlayError::Live(error) => Self::Parameter(live_sentence(error)),
+            PlayError::NothingPlays => Self::Play("no scene plays: play one first, by `play(scene)`".into()),
+            error => Self::Play(error.to_string()),
+        }
+    }
+}
+
+/// The sentence of an error whose cure is a call in Python, and a word in the command.
+fn live_sentence(error: LiveError) -> String {
+    match error {
+        LiveError::TriggerOn { layer } => format!(
+            "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by \
+             `set_layer({layer:?}, on=False)`"
+        ),
+        LiveError::TriggerSilent { layer } => format!(
+            "layer {layer:?} has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
+             `set_layer({layer:?}, gain=1)`"
+        ),
+        LiveError::TriggerUnfed { layer } => format!(
+            "layer {layer:?} plays what is streamed, and nothing is, so that a trigger plays nothing: stream samples \
+             first, by `stream(samples, sample_hz)`"
+        ),
+        error => error.to_string(),
+    }
+}
+
+fn failed(error: impl std::error::Error) -> Trouble {
+    Trouble::Play(error.to_string())
+}
+
+/// Whether Python's program was interrupted.
+#[derive(Clone, Default)]
+pub(super) struct Interrupted(Arc<AtomicBool>);
+
+impl Interrupted {
+    pub(super) fn set(&self, is_interrupted: bool) {
+        self.0.store(is_interrupted, Ordering::Relaxed);
+    }
+
+    fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    fn flow(&self) -> ControlFlow<()> {
+        if self.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// The two ends of the line to the program.
+type Ends<'a> = (&'a Receiver<Request>, &'a Sender<Result<Report, Trouble>>);
+
+/// Opens the board at a port, says so or why not through `opened`, and serves it until the program has let go of it. A
+/// board that is not simulated is opened only with `arm`.
+pub(super) fn run(
+    port: &str,
+    arm: bool,
+    opened: &Sender<Result<Hello, Trouble>>,
+    ends: Ends<'_>,
+    interrupted: &Interrupted,
+) {
+    let served = if port == SIMULATOR {
+        simulated(opened, ends, interrupted)
+    } else {
+        real(port, arm, opened, ends, interrupted)
+    };
+    if let Err(trouble) = served {
+        // Nobody listens if the program has ended meanwhile.
+        let _ = opened.send(Err(trouble));
+    }
+}
+
+/// The simulated board, in virtual time, under a realistic finger that repeats its stroke.
+fn simulated(
+    opened: &Sender<Result<Hello, Trouble>>,
+    ends: Ends<'_>,
+    interrupted: &Interrupted,
+) -> Result<(), Trouble> {
+    let stroke = Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).and_then(|stroke| stroke.looped(PAUSE_S));
+    let mut config = RigConfig::default();
+    config.world = config.world.realistic();
+    // A draft may take longer than a board has time for.
+    config.board.limits.tick_cycles_max = u32::MAX;
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &config, stroke.map_err(failed)?, SEED).map_err(failed)?;
+    let link = Observed::new(PollingLink::new(SimStream::new(rig, Recorder::default())));
+    serve(Device::connect(link).map_err(failed)?, opened, ends, interrupted);
+    Ok(())
+}
+
+fn real(
+    port: &str,
+    arm: bool,
+    opened: &Sender<Result<Hello, Trouble>>,
+    ends: Ends<'_>,
+    interrupted: &Interrupted,
+) -> Result<(), Trouble> {
+    let serial = SerialLink::open(port, DEFAULT_BAUD).map_err(failed)?;
+    let device = Device::connect(Observed::new(serial)).map_err(failed)?;
+    if !(arm || device.hello().board.is_simulated()) {
+        return Err(Trouble::Play(format!(
+            "{port} is a board with an electrode: give arm=True, and press and hold the board's arm switch before \
+             `play`, to let it drive hundreds of volts"
+        )));
+    }
+    serve(device, opened, ends, interrupted);
+    Ok(())
+}
+
+/// Carries out requests until the program has let go of the board, and disarms it then.
+fn serve<L: Link>(
+    mut device: Device<Observed<L>>,
+    opened: &Sender<Result<Hello, Trouble>>,
+    (requests, replies): Ends<'_>,
+    interrupted: &Interrupted,
+) {
+    let watched = interrupted.clone();
+    device.while_waiting(
+        move |Waiting { waited, .. }| {
+            if *waited >= GRACE { watched.flow() } else { ControlFlow::Continue(()) }
+        },
+    );
+    let hello = *device.hello();
+    let mut player = Player::new(device);
+    let mut is_listening = opened.send(Ok(hello)).is_ok();
+    while is_listening && let Ok(request) = requests.recv() {
+        let reply = carry_out(&mut player, request, interrupted).map_err(Trouble::from);
+        is_listening = replies.send(reply.map(|sentences| report(&mut player, sentences))).is_ok();
+    }
+    // No caller is left to report an error to; the board's host timeout sets the output to zero.
+    let _ = player.stop();
+}
+
+fn carry_out<L: Link>(
+    player: &mut Player<Observed<L>>,
+    request: Request,
+    interrupted: &Interrupted,
+) -> Result<Vec<String>, PlayError> {
+    if !matches!(request, Request::Stop | Request::Play(_)) {
+        // Takes in what the board has sent meanwhile: it may have stopped.
+        player.device_mut().keep_alive()?;
+        match player.step(Duration::ZERO) {
+            Err(PlayError::Stopped(_)) if matches!(request, Request::Look) => {}
+            stepped => stepped.map(|_| ())?,
+        }
+    }
+    match request {
+        Request::Look => {}
+        Request::Play(program) => player.start(*program, 0, &mut |_| interrupted.flow())?,
+        Request::Replace(program) => return Ok(replaced(player.replace(*program)?)),
+        Request::SetLayer { layer, on, gain } => {
+            return Ok(player.change_layer(&layer, on, gain)?.notice().into_iter().collect());
+        }
+        Request::Trigger { layer, duration_s } => {
+            return Ok(player.trigger(&layer, duration_s)?.notice().into_iter().collect());
+        }
+        Request::Stream { samples, sample_hz } => player.stream(Feed::of(samples, sample_hz))?,
+        Request::Subscribe { period_ticks } => player.device_mut().subscribe(period_ticks)?,
+        Request::Listen(duration) => listen(player, duration)?,
+        Request::Stop => player.stop()?,
+    }
+    Ok(Vec::new())
+}
+
+/// Lets `duration` pass on the board.
+fn listen<L: Link>(player: &mut Player<Observed<L>>, duration: Duration) -> Result<(), PlayError> {
+    let end = player.device().now() + duration;
+    loop {
+        let left = end.saturating_sub(player.device().now());
+        player.step(left)?;
+        if left.is_zero() {
+            return Ok(());
+        }
+    }
+}
+
+fn replaced(Replaced { faded_out, dropped_gains }: Replaced) -> Vec<String> {
+    let faded_out = faded_out.then(|| {
+        "the pictures of both scenes do not fit on the board together: the output faded out meanwhile".to_owned()
+    });
+    let dropped =
+        dropped_gains.map(|clamped| format!("the gains are those of the scene: with those that were set, {clamped}"));
+    faded_out.into_iter().chain(dropped).collect()
+}
+
+fn report<L: Link>(player: &mut Player<Observed<L>>, sentences: Vec<String>) -> Report {
+    let telemetry = player.device_mut().link_mut().take_telemetry();
+    let (state, _) = player.state();
+    let now = player.device().now();
+    Report { state, now, is_streaming: player.is_streaming(), sentences, telemetry }
+}
