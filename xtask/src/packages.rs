@@ -1,8 +1,10 @@
 //! The crates that others use, as cargo would publish them.
 
+use std::fs;
+
 use serde_json::Value;
 
-use crate::command::{cargo_in, text_of};
+use crate::command::{cargo_in, target_folder, text_of};
 use crate::results;
 
 /// Packages every published crate, and compiles each from its package alone, with the others from theirs.
@@ -10,8 +12,14 @@ pub(crate) fn check() -> Result<(), String> {
     let published = published()?;
     let names = published.iter().filter_map(|manifest| manifest["name"].as_str());
     let names: Vec<&str> = names.flat_map(|name| ["--package", name]).collect();
+    // Cargo keeps what it unpacked and compiled of a version, and takes it again from a folder of the same name.
+    let target = target_folder().join(format!("packages-{}", std::process::id()));
+    let mut package = cargo_in(".");
     // What is checked is the working tree, committed or not.
-    results::run("packages", cargo_in(".").args(["package", "--locked", "--allow-dirty"]).args(names))
+    package.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&target).args(names);
+    let checked = results::run("packages", &mut package);
+    fs::remove_dir_all(&target).map_err(|error| format!("{}: {error}", target.display()))?;
+    checked
 }
 
 /// The manifests of the crates that are published, as cargo reports them.
@@ -26,7 +34,6 @@ fn published() -> Result<Vec<Value>, String> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
     use std::path::{Component, Path, PathBuf};
 
     use super::*;
