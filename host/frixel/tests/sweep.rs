@@ -11,7 +11,8 @@ const SCENE: &str = "version = 2\n[[layer]]\nname = \"plate\"\nkind = \"constant
                      region = { x_mm = 20, y_mm = 10, width_mm = 80, height_mm = 60 }\n";
 const PLAN: &str = "scenes = [\"plate.toml\"]\npeople = 3\nstrokes = 2\nseeds = 1\nseconds = 0.6\n\
                     [parameters]\n\"layer.1.friction_fraction\" = [0.02, 0.9]\n";
-const RESULTS: [&str; 4] = ["layers.csv", "fingers.csv", "numbers.csv", "sweep.svg"];
+const RESULTS: [&str; 7] =
+    ["layers.csv", "fingers.csv", "numbers.csv", "layers.parquet", "fingers.parquet", "numbers.parquet", "sweep.svg"];
 
 struct Folder(TempDir);
 
@@ -35,7 +36,7 @@ impl Folder {
         if output.status.success() { Ok(text(output.stdout)) } else { Err(text(output.stderr)) }
     }
 
-    fn results(&self, out: &str) -> [Vec<u8>; 4] {
+    fn results(&self, out: &str) -> [Vec<u8>; 7] {
         RESULTS.map(|name| fs::read(self.path(out).join(name)).unwrap())
     }
 

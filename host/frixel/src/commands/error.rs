@@ -22,7 +22,7 @@ use frixel_lab::model_csv::CsvError;
 use frixel_lab::recording::{Difference, RecordingError};
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
-use frixel_lab::sweep::{CellError, PlanError};
+use frixel_lab::sweep::{CellError, PlanError, StudyError};
 use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
@@ -55,6 +55,8 @@ pub(crate) enum CommandError {
     Report(#[from] ReportError),
     #[error(transparent)]
     Plan(#[from] PlanError),
+    #[error(transparent)]
+    Study(#[from] StudyError),
     #[error("{cell}: {source}")]
     Cell { cell: String, source: CellError },
     #[error("{}: {found} of {of} cells are there: play the others with `frixel sweep PLAN.toml -o {}`", folder.display(), folder.display())]

@@ -6,7 +6,6 @@
 //! - `draw_felt_svg`: friction and voltage over time.
 //! - `draw_fit_svg`: the residual plots of a fit.
 //! - `draw_score_svg`: the numbers of a score that a person notices.
-//! - `draw_sweep_svg`: the shares of simulated fingers that notice layers, over what a sweep varies.
 //! - `draw_scene_png`: the friction map of a program with the stroke over it.
 //! - [`draw_preview_png`]: the friction map of a program before it is played.
 //! - `FeltLog`: the log of a virtual board, which joins what its finger felt to the rows of a client.
@@ -25,7 +24,6 @@ mod report;
 mod scene_png;
 mod score_svg;
 mod span;
-mod sweep_svg;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -43,7 +41,6 @@ pub(crate) use report::{Effects, Report, WorldReport, draft_line};
 pub(crate) use scene_png::draw_scene_png;
 pub(crate) use score_svg::draw_score_svg;
 pub(crate) use span::TracedLayer;
-pub(crate) use sweep_svg::draw_sweep_svg;
 pub(crate) use trace::Trace;
 
 /// The subject of a picture, from which its title is made.

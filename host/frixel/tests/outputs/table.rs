@@ -71,7 +71,15 @@ pub(crate) const OUTPUTS: [Output; 17] = [
         "sweep out",
         "sweep IN -o OUT",
         "plan.toml",
-        &["OUT/layers.csv", "OUT/fingers.csv", "OUT/numbers.csv", "OUT/sweep.svg"],
+        &[
+            "OUT/layers.csv",
+            "OUT/fingers.csv",
+            "OUT/numbers.csv",
+            "OUT/layers.parquet",
+            "OUT/fingers.parquet",
+            "OUT/numbers.parquet",
+            "OUT/sweep.svg",
+        ],
     ),
     Output {
         // It ends with a signal only.

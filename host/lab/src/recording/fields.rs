@@ -18,7 +18,7 @@ pub struct Field {
 
 impl Field {
     /// A column by its name, its unit, its meaning and what its values are.
-    fn of((name, unit, meaning, kind): (&str, &str, &str, Kind)) -> Self {
+    pub(crate) fn of((name, unit, meaning, kind): (&str, &str, &str, Kind)) -> Self {
         Self { name: name.to_owned(), unit: unit.to_owned(), meaning: meaning.to_owned(), kind }
     }
 }
@@ -91,7 +91,7 @@ impl Values {
     }
 
     /// A value for people; empty if it is unknown.
-    pub(super) fn text(&self, row: usize) -> String {
+    pub(crate) fn text(&self, row: usize) -> String {
         match self {
             Self::Numbers(values) => {
                 values.get(row).copied().flatten().map_or_else(String::new, |value| value.to_string())

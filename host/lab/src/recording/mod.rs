@@ -21,7 +21,7 @@ pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_valu
 pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
 pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
-pub use parquet_writer::ParquetWriter;
+pub use parquet_writer::{ParquetWriter, table_parquet};
 pub use play_options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.

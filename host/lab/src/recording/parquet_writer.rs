@@ -11,7 +11,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterVersi
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{SchemaDescriptor, Type};
 
-use super::{Field, Kind, Metadata, ROWS_PER_GROUP, Recording, RecordingError, Values, arrow_schema};
+use super::{Column, Field, Kind, Metadata, ROWS_PER_GROUP, Recording, RecordingError, Values, arrow_schema};
 
 /// Number of the format, in the metadata `frixel.format`.
 pub(super) const FORMAT: u32 = 1;
@@ -29,13 +29,22 @@ impl Recording {
     pub fn write_parquet<W: Write + Send>(&self, to: W) -> Result<(), RecordingError> {
         let fields = self.columns.iter().map(|column| column.field.clone()).collect();
         let mut writer = ParquetWriter::new(to, fields)?;
-        for from in (0..self.rows()).step_by(ROWS_PER_GROUP) {
-            let to = self.rows().min(from + ROWS_PER_GROUP);
-            let values: Vec<Values> = self.columns.iter().map(|column| column.values.part(from, to)).collect();
-            writer.write(&values)?;
-        }
+        writer.write_all(&self.columns)?;
         writer.end(&self.metadata)
     }
+}
+
+/// A table that is no recording, such as the results of a study, as a Parquet file: units and meanings are in the
+/// metadata of its fields.
+pub fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingError> {
+    let fields: Vec<Field> = columns.iter().map(|column| column.field.clone()).collect();
+    let pairs = vec![KeyValue::new(key_name(arrow_schema::KEY), arrow_schema::encoded(&fields))];
+    let mut bytes = Vec::new();
+    let mut writer = ParquetWriter::new(&mut bytes, fields)?;
+    writer.write_all(columns)?;
+    writer.end_with(pairs, env!("CARGO_PKG_VERSION"))?;
+    drop(writer);
+    Ok(bytes)
 }
 
 /// Writes a recording as Parquet, row group by row group.
@@ -68,12 +77,25 @@ impl<W: Write + Send> ParquetWriter<W> {
         write_group(&mut self.writer, columns).map_err(RecordingError::Write)
     }
 
+    /// Writes whole columns, in row groups.
+    fn write_all(&mut self, columns: &[Column]) -> Result<(), RecordingError> {
+        let rows = columns.first().map_or(0, |column| column.values.len());
+        for from in (0..rows).step_by(ROWS_PER_GROUP) {
+            let part = |column: &Column| column.values.part(from, rows.min(from + ROWS_PER_GROUP));
+            self.write(&columns.iter().map(part).collect::<Vec<_>>())?;
+        }
+        Ok(())
+    }
+
     /// Ends the file here, with the metadata of all that was written. [`Self::write`] may go on behind it.
     pub fn end(&mut self, metadata: &Metadata) -> Result<(), RecordingError> {
-        let pairs = pairs(metadata, &self.fields)?;
+        self.end_with(pairs(metadata, &self.fields)?, &metadata.frixel)
+    }
+
+    fn end_with(&mut self, pairs: Vec<KeyValue>, version: &str) -> Result<(), RecordingError> {
         let end = |writer: &mut SerializedFileWriter<W>| -> ParquetResult<()> {
             let schema = Arc::new(SchemaDescriptor::new(writer.schema_descr().root_schema_ptr()));
-            let created_by = format!("frixel version {}", metadata.frixel);
+            let created_by = format!("frixel version {version}");
             let file = FileMetaData::new(1, self.rows, Some(created_by), Some(pairs), schema, None);
             let whole = ParquetMetaData::new(file, writer.flushed_row_groups().to_vec());
             let mut footer = Vec::new();

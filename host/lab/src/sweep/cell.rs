@@ -156,6 +156,13 @@ impl Cell {
         digits.filter_map(|digit| char::from_digit(digit.into(), 16)).collect()
     }
 
+    /// What the cell is called in messages: its scene, and the values that the plan sets.
+    pub fn title(&self) -> String {
+        let values: Vec<String> = self.parameters.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+        let with = if values.is_empty() { String::new() } else { format!(" with {}", values.join(", ")) };
+        format!("{}{with}", self.scene)
+    }
+
     /// Plays the cell. The result is the same on every machine and for any number of threads.
     pub fn play(&self) -> Result<CellResult, CellError> {
         if self.version != env!("CARGO_PKG_VERSION") {

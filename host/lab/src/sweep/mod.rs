@@ -7,10 +7,36 @@
 
 mod cell;
 mod parameter;
+mod picture;
 mod plan;
 mod study;
+mod tables;
+
+use serde::{Deserialize, Serialize};
 
 pub use cell::{Cell, CellError, CellResult, Hand, LayerResult, Profile};
 pub use parameter::{ParameterError, Value};
 pub use plan::{Plan, PlanError, Range, Source, Values};
 pub use study::{Group, LayerShare, Study};
+pub use tables::StudyError;
+
+/// The file that names the cells of the plan that was played last, in the folder of a study.
+pub const KEYS_FILE: &str = "cells/plan.json";
+
+/// The keys of the cells of a study, in the order of its plan.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Keys {
+    /// The keys.
+    pub cells: Vec<String>,
+}
+
+/// The file of the result of a cell, in the folder of a study.
+pub fn result_file(key: &str) -> String {
+    format!("cells/{key}.json")
+}
+
+/// The JSON of a cell, of a result, or of keys, as files have it.
+pub fn json(value: &impl Serialize) -> String {
+    // Numbers, strings and maps with names always serialise.
+    serde_json::to_string(value).unwrap_or_default()
+}

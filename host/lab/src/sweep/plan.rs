@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use frixel_hil_sim::TouchConfig;
+use frixel_scene::Screen;
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -203,9 +205,26 @@ impl Plan {
         }
     }
 
-    /// The cells, in the order of the lists: people last. `scenes` are the texts of the plan's scenes with the files
-    /// that each names, `screens` and `touch` its other profiles, each in the plan's order.
-    pub fn cells(&self, scenes: &[Source], screens: &[Profile], touch: &[Profile]) -> Result<Vec<Cell>, PlanError> {
+    /// The cells, in the order of the lists: people last. `scene` reads a scene file with the files that it names, and
+    /// `text` the file of a `screen` or a `touch source`, each by the name that the plan has for it.
+    pub fn cells<E: From<PlanError>>(
+        &self,
+        scene: impl Fn(&str) -> Result<Source, E>,
+        text: impl Fn(&'static str, &str) -> Result<String, E>,
+    ) -> Result<Vec<Cell>, E> {
+        let profile = |what, name: &String, is_bundled: bool| {
+            let text = if is_bundled { None } else { Some(text(what, name)?) };
+            Ok::<_, E>(Profile { name: name.clone(), text })
+        };
+        let scenes: Vec<Source> = self.scenes.iter().map(|name| scene(name)).collect::<Result<_, _>>()?;
+        let screen = |name: &String| profile("screen", name, Screen::bundled(name).is_some());
+        let screens: Vec<Profile> = self.screens.iter().map(screen).collect::<Result<_, _>>()?;
+        let touch = |name: &String| profile("touch source", name, TouchConfig::bundled(name).is_some());
+        let touch: Vec<Profile> = self.touch.iter().map(touch).collect::<Result<_, _>>()?;
+        Ok(self.combinations(&scenes, &screens, &touch)?)
+    }
+
+    fn combinations(&self, scenes: &[Source], screens: &[Profile], touch: &[Profile]) -> Result<Vec<Cell>, PlanError> {
         let screens: Vec<Option<&Profile>> =
             if screens.is_empty() { vec![None] } else { screens.iter().map(Some).collect() };
         let mut cells = Vec::new();

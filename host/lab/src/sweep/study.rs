@@ -1,15 +1,13 @@
 //! The results of many cells together: which share of the simulated fingers notices what.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
-use frixel_felt::perception::Verdict;
 use serde::Serialize;
 
 use super::cell::{CellResult, LayerResult};
 use super::parameter::Value;
-use crate::score::{Verdicts, interval, metric_keys};
-use crate::statistics::{mean, median, share_interval};
+use crate::score::Verdicts;
+use crate::statistics::{median, share_interval};
 
 /// Most lines of a summary: a terminal has some 40.
 const LINES_MAX: usize = 36;
@@ -70,82 +68,6 @@ impl Study {
             }
         }
         Self { groups }
-    }
-
-    /// A row for each finger and layer.
-    pub fn fingers_csv(&self) -> String {
-        let paths = self.paths();
-        let mut text = format!("{},simulated_person,moisture,layer,verdict,contrast_weber_steps\n", header(&paths));
-        for group in &self.groups {
-            for finger in &group.fingers {
-                for LayerResult { layer, verdict, contrast_weber_steps, .. } in &finger.layers {
-                    // Writing to a string cannot fail.
-                    let _ = writeln!(
-                        text,
-                        "{},{},{},{},{},{contrast_weber_steps}",
-                        group.cells(&paths),
-                        finger.person,
-                        finger.moisture,
-                        quoted(layer),
-                        word(*verdict)
-                    );
-                }
-            }
-        }
-        text
-    }
-
-    /// A row for each group and layer: the share of the fingers that notice it, with its interval.
-    pub fn layers_csv(&self) -> String {
-        let paths = self.paths();
-        let mut text = format!(
-            "{},layer,simulated_fingers,felt,felt_by_some,not_felt,unknown,felt_share,felt_share_low,felt_share_high,\
-             contrast_weber_steps\n",
-            header(&paths)
-        );
-        for group in &self.groups {
-            for LayerShare {
-                layer, simulated_fingers, felt_share, interval: [low, high], contrast_weber_steps, ..
-            } in group.layers()
-            {
-                let Verdicts { touched, felt, felt_by_some, not_felt, unknown } = simulated_fingers;
-                // Writing to a string cannot fail.
-                let _ = writeln!(
-                    text,
-                    "{},{},{touched},{felt},{felt_by_some},{not_felt},{unknown},{felt_share},{low},{high},\
-                     {contrast_weber_steps}",
-                    group.cells(&paths),
-                    quoted(&layer)
-                );
-            }
-        }
-        text
-    }
-
-    /// A row for each group and number of a score: its mean over the fingers, with the interval.
-    pub fn numbers_csv(&self) -> String {
-        let paths = self.paths();
-        let mut text = format!("{},number,simulated_fingers,mean,mean_low,mean_high\n", header(&paths));
-        for group in &self.groups {
-            for key in metric_keys() {
-                let values: Vec<f64> =
-                    group.fingers.iter().filter_map(|finger| finger.means.get(key).copied()).collect();
-                if values.is_empty() {
-                    continue;
-                }
-                let [low, high] =
-                    interval(&values).map_or([String::new(), String::new()], |ends| ends.map(|end| end.to_string()));
-                // Writing to a string cannot fail.
-                let _ = writeln!(
-                    text,
-                    "{},{key},{},{},{low},{high}",
-                    group.cells(&paths),
-                    values.len(),
-                    mean(values.iter().copied())
-                );
-            }
-        }
-        text
     }
 
     /// Lines for a person, with their names: the share of the fingers that notice each layer, by the groups.
@@ -214,18 +136,6 @@ impl Group {
             std::iter::once(self.scene.clone()).chain(values).chain(screen).chain([touch]).collect();
         parts.join(", ")
     }
-
-    fn cells(&self, paths: &[&str]) -> String {
-        let values = paths.iter().map(|path| {
-            self.parameters.get(*path).map_or(String::new(), |value| match value {
-                Value::Word(word) => quoted(word),
-                number => number.to_string(),
-            })
-        });
-        let screen = self.screen.as_deref().map_or(String::new(), quoted);
-        let names = [quoted(&self.scene), screen, quoted(&self.touch)];
-        names.into_iter().chain(values).collect::<Vec<_>>().join(",")
-    }
 }
 
 fn shares<'f>(fingers: impl Iterator<Item = &'f CellResult>) -> Vec<LayerShare> {
@@ -261,24 +171,4 @@ fn least_of_copies(layers: Vec<LayerShare>) -> Vec<LayerShare> {
         }
     }
     rows
-}
-
-/// The word of a verdict in JSON and CSV.
-fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Felt => "felt",
-        Verdict::NearThreshold => "felt_by_some",
-        Verdict::NotFelt => "not_felt",
-        Verdict::Unknown => "unknown",
-    }
-}
-
-fn header(paths: &[&str]) -> String {
-    let names = ["scene", "screen", "touch"].into_iter().map(str::to_owned);
-    names.chain(paths.iter().map(|path| quoted(path))).collect::<Vec<_>>().join(",")
-}
-
-/// A cell of a CSV file.
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('"', "\"\""))
 }

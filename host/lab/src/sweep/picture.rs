@@ -1,9 +1,9 @@
 //! The picture of a sweep: which share of the simulated fingers notices what.
 
-use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
-use frixel_lab::sweep::{Group, LayerShare, Study};
+use frixel_chart::{Axis, Chart, DrawError, Line, Look, Mark, PALETTE, Panel};
+use frixel_scene::printable_lines;
 
-use super::{DrawingError, svg};
+use super::study::{Group, LayerShare, Study};
 
 /// Most panels of a picture.
 const PANELS_MAX: usize = 24;
@@ -15,7 +15,7 @@ const THIRDS: [(f64, f64, f64); 3] =
 
 /// Draws the share of the simulated fingers that notice each layer: over each field that has several numbers, and over
 /// the moisture of their skin.
-pub(crate) fn draw_sweep_svg(study: &Study) -> Result<String, DrawingError> {
+pub(super) fn svg(study: &Study) -> Result<String, DrawError> {
     let mut panels: Vec<Panel> =
         study.paths().into_iter().flat_map(|path| over_parameter(study, path)).chain(over_moisture(study)).collect();
     let left_out = panels.len().saturating_sub(PANELS_MAX);
@@ -30,7 +30,8 @@ pub(crate) fn draw_sweep_svg(study: &Study) -> Result<String, DrawingError> {
     if left_out > 0 {
         chart.caption.push(format!("{left_out} more panels are left out: layers.csv has all rows."));
     }
-    svg(&chart)
+    // Names that a scene gives can have control characters.
+    Ok(printable_lines(&chart.svg()?).into_owned())
 }
 
 /// A panel for each set of groups that differ by one field only, which has numbers.
