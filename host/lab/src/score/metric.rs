@@ -127,6 +127,7 @@ pub(crate) fn interval(values: &[f64]) -> Option<[f64; 2]> {
 }
 
 /// The keys of all numbers.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn metric_keys() -> impl Iterator<Item = &'static str> {
     METRICS.iter().map(|metric| metric.key)
 }

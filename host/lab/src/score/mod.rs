@@ -22,6 +22,7 @@ use layers::Finger;
 pub use layers::{BorderScore, LayerBorder, LayerScore, LevelScore, Verdicts};
 use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) use metric::{interval, metric_keys};
 pub use trials::{TrialPlan, Way};
 

@@ -7,9 +7,11 @@
 
 mod cell;
 mod parameter;
+#[cfg(not(target_arch = "wasm32"))]
 mod picture;
 mod plan;
 mod study;
+#[cfg(not(target_arch = "wasm32"))]
 mod tables;
 
 use serde::{Deserialize, Serialize};
@@ -18,6 +20,7 @@ pub use cell::{Cell, CellError, CellResult, Hand, LayerResult, Profile};
 pub use parameter::{ParameterError, Value};
 pub use plan::{Plan, PlanError, Range, Source, Values};
 pub use study::{Group, LayerShare, Study};
+#[cfg(not(target_arch = "wasm32"))]
 pub use tables::StudyError;
 
 /// The file that names the cells of the plan that was played last, in the folder of a study.
