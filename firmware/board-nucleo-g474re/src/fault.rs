@@ -15,12 +15,11 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::ResetCause;
 use stm32_metapac::RCC;
 
-use crate::board::TICK_HZ;
 use crate::{flash, output};
 
-/// In memory that the start-up code does not clear.
+/// The last fault, in memory that the start-up code does not clear.
 #[unsafe(link_section = ".uninit.RECORD")]
-static RECORD: FaultRecord = FaultRecord::new();
+pub static RECORD: FaultRecord = FaultRecord::new();
 
 /// Holds [`MARK`] as long as RAM has had power.
 #[unsafe(link_section = ".uninit.MARKED")]
@@ -63,11 +62,6 @@ fn outlasting<T>(place: &'static T) -> &'static T {
     // which every content is valid.
     unsafe { asm!("/* {} */", in(reg) place, options(nostack, preserves_flags)) };
     place
-}
-
-/// Forgets the faults of earlier starts once this one has run for a minute. To be called repeatedly.
-pub fn has_run_for(ticks: u32) {
-    RECORD.has_run_for(ticks, TICK_HZ);
 }
 
 /// Sets the output to zero, stores the reason and resets.
