@@ -1,5 +1,6 @@
 //! Identity, stores and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them, too.
 
+use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
 use frixel_control::{AmplifierSpec, Board};
 use frixel_drivers::monitor::MonitorScale;
@@ -12,7 +13,6 @@ use stm32_metapac::UID;
 
 use crate::adc::Adc;
 use crate::dac::{Dac, Frames};
-use crate::fault::LastReset;
 use crate::flash::{BankTwo, PAGES};
 use crate::output::Output;
 use crate::period::Period;

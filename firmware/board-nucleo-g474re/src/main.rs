@@ -7,7 +7,7 @@ use core::pin::pin;
 
 use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::dac::DacError;
-use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::fault;
 #[cfg(feature = "log")]
 use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
@@ -22,6 +22,7 @@ use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
+use frixel_board::fault::LastReset;
 use frixel_board::main_loop::MainLoop;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
@@ -67,7 +68,7 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Nucle
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
-    let last_reset = LastReset::take(text);
+    let last_reset = fault::last_reset(text);
     // First, so that a board that fails during start-up has logged the cause of its last reset.
     log_reset(&last_reset);
     clock::start();

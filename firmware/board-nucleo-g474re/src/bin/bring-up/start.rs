@@ -6,6 +6,7 @@ use board_nucleo_g474re::indicator;
 use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
 use cortex_m::singleton;
+use frixel_board::hardware::Hardware;
 use frixel_board::main_loop::MainLoop;
 use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
@@ -34,7 +35,7 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
         serial: None,
         dac,
         light: indicator::start(),
-        store: Default::default(),
+        store: <Nucleo as Hardware>::Store::default(),
         watchdog: Watchdog::start(),
         record: &fault::RECORD,
     }
