@@ -2,5 +2,8 @@
 
 mod bring_up;
 mod drive;
+mod fault;
+mod main_loop;
 mod support;
+mod tick;
 mod whole;
