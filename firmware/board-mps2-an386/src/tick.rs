@@ -3,7 +3,6 @@
 
 use cortex_m::peripheral::SYST;
 use cortex_m_rt::exception;
-use frixel_board::hardware::Hardware;
 use frixel_board::tick::{Tick, TickShared};
 use frixel_control::Ticker;
 use frixel_cortex_m::Owned;
@@ -21,6 +20,10 @@ static INTERRUPT: Owned<Interrupt> = Owned::new();
 /// What the tick shares with the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
+/// What the arm switch is told of its readings a second, so that a single one counts: the simulated contact does not
+/// bounce, and a host may arm at any tick, because the person is always ready.
+const SWITCH_HZ: u32 = 50;
+
 /// Everything that only the interrupt uses.
 struct Interrupt {
     tick: Tick<Mps2>,
@@ -37,7 +40,7 @@ pub fn start(ticker: Ticker<'static>, queues: TickEnds, systick: SYST) {
         frames: Frames,
         amplifier: Amplifier::new(Enable, Ready),
         monitor: Monitor::new(),
-        arm_switch: ArmSwitch::new(Switch, Mps2::TICK_HZ),
+        arm_switch: ArmSwitch::new(Switch, SWITCH_HZ),
     };
     // SAFETY: SysTick is enabled below.
     unsafe { INTERRUPT.give(Interrupt { tick, host_wait: HostWait::default() }) };

@@ -1,4 +1,5 @@
 //! A whole board: main loop and tick, and a host on the board that plays 10 V.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::rc::Rc;
 
@@ -10,6 +11,9 @@ use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 use frixel_session::Queues;
 use frixel_wire::fault::State;
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload;
 
 use super::firmware::{BOARD, firmware};
 use super::hardware::{Event, Fake, Part, Wires, run_tick, start, tick, wires};
@@ -62,6 +66,13 @@ impl Board {
         let Self { main_loop, drive, shared, .. } = self;
         let result = drive.step(&main_loop.status, shared.count(), 0.0, main_loop.session);
         assert!(result.is_none_or(|result| result.is_err()), "it drives for three seconds");
+    }
+
+    /// Puts a command on the serial port, which the next turn takes.
+    pub(crate) fn receive(&mut self, command: Command) {
+        let mut frame = [0; FRAME_MAX_LEN];
+        let request = Request { sequence: 1, command };
+        self.wires.received.borrow_mut().extend(payload::request_frame(&request, &mut frame).unwrap());
     }
 
     /// The state after the last turn.
