@@ -247,6 +247,11 @@ impl World {
         Ok(())
     }
 
+    /// Ticks a second.
+    pub fn tick_hz(&self) -> u32 {
+        self.tick_hz
+    }
+
     /// Number of ticks since the start.
     pub fn tick(&self) -> u64 {
         self.tick

@@ -4,7 +4,7 @@ use std::sync::mpsc;
 
 use crate::rigs::EmulatedStream;
 use frixel_driver::{Device, PollingLink};
-use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
+use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene};
 
@@ -29,7 +29,7 @@ pub(super) fn play_on_emulator(
     plan.world = Some(simulated.report());
     plan.has_own_reference = simulated.has_own_reference(&stroke);
     let world = world(&plan.program, &simulated, stroke, args.seed)?;
-    let image = Image::find()?;
+    let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
     let mut board = LinkBoard::start(&image, world, move |record| {
         // The receiver is gone once the play has ended.
