@@ -119,9 +119,29 @@ impl Board {
         ..Self::SIMULATOR
     };
 
+    /// The Raspberry Pi Pico 2 with the parts of the NUCLEO-G474RE, until bring-up has stored other limits.
+    pub const PICO_2: Self = Self {
+        kind: BoardKind::Pico2,
+        limits: BoardLimits {
+            // 60 % of the 3,750 cycles that the RP2350 at 150 MHz has between two ticks.
+            tick_cycles_max: 2_250,
+            ..Self::NUCLEO_G474RE.limits
+        },
+        ..Self::NUCLEO_G474RE
+    };
+
+    /// The Raspberry Pi Pico with the same parts. It computes in software what the others' floating-point unit does, so
+    /// it is slower, and takes few scenes.
+    pub const PICO: Self = Self { kind: BoardKind::Pico, tick_hz: 10_000, ..Self::PICO_2 };
+
     /// The real board of a name.
     pub fn named(name: &str) -> Option<Self> {
-        (name == "nucleo-g474re").then_some(Self::NUCLEO_G474RE)
+        match name {
+            "nucleo-g474re" => Some(Self::NUCLEO_G474RE),
+            "pico-2" => Some(Self::PICO_2),
+            "pico" => Some(Self::PICO),
+            _ => None,
+        }
     }
 
     /// This board with another resistance between amplifier and electrode, whose bring-up has stored the full scale as
@@ -138,7 +158,7 @@ impl Board {
     }
 
     /// The names that [`Self::named`] knows.
-    pub const NAMES: [&'static str; 1] = ["nucleo-g474re"];
+    pub const NAMES: [&'static str; 3] = ["nucleo-g474re", "pico-2", "pico"];
 
     /// Seconds between two ticks.
     pub fn tick_period_s(&self) -> f32 {

@@ -137,6 +137,10 @@ pub enum BoardKind {
     NucleoG474re,
     /// Emulated Cortex-M4F.
     Mps2An386,
+    /// Raspberry Pi Pico (RP2040) with amplifier and electrode, or its emulation. Since protocol 1.4.
+    Pico,
+    /// Raspberry Pi Pico 2 (RP2350) with amplifier and electrode. Since protocol 1.4.
+    Pico2,
     /// A kind that this crate does not know, by number.
     Other(u8),
 }
@@ -153,6 +157,8 @@ impl BoardKind {
             Self::Simulator => 1,
             Self::NucleoG474re => 2,
             Self::Mps2An386 => 3,
+            Self::Pico => 4,
+            Self::Pico2 => 5,
             Self::Other(number) => number,
         }
     }
@@ -164,6 +170,8 @@ impl From<u8> for BoardKind {
             1 => Self::Simulator,
             2 => Self::NucleoG474re,
             3 => Self::Mps2An386,
+            4 => Self::Pico,
+            5 => Self::Pico2,
             number => Self::Other(number),
         }
     }
@@ -175,6 +183,8 @@ impl fmt::Display for BoardKind {
             Self::Simulator => f.write_str("simulator"),
             Self::NucleoG474re => f.write_str("NUCLEO-G474RE"),
             Self::Mps2An386 => f.write_str("emulated MPS2-AN386"),
+            Self::Pico => f.write_str("Raspberry Pi Pico"),
+            Self::Pico2 => f.write_str("Raspberry Pi Pico 2"),
             Self::Other(number) => write!(f, "board of kind {number}, which this program does not know"),
         }
     }
