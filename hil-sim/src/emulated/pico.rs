@@ -62,8 +62,6 @@ pub struct PicoRig {
     now: Duration,
     /// When the current tick ends.
     tick_ends_at: Duration,
-    /// Ticks since the last start.
-    tick: u32,
     amplifier_enable: bool,
     /// Since when the amplifier has been disabled and the DAC's output zero.
     zero_since: Option<Duration>,
@@ -86,7 +84,6 @@ impl PicoRig {
             tick_period,
             now: Duration::ZERO,
             tick_ends_at: tick_period,
-            tick: 0,
             amplifier_enable: false,
             zero_since: Some(Duration::ZERO),
             to_board: VecDeque::new(),
@@ -105,6 +102,12 @@ impl PicoRig {
     /// Time between two ticks.
     pub fn tick_period(&self) -> Duration {
         self.tick_period
+    }
+
+    /// Number of ticks of the world since the board was first switched on, modulo 2^32. The board's own count begins when
+    /// its beat does, anew at each start.
+    pub fn tick(&self) -> u32 {
+        self.world.tick() as u32
     }
 
     /// The world, to inject faults and to move the finger.
@@ -177,13 +180,13 @@ impl PicoRig {
             self.follow(earlier);
             if let Some(frame) = boundary {
                 self.tick_ends_at = self.now + self.tick_period;
-                let record = self.tick();
+                let record = self.advance_world();
                 self.follow(&[frame]);
                 return Ok(record);
             }
             if ran.ended == Ended::Time {
                 self.tick_ends_at += self.tick_period;
-                return Ok(self.tick());
+                return Ok(self.advance_world());
             }
         }
     }
@@ -222,14 +225,13 @@ impl PicoRig {
     }
 
     /// Advances the world by a tick in which the output was as it is now.
-    fn tick(&mut self) -> LinkRecord {
+    fn advance_world(&mut self) -> LinkRecord {
         let drive = self.output();
         let felt = self.world.apply(drive);
-        self.tick += 1;
         if let Some(touch) = self.world.touch() {
             self.report(touch);
         }
-        LinkRecord { tick: self.tick, drive, felt }
+        LinkRecord { tick: self.tick(), drive, felt }
     }
 
     /// Sends a touch report to the board.
@@ -274,7 +276,6 @@ impl PicoRig {
                 self.amplifier_enable = false;
                 self.dac.set_clear(false);
                 self.starts += 1;
-                self.tick = 0;
             }
             WireEvent::Light(_) | WireEvent::Flash { .. } => {}
         }
