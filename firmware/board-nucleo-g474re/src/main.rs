@@ -17,7 +17,7 @@ use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, dac, guard, indicator, period};
+use board_nucleo_g474re::{board, clock, dac, indicator, period};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
@@ -27,6 +27,7 @@ use frixel_board::main_loop::MainLoop;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;

@@ -70,8 +70,12 @@ const _: () = assert!(
 );
 
 /// The board's description, with the cause of the last reset.
-pub fn board(last_reset: &LastReset, id: [u8; 12], flash: Option<&StoreFlash>) -> Board {
+pub fn board(last_reset: &LastReset, flash: Option<&StoreFlash>) -> Board {
     let (limits, notices) = load_limits(flash, LIMITS_SLOT, &LIMITS, CEILINGS);
+    let mut id = *b"pico\0\0\0\0\0\0\0\0";
+    if let (Some(number), Some(flash)) = (id.last_chunk_mut(), flash) {
+        *number = flash.unique_number();
+    }
     Board {
         id,
         limits,

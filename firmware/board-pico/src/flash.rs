@@ -10,6 +10,7 @@ use core::ptr;
 use frixel_session::store::{Flash, Operation, WORD_LEN};
 
 use crate::rom::{FlashFunctions, PAGE_LEN, SECTOR_LEN};
+use crate::unique_number::unique_number;
 use crate::watchdog;
 
 /// Where the processor sees the flash.
@@ -34,6 +35,11 @@ impl StoreFlash {
     /// Takes the flash. `None` if the ROM does not have the functions.
     pub fn new() -> Option<Self> {
         FlashFunctions::find().map(|functions| Self { functions, failed: false })
+    }
+
+    /// A number that no other board has.
+    pub fn unique_number(&self) -> [u8; 8] {
+        unique_number(&self.functions)
     }
 }
 

@@ -4,7 +4,7 @@
 //!
 //! The Pico 2 is the board. The RP2040 has no floating-point unit, so that the Pico manages a quarter of the tick rate;
 //! it is there because an emulator runs its image in this repository's CI. One source serves both. The differences are
-//! in [`chip`], [`clock`], [`rom`] and [`guard`].
+//! in [`chip`], [`clock`], [`rom`] and [`boot`].
 //!
 //! One interrupt, [`tick`], runs above everything. Everything else runs in the main loop, but for the interrupt that
 //! stores received bytes ([`serial`]). The code that knows neither chip is in `firmware/board`.
@@ -29,17 +29,15 @@ pub mod critical;
 pub mod dac;
 pub mod fault;
 pub mod flash;
-pub mod guard;
 pub mod indicator;
 pub mod output;
-#[path = "../../board-nucleo-g474re/src/owned.rs"]
-mod owned;
 pub mod period;
 pub mod pins;
 mod pio;
 pub mod rom;
 pub mod serial;
 pub mod tick;
+mod unique_number;
 pub mod watchdog;
 
 /// Largest number of polls until a part of the processor is ready; more than 20 ms.

@@ -9,13 +9,14 @@ use board_pico::flash::StoreFlash;
 use board_pico::output::Output;
 use board_pico::serial::Serial;
 use board_pico::watchdog::Watchdog;
-use board_pico::{board, boot, clock, dac, fault, guard, indicator, output, tick};
+use board_pico::{board, boot, clock, dac, fault, indicator, output, tick};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 use frixel_board::main_loop::MainLoop;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;
@@ -59,7 +60,7 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Pico>
     let _ = dac.prepare();
 
     let flash = StoreFlash::new();
-    let board = board::board(&last_reset, [0; 12], flash.as_ref());
+    let board = board::board(&last_reset, flash.as_ref());
     let (ticker, session) = make(board);
     let status = ticker.status();
     #[cfg(not(feature = "store"))]

@@ -55,18 +55,20 @@ impl FlashFunctions {
         self.without_xip(|| unsafe { (self.program)(offset, page.as_ptr(), PAGE_LEN as u32) });
     }
 
-    fn without_xip(&self, work: impl FnOnce()) {
+    /// Does something with the flash while nothing can be read from it.
+    pub(crate) fn without_xip<R>(&self, work: impl FnOnce() -> R) -> R {
         // SAFETY: all code and all constants are in RAM, interrupt handlers and their vectors included.
         unsafe {
             (self.connect)();
             (self.exit_xip)();
         }
-        work();
+        let result = work();
         // SAFETY: likewise.
         unsafe {
             (self.flush_cache)();
             (self.enter_xip)();
         }
+        result
     }
 }
 

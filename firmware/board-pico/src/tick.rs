@@ -11,6 +11,7 @@ use cortex_m::peripheral::NVIC;
 use frixel_board::hardware::Hardware;
 use frixel_board::tick::{Tick, TickShared};
 use frixel_control::Ticker;
+use frixel_cortex_m::Owned;
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_session::TickEnds;
@@ -20,7 +21,6 @@ use crate::adc::Adc;
 use crate::board::Pico;
 use crate::dac::Frames;
 use crate::output::Output;
-use crate::owned::Owned;
 use crate::period::{self, Period};
 use crate::pins::Pin;
 

@@ -247,6 +247,35 @@ impl fmt::Display for ResetCause {
     }
 }
 
+/// The processor core by whose costs a board estimates the ticks of a scene. The numbers on the wire never change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Core {
+    /// Cortex-M4F, or another that has a floating-point unit and takes no more cycles.
+    CortexM4f,
+    /// Cortex-M0+, which computes floating-point numbers in software.
+    CortexM0Plus,
+}
+
+impl Core {
+    /// The core's number on the wire.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::CortexM4f => 0,
+            Self::CortexM0Plus => 1,
+        }
+    }
+}
+
+impl From<u8> for Core {
+    /// A number that this crate does not know is read as the Cortex-M4F: the board refuses what its core cannot do.
+    fn from(number: u8) -> Self {
+        match number {
+            1 => Self::CortexM0Plus,
+            _ => Self::CortexM4f,
+        }
+    }
+}
+
 /// Limits of a board. The board refuses a command that exceeds a limit; it never clamps the value silently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardLimits {
@@ -277,6 +306,8 @@ pub struct BoardLimits {
     /// protects, and with it the peak voltage at each carrier frequency (`frixel_model::TouchBound`). Infinite on a
     /// board that nobody can touch, such as a simulated one. Since protocol 1.4; boards before it have no such bound.
     pub series_resistance_ohm: f32,
+    /// The core whose cycles [`Self::tick_cycles_max`] are. Since protocol 1.4; boards before it have a Cortex-M4F.
+    pub core: Core,
 }
 
 impl BoardLimits {
@@ -300,5 +331,6 @@ impl BoardLimits {
         touch_report_period_s: 0.0,
         tick_cycles_max: Self::SMALLEST_TICK_CYCLES_MAX,
         series_resistance_ohm: f32::INFINITY,
+        core: Core::CortexM4f,
     };
 }
