@@ -37,7 +37,9 @@ function chip() {
     pins,
     write,
     load(block, program) {
-      program.forEach((word, place) => write(block, INSTR_MEM0 + 4 * place, word));
+      for (const [place, word] of program.entries()) {
+        write(block, INSTR_MEM0 + 4 * place, word);
+      }
     },
     connect: (number, block) => rp2040.writeUint32(0x4001_4004 + 8 * number, FUNCTION_PIO0 + block),
     run(cycles) {
