@@ -163,13 +163,13 @@ pub(crate) enum CommandError {
     )]
     StrokeOffScreen { name: String, width_mm: f64, height_mm: f64 },
     #[error(
-        "a stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave out --stroke \
-         and --from"
+        "a stroke moves the finger of --port sim, --port qemu and --port pico only; a board at {port} has its own: leave \
+         out --stroke and --from"
     )]
     StrokeOnBoard { port: String },
     #[error(
-        "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim and --port qemu only; a board at {port} has \
-         its own: leave them out"
+        "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim, --port qemu and --port pico \
+         only; a board at {port} has its own: leave them out"
     )]
     WorldOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]

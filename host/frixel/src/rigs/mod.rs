@@ -2,6 +2,7 @@
 //! [`Link`] that records the play.
 //!
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.
+//! - [`PicoStream`]: the image of the Pico in an emulator, whose clock waits for the host.
 //! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
@@ -11,7 +12,11 @@
 mod emulated;
 mod event_log;
 #[cfg(unix)]
+mod held_ticks;
+#[cfg(unix)]
 mod pace;
+#[cfg(unix)]
+mod pico;
 mod port;
 #[cfg(unix)]
 mod server;
@@ -23,6 +28,8 @@ pub use emulated::EmulatedStream;
 pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;
+#[cfg(unix)]
+pub use pico::PicoStream;
 pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};

@@ -51,7 +51,7 @@ fn options(metadata: &Metadata) -> Result<PlayOptions, String> {
     let Metadata { frixel, rig, play, .. } = metadata;
     match rig.as_str() {
         "sim" => {}
-        "qemu" => return Err("it is of the emulated board, and only --port sim is played again".into()),
+        "qemu" | "pico" => return Err("it is of an emulated board, and only --port sim is played again".into()),
         _ if metadata.is_simulated => return Err("it is of a virtual board at a port, which runs in real time".into()),
         _ => return Err("it is of a board at a port, under a person's finger".into()),
     }
