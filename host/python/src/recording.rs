@@ -102,7 +102,8 @@ pub(crate) fn write_parquet(
 #[pyfunction]
 pub(crate) fn replay(py: Python<'_>, path: PathBuf) -> PyResult<usize> {
     let failed = |sentence: &str| raised(py, "PlayError", (format!("{}{sentence}", path.display()),));
-    let bytes = fs::read(&path).map_err(|error| failed(&format!(": this file cannot be read ({error})")))?;
+    let bytes =
+        fs::read(&path).map_err(|error| failed(&format!(": this file cannot be read ({error}): check the path")))?;
     let recorded = Recording::read_parquet(bytes).map_err(|error| failed(&format!(": {error}")))?;
     let played = interruptible(py, |goes_on| recorded.replay(&mut || goes_on()))?;
     let played = played.map_err(|error| failed(&format!(" cannot be played again: {error}")))?;

@@ -94,16 +94,25 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
         ({"seed": 8}, "seed is 7 there"),
         ({"played": {"bars.toml": "version = 1\n"}}, "played is"),
         ({"participant": "Jane Doe"}, "give a code"),
+        ({"participant": 7}, "give a code"),
+        ({"task": "2afc"}, "a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found '2afc'"),
     ]
     for changed, said in wrong:
         with pytest.raises(ExperimentError, match=said):
             opened(tmp_path, **changed)
+    with pytest.raises(ParameterError, match="seed is a whole number from 0"):
+        opened(tmp_path, seed="7")
+    with pytest.raises(ExperimentError, match=r"cannot be made \(File exists\): give another one"):
+        opened(tmp_path / "manifest.json")
 
 
 def test_a_session_has_one_writer(tmp_path: Path) -> None:
     with opened(tmp_path), pytest.raises(ExperimentError, match="another process writes"):
         opened(tmp_path)
-    opened(tmp_path).close()
+    session = opened(tmp_path)
+    session.close()
+    with pytest.raises(ExperimentError, match="this session is closed: open it again"):
+        session.play(plates(0.1), stroke=STROKE)
 
 
 def test_another_method_is_not_gone_on_with(tmp_path: Path) -> None:
@@ -158,9 +167,10 @@ def test_every_play_is_recorded_and_a_trial_is_replayed_bit_for_bit(tmp_path: Pa
     assert len(files) == 3, "equal plays have one file: two levels and the standard"
     with opened(tmp_path, played=None) as session:
         assert session.replay(2) == 2
-        for number in (-1, 4):
-            with pytest.raises(ExperimentError, match=f"trial {number} is not answered: there are 4"):
-                session.replay(number)
+        with pytest.raises(ExperimentError, match="trial 4 is not answered: there are 4"):
+            session.replay(4)
+        with pytest.raises(ParameterError, match="number is a whole number from 0"):
+            session.replay(-1)
     recording = tmp_path / rows[0]["plays"][0]["recording"]
     command = subprocess.run([os.environ["FRIXEL"], "replay", recording], capture_output=True, text=True, check=True)
     assert command.stdout.endswith("the same bits, 200 rows of 12 columns\n")
@@ -193,6 +203,8 @@ def test_a_recording_that_was_changed_is_not_replayed(tmp_path: Path) -> None:
 
 def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
     with opened(tmp_path) as session, Device.open("sim") as device:
+        with pytest.raises(ParameterError, match=r"a board, of Device\.open, found 'sim'"):
+            session.play(plates(0.1), on="sim", seconds=1)  # type: ignore[arg-type]
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
             session.play(plates(0.1), on=device)
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):

@@ -134,6 +134,7 @@ def test_a_study_is_rows_a_picture_and_files(tmp_path: Path) -> None:
         ({"peple": 3}, "unknown field `peple`"),
         ({"scenes": ["nowhere.toml"]}, "the scene nowhere.toml cannot be read"),
         ({"scenes": {}}, "give the name of one scene file or more"),
+        ({"scenes": "grating.toml"}, "a list of files, or a dictionary of scenes by their names, found 'grating.toml'"),
         ({"scenes": {"a": "grating.toml"}}, r"Scene\.load reads a file, found 'grating.toml'"),
         ({"touch": ["50"]}, "give its file, from the plan's folder, or a bundled one"),
         ({"parameters": {"layer.2.high_n": [1]}}, "layer.2"),
@@ -149,6 +150,10 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
         sweep.cells(tmp_path / "nowhere.toml")
     with pytest.raises(ParameterError, match=r"a cell is a text that `sweep\.cells` has made, and this one is not"):
         sweep.play("{}")
+    with pytest.raises(ParameterError, match=r"a cell is a text that `sweep\.cells` has made, found 3"):
+        sweep.play(3)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match="a study is of one result or more"):
+        sweep.Study([])
     with pytest.raises(ParameterError, match=r"a result is a text that `sweep\.play` has made, and this one is not"):
         sweep.Study(["{}"])
     (cell,) = sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1})

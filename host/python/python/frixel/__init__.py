@@ -4,7 +4,7 @@
 simulated fingers, and `frixel.experiment` asks people; `docs/python.md` has the first steps.
 """
 
-from . import errors, model, sweep
+from . import errors, experiment, model, sweep
 from ._frixel import __version__
 from .device import Device, Telemetry
 from .errors import FitError, FrixelError, Mistake, ParameterError, PlayError, SceneError
@@ -37,6 +37,7 @@ __all__ = [
     "TouchSource",
     "__version__",
     "errors",
+    "experiment",
     "fit",
     "model",
     "replay",

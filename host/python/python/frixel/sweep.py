@@ -45,6 +45,10 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
     """
     if isinstance(plan, Mapping):
         scenes = plan.get("scenes", [])
+        if not isinstance(scenes, (Mapping, list, tuple)):
+            raise ParameterError(
+                f"`scenes` is a list of files, or a dictionary of scenes by their names, found {scenes!r}"
+            )
         named = {name: Scene.of(scene) for name, scene in scenes.items()} if isinstance(scenes, Mapping) else {}
         text = _toml.dumps({**plan, "scenes": list(scenes)})
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
@@ -65,6 +69,8 @@ def play(cell: str) -> str:
     ParameterError
         It is no cell, or one of another version.
     """
+    if not isinstance(cell, str):
+        raise ParameterError(f"a cell is a text that `sweep.cells` has made, found {cell!r}")
     return _frixel.play_cell(cell)
 
 
@@ -81,7 +87,10 @@ class Study:
     """
 
     def __init__(self, results: Iterable[str]) -> None:
-        lines, self.files = _frixel.study_files(list(results))
+        texts = list(results)
+        if not texts or not all(isinstance(text, str) for text in texts):
+            raise ParameterError("a study is of one result or more, texts that `sweep.play` has made")
+        lines, self.files = _frixel.study_files(texts)
         self.words = "\n".join(lines)
 
     files: dict[str, bytes]

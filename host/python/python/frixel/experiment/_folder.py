@@ -31,7 +31,7 @@ class Folder:
         try:
             path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise _unwritable(f"the folder {path}", error, "give another one") from error
+            raise ExperimentError(f"the folder {path} cannot be made ({error.strerror}): give another one") from error
         self._lock = _locked(path / ".lock")
         try:
             self._manifest = self._begun(manifest)
@@ -46,6 +46,7 @@ class Folder:
 
     def keep(self, recording: Recording, participant: str) -> str:
         """Writes a recording under the SHA-256 of its bytes, and into the manifest. Returns its path in the folder."""
+        self._check_open()
         folder = self._path / RECORDINGS
         partial = folder / ".partial"
         try:
@@ -75,6 +76,7 @@ class Folder:
 
     def append(self, row: dict[str, Any]) -> None:
         """Adds a line, and waits until the disk has it. A line that does not fit is cut off again."""
+        self._check_open()
         path = self._path / "trials.jsonl"
         line = (json.dumps(row) + "\n").encode()
         before = path.stat().st_size if path.exists() else 0
@@ -89,6 +91,10 @@ class Folder:
             answer = f"the answer of trial {row['number']}"
             raise _unwritable(answer, error, "check the free space, and run the session again") from error
         self.rows.append(row)
+
+    def _check_open(self) -> None:
+        if self._lock.closed:
+            raise ExperimentError("this session is closed: open it again, and it goes on")
 
     def _begun(self, manifest: dict[str, Any]) -> dict[str, Any]:
         """The manifest of the folder, which agrees with this one; a new one if there is none."""

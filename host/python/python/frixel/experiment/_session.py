@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..device import Device
-from ..errors import ParameterError
+from ..errors import ParameterError, whole
 from ..recording import Recording, replay
 from ..scene import Scene
 from ..simulator import Simulator
@@ -74,7 +74,10 @@ class Session:
         played: Mapping[str, str | bytes] | None = None,
         on_marker: Callable[[str, Trial], object] | None = None,
     ) -> None:
-        if not _CODE.fullmatch(participant):
+        if not isinstance(task, Task):
+            raise ExperimentError(f"a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found {task!r}")
+        whole("seed", seed, 0)
+        if not (isinstance(participant, str) and _CODE.fullmatch(participant)):
             raise ExperimentError(
                 f"participant {participant!r}: give a code of 1 to 32 letters, digits, - and _, and no name"
             )
@@ -130,6 +133,8 @@ class Session:
         On the simulator, ``settings`` are those of :class:`frixel.Simulator`; what was played with the same ones in
         this run is not played again. With a board, ``on``, it plays for ``seconds`` (:meth:`frixel.Device.record`).
         """
+        if not (on is None or isinstance(on, Device)):
+            raise ParameterError(f"`on` is a board, of Device.open, found {on!r}; without it the simulator plays")
         if on is not None and (settings or seconds is None):
             raise ParameterError("a play on a board takes `seconds`, and no settings of the simulator")
         self._mark("play")
@@ -151,7 +156,7 @@ class Session:
         Returns the number of plays, which are the same. Raises :class:`ExperimentError` for a trial without any, and
         :class:`frixel.PlayError` where a play differs, or was on a board.
         """
-        if not 0 <= number < len(self._folder.rows):
+        if whole("number", number, 0) >= len(self._folder.rows):
             raise ExperimentError(f"trial {number} is not answered: there are {len(self._folder.rows)}, from 0")
         plays = self._folder.rows[number]["plays"]
         if not plays:
