@@ -280,6 +280,9 @@ class Session:
         key = (*vars(simulator).values(), seconds)
         if key not in self._kept:
             recording = simulator.run(seconds)
+            for values in recording.values():
+                # The next trial with the same play gets them as they are.
+                values.setflags(write=False)
             self._kept[key] = recording, self._folder.keep(recording, self._participant)
             if len(self._kept) > KEPT_MAX:
                 del self._kept[next(iter(self._kept))]
