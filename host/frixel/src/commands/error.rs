@@ -19,7 +19,8 @@ use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
-use frixel_lab::recording::{Difference, RecordingError};
+use frixel_lab::recording::{Difference, RecordingError, ReplayError};
+use frixel_lab::score::TrialsError;
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::sweep::{CellError, PlanError, StudyError};
@@ -80,6 +81,8 @@ pub(crate) enum CommandError {
     NoPseudoTerminal { what: &'static str },
     #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
+    #[error(transparent)]
+    Trials(#[from] TrialsError),
     #[error("the threads of --jobs cannot start: {0}; give a smaller number")]
     Threads(ThreadPoolBuildError),
     #[error("{}: {source}", path.display())]
@@ -249,8 +252,8 @@ pub(crate) enum CommandError {
     Recording { path: PathBuf, source: RecordingError },
     #[error("--participant goes into a Parquet file, and {} is none by its name: give one that ends in .parquet", path.display())]
     ParticipantInTable { path: PathBuf },
-    #[error("{} cannot be played again: {reason}", path.display())]
-    NoReplay { path: PathBuf, reason: String },
+    #[error("{} cannot be played again: {source}", path.display())]
+    NoReplay { path: PathBuf, source: Box<ReplayError> },
     #[error(
         "{} plays other bits: {difference}; the file was changed, or this machine computes differently", path.display()
     )]
