@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 9] = [
+const PARTS: [Part; 10] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -65,6 +65,12 @@ const PARTS: [Part; 9] = [
         what: "each fuzz target for 15 minutes, with libFuzzer",
         needs: &[Need::CppCompiler],
         run: fuzz_targets,
+    },
+    Part {
+        name: "faults",
+        what: "what holds in every tick whatever goes wrong, and what bit errors leave of uploads and streams",
+        needs: &[],
+        run: faults,
     },
     Part {
         name: "packages",
@@ -110,7 +116,7 @@ fn strokes() -> Result<(), String> {
 }
 
 fn people() -> Result<(), String> {
-    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &[])?;
+    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &["coverage::"])?;
     ignored("fits of 600 tables of means", &["--release", "--package", "frixel-lab", "--lib"], &["fit::means"])
 }
 
@@ -125,6 +131,12 @@ fn thresholds() -> Result<(), String> {
 fn experiments() -> Result<(), String> {
     let one_by_one = ["designer::", "--test-threads", "1"];
     ignored("experiments in real time", &["--package", "frixel", "--test", "main"], &one_by_one)
+}
+
+fn faults() -> Result<(), String> {
+    let in_every_tick = &["--release", "--package", "frixel-hil-sim", "--test", "main"];
+    ignored("what holds in every tick", in_every_tick, &["properties::"])?;
+    ignored("bit errors", &["--release", "--package", "frixel-lab", "--test", "main"], &["goodput::"])
 }
 
 fn scenes() -> Result<(), String> {
