@@ -20,6 +20,7 @@ use frixel_lab::fit::FitError;
 use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
 use frixel_lab::recording::{Difference, RecordingError, ReplayError};
+use frixel_lab::scenario::ScenarioError;
 use frixel_lab::score::TrialsError;
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
@@ -66,6 +67,15 @@ pub(crate) enum CommandError {
     NoSweepFile { path: PathBuf, what: &'static str, reason: String },
     #[error("{}: this {what} cannot be read ({source}): {advice}", path.display())]
     SweepInput { path: PathBuf, what: &'static str, source: io::Error, advice: &'static str },
+    #[error("{}: this scenario cannot be read ({source}): {advice}", file.display())]
+    ScenarioUnreadable { file: PathBuf, source: io::Error, advice: String },
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    #[error(
+        "{}: {unmet} {} not as expected: see above", file.display(),
+        if *unmet == 1 { "thing was" } else { "things were" }
+    )]
+    Unmet { file: PathBuf, unmet: usize },
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]
