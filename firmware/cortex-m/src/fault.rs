@@ -48,7 +48,9 @@ macro_rules! hard_fault_handler {
                 "mrs r0, msp",
                 "ldr r1, ={stack}",
                 "msr msp, r1",
-                "b {end}",
+                // A branch of an `ARMv6-M` reaches 2 KiB.
+                "ldr r1, ={end}",
+                "bx r1",
                 stack = sym _fault_stack_start,
                 end = sym end,
             )
