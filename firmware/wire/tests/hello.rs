@@ -5,7 +5,8 @@ use crate::support;
 
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{
-    BoardKind, BoardLimits, Core, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause, notice,
+    BoardKind, BoardLimits, Core, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause,
+    notice,
 };
 use support::hex::from_hex;
 use support::samples::hello;
