@@ -9,7 +9,7 @@ use crate::needs::{Machine, Missing, Need};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
 use crate::test_programs::{self, Programs};
-use crate::{bench, budgets, fuzz, inputs, portability, python, results, stamps, studio_tests};
+use crate::{bench, budgets, fuzz, inputs, pico_rig, portability, python, results, stamps, studio_tests};
 
 /// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 8] =
@@ -78,7 +78,7 @@ const STAGES: [Stage; 16] = [
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
         run: tests_on_emulators,
     },
     Stage {
@@ -147,7 +147,9 @@ fn tests() -> Result<Outcome, String> {
 }
 
 fn tests_on_emulators() -> Result<Outcome, String> {
-    test_programs::run_all(Programs::OnEmulators)
+    let inputs = ["hil-sim/pico", "xtask"].map(str::to_owned);
+    let scripts = stamps::unless_unchanged("pico-rig", &inputs, || passed(pico_rig::test_scripts()))?;
+    Ok(scripts.and(test_programs::run_all(Programs::OnEmulators)?))
 }
 
 fn documentation() -> Result<Outcome, String> {
@@ -161,7 +163,7 @@ fn page() -> Result<Outcome, String> {
 }
 
 fn studio_scripts() -> Result<Outcome, String> {
-    let inputs = ["host/studio", "xtask"].map(str::to_owned);
+    let inputs = ["hil-sim/pico", "host/studio", "xtask"].map(str::to_owned);
     stamps::unless_unchanged("studio-scripts", &inputs, || passed(studio_tests::check_scripts()))
 }
 

@@ -3,7 +3,8 @@
 //! | file | what |
 //! |---|---|
 //! | `frixel` | the command for Linux, static |
-//! | `images/*.elf` | the firmware of each board; that of the emulated one is what `frixel play --port qemu` runs |
+//! | `images/*.elf` | the firmware of each board; those of the emulated ones are what `frixel play --port qemu` and `--port pico` run |
+//! | `images/pico-rig` | the emulator of the Pico, with the programs that `frixel play --port pico` runs by node |
 //! | `frixel-*.whl` | the Python module |
 //! | `frixel-studio.html` | the page |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
@@ -20,10 +21,11 @@ use crate::check::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
 use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, root, run, target_folder};
 use crate::licences::{self, Program};
 use crate::needs::{self, Need};
-use crate::studio;
+use crate::{pico_rig, studio};
 
 /// What it needs of the machine.
-const NEEDS: [Need; 6] = [M4F_TARGET, M0_PLUS_TARGET, M33_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python];
+const NEEDS: [Need; 8] =
+    [M4F_TARGET, M0_PLUS_TARGET, M33_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python, Need::Node, Need::Npm];
 /// Nearly as fast as `release`, and built in a third of the time.
 const PROFILE: &str = "wheel";
 /// The folder of the Python module.
@@ -39,11 +41,14 @@ const IMAGES: [(&str, &str, Program); 5] = [
     (
         "board-pico",
         "board-pico.elf",
+        // As `EmulatedBoard::build_arguments` in `hil-sim` has them.
         board(PICO, M0_PLUS, &["--no-default-features", "--features", "rp2040,everything"]),
     ),
 ];
 const NUCLEO: Program = board("firmware/board-nucleo-g474re", M4F, &[]);
 const PICO: &str = "firmware/board-pico";
+/// Folder of the emulator of the Pico among the images.
+const PICO_RIG: &str = "pico-rig";
 const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL), features: &[] };
 const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None, features: &[] };
 
@@ -71,11 +76,13 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
         let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(program);
         copy(&built, &images.join(file))?;
     }
+    pico_rig::copy_to(&images.join(PICO_RIG))?;
     wheel(&folder)?;
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
     let boards = IMAGES.map(|(_, _, program)| program);
     let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
-    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs)?)?;
+    let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
+    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs, emulator)?)?;
     write(&folder.join("SHA256SUMS"), &checksums(&folder)?)?;
     println!("{}", folder.display());
     Ok(())
@@ -184,7 +191,7 @@ mod tests {
     /// The licences of everything that is compiled into what is handed on, without building it.
     #[test]
     fn the_licences_name_crates_of_every_program() {
-        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE]).unwrap();
+        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE], String::new()).unwrap();
         for expected in
             ["clap 4", "pyo3 0", "heapless 0", "musl, the C library", "uplot ", "Apache License", "flatbuffers 25"]
         {

@@ -170,7 +170,7 @@ impl Transfer<'_, '_> {
     }
 
     fn is_complete(&self) -> bool {
-        match self.operation {
+        match &*self.operation {
             Operation::Read(bytes) => self.received == bytes.len(),
             Operation::Write(bytes) => self.sent == bytes.len(),
         }
@@ -179,7 +179,7 @@ impl Transfer<'_, '_> {
     /// Fills the transmit FIFO: with the bytes to write, or with commands to read, of which no more may be under way than
     /// the receive FIFO holds.
     fn send(&mut self) {
-        let (bytes, is_read): (&[u8], bool) = match self.operation {
+        let (bytes, is_read): (&[u8], bool) = match &*self.operation {
             Operation::Read(bytes) => (bytes, true),
             Operation::Write(bytes) => (bytes, false),
         };
