@@ -73,6 +73,12 @@ const PARTS: [Part; 10] = [
         run: fuzz_targets,
     },
     Part {
+        name: "faults",
+        what: "what holds in every tick whatever goes wrong, and what bit errors leave of uploads and streams",
+        needs: &[],
+        run: faults,
+    },
+    Part {
         name: "packages",
         what: "every crate that others use, compiled from its package as cargo publishes it",
         needs: &[],
@@ -116,7 +122,7 @@ fn strokes() -> Result<(), String> {
 }
 
 fn people() -> Result<(), String> {
-    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &[])?;
+    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &["coverage::"])?;
     ignored("fits of 600 tables of means", &["--release", "--package", "frixel-lab", "--lib"], &["fit::means"])
 }
 
@@ -131,6 +137,12 @@ fn thresholds() -> Result<(), String> {
 fn experiments() -> Result<(), String> {
     let one_by_one = ["designer::", "--test-threads", "1"];
     ignored("experiments in real time", &["--package", "frixel", "--test", "main"], &one_by_one)
+}
+
+fn faults() -> Result<(), String> {
+    let in_every_tick = &["--release", "--package", "frixel-hil-sim", "--test", "main"];
+    ignored("what holds in every tick", in_every_tick, &["properties::"])?;
+    ignored("bit errors", &["--release", "--package", "frixel-lab", "--test", "main"], &["goodput::"])
 }
 
 fn scenes() -> Result<(), String> {

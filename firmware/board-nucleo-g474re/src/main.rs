@@ -12,7 +12,7 @@ use board_nucleo_g474re::fault;
 use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
 #[cfg(feature = "optical-frame")]
-use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
+use board_nucleo_g474re::optical_frame;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::tick;
@@ -24,6 +24,8 @@ use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::fault::LastReset;
 use frixel_board::main_loop::MainLoop;
+#[cfg(feature = "optical-frame")]
+use frixel_board::optical_frame::{OpticalFrame, Reports};
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};

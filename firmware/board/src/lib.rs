@@ -4,6 +4,7 @@
 //! - [`hardware`]: the traits, one for each part of a board;
 //! - [`tick`]: what the timer's interrupt does;
 //! - [`main_loop`]: the rest of the firmware, between two ticks;
+//! - [`optical_frame`]: a touch source of the main loop;
 //! - [`fault`]: how a start ends after a panic or a fault, and what the next one learns of it;
 //! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits.
 #![cfg_attr(not(test), no_std)]
@@ -13,4 +14,5 @@ pub mod bring_up;
 pub mod fault;
 pub mod hardware;
 pub mod main_loop;
+pub mod optical_frame;
 pub mod tick;

@@ -90,7 +90,7 @@ impl AmplifierConfig {
     }
 
     /// Checks the range of every number.
-    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
         above_zero("amplifier gain", self.gain)?;
         above_zero("amplifier saturation_v_peak", self.saturation_v_peak)?;
         zero_to_ten("amplifier output_time_constant_s", self.output_time_constant_s)?;

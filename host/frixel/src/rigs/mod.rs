@@ -1,7 +1,7 @@
 //! The boards with a clock of their own that a scene can play on, each behind a [`ByteStream`](frixel_driver::ByteStream) or a
 //! [`Link`] that records the play.
 //!
-//! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock.
+//! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock; `EmulatedRig` for scenarios.
 //! - [`PicoStream`]: the image of the Pico in an emulator, whose clock waits for the host.
 //! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
@@ -10,6 +10,8 @@
 
 #[cfg(unix)]
 mod emulated;
+#[cfg(unix)]
+mod emulated_rig;
 mod event_log;
 #[cfg(unix)]
 mod held_ticks;
@@ -25,6 +27,8 @@ mod server_log;
 
 #[cfg(unix)]
 pub use emulated::EmulatedStream;
+#[cfg(unix)]
+pub(crate) use emulated_rig::EmulatedRig;
 pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;

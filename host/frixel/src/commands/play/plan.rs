@@ -135,12 +135,6 @@ impl Plan {
         self.ticks_per_row
     }
 
-    /// Ends the play after so many rows, unless it is over before.
-    pub(super) fn end_after_rows(&mut self, rows: usize) {
-        let rows_s = rows as f64 * f64::from(self.ticks_per_row) / f64::from(self.tick_hz);
-        self.seconds = Some(self.seconds().min(rows_s));
-    }
-
     /// Whether the play ends when the stream of a board at a port has ended.
     pub(super) fn ends_with_stream(&self) -> bool {
         self.target == Target::Port && self.seconds.is_none()
