@@ -4,7 +4,7 @@ mod faults;
 
 use core::ops::Range;
 
-use frixel_control::{Drive, Sense};
+use frixel_control::{Board, Drive, Sense};
 use frixel_model::FrictionLaw;
 use frixel_session::Touch;
 
@@ -43,11 +43,27 @@ impl WorldConfig {
         touch: TouchConfig::IDEAL,
     };
 
-    /// This world with every effect that was measured on real amplifiers, fingers and touch sources.
+    /// The ideal plant around a board, with the lags that the board expects.
+    pub fn of(board: &Board) -> Self {
+        Self {
+            tick_hz: board.tick_hz,
+            full_scale_v_peak: board.limits.full_scale_v_peak.into(),
+            amplifier: AmplifierConfig::of(board),
+            ..Self::IDEAL
+        }
+    }
+
+    /// This world with every effect that was measured on real amplifiers, fingers and touch sources. The amplifier's and
+    /// the electrode's lag stay.
     #[must_use]
     pub fn realistic(self) -> Self {
+        let AmplifierConfig { output_time_constant_s, electrode_time_constant_s, .. } = self.amplifier;
         Self {
-            amplifier: AmplifierConfig::REALISTIC,
+            amplifier: AmplifierConfig {
+                output_time_constant_s,
+                electrode_time_constant_s,
+                ..AmplifierConfig::REALISTIC
+            },
             fingertip: FingertipConfig::REALISTIC,
             touch: TouchConfig::REALISTIC,
             ..self
@@ -262,6 +278,11 @@ impl World {
         self.amplifier = self.amplifier.reconfigured(config, self.full_scale_v_peak, self.tick_hz)?;
         self.healthy_amplifier = *config;
         Ok(())
+    }
+
+    /// Ticks a second.
+    pub fn tick_hz(&self) -> u32 {
+        self.tick_hz
     }
 
     /// Number of ticks since the start.

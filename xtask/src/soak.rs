@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use crate::bench::programs::{self, Pace};
-use crate::check::M4F_TARGET;
+use crate::check::{M0_PLUS_TARGET, M4F_TARGET};
 use crate::command::cargo_in;
 use crate::needs::{self, Need};
 use crate::outcome::Outcome;
@@ -59,6 +59,12 @@ const PARTS: [Part; 10] = [
         what: "12,000 random scenes in the emulator: no tick above the loader's estimate",
         needs: &[M4F_TARGET, Need::Emulator],
         run: scenes,
+    },
+    Part {
+        name: "pico",
+        what: "the Pico's image: a hundred random instructions of a play for each way to end it, power cuts at each flash operation",
+        needs: &[M0_PLUS_TARGET, Need::Node, Need::Npm],
+        run: pico,
     },
     Part {
         name: "fuzz",
@@ -141,6 +147,10 @@ fn faults() -> Result<(), String> {
 
 fn scenes() -> Result<(), String> {
     Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
+}
+
+fn pico() -> Result<(), String> {
+    ignored("the Pico's image", &["--package", "frixel-hil-sim", "--test", "emulated"], &["pico::"])
 }
 
 fn fuzz_targets() -> Result<(), String> {

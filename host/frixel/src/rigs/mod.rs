@@ -2,6 +2,7 @@
 //! [`Link`] that records the play.
 //!
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock; `EmulatedRig` for scenarios.
+//! - [`PicoStream`]: the image of the Pico in an emulator, whose clock waits for the host.
 //! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
@@ -13,7 +14,11 @@ mod emulated;
 mod emulated_rig;
 mod event_log;
 #[cfg(unix)]
+mod held_ticks;
+#[cfg(unix)]
 mod pace;
+#[cfg(unix)]
+mod pico;
 mod port;
 #[cfg(unix)]
 mod server;
@@ -27,6 +32,8 @@ pub(crate) use emulated_rig::EmulatedRig;
 pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;
+#[cfg(unix)]
+pub use pico::PicoStream;
 pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::{Server, ServerError};
