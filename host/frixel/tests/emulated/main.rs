@@ -12,4 +12,5 @@ mod credit;
 mod emulator;
 mod injected_faults;
 mod link;
+mod pico;
 mod scenarios;
