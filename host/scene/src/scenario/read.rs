@@ -218,10 +218,16 @@ fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
     Some(Cause::Line { directions, damage: damage? })
 }
 
+/// What an output is expected to be.
+#[derive(Clone, Copy)]
+enum Output {
+    Zero,
+    Off,
+    Driven,
+}
+
 /// The expectations of one table, which share their span of time.
 fn expected(mut fields: Fields, names: &[&str], log: &mut Log) -> Vec<Expectation> {
-    const OUTPUTS: [(&str, fn() -> Seen); 3] =
-        [("zero", || Seen::OutputZero), ("off", || Seen::OutputOff), ("driven", || Seen::OutputDriven)];
     let (line, before) = (line_of(&fields, log), log.mistakes());
     let after_place = fields.place(expect::AFTER.name);
     let after = fields.text(log, &expect::AFTER);
@@ -235,9 +241,14 @@ fn expected(mut fields: Fields, names: &[&str], log: &mut Log) -> Vec<Expectatio
     }
     let from_ms = fields.number_or_default(log, &expect::FROM_MS);
     let to_ms = fields.number(log, &expect::TO_MS);
-    let output = fields.choice(log, &expect::OUTPUT, &OUTPUTS);
+    let outputs = [("zero", Output::Zero), ("off", Output::Off), ("driven", Output::Driven)];
+    let output = fields.choice(log, &expect::OUTPUT, &outputs);
     let seen = [
-        output.map(|seen| seen()),
+        output.map(|output| match output {
+            Output::Zero => Seen::OutputZero,
+            Output::Off => Seen::OutputOff,
+            Output::Driven => Seen::OutputDriven,
+        }),
         fields.number(log, &expect::ELECTRODE_BELOW_V).map(Seen::ElectrodeBelow),
         fields.interval(log, &expect::FRICTION_N).map(Seen::Friction),
         fields.choice(log, &expect::STATE, &STATES).map(Seen::State),
