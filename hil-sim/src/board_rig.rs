@@ -91,6 +91,12 @@ pub trait BoardRig {
     /// Starts the finger's stroke.
     fn start_stroke(&mut self);
 
+    /// Lets the person at the arm switch let go of it and press it again, and returns the ticks until the board has seen
+    /// it. Without a person who waits to be asked, this does nothing.
+    fn press_switch(&mut self) -> u64 {
+        0
+    }
+
     /// Most ticks between a request and its effect, or between an event and the time at which it is seen.
     fn lateness_ticks(&self) -> u64 {
         0

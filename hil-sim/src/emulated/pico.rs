@@ -1,5 +1,6 @@
 //! The image of the Pico board on an emulated RP2040, wired to its chips and its world.
 
+mod board_rig;
 mod process;
 mod protocol;
 
@@ -17,6 +18,7 @@ use frixel_wire::payload;
 use super::{EmulatorError, Image, LinkRecord};
 use crate::World;
 use crate::chips::Ad5761rChip;
+pub use board_rig::PicoBoardRig;
 use process::Process;
 use protocol::{ARM, Ended, READY, Ran, Request};
 pub use protocol::{Stamped, StartCause, WireEvent};
@@ -108,6 +110,11 @@ impl PicoRig {
     /// its beat does, anew at each start.
     pub fn tick(&self) -> u32 {
         self.world.tick() as u32
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World {
+        &self.world
     }
 
     /// The world, to inject faults and to move the finger.

@@ -73,7 +73,7 @@ macro_rules! pages {
     };
 }
 
-pages!(control control_live options ports recordings scenes streams strokes tables);
+pages!(control control_live options ports recordings scenarios scenes streams strokes tables);
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")

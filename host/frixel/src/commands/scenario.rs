@@ -8,12 +8,12 @@ use std::sync::mpsc;
 use clap::ValueEnum;
 use frixel_hil_sim::RigConfig;
 #[cfg(unix)]
-use frixel_hil_sim::World;
+use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
 #[cfg(unix)]
-use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
+use frixel_hil_sim::{Board, World, WorldConfig};
+#[cfg(unix)]
+use frixel_lab::scenario::{self, Programs};
 use frixel_lab::scenario::{ScenarioOutcome, run_in_process};
-#[cfg(unix)]
-use frixel_lab::scenario::{programs, stroke_and_world};
 use frixel_scene::{Scenario, Scene};
 
 use crate::input;
@@ -32,6 +32,8 @@ pub(super) enum RigKind {
     Sim,
     /// The firmware on an emulated board.
     Qemu,
+    /// The image of the Pico on an emulator.
+    Pico,
 }
 
 /// Runs a scenario, prints what happened, and fails if something was not as expected and `expect` is set.
@@ -42,8 +44,10 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), Command
         RigKind::Sim => run_in_process(&scenario, &scenes, &RigConfig::default())?,
         #[cfg(unix)]
         RigKind::Qemu => run_emulated(&scenario, &scenes)?,
+        #[cfg(unix)]
+        RigKind::Pico => run_on_pico(&scenario, &scenes)?,
         #[cfg(not(unix))]
-        RigKind::Qemu => return Err(CommandError::NoPseudoTerminal { what: "--rig qemu" }),
+        RigKind::Qemu | RigKind::Pico => return Err(CommandError::NoPseudoTerminal { what: "--rig qemu" }),
     };
     print(&outcome)?;
     let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);
@@ -59,13 +63,8 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), Command
 /// Runs a scenario on the firmware in an emulator.
 #[cfg(unix)]
 fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome, CommandError> {
-    let programs = programs(scenario, scenes, &BOARD)?;
-    let (stroke, config) = stroke_and_world(scenario, &programs, RigConfig::of(BOARD).world)?;
-    let mut world = World::new(config, stroke, scenario.seed)?;
-    if let Some(program) = programs.get(&scenario.scene) {
-        world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
-    }
-    let image = Image::find()?;
+    let (programs, world) = prepare(scenario, scenes, &BOARD)?;
+    let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
     let mut tick = 0_u32;
     let mut board = LinkBoard::start(&image, world, move |record| {
@@ -73,9 +72,33 @@ fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result
         // The receiver is gone once the scenario has ended.
         let _ = sender.send((tick, *record));
     })?;
-    let outcome = frixel_lab::scenario::run(scenario, &programs, &mut EmulatedRig::open(&board, records)?)?;
+    let outcome = scenario::run(scenario, &programs, &mut EmulatedRig::open(&board, records)?)?;
     board.check()?;
     Ok(outcome)
+}
+
+/// Runs a scenario on the image of the Pico in an emulator.
+#[cfg(unix)]
+fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome, CommandError> {
+    let (programs, world) = prepare(scenario, scenes, &Board::PICO)?;
+    let mut rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
+    Ok(scenario::run(scenario, &programs, &mut rig)?)
+}
+
+/// The programs of a scenario for a board, and the world around it.
+#[cfg(unix)]
+fn prepare(
+    scenario: &Scenario,
+    scenes: &BTreeMap<String, Scene>,
+    board: &Board,
+) -> Result<(Programs, World), CommandError> {
+    let programs = scenario::programs(scenario, scenes, board)?;
+    let (stroke, config) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
+    let mut world = World::new(config, stroke, scenario.seed)?;
+    if let Some(program) = programs.get(&scenario.scene) {
+        world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
+    }
+    Ok((programs, world))
 }
 
 fn print(outcome: &ScenarioOutcome) -> Result<(), CommandError> {

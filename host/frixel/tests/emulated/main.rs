@@ -13,3 +13,4 @@ mod emulator;
 mod injected_faults;
 mod link;
 mod pico;
+mod scenarios;

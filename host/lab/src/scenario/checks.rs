@@ -1,7 +1,10 @@
 //! The expectations of a scenario, compared with every tick.
 
+use std::fmt::Display;
+
 use frixel_hil_sim::RigTick;
 use frixel_scene::{Expectation, Scenario, Seen};
+use frixel_wire::fault::{Fault, State};
 
 use super::Unmet;
 use super::host::Failure;
@@ -221,22 +224,25 @@ impl Check {
             Seen::OutputDriven => "a driven output".to_owned(),
             Seen::ElectrodeBelow(limit_v) => format!("an electrode below {limit_v} V"),
             Seen::Friction([least_n, largest_n]) => format!("a friction of {least_n} to {largest_n} N"),
-            Seen::State(state) => format!("the state \"{state}\" to be said"),
-            Seen::Fault(fault) => format!("the fault \"{fault}\" to be said"),
+            Seen::State(state) => format!("the state \"{}\" to be said", brief(state)),
+            Seen::Fault(fault) => format!("\"{}\" to be said", brief(fault)),
             Seen::Error(words) => format!("a failure with the words \"{words}\""),
         }
     }
 }
 
 /// What the board has said last, for a sentence.
-fn said(clock: Clock, found: Option<(u64, frixel_wire::fault::State, Option<frixel_wire::fault::Fault>)>) -> String {
-    match found {
-        None => "the board has said nothing".to_owned(),
-        Some((tick, state, None)) => format!("the board has said \"{state}\" at {:.3} ms", clock.ms(tick)),
-        Some((tick, state, Some(fault))) => {
-            format!("the board has said \"{state}\", \"{fault}\" at {:.3} ms", clock.ms(tick))
-        }
-    }
+fn said(clock: Clock, found: Option<(u64, State, Option<Fault>)>) -> String {
+    let Some((tick, state, fault)) = found else { return "the board has said nothing".to_owned() };
+    let fault = fault.map_or_else(String::new, |fault| format!(", {}", brief(&fault)));
+    format!("the board has said \"{}{fault}\" at {:.3} ms", brief(&state), clock.ms(tick))
+}
+
+/// A state or a fault without what to do about it.
+fn brief(said: &impl Display) -> String {
+    let text = said.to_string();
+    let is_fault = text.starts_with("fault ");
+    text.split(if is_fault { ';' } else { ':' }).next().unwrap_or_default().to_owned()
 }
 
 /// The failures, for a sentence.

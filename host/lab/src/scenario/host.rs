@@ -132,6 +132,7 @@ impl<'s, 'r> Host<'s, 'r> {
                 self.line.inject(hello_request_frame(&mut frame).map_err(DeviceError::from)?);
                 return Ok(());
             }
+            Action::Play => self.line.press_switch(),
             _ => {}
         }
         let program = |scene: &str| self.programs.get(scene).cloned();

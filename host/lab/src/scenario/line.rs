@@ -125,6 +125,16 @@ impl<'r> ScenarioLine<'r> {
         inner.to_board.take(bytes, tick);
     }
 
+    /// Lets the person press the arm switch anew, if the board has been armed since the start.
+    pub(super) fn press_switch(&self) {
+        let mut inner = self.0.borrow_mut();
+        if inner.told.was_armed() {
+            let until = inner.rig.press_switch() + inner.rig.tick();
+            // An error is kept, and ends the scenario.
+            let _ = inner.advance(until, false);
+        }
+    }
+
     /// The host is killed, or another one starts.
     pub(super) fn set_dead(&self, is_dead: bool) {
         self.0.borrow_mut().is_dead = is_dead;

@@ -6,6 +6,8 @@ mod fit;
 
 use thiserror::Error;
 
+use crate::printable::brief;
+
 pub use field::FieldMistake;
 pub use file::FileMistake;
 pub use fit::FitMistake;
@@ -31,6 +33,14 @@ pub enum Mistake {
         "this [[expect]] expects nothing: add `output`, `electrode_below_v`, `friction_n`, `state`, `fault` or `error`"
     )]
     NothingExpected,
+    /// An expectation of a scenario counts from what has no such name.
+    #[error(
+        "`after = \"{}\"` names no command and no fault: give one of them this `name`", brief(.found)
+    )]
+    UnknownEvent {
+        /// The name, as written.
+        found: String,
+    },
 }
 
 impl Mistake {

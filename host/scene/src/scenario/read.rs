@@ -218,29 +218,44 @@ fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
     Some(Cause::Line { directions, damage: damage? })
 }
 
+/// What an output is expected to be.
+#[derive(Clone, Copy)]
+enum Output {
+    Zero,
+    Off,
+    Driven,
+}
+
 /// The expectations of one table, which share their span of time.
 fn expected(mut fields: Fields, names: &[&str], log: &mut Log) -> Vec<Expectation> {
-    const OUTPUTS: [(&str, fn() -> Seen); 3] =
-        [("zero", || Seen::OutputZero), ("off", || Seen::OutputOff), ("driven", || Seen::OutputDriven)];
-    let line = line_of(&fields, log);
+    let (line, before) = (line_of(&fields, log), log.mistakes());
     let after_place = fields.place(expect::AFTER.name);
     let after = fields.text(log, &expect::AFTER);
     if let Some(found) = after.clone().filter(|after| !names.contains(&after.as_str())) {
         let nearest = Nearest::new(&found, names.iter().copied());
-        log.add(after_place, FieldMistake::UnknownChoice { field: expect::AFTER.name, found, nearest });
+        if nearest.suggestion.is_some() {
+            log.add(after_place, FieldMistake::UnknownChoice { field: expect::AFTER.name, found, nearest });
+        } else {
+            log.add(after_place, Mistake::UnknownEvent { found });
+        }
     }
     let from_ms = fields.number_or_default(log, &expect::FROM_MS);
     let to_ms = fields.number(log, &expect::TO_MS);
-    let output = fields.choice(log, &expect::OUTPUT, &OUTPUTS);
+    let outputs = [("zero", Output::Zero), ("off", Output::Off), ("driven", Output::Driven)];
+    let output = fields.choice(log, &expect::OUTPUT, &outputs);
     let seen = [
-        output.map(|seen| seen()),
+        output.map(|output| match output {
+            Output::Zero => Seen::OutputZero,
+            Output::Off => Seen::OutputOff,
+            Output::Driven => Seen::OutputDriven,
+        }),
         fields.number(log, &expect::ELECTRODE_BELOW_V).map(Seen::ElectrodeBelow),
         fields.interval(log, &expect::FRICTION_N).map(Seen::Friction),
         fields.choice(log, &expect::STATE, &STATES).map(Seen::State),
         fields.choice(log, &expect::FAULT, &FAULTS).map(Seen::Fault),
         fields.text(log, &expect::ERROR).map(Seen::Error),
     ];
-    let (place, before) = (fields.table_place(), log.mistakes());
+    let place = fields.table_place();
     fields.close(log);
     let seen: Vec<Seen> = seen.into_iter().flatten().collect();
     if seen.is_empty() && log.mistakes() == before {

@@ -1,4 +1,5 @@
 //! The tables of a scenario file. The parser checks the fields, and `docs/scenarios.md` shows them.
+#![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
 use crate::grammar::Absence::{Means, Mistake, Number};
 use crate::grammar::{FieldSpec, Holds, Range};

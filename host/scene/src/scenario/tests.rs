@@ -48,7 +48,10 @@ fn a_mistake_is_a_sentence_with_line_and_column() {
         ),
         ("[[fault]]\nat_ms = 1\ncause = \"reset\"\nfor_ms = 4\n", "test.toml:7:1: unknown field `for_ms` in [[fault]]"),
         ("[[fault]]\nat_ms = 1\ncause = \"bytes-lost\"\n", "test.toml:4:1: [[fault]] has no `share`: add it"),
-        ("[[expect]]\nafter = \"cut\"\noutput = \"zero\"\n", "test.toml:5:9: `after = \"cut\"` is not known"),
+        (
+            "[[expect]]\nafter = \"cut\"\noutput = \"zero\"\n",
+            "test.toml:5:9: `after = \"cut\"` names no command and no fault: give one",
+        ),
         ("[[expect]]\nfrom_ms = 4\n", "test.toml:4:1: this [[expect]] expects nothing: add `output`"),
         ("stroke = { from_mm = [1], to_mm = [1, 2] }\n", "test.toml:4:22: `from_mm`"),
         ("colour = 1\n", "test.toml:4:1: unknown field `colour` in this scenario"),

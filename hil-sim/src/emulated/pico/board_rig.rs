@@ -1,0 +1,109 @@
+//! The emulated Pico as a [`BoardRig`], for scenarios.
+
+use core::time::Duration;
+
+use frixel_control::Board;
+
+use super::PicoRig;
+use crate::emulated::{EmulatorError, Image};
+use crate::{BoardRig, RigError, RigFault, RigTick, World};
+
+const NAME: &str = "the emulated Pico";
+/// Time until the board is there, and its arm switch counts as held or as let go.
+const SWITCH_TIME: Duration = Duration::from_millis(60);
+const BOARD: Board = Board::PICO;
+
+/// A [`PicoRig`] whose person holds the arm switch, and presses it again when it is asked to.
+pub struct PicoBoardRig {
+    rig: PicoRig,
+    /// The tick until which the person has let go of the switch.
+    switch_open_until: Option<u64>,
+}
+
+impl PicoBoardRig {
+    /// Switches the board on, and waits until its arm switch counts as held.
+    pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
+        let mut rig = PicoRig::start(image, world)?;
+        while rig.now() < SWITCH_TIME {
+            rig.step()?;
+        }
+        Ok(Self { rig, switch_open_until: None })
+    }
+
+    fn step(&mut self) -> Result<RigTick, RigError> {
+        self.switch_open_until = self.switch_open_until.filter(|until| *until > self.tick());
+        self.rig.broken.arm_switch = self.switch_open_until.map(|_| false);
+        let record = self.rig.step().map_err(|error| ended(&error))?;
+        Ok(RigTick { tick: self.tick(), drive: record.drive, felt: record.felt })
+    }
+}
+
+impl BoardRig for PicoBoardRig {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn board(&self) -> &Board {
+        const { &BOARD }
+    }
+
+    fn tick(&self) -> u64 {
+        self.rig.world().tick()
+    }
+
+    fn now(&self) -> Duration {
+        self.rig.now()
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
+        self.rig.send(bytes);
+        Ok(())
+    }
+
+    fn run(
+        &mut self,
+        until_tick: u64,
+        received: &mut Vec<u8>,
+        watch: &mut dyn FnMut(&RigTick),
+    ) -> Result<(), RigError> {
+        while !self.rig.has_received() && self.tick() < until_tick {
+            watch(&self.step()?);
+        }
+        self.rig.receive(received);
+        Ok(())
+    }
+
+    fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
+        match fault {
+            RigFault::World(fault) => {
+                let world = self.rig.world_mut();
+                let now = world.tick();
+                Ok(world.schedule_fault(now..now.saturating_add(ticks), fault)?)
+            }
+            RigFault::Reset => self.rig.pull_run_pin().map_err(|error| ended(&error)),
+            RigFault::LateTick | RigFault::WrapSoon { .. } => {
+                let reason = "an unmodified image has no input for it";
+                Err(RigError::FaultUnavailable { rig: NAME, reason })
+            }
+        }
+    }
+
+    fn start_stroke(&mut self) {
+        self.rig.world_mut().start_stroke();
+    }
+
+    fn press_switch(&mut self) -> u64 {
+        let ticks = (SWITCH_TIME.as_secs_f64() * f64::from(BOARD.tick_hz)) as u64;
+        self.switch_open_until = Some(self.tick() + ticks);
+        2 * ticks
+    }
+
+    /// The supervisor of a real board waits for its amplifier and its touch reports take longer: 5 ms.
+    fn lateness_ticks(&self) -> u64 {
+        50
+    }
+}
+
+fn ended(error: &EmulatorError) -> RigError {
+    RigError::Ended { rig: NAME, reason: error.to_string() }
+}

@@ -1,0 +1,43 @@
+//! The scenarios of `hil-sim/scenarios` on the emulated boards, through the command.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::bench::turn;
+use crate::emulator::{image, pico_image};
+
+/// Runs scenarios on a rig, and returns what was not as expected.
+fn unmet(rig: &str, scenarios: &[&str]) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil-sim/scenarios");
+    let run = |name: &&str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        command.args(["sim", "--expect", "--rig", rig, "--scenario"]).arg(folder.join(format!("{name}.toml")));
+        let output = command.output().unwrap();
+        (!output.status.success()).then(|| format!("{name}: {}", String::from_utf8_lossy(&output.stderr)))
+    };
+    scenarios.iter().filter_map(run).collect()
+}
+
+#[test]
+fn scenarios_show_on_the_emulated_board_what_they_expect() {
+    if image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let scenarios = ["cable-cut", "amplifier-over-current", "finger-lifted", "late-tick", "bytes-lost"];
+    let unmet = unmet("qemu", &scenarios);
+    assert!(unmet.is_empty(), "{}", unmet.join("\n"));
+    // What this rig cannot cause is said, and nothing is claimed.
+    let refused = self::unmet("qemu", &["dac-stuck"]).concat();
+    assert!(refused.contains("dac-stuck.toml:10: the emulated board cannot cause this fault"), "{refused}");
+}
+
+#[test]
+fn scenarios_show_on_the_picos_image_what_they_expect() {
+    if pico_image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let unmet = unmet("pico", &["cable-cut", "monitor-dead", "switch-let-go", "reset"]);
+    assert!(unmet.is_empty(), "{}", unmet.join("\n"));
+}
