@@ -22,7 +22,7 @@ fn driven(codes: impl IntoIterator<Item = i16>) -> Vec<i16> {
 /// What the in-process rig drives when the finger comes so many ticks after the command to play.
 fn in_process(finger_after_ticks: u64) -> Vec<i16> {
     let world = WorldConfig::of(&BOARD);
-    let config = RigConfig { board: BOARD, world, baud: 1_000_000 };
+    let config = RigConfig { board: BOARD, world, baud: 2_000_000 };
     let mut script = Script::new(&config, Stroke::sweep(0.12, 0.08, 600.0).unwrap(), 1);
     script.play(&program(CONSTANT).scene_bytes());
     script.rig.world_mut().lift_finger();
