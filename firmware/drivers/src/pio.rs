@@ -1,6 +1,9 @@
 //! Instructions of the programmable I/O (PIO) of the RP2040 and the RP2350, as the words that its state machines execute
 //! (RP2040 data sheet, 3.4, "Instruction Set"). A board writes its programs with them.
 //!
+//! Every function panics if a number does not fit into its instruction. In constants, where programs stand, that fails to
+//! compile.
+//!
 //! A state machine takes one cycle of its divided clock for an instruction, and as many more as [`Instruction::delay`]
 //! says. It shares the five bits of that number with the pins of [`Instruction::side`].
 
@@ -73,24 +76,40 @@ impl Instruction {
 }
 
 /// Jumps to an address.
+///
+/// # Panics
+///
+/// If the address is above 31.
 pub const fn jump(condition: Condition, address: u16) -> Instruction {
     assert!(address < 32, "a program has 32 instructions at most");
     Instruction((condition as u16) << 5 | address)
 }
 
 /// Waits until an interrupt flag is set, and clears it.
+///
+/// # Panics
+///
+/// If the flag is above 7.
 pub const fn wait_flag(flag: u16) -> Instruction {
     assert!(flag < 8, "there are eight flags");
     Instruction(0x20c0 | flag)
 }
 
 /// Shifts bits from the input pins into the input shift register.
+///
+/// # Panics
+///
+/// If there are no bits, or more than 31.
 pub const fn shift_in(bits: u16) -> Instruction {
     assert!(bits >= 1 && bits < 32, "1 to 31 bits");
     Instruction(0x4000 | bits)
 }
 
 /// Shifts bits out of the output shift register.
+///
+/// # Panics
+///
+/// If there are no bits, or more than 31.
 pub const fn shift_out(to: Destination, bits: u16) -> Instruction {
     assert!(bits >= 1 && bits < 32, "1 to 31 bits");
     Instruction(0x6000 | (to as u16) << 5 | bits)
@@ -104,18 +123,30 @@ pub const PULL: Instruction = Instruction(0x8080);
 pub const PULL_BLOCKING: Instruction = Instruction(0x80a0);
 
 /// Copies a register.
+///
+/// # Panics
+///
+/// If the destination is the directions of pins.
 pub const fn copy(to: Destination, from: Source) -> Instruction {
     assert!(!matches!(to, Destination::PinDirections), "not a destination of this instruction");
     Instruction(0xa000 | (to as u16) << 5 | from as u16)
 }
 
 /// Sets an interrupt flag.
+///
+/// # Panics
+///
+/// If the flag is above 7.
 pub const fn set_flag(flag: u16) -> Instruction {
     assert!(flag < 8, "there are eight flags");
     Instruction(0xc000 | flag)
 }
 
 /// Sets pins, directions or a register to a value.
+///
+/// # Panics
+///
+/// If the value is above 31.
 pub const fn set(to: Destination, value: u16) -> Instruction {
     assert!(value < 32, "a value has five bits");
     Instruction(0xe000 | (to as u16) << 5 | value)

@@ -5,6 +5,7 @@ use frixel_wire::hello::ResetCause;
 
 /// What the chips say of the last reset, whichever registers they say it in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "they are flags of registers")]
 pub struct ResetFlags {
     /// The watchdog's counter has run out (`WATCHDOG.REASON`).
     pub watchdog_timer: bool,

@@ -1,6 +1,6 @@
 //! The codes of the DAC are those of the in-process rig, bit for bit.
 //!
-//! The two rigs hear their host at different ticks: a line of 1 Mbaud, a main loop and a queue lie between the host and
+//! The two rigs hear their host at different ticks: a line of 2 Mbaud, a main loop and a queue lie between the host and
 //! the Pico's tick. So the in-process rig is given each touch report at that of some ticks at which the codes then agree.
 //! A wrong bit in the computation makes them disagree at all of these ticks.
 

@@ -32,7 +32,8 @@ pub(super) fn check(scene: &Scene, program: &Program, core: Core, cycles_max: u3
     let titles: Vec<&LayerTitle> = layers.iter().filter_map(|number| program.titles.get(*number)).collect();
     let topmost = titles.last().and_then(|title| scene.layers.iter().find(|layer| layer.number() == title.number()));
     let cycles = worst.cycles(core);
-    let mistake = FitMistake::TickTooLong { cycles, cycles_max, layers: listed(&titles), meet, x_mm, y_mm };
+    let alone = titles.len() == 1;
+    let mistake = FitMistake::TickTooLong { cycles, cycles_max, layers: listed(&titles), alone, meet, x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
 

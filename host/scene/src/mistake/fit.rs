@@ -115,8 +115,13 @@ pub enum FitMistake {
     /// A tick takes too long at some place.
     #[error(
         "{layers} {} at x {x_mm} mm, y {y_mm} mm: a tick there is estimated at {cycles} cycles, and the board has time for \
-         {cycles_max}: move layers apart, or leave some out",
-        if *.meet { "meet" } else { "are in one cell of the board's grid, though they do not meet," }
+         {cycles_max}: {}",
+        match (*.alone, *.meet) {
+            (true, _) => "takes too long",
+            (false, true) => "meet",
+            (false, false) => "are in one cell of the board's grid, though they do not meet,",
+        },
+        if *.alone { "use another kind of layer, or another board" } else { "move layers apart, or leave some out" }
     )]
     TickTooLong {
         /// Estimated cycles of the longest tick.
@@ -125,6 +130,8 @@ pub enum FitMistake {
         cycles_max: u32,
         /// The layers that the tick evaluates there.
         layers: String,
+        /// Whether it is one layer.
+        alone: bool,
         /// Whether those layers alone exceed the limit at this place. Otherwise they only share a cell of the grid.
         meet: bool,
         /// The place from the left edge of the screen, mm.
