@@ -1,4 +1,4 @@
-//! An emulated Pico under a finger that slides for ever, and a host on its serial line.
+//! An emulated Pico under a finger that slides again and again, and a host on its serial line.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::time::Duration;
 use frixel_control::Board;
 use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
-use frixel_hil_sim::{Stroke, World, WorldConfig};
+use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
 use frixel_session::Touch;
 
@@ -51,7 +51,8 @@ impl Bench {
 
     /// Switches the board on.
     pub(super) fn just_on(image: &Image) -> Self {
-        let stroke = Stroke::sweep(0.12, 0.08, 600.0).unwrap();
+        let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
+        let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
         let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
         world.set_finger(program(CONSTANT).header.friction_law().unwrap());
         let mut rig = PicoRig::start(image, world).unwrap();
