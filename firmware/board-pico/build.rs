@@ -17,6 +17,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rustc-link-arg-bins=--nmagic");
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
+    if env::var_os("CARGO_FEATURE_LOG").is_some() {
+        println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
+    }
     for script in CHIPS.map(|(_, memories)| memories).into_iter().chain([SECTIONS]) {
         println!("cargo:rerun-if-changed={script}");
     }

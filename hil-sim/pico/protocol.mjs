@@ -56,4 +56,4 @@ export const EVENT = {
 export const CAUSE = { POWER: 1, RUN_PIN: 2, WATCHDOG: 3, SOFTWARE: 4 };
 
 /** Bits a second on the line between host and board. */
-export const BAUD = 1_000_000;
+export const BAUD = 2_000_000;

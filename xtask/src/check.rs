@@ -241,8 +241,9 @@ pub(crate) const IMAGES: [Image; 5] = [
         folder: "firmware/board-pico",
         more: &[
             &["--no-default-features", "--features", "rp2350,grating"],
+            &["--features", "optical-frame"],
             &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,everything"],
-            &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,grating"],
+            &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,grating,optical-frame,log"],
         ],
     },
     Image { folder: "firmware/board-mps2-an386", more: &[] },

@@ -25,15 +25,15 @@ use crate::chip::INTERRUPTS;
 #[used]
 static BOOT_2: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 
-/// A block with one item, IMAGE_TYPE: an executable for the Arm cores of an RP2350, in secure state (RP2350, 5.9.5,
+/// A block with one item, the type of the image: an executable for the Arm cores of an RP2350, in secure state (RP2350, 5.9.5,
 /// "Image definitions"; 5.1.5.1, "Block loops"). It is a loop of its own.
 #[cfg(feature = "rp2350")]
 #[unsafe(link_section = ".boot")]
 #[used]
 static IMAGE_DEFINITION: [u32; 5] = [
     0xffff_ded3, // Begin.
-    0x1021_0142, // IMAGE_TYPE, 1 word: executable, secure, Arm, RP2350.
-    0x0000_01ff, // LAST, behind 1 word.
+    0x1021_0142, // `IMAGE_TYPE`, 1 word: executable, secure, Arm, RP2350.
+    0x0000_01ff, // `LAST`, behind 1 word.
     0,           // The next block: this one.
     0xab12_3579, // End.
 ];
@@ -52,7 +52,7 @@ static IN_RAM: [AtomicU32; VECTORS] = [const { AtomicU32::new(0) }; VECTORS];
 /// Moves the vector table to RAM, so that interrupts are taken while the flash cannot be read.
 pub fn move_vectors(scb: &mut SCB) {
     // SAFETY: the linker script places it, and nothing writes it.
-    let vectors = unsafe { &*(&raw const __vector_table) };
+    let vectors = unsafe { &__vector_table };
     for (to, from) in IN_RAM.iter().zip(vectors) {
         to.store(*from, Ordering::Relaxed);
     }

@@ -113,6 +113,7 @@ pub struct DacBus(());
 
 /// Why a transfer failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "log", derive(defmt::Format))]
 pub enum SpiError {
     /// The state machine did not send the frame.
     Timeout,

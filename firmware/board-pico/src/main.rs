@@ -8,6 +8,7 @@ use core::pin::pin;
 use board_pico::board::Pico;
 #[cfg(feature = "store")]
 use board_pico::chip::TICK_HZ;
+use board_pico::dac::DacError;
 use board_pico::flash::StoreFlash;
 #[cfg(feature = "optical-frame")]
 use board_pico::optical_frame;
@@ -17,6 +18,9 @@ use board_pico::watchdog::Watchdog;
 use board_pico::{board, boot, clock, dac, fault, indicator, output, tick};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
+#[cfg(feature = "log")]
+use defmt_rtt as _;
+use frixel_board::fault::LastReset;
 use frixel_board::main_loop::MainLoop;
 #[cfg(feature = "optical-frame")]
 use frixel_board::optical_frame::{OpticalFrame, Reports};
@@ -67,14 +71,15 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Pico>
     boot::move_vectors(&mut core.SCB);
     guard::start(&mut core.MPU);
     let last_reset = fault::last_reset(text);
+    // First, so that a board that fails during start-up has logged the cause of its last reset.
+    log_reset(&last_reset);
     clock::start();
     clock::start_peripherals();
     let output = Output::new();
     let light = indicator::start();
     // Before the flash is searched: until then, the DAC has the settings of the last start.
     let (frames, mut dac) = dac::start();
-    // A missing DAC is not a fault yet: it is checked again before the board arms.
-    let _ = dac.prepare();
+    log_dac(dac.prepare());
 
     let flash = StoreFlash::new();
     let board = board::board(&last_reset, flash.as_ref());
@@ -136,3 +141,29 @@ fn second_coefficients() -> Option<&'static mut Active> {
 fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Session<'static>> {
     singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
+
+#[cfg(feature = "log")]
+fn log_reset(last_reset: &LastReset) {
+    let (fault, detail) = last_reset.fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
+    defmt::info!(
+        "reset: cause {=u8}, fault {=u8}, {=u32:#x} {=[u8]:a}",
+        last_reset.cause.number(),
+        fault,
+        detail,
+        last_reset.text
+    );
+}
+
+#[cfg(not(feature = "log"))]
+fn log_reset(_: &LastReset) {}
+
+/// A missing DAC is not a fault yet: it is checked again before the board arms.
+#[cfg(feature = "log")]
+fn log_dac(prepared: Result<(), DacError>) {
+    if let Err(error) = prepared {
+        defmt::warn!("the DAC is not ready: {}", error);
+    }
+}
+
+#[cfg(not(feature = "log"))]
+fn log_dac(_: Result<(), DacError>) {}

@@ -15,7 +15,7 @@ use core::task::Poll;
 use embedded_hal_async::i2c::{self, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
 use frixel_board::optical_frame::{self, Reports, TickDelay};
 use frixel_drivers::i2c_bus_clear::clear_bus;
-use frixel_drivers::zforce::{MESSAGE_MAX_LEN, ZForce};
+use frixel_drivers::zforce::{self, MESSAGE_MAX_LEN, ZForce};
 use rp_pac::I2C0;
 use rp_pac::i2c::vals::Speed;
 
@@ -42,8 +42,16 @@ const AGE_TICKS: u32 = TICK_HZ / 100;
 /// Takes the bus, and stores one report after the other in `reports`. Never returns.
 pub async fn read(reports: &Reports) {
     let frame = ZForce::new(Bus::new(), Pin::input_pulled_down(DATA_READY), delay());
-    optical_frame::read(frame, AGE_TICKS, reports, |_| ()).await;
+    optical_frame::read(frame, AGE_TICKS, reports, log).await;
 }
+
+#[cfg(feature = "log")]
+fn log(error: zforce::Error<Error>) {
+    defmt::warn!("touch frame: {}", error);
+}
+
+#[cfg(not(feature = "log"))]
+fn log(_: zforce::Error<Error>) {}
 
 fn delay() -> TickDelay<TICK_HZ> {
     TickDelay(&tick::SHARED)
@@ -54,6 +62,7 @@ struct Bus(());
 
 /// Why a transfer failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "log", derive(defmt::Format))]
 pub enum Error {
     /// The module did not acknowledge.
     NoAcknowledge,

@@ -1,6 +1,6 @@
-//! The serial port to the host: UART 0 at 1 Mbaud, through the UART of a Raspberry Pi Debug Probe, or another one.
+//! The serial port to the host: UART 0 at 2 Mbaud, through the UART of a Raspberry Pi Debug Probe, or another one.
 //!
-//! An interrupt below the tick stores the bytes that come: the receive FIFO holds 32 of them, 0.32 ms, and the main loop
+//! An interrupt below the tick stores the bytes that come: the receive FIFO holds 32 of them, 0.16 ms, and the main loop
 //! may take longer for a turn. The main loop fills the transmit FIFO itself.
 //!
 //! | pin | function | |
@@ -20,7 +20,7 @@ use crate::board::RECEIVE_WINDOW;
 use crate::clock::CORE_HZ;
 use crate::pins::{self, Function};
 
-const BAUD: u32 = 1_000_000;
+const BAUD: u32 = 2_000_000;
 const TX: usize = 0;
 const RX: usize = 1;
 

@@ -34,6 +34,9 @@ static TICK: Owned<Tick<Pico>> = Owned::new();
 /// What the tick shares with the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
+#[cfg(feature = "log")]
+defmt::timestamp!("tick {=u32}", SHARED.count());
+
 /// Starts the tick. The input pins are configured here.
 pub fn start(nvic: &mut NVIC, ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
     let tick = Tick {

@@ -11,7 +11,9 @@ pub(crate) fn unique_number(rom: &crate::rom::FlashFunctions) -> [u8; 8] {
         for byte in COMMAND {
             let _ = flash::exchange(byte);
         }
-        number.iter_mut().for_each(|byte| *byte = flash::exchange(0));
+        for byte in &mut number {
+            *byte = flash::exchange(0);
+        }
         flash::select(false);
         number
     })

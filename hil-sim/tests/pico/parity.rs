@@ -30,7 +30,7 @@ fn driven(codes: impl IntoIterator<Item = i16>) -> Vec<i16> {
 fn in_process(finger_after_ticks: u64) -> Vec<i16> {
     let [left, right] = [0.01, 0.11].map(|x_m| Point { x_m, y_m: 0.03 });
     let stroke = Stroke::constant_speed(left, right, 0.1).unwrap();
-    let config = RigConfig { board: BOARD, world: WorldConfig::of(&BOARD), baud: 1_000_000 };
+    let config = RigConfig { board: BOARD, world: WorldConfig::of(&BOARD), baud: 2_000_000 };
     let mut script = Script::new(&config, stroke, 1);
     script.play(&program(CONSTANT).scene_bytes());
     script.rig.world_mut().lift_finger();

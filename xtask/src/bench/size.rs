@@ -41,10 +41,13 @@ const PICOS: [(&str, Board, [Build; 2]); 2] = [
         ],
     ),
 ];
-/// The main program and the exceptions that can interrupt each other: the tick, and the fault of unreadable flash.
+/// The tick of the Picos.
+const PICO_TICK: &str = "PIO0_IRQ_0";
+/// The main program and the NUCLEO's exceptions that can interrupt each other: the tick, and the fault of unreadable flash.
 const MAIN: &str = "main";
 const TICK: &str = "TIM3";
 const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];
+/// The emulated board.
 const AN386: Board = Board("firmware/board-mps2-an386", "board-mps2-an386", M4F);
 /// The serial port's interrupts, of one priority, are counted as if one could interrupt the other.
 const AN386_EXCEPTIONS: [&str; 3] = ["UART0_RX", "UART0_TX", "SysTick"];
@@ -57,9 +60,12 @@ const PERIPHERALS: u64 = 0x4000_0000;
 pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
     for (name, board, builds) in &PICOS {
         for build in builds {
-            let (flash, ram) = sizes(&image(board, build)?)?;
+            let path = image(board, build)?;
+            let (flash, ram) = sizes(&path)?;
             figures.put(format!("{name}.flash_{}", build.name), flash);
             figures.put(format!("{name}.ram_{}", build.name), ram);
+            // As for the NUCLEO's tick below. The depth of the stack is not known: the main program calls the boot ROM.
+            Functions::read(&path)?.never_ends(PICO_TICK)?;
         }
     }
     if root().join(G474.0).is_dir() {

@@ -66,7 +66,9 @@ impl Functions {
                 _ => {}
             }
         }
-        let text = file.section_by_name(".text").ok_or_else(|| explain(&"no section .text"))?;
+        // Images that run from RAM have their code in a section of their own.
+        let text = file.section_by_name(".code").or_else(|| file.section_by_name(".text"));
+        let text = text.ok_or_else(|| explain(&"no section .code or .text"))?;
         let code = text.data().map_err(|error| explain(&error))?;
         let start = text.address() as u32;
         let is_code = |place: u32| kinds.range(..=place).next_back().is_some_and(|(_, code)| *code);
