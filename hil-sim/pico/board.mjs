@@ -145,13 +145,19 @@ export class Board {
     };
   }
 
+  /** The time of the core. */
   get nanos() {
     return this.#clock.nanos;
   }
 
+  /** The time of what happens on the pins now. */
+  get instant() {
+    return this.nanos - ((this.#pio?.ahead ?? 0) * 1e9) / this.#rp2040.clkSys;
+  }
+
   /** Records an event of this run. */
   record(kind, a, b = 0) {
-    this.events.push(kind, Math.round(this.nanos - this.#begin), a, b);
+    this.events.push(kind, Math.max(0, Math.round(this.instant - this.#begin)), a, b);
   }
 
   /** Something that a machine of PIO may wait for has changed. */

@@ -34,7 +34,7 @@ const PAD_AFTER_RESET = 0x56;
 const FRAME_CLOCKS = 24;
 
 /** What the wiring needs of a board. @typedef {{ wake(): void, record(kind: number, a: number, b?: number): void,
- *  frameEnded(): void, nanos: number }} Wired */
+ *  frameEnded(): void, instant: number }} Wired */
 
 export class Pins {
   #rp2040;
@@ -111,12 +111,12 @@ export class Pins {
 
   #sync(high) {
     if (high) {
-      this.#board.record(EVENT.FRAME, this.#bits, (this.#clocks << 24) | (this.#board.nanos - this.#syncFellAt));
+      this.#board.record(EVENT.FRAME, this.#bits, (this.#clocks << 24) | Math.round(this.#board.instant - this.#syncFellAt));
       this.#input(GPIO.SDO, true);
       this.#board.frameEnded();
       return;
     }
-    this.#syncFellAt = this.#board.nanos;
+    this.#syncFellAt = this.#board.instant;
     this.#clocks = 0;
     this.#bits = 0;
     this.#shiftOut();

@@ -26,6 +26,8 @@ export class PioStepper {
   /** Cycle of the core at which the next instruction of any machine is due. */
   next = Infinity;
   #now = 0;
+  /** Cycles of the core by which it is ahead of the machine that is being stepped: an instruction takes several. */
+  ahead = 0;
   #hasResumed = false;
 
   /** @param {any} rp2040 */
@@ -94,33 +96,56 @@ export class PioStepper {
     this.#hasResumed = true;
   }
 
-  /** Runs all machines up to a cycle of the core. @param {number} now */
+  /** Runs all machines up to a cycle of the core, in the order of time. @param {number} now */
   advance(now) {
     this.#now = now;
     if (now < this.next && !this.#hasResumed) {
       return;
     }
-    this.#hasResumed = false;
-    for (const timed of this.#on) {
-      this.#run(timed, now);
+    if (this.#hasResumed) {
+      this.#hasResumed = false;
+      this.#resume(now);
     }
+    for (let timed = this.#first(); timed && timed.due <= now; timed = this.#first()) {
+      this.#step(timed, now);
+    }
+    this.ahead = 0;
     this.#plan();
   }
 
+  /** The machine whose instruction is due first. @returns {Timed | undefined} */
+  #first() {
+    let first;
+    for (const timed of this.#on) {
+      if (timed.machine.enabled && !timed.machine.waiting && !(first && first.due <= timed.due)) {
+        first = timed;
+      }
+    }
+    return first;
+  }
+
   /** @param {Timed} timed @param {number} now */
-  #run(timed, now) {
+  #step(timed, now) {
     const { machine, pio } = timed;
-    if (timed.isStalled && !machine.waiting) {
-      // The stalled instruction ends in this cycle, and its delay follows.
-      timed.due = now + (1 + Math.max(0, machine.waitDelay)) * divider(machine);
-      timed.isStalled = false;
-    }
-    while (machine.enabled && !machine.waiting && timed.due <= now) {
-      const before = machine.cycles;
-      machine.step();
-      timed.due += Math.max(1, machine.cycles - before) * divider(machine);
-      pio.checkChangedPins();
-    }
+    const before = machine.cycles;
+    const at = timed.due;
+    this.ahead = now - at;
+    machine.step();
+    pio.checkChangedPins();
+    timed.due += Math.max(1, machine.cycles - before) * divider(machine);
     timed.isStalled = machine.waiting;
+    this.#resume(at);
+  }
+
+  /** Continues the machines that something has ended the wait of: the stalled instruction ends in the next cycle, and its
+   *  delay follows. @param {number} at */
+  #resume(at) {
+    for (const timed of this.#on) {
+      const { machine } = timed;
+      if (timed.isStalled && !machine.waiting) {
+        timed.due = at + (1 + Math.max(0, machine.waitDelay)) * divider(machine);
+        timed.isStalled = false;
+      }
+    }
   }
 }

@@ -22,7 +22,7 @@ function chip() {
   const events = [];
   let now = 0;
   const board = {
-    get nanos() {
+    get instant() {
       return now;
     },
     wake: () => stepper?.wake(),

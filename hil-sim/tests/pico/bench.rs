@@ -1,4 +1,4 @@
-//! An emulated Pico under a finger that slides for ever, and a host on its serial line.
+//! An emulated Pico under a finger that slides again and again, and a host on its serial line.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -9,9 +9,8 @@ use std::time::Duration;
 use frixel_control::Board;
 use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
-use frixel_hil_sim::{Stroke, World, WorldConfig};
+use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
-use frixel_session::Touch;
 
 pub(super) const BOARD: Board = Board::PICO;
 pub(super) const TICK: Duration = Duration::from_micros(100);
@@ -37,8 +36,6 @@ pub(super) fn program(text: &str) -> Program {
 pub(super) struct Bench {
     rig: Rc<RefCell<PicoRig>>,
     records: Rc<RefCell<Vec<LinkRecord>>>,
-    /// Touch reports, with the number of records before each.
-    reports: Rc<RefCell<Vec<(usize, Touch)>>>,
 }
 
 impl Bench {
@@ -51,12 +48,13 @@ impl Bench {
 
     /// Switches the board on.
     pub(super) fn just_on(image: &Image) -> Self {
-        let stroke = Stroke::sweep(0.12, 0.08, 600.0).unwrap();
+        let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
+        let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
         let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
         world.set_finger(program(CONSTANT).header.friction_law().unwrap());
         let mut rig = PicoRig::start(image, world).unwrap();
         rig.record_events();
-        Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default(), reports: Rc::default() }
+        Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default() }
     }
 
     /// Does something with the rig.
@@ -72,9 +70,6 @@ impl Bench {
     pub(super) fn step(&self) -> LinkRecord {
         let record = self.with(|rig| rig.step().unwrap());
         self.records.borrow_mut().push(record);
-        if let Some(touch) = self.with(|rig| rig.world_mut().touch()) {
-            self.reports.borrow_mut().push((self.records.borrow().len(), touch));
-        }
         record
     }
 
@@ -84,11 +79,6 @@ impl Bench {
         while self.now() < end {
             self.step();
         }
-    }
-
-    /// The touch reports since the last call, each with the number of ticks before it since then.
-    pub(super) fn take_reports(&self) -> Vec<(usize, Touch)> {
-        self.reports.take()
     }
 
     /// The ticks since the last call.
