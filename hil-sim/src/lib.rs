@@ -6,6 +6,7 @@
 //! - [`Rig`]: a board and its world on one thread.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
 //! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
+//! - [`looped_board`]: a board with the wires of the self-test, with or without something wrong.
 //! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
 //!
 //! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
@@ -22,6 +23,7 @@ mod error;
 mod fingertip;
 mod journal;
 mod line;
+pub mod looped_board;
 mod person;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a pseudo-terminal is a file")]
