@@ -2,11 +2,14 @@
 //! [`frixel_board::self_test`] must find. Its session, ticker and supervisor are the firmware's own.
 
 mod flash;
+#[cfg(unix)]
+#[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a terminal of another process, in real time")]
+mod terminal_port;
 mod wrong;
 
 use core::fmt::{Arguments, Write};
 
-use frixel_board::self_test::{Clocks, Levels, Line, LineReader, LoopedBoard, Pulse, Round, Typed, UNPLUGGED, Wire};
+use frixel_board::self_test::{Clocks, Levels, Line, LineReader, LoopedBoard, Pulse, Round, Stop, Typed, UNPLUGGED, Wire};
 use frixel_control::{Active, Board, Sense, Status, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
@@ -15,6 +18,8 @@ use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::TickTimes;
 
 pub use flash::SimulatedFlash;
+#[cfg(unix)]
+pub use terminal_port::TerminalPort;
 pub use wrong::Wrong;
 
 /// Ticks of a round of the main loop.
@@ -44,6 +49,7 @@ pub trait Port {
 }
 
 /// The board, at power-on.
+#[allow(clippy::struct_excessive_bools, reason = "what has happened, each apart from the others")]
 pub struct LoopedRig<P> {
     port: P,
     reader: LineReader,
@@ -89,17 +95,13 @@ impl<P: Port> LoopedRig<P> {
     }
 
     /// Runs the self-test to its end, over its resets.
-    pub fn run(&mut self) -> Result<u32, frixel_board::self_test::Stop> {
+    pub fn run(&mut self) -> Result<u32, Stop> {
         loop {
             let kept = core::mem::take(&mut self.kept);
             let result = frixel_board::self_test::run(self, kept);
-            if let Err(stop) = &result {
-                if self.kept > 0 {
-                    continue;
-                }
-                self.say(format_args!("STOP. {stop}."));
+            if result != Err(Stop::Reset) {
+                return result;
             }
-            return result;
         }
     }
 

@@ -91,8 +91,9 @@ impl Wrong {
             (Self::NoClockWire, Wire::Clock) | (Self::NoSyncWire, Wire::Sync) | (Self::NoEnableWire, Wire::Enable) => {
                 Levels::FREE
             }
-            (Self::MonitorDriven, Wire::Monitor) | (Self::EnableStuckHigh, Wire::Enable) => Levels::HIGH,
-            (_, Wire::Clock | Wire::Sync) => Levels::HIGH,
+            (Self::MonitorDriven, Wire::Monitor)
+            | (Self::EnableStuckHigh, Wire::Enable)
+            | (_, Wire::Clock | Wire::Sync) => Levels::HIGH,
             (_, Wire::Enable) => Levels::LOW,
             (_, Wire::Monitor) => Levels::FREE,
         }

@@ -4,10 +4,13 @@ use core::fmt;
 
 use frixel_wire::message::TICK_TIME_CLASSES;
 
-/// Begins a line with a measurement, one with a histogram, and the last one.
+/// Begin the lines: the first one, one with a measurement, one with a histogram, the last one, and the one that says why
+/// there are no more.
+const BEGIN: &str = "frixel self-test, version ";
 const MEASURED: &str = "measured";
 const HISTOGRAM: &str = "histogram";
 const END: &str = "end";
+const STOPPED: &str = "STOP. ";
 /// Stands for a measurement without a range.
 const ANY: &str = "any";
 
@@ -32,6 +35,8 @@ impl Measurement<'_> {
 /// What a line of the script says to a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Said<'n> {
+    /// The script begins: its version, and the kind of board.
+    Begin(u32, &'n str),
     /// A measurement.
     Measured(Measurement<'n>),
     /// Ticks by eighths of the deadline, those beyond it last: name and counts.
@@ -43,11 +48,15 @@ pub enum Said<'n> {
         /// Number of those out of their range.
         failed: u32,
     },
+    /// The script has ended before its end, for this reason.
+    Stopped(&'n str),
 }
 
 impl fmt::Display for Said<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Begin(version, board) => write!(f, "{BEGIN}{version}, of {board}"),
+            Self::Stopped(reason) => write!(f, "{STOPPED}{reason}"),
             Self::Measured(measurement) => {
                 let Measurement { name, found, range } = measurement;
                 let verdict = if measurement.passes() { "ok" } else { "FAILED" };
@@ -68,6 +77,12 @@ impl fmt::Display for Said<'_> {
 impl<'n> Said<'n> {
     /// Reads a line; `None` if it is text for the person.
     pub fn parse(line: &'n str) -> Option<Self> {
+        if let Some((version, board)) = line.strip_prefix(BEGIN).and_then(|rest| rest.split_once(", of ")) {
+            return Some(Self::Begin(version.parse().ok()?, board));
+        }
+        if let Some(reason) = line.strip_prefix(STOPPED) {
+            return Some(Self::Stopped(reason));
+        }
         let mut words = line.split_ascii_whitespace();
         match words.next()? {
             MEASURED => {
@@ -129,6 +144,8 @@ mod tests {
             counts: [u32; TICK_TIME_CLASSES + 1],
         ) {
             for said in [
+                Said::Begin(found, &name),
+                Said::Stopped(&name),
                 Said::Measured(Measurement { name: &name, found, range }),
                 Said::Histogram(&name, counts),
                 Said::End { measured: found, failed: counts[0] },

@@ -69,7 +69,7 @@ pub enum Stop {
     FlashFailed,
     /// The scene was not played.
     Drive(DriveError),
-    /// The board should have reset.
+    /// The board resets, and goes on at its next start.
     Reset,
 }
 
@@ -97,7 +97,7 @@ impl fmt::Display for Stop {
             Self::NoFlash => f.write_str("the flash is not in two banks: set the option byte DBANK, clear BFB2"),
             Self::FlashFailed => f.write_str("an operation of the flash has failed: it is worn out or protected"),
             Self::Drive(error) => write!(f, "the largest scene did not play: {error}"),
-            Self::Reset => f.write_str("the board did not reset"),
+            Self::Reset => f.write_str("the board resets"),
         }
     }
 }
@@ -137,8 +137,17 @@ impl Counts {
 }
 
 /// Tests a board, and returns the number of measurements out of their range. `kept` is what [`LoopedBoard::reset`] has
-/// kept over the last reset, and 0 after any other one. After an error, the caller says it to the person.
+/// kept over the last reset, and 0 after any other one.
 pub fn run<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
+    let result = steps(board, kept);
+    match &result {
+        Ok(_) | Err(Stop::Reset) => {}
+        Err(stop) => board.say(format_args!("{}{stop}.", Said::Stopped(""))),
+    }
+    result
+}
+
+fn steps<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
     let mut counts = Counts::default();
     greet(board);
     refuse_amplifier(board)?;
@@ -162,8 +171,9 @@ pub fn run<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
 fn greet(board: &mut impl LoopedBoard) {
     let kind = board.board().kind;
     board.say(format_args!(""));
-    board.say(format_args!("frixel self-test, version {VERSION}, of {kind}. Read docs/first-board.md first."));
-    confirm(board, format_args!("No amplifier is plugged in, and its supply is off."), GREETING);
+    board.say(format_args!("{}{kind}", Said::Begin(VERSION, "")));
+    board.say(format_args!("Read docs/first-board.md first. No amplifier is plugged in, and its supply is off."));
+    confirm(board, format_args!("This begins the self-test."), GREETING);
 }
 
 /// Says what to do until the person types `word`.
