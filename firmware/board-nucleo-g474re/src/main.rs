@@ -5,24 +5,25 @@
 #[cfg(feature = "optical-frame")]
 use core::pin::pin;
 
-use board_nucleo_g474re::adc::Adc;
+use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::dac::DacError;
-use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::fault;
 #[cfg(feature = "log")]
 use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
-use board_nucleo_g474re::main_loop::MainLoop;
 #[cfg(feature = "optical-frame")]
 use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::tick::{self, Tick};
+use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
 use board_nucleo_g474re::{board, clock, dac, guard, indicator, period};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
+use frixel_board::fault::LastReset;
+use frixel_board::main_loop::MainLoop;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
@@ -45,24 +46,29 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
     static mut QUEUES: Queues = Queues::new();
 
-    let main_loop = start(TEXT, QUEUES);
+    let mut main_loop = start(TEXT, QUEUES);
     #[cfg(feature = "optical-frame")]
-    {
-        let reports = Reports::new(None);
-        let reading = pin!(optical_frame::read(&reports));
-        main_loop.run(OpticalFrame::new(reading, &reports))
+    let reports = Reports::new(None);
+    #[cfg(feature = "optical-frame")]
+    let reading = pin!(optical_frame::read(&reports));
+    #[cfg(feature = "optical-frame")]
+    let mut touch_source = OpticalFrame::new(reading, &reports);
+    loop {
+        #[cfg(feature = "optical-frame")]
+        let touch = touch_source.next_touch();
+        #[cfg(not(feature = "optical-frame"))]
+        let touch = None;
+        main_loop.turn(touch);
     }
-    #[cfg(not(feature = "optical-frame"))]
-    main_loop.run()
 }
 
 /// Starts everything. A function of its own, so that its stack is free again afterwards.
 #[inline(never)]
-fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
+fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Nucleo> {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
-    let last_reset = LastReset::take(text);
+    let last_reset = fault::last_reset(text);
     // First, so that a board that fails during start-up has logged the cause of its last reset.
     log_reset(&last_reset);
     clock::start();
@@ -80,25 +86,25 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     log(&board, flash.is_some());
     let (ticker, session) = make(board);
     let status = ticker.status();
+    #[cfg(not(feature = "store"))]
+    let store = ();
     #[cfg(feature = "store")]
     let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let (session_ends, tick_ends) = queues.split();
-    let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
-    let tick = Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch };
     let serial = Some(SerialLink::new(Serial::new()));
-    tick::start(tick);
-    let watchdog = Watchdog::start();
+    tick::start(ticker, tick_ends, frames, output);
     MainLoop {
-        tick: session_ends,
+        shared: &tick::SHARED,
+        queues: session_ends,
         session,
         status,
         serial,
         dac,
         light,
-        #[cfg(feature = "store")]
         store,
-        watchdog,
+        watchdog: Watchdog::start(),
+        record: &fault::RECORD,
     }
 }
 
@@ -110,7 +116,7 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     let mut ticker = Ticker::new(&board, &POOL, first);
     let Some(session) = session(board, second) else { fault::never() };
     #[cfg(feature = "telemetry")]
-    session.attach_tick_meter(&tick::METER);
+    session.attach_tick_meter(&tick::SHARED.meter);
     #[cfg(feature = "stream")]
     {
         ticker.attach_stream(&STREAM);

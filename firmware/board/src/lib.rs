@@ -1,13 +1,21 @@
 //! What every board does in the same way, whatever its processor. A board's own crate holds registers and wiring, and
 //! implements the traits of this one.
 //!
-//! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits.
+//! - [`hardware`]: the traits, one for each part of a board;
+//! - [`tick`]: what the timer's interrupt does;
+//! - [`main_loop`]: the rest of the firmware, between two ticks;
+//! - [`fault`]: how a start ends after a panic or a fault, and what the next one learns of it;
+//! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits;
 //! - [`self_test`]: the script that measures a new board with a few wires, before there is any voltage.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 pub mod bring_up;
+pub mod fault;
+pub mod hardware;
 mod local_host;
 mod local_scene;
+pub mod main_loop;
 #[cfg(feature = "self-test")]
 pub mod self_test;
+pub mod tick;

@@ -12,7 +12,7 @@ mod still;
 mod terminal;
 
 use board_nucleo_g474re::board::CEILINGS;
-use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::fault;
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
@@ -38,7 +38,7 @@ fn main() -> ! {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
-    let last_reset = LastReset::take(TEXT);
+    let last_reset = fault::last_reset(TEXT);
     clock::start();
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();
