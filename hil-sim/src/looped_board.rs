@@ -9,7 +9,9 @@ mod wrong;
 
 use core::fmt::{Arguments, Write};
 
-use frixel_board::self_test::{Clocks, Levels, Line, LineReader, LoopedBoard, Pulse, Round, Stop, Typed, UNPLUGGED, Wire};
+use frixel_board::self_test::{
+    Clocks, Levels, Line, LineReader, LoopedBoard, Pulse, Round, Stop, Typed, UNPLUGGED, Wire,
+};
 use frixel_control::{Active, Board, Sense, Status, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
@@ -156,6 +158,10 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
     fn read_line(&mut self) -> Line {
         let mut byte = [0];
         loop {
+            if self.ticks_run {
+                // The tick goes on, and the switch is not held.
+                self.round(false);
+            }
             if self.port.read(&mut byte) == 0 {
                 assert!(self.port.wait(), "nobody types");
                 continue;

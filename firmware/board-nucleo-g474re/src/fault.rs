@@ -48,7 +48,7 @@ pub fn last_reset(text: &'static mut Text) -> LastReset {
 
 /// Returns a place that the start-up code does not clear. Its initialiser is never written, so the compiler must not
 /// conclude from it what the place holds.
-fn outlasting<T>(place: &'static T) -> &'static T {
+pub fn outlasting<T>(place: &'static T) -> &'static T {
     // SAFETY: no instruction. For all that the compiler knows, it writes the place, whose type is made of atomics, of
     // which every content is valid.
     unsafe { asm!("/* {} */", in(reg) place, options(nostack, preserves_flags)) };

@@ -26,6 +26,8 @@ mod owned;
 pub mod period;
 pub mod pins;
 pub mod serial;
+#[cfg(feature = "log")]
+pub mod terminal;
 pub mod tick;
 pub mod watchdog;
 

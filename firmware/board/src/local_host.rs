@@ -94,6 +94,12 @@ impl LocalHost {
         }
     }
 
+    /// Ends the play at the next step.
+    #[cfg(feature = "self-test")]
+    pub(crate) fn stop(&mut self) {
+        self.play_ticks = 0;
+    }
+
     /// One round: tells the session what a host would. `scene` is as the store keeps it. The caller discards what the
     /// session sends, so that it goes on listening.
     pub(crate) fn step(

@@ -63,6 +63,18 @@ impl Load {
         self.now_tick
     }
 
+    /// Plays the piece to its end, and lets the switch go: nobody has to call [`Self::round`] any more.
+    pub(super) fn rest(&mut self, board: &mut impl LoopedBoard) -> Result<(), Stop> {
+        while !matches!(self.stage, Stage::Released) {
+            match &mut self.stage {
+                Stage::Playing(host) => host.stop(),
+                stage => *stage = Stage::Released,
+            }
+            self.round(board)?;
+        }
+        Ok(())
+    }
+
     /// One round of the main loop; returns whether the scene plays.
     pub(super) fn round(&mut self, board: &mut impl LoopedBoard) -> Result<bool, Stop> {
         let released_ticks = board.board().ticks(RELEASED_S);

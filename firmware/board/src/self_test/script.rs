@@ -162,6 +162,7 @@ fn steps<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
     measure_ticks(board, &mut load, &mut counts)?;
     measure_line(board, &mut load, &mut counts)?;
     store::forget(board, |board| load.round(board).map(drop))?;
+    load.rest(board)?;
     let Counts { measured, failed } = counts;
     board.say(format_args!("{}", Said::End { measured, failed }));
     Ok(failed)
@@ -374,6 +375,7 @@ fn counting<B: LoopedBoard>(
 
 /// Receives and sends at the full rate of the line while the largest scene plays.
 fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Counts) -> Result<(), Stop> {
+    load.rest(board)?;
     let wants_it = loop {
         board.say(format_args!(
             "4. The line, against `frixel selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
@@ -417,6 +419,7 @@ fn exchange_blocks<B: LoopedBoard>(board: &mut B, load: &mut Load, test: &mut Li
         let taken = board.write(test.pending());
         test.advance(taken);
     }
+    load.rest(board)?;
     board.read_line();
     Ok(())
 }

@@ -53,7 +53,7 @@ pub(crate) enum WiresError {
 pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<(), CommandError> {
     let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
     let link = SerialLink::open(port, DEFAULT_BAUD)?;
-    let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds };
+    let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
     if line_seconds > 0 {
         print_line(format_args!("The line will be tested for {line_seconds} s; --seconds is another time."))?;
     }
@@ -80,19 +80,20 @@ struct Host {
     heard: Vec<u8>,
     report: Report,
     line_seconds: u32,
+    /// The board has not said anything since the test of the line.
+    line_was_tested: bool,
 }
 
 impl Host {
     /// Answers the board until its last line.
     fn talk(&mut self, port: &str) -> Result<(), CommandError> {
-        let begun = Instant::now();
         let mut is_first = true;
-        // The board may have asked before anyone listened.
-        self.type_line("")?;
+        let mut heard_at = Instant::now();
         while !self.report.has_ended() {
-            let patience = if is_first { ASK_AGAIN_AFTER } else { SILENCE_MAX };
-            let Some(line) = self.line(patience)? else {
-                if is_first && begun.elapsed() < FIRST_LINE_MAX {
+            // The board may have asked before anyone listened, or waits for the end of the line's test.
+            let is_nudged = is_first || self.line_was_tested;
+            let Some(line) = self.line(if is_nudged { ASK_AGAIN_AFTER } else { SILENCE_MAX })? else {
+                if is_nudged && heard_at.elapsed() < if is_first { FIRST_LINE_MAX } else { SILENCE_MAX } {
                     self.type_line("")?;
                     continue;
                 }
@@ -100,12 +101,15 @@ impl Host {
                 let error = if is_first { WiresError::OtherProgram { port } } else { WiresError::Silent { port } };
                 return Err(error.into());
             };
+            heard_at = Instant::now();
             // Noise, or a firmware that speaks frames, is no line of the script.
             is_first &= !line.contains(ASKS);
+            self.line_was_tested = false;
             self.report.take(&line);
             print_line(&line)?;
             if let Some((_, word)) = line.split_once(ASKS) {
                 self.answer(word.trim())?;
+                heard_at = Instant::now();
             }
         }
         Ok(())
@@ -152,6 +156,7 @@ impl Host {
             }
         }
         self.report.take_line(&test);
+        self.line_was_tested = true;
         self.type_line("")
     }
 
