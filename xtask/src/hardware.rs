@@ -1,4 +1,6 @@
-//! `cargo xtask hardware`: writes `docs/wiring.md` from `hardware/carrier.toml`.
+//! `cargo xtask hardware`: writes `docs/wiring.md` and `docs/schematic.svg` from `hardware/carrier.toml`.
+
+mod schematic;
 
 use std::fmt::Write;
 use std::fs;
@@ -9,6 +11,7 @@ use crate::command::root;
 
 const CARRIER: &str = "hardware/carrier.toml";
 const PAGE: &str = "docs/wiring.md";
+const SCHEMATIC: &str = "docs/schematic.svg";
 /// The processor board among the parts.
 const BOARD: &str = "U1";
 
@@ -49,6 +52,8 @@ struct Supply {
 #[serde(deny_unknown_fields)]
 struct Part {
     name: String,
+    /// The sheet of the schematic that shows it.
+    sheet: String,
     what: String,
     part: String,
     ratings: String,
@@ -65,10 +70,13 @@ struct Net {
     nodes: Vec<String>,
 }
 
-/// Writes the page.
+/// Writes the page and the schematic.
 pub(crate) fn write() -> Result<(), String> {
-    let page = page(&read()?);
-    fs::write(root().join(PAGE), page).map_err(|error| format!("{PAGE}: {error}"))
+    let carrier = read()?;
+    for (name, content) in [(PAGE, page(&carrier)), (SCHEMATIC, schematic::draw(&carrier))] {
+        fs::write(root().join(name), content).map_err(|error| format!("{name}: {error}"))?;
+    }
+    Ok(())
 }
 
 fn read() -> Result<Carrier, String> {
@@ -87,6 +95,8 @@ fn page(carrier: &Carrier) -> String {
         "# Wiring\n\nWritten by `cargo xtask hardware` from `hardware/carrier.toml`; a test holds it. Read \
          [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before anything is \
          switched on. Nobody has built this yet.\n\n\
+         ![schematic](schematic.svg)\n\n\
+         The schematic has a sheet for each function; a name at the end of a line is a net, and equal names are connected.\n\n\
          ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before you \
          solder. Every row goes to all other nodes of its net.\n\n\
          | position | pin | net | to | function | module |\n|---|---|---|---|---|---|\n",
@@ -115,7 +125,7 @@ fn page(carrier: &Carrier) -> String {
     }
     text += "\n## Bill of materials\n\nWhere a part is \"any\", the ratings decide.\n\n\
              | name | what | value | part | ratings |\n|---|---|---|---|---|\n";
-    for Part { name, what, part, ratings, value } in &carrier.part {
+    for Part { name, what, part, ratings, value, .. } in &carrier.part {
         let value = value.map_or(String::new(), |value| value_text(name, value));
         let _ = writeln!(text, "| {name} | {what} | {value} | {part} | {ratings} |");
     }
@@ -159,6 +169,24 @@ mod tests {
     fn the_page_is_that_of_the_table() {
         let held = fs::read_to_string(root().join(PAGE)).unwrap();
         assert!(held == page(&read().unwrap()), "`cargo xtask hardware` writes {PAGE} anew");
+    }
+
+    #[test]
+    fn the_schematic_is_that_of_the_table_and_shows_every_part_once_and_every_node() {
+        let carrier = read().unwrap();
+        let held = fs::read_to_string(root().join(SCHEMATIC)).unwrap();
+        assert!(held == schematic::draw(&carrier), "`cargo xtask hardware` writes {SCHEMATIC} anew");
+        let lines: Vec<&str> = held.lines().collect();
+        let texts = |class: &str, text: &str| {
+            let class = format!("class=\"{class}\"");
+            lines.windows(2).filter(|pair| pair[0].contains(&class) && pair[1] == text).count()
+        };
+        for part in &carrier.part {
+            assert_eq!(texts(schematic::PART, &part.name), 1, "{}", part.name);
+        }
+        for net in &carrier.net {
+            assert_eq!(texts(schematic::NET, &net.name), net.nodes.len(), "{}", net.name);
+        }
     }
 
     /// The tables at the top of the modules, and the constants that the code uses.
