@@ -31,10 +31,11 @@ const PYTHON: &str = "host/python";
 /// Text in the wheel, beside frixel's own licences.
 const WHEEL_LICENCES: &str = "LICENCES.txt";
 /// Folder, program and file of each image.
-const IMAGES: [(&str, &str, &str); 3] = [
+const IMAGES: [(&str, &str, &str); 4] = [
     ("firmware/board-mps2-an386", "board-mps2-an386", "board-mps2-an386.elf"),
     ("firmware/board-nucleo-g474re", "board-nucleo-g474re", "board-nucleo-g474re.elf"),
     ("firmware/board-nucleo-g474re", "bring-up", "board-nucleo-g474re-bring-up.elf"),
+    ("firmware/board-nucleo-g474re", "self-test", "board-nucleo-g474re-self-test.elf"),
 ];
 const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL) };
 const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None };
