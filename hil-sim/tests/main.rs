@@ -6,6 +6,7 @@ mod dac;
 mod link_credit;
 mod live;
 mod looped_board;
+mod properties;
 mod resting;
 mod rig;
 mod script;

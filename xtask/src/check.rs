@@ -3,13 +3,13 @@
 use std::fs;
 
 use crate::bench::programs::{self, Pace};
-use crate::command::{IMAGES_TARGET_FOLDER, M3, M4F, WASM, cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, WASM, cargo_in, root, run};
 use crate::inputs::packages;
 use crate::needs::{Machine, Missing, Need};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
 use crate::test_programs::{self, Programs};
-use crate::{bench, budgets, fuzz, inputs, portability, python, results, stamps, studio_tests};
+use crate::{bench, budgets, fuzz, inputs, pico_rig, portability, python, results, stamps, studio_tests};
 
 /// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 8] =
@@ -38,6 +38,7 @@ pub(crate) const CLIPPY: Need = Need::Component("clippy", "clippy");
 const FORMAT: Need = Need::Component("fmt", "rustfmt");
 pub(crate) const M4F_TARGET: Need = Need::Target(M4F);
 pub(crate) const M3_TARGET: Need = Need::Target(M3);
+pub(crate) const M0_PLUS_TARGET: Need = Need::Target(M0_PLUS);
 pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 
 /// All checks, in the order in which they run: a cheap one fails first.
@@ -76,7 +77,7 @@ const STAGES: [Stage; 16] = [
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
         run: tests_on_emulators,
     },
     Stage {
@@ -145,7 +146,9 @@ fn tests() -> Result<Outcome, String> {
 }
 
 fn tests_on_emulators() -> Result<Outcome, String> {
-    test_programs::run_all(Programs::OnEmulators)
+    let inputs = ["hil-sim/pico", "xtask"].map(str::to_owned);
+    let scripts = stamps::unless_unchanged("pico-rig", &inputs, || passed(pico_rig::test_scripts()))?;
+    Ok(scripts.and(test_programs::run_all(Programs::OnEmulators)?))
 }
 
 fn documentation() -> Result<Outcome, String> {
@@ -159,7 +162,7 @@ fn page() -> Result<Outcome, String> {
 }
 
 fn studio_scripts() -> Result<Outcome, String> {
-    let inputs = ["host/studio", "xtask"].map(str::to_owned);
+    let inputs = ["hil-sim/pico", "host/studio", "xtask"].map(str::to_owned);
     stamps::unless_unchanged("studio-scripts", &inputs, || passed(studio_tests::check_scripts()))
 }
 

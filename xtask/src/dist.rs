@@ -3,7 +3,8 @@
 //! | file | what |
 //! |---|---|
 //! | `frixel` | the command for Linux, static |
-//! | `images/*.elf` | the firmware of each board; that of the emulated one is what `frixel play --port qemu` runs |
+//! | `images/*.elf` | the firmware of each board; those of the emulated ones are what `frixel play --port qemu` and `--port pico` run |
+//! | `images/pico-rig` | the emulator of the Pico, with the programs that `frixel play --port pico` runs by node |
 //! | `frixel-*.whl` | the Python module |
 //! | `frixel-studio.html` | the page |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
@@ -16,27 +17,72 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use crate::check::{M4F_TARGET, WASM_TARGET};
-use crate::command::{IMAGES_TARGET_FOLDER, M4F, MUSL, cargo_in, root, run, target_folder};
+use crate::check::{M0_PLUS_TARGET, M4F_TARGET, WASM_TARGET};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, MUSL, cargo_in, root, run, target_folder};
 use crate::licences::{self, Program};
 use crate::needs::{self, Need};
-use crate::studio;
+use crate::{pico_rig, studio};
 
 /// What it needs of the machine.
-const NEEDS: [Need; 4] = [M4F_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python];
+const NEEDS: [Need; 7] =
+    [M4F_TARGET, M0_PLUS_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python, Need::Node, Need::Npm];
 /// Nearly as fast as `release`, and built in a third of the time.
 const PROFILE: &str = "wheel";
 /// The folder of the Python module.
 const PYTHON: &str = "host/python";
 /// Text in the wheel, beside frixel's own licences.
 const WHEEL_LICENCES: &str = "LICENCES.txt";
-/// Folder, program and file of each image.
-const IMAGES: [(&str, &str, &str); 4] = [
-    ("firmware/board-mps2-an386", "board-mps2-an386", "board-mps2-an386.elf"),
-    ("firmware/board-nucleo-g474re", "board-nucleo-g474re", "board-nucleo-g474re.elf"),
-    ("firmware/board-nucleo-g474re", "bring-up", "board-nucleo-g474re-bring-up.elf"),
-    ("firmware/board-nucleo-g474re", "self-test", "board-nucleo-g474re-self-test.elf"),
+/// An image.
+struct Image {
+    folder: &'static str,
+    program: &'static str,
+    /// Its file in the folder of images.
+    file: &'static str,
+    target: &'static str,
+    /// Arguments for cargo, beside the usual ones.
+    build: &'static [&'static str],
+}
+
+const IMAGES: [Image; 5] = [
+    Image {
+        folder: "firmware/board-mps2-an386",
+        program: "board-mps2-an386",
+        file: "board-mps2-an386.elf",
+        target: M4F,
+        build: &[],
+    },
+    Image {
+        folder: "firmware/board-nucleo-g474re",
+        program: "board-nucleo-g474re",
+        file: "board-nucleo-g474re.elf",
+        target: M4F,
+        build: &[],
+    },
+    Image {
+        folder: "firmware/board-nucleo-g474re",
+        program: "bring-up",
+        file: "board-nucleo-g474re-bring-up.elf",
+        target: M4F,
+        build: &[],
+    },
+    Image {
+        folder: "firmware/board-nucleo-g474re",
+        program: "self-test",
+        file: "board-nucleo-g474re-self-test.elf",
+        target: M4F,
+        build: &[],
+    },
+    Image {
+        folder: "firmware/board-pico",
+        program: "board-pico",
+        file: "board-pico.elf",
+        target: M0_PLUS,
+        // As `EmulatedBoard::build_arguments` in `hil-sim` has them.
+        build: &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,everything"],
+    },
 ];
+/// Folder of the emulator of the Pico among the images.
+const PICO_RIG: &str = "pico-rig";
 const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL) };
 const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None };
 
@@ -52,18 +98,21 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
 
     command(&folder)?;
-    for (sources, program, file) in IMAGES {
-        let build = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
-        run(file, cargo_in(sources).args(build))?;
-        let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(program);
+    for Image { folder, program, file, target, build } in IMAGES {
+        let usual = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
+        run(file, cargo_in(folder).args(usual).args(build))?;
+        let built = root().join(folder).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(program);
         copy(&built, &images.join(file))?;
     }
+    pico_rig::copy_to(&images.join(PICO_RIG))?;
     wheel(&folder)?;
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
-    let boards = ["firmware/board-mps2-an386", "firmware/board-nucleo-g474re"];
-    let boards = boards.map(|folder| Program { folder, package: None, target: Some(M4F) });
+    let boards =
+        [("firmware/board-mps2-an386", M4F), ("firmware/board-nucleo-g474re", M4F), ("firmware/board-pico", M0_PLUS)];
+    let boards = boards.map(|(folder, target)| Program { folder, package: None, target: Some(target) });
     let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
-    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs)?)?;
+    let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
+    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs, emulator)?)?;
     write(&folder.join("SHA256SUMS"), &checksums(&folder)?)?;
     println!("{}", folder.display());
     Ok(())
@@ -172,7 +221,7 @@ mod tests {
     /// The licences of everything that is compiled into what is handed on, without building it.
     #[test]
     fn the_licences_name_crates_of_every_program() {
-        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE]).unwrap();
+        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE], String::new()).unwrap();
         for expected in
             ["clap 4", "pyo3 0", "heapless 0", "musl, the C library", "uplot ", "Apache License", "flatbuffers 25"]
         {

@@ -35,9 +35,9 @@ pub(crate) fn text() -> Result<String, String> {
     Ok(joined(&[own()?, scripts()?, crates("CRATES IN THE MODULE", &[PAGE])?]))
 }
 
-/// All licences of these programs, of the page's scripts, and of the C library.
-pub(crate) fn of_dist(programs: &[Program]) -> Result<String, String> {
-    Ok(joined(&[own()?, scripts()?, MUSL_LICENCE.to_owned(), crates("CRATES IN THE PROGRAMS", programs)?]))
+/// All licences of these programs, of the page's scripts, of the C library, and of the emulator, which has this one.
+pub(crate) fn of_dist(programs: &[Program], emulator: String) -> Result<String, String> {
+    Ok(joined(&[own()?, scripts()?, emulator, MUSL_LICENCE.to_owned(), crates("CRATES IN THE PROGRAMS", programs)?]))
 }
 
 /// All licences of the Python module.

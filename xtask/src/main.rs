@@ -14,6 +14,7 @@ mod licences;
 mod needs;
 mod outcome;
 mod packages;
+mod pico_rig;
 mod portability;
 mod python;
 mod results;

@@ -17,12 +17,10 @@ pub mod dac;
 mod dma;
 pub mod fault;
 pub mod flash;
-pub mod guard;
 pub mod indicator;
 #[cfg(feature = "optical-frame")]
 pub mod optical_frame;
 pub mod output;
-mod owned;
 pub mod period;
 pub mod pins;
 pub mod serial;

@@ -12,21 +12,24 @@ use board_nucleo_g474re::fault;
 use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
 #[cfg(feature = "optical-frame")]
-use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
+use board_nucleo_g474re::optical_frame;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, dac, guard, indicator, period, tick_interrupt};
+use board_nucleo_g474re::{board, clock, dac, indicator, period, tick_interrupt};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
 use frixel_board::fault::LastReset;
 use frixel_board::main_loop::MainLoop;
+#[cfg(feature = "optical-frame")]
+use frixel_board::optical_frame::{OpticalFrame, Reports};
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;

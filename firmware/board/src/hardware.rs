@@ -18,6 +18,7 @@
 //! section that masks the tick.
 
 use core::convert::Infallible;
+use core::hint;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -56,6 +57,12 @@ pub trait Hardware: 'static {
     type Store: Store;
     /// The watchdog.
     type Watchdog: Watchdog;
+
+    /// Called again and again while the main loop waits for the tick, some periods. A board does nothing here; a test
+    /// without interrupts runs the tick.
+    fn wait_for_tick() {
+        hint::spin_loop();
+    }
 }
 
 /// The timer of the tick, whose interrupt runs [`Tick::run`](crate::tick::Tick::run) at the start of each period.

@@ -1,7 +1,5 @@
 //! The main loop: runs the session between serial port and tick, and all work that is not urgent.
 
-use core::hint;
-
 use frixel_control::{Order, Status};
 use frixel_drivers::fault_record::FaultRecord;
 use frixel_drivers::serial::SerialLink;
@@ -77,7 +75,7 @@ impl<H: Hardware> MainLoop<H> {
             if matches!(order, Order::Arm) {
                 watchdog.let_debugger_stop_it(false);
             }
-            check_dac_before(order, dac, shared);
+            check_dac_before::<H>(order, dac, shared);
         });
     }
 }
@@ -89,14 +87,14 @@ impl<H: Hardware> MainLoop<H> {
 /// The tick sends no frames meanwhile; the output is zero and the amplifier disabled. On the NUCLEO it takes some 0.2
 /// ms, up to five frames and the hand-over; if a stop is still under way, it begins once the output is zero. It waits
 /// for the tick without limit: without ticks, the watchdog resets the board.
-fn check_dac_before(order: &Order, dac: &mut impl Dac, shared: &TickShared) {
+fn check_dac_before<H: Hardware>(order: &Order, dac: &mut H::Dac, shared: &TickShared) {
     let configures = match order {
         Order::Arm => true,
         Order::Play => false,
         _ => return,
     };
     let work = || if configures { dac.prepare() } else { dac.check() };
-    if let Err(detail) = shared.bus.while_frames_rest(hint::spin_loop, work) {
+    if let Err(detail) = shared.bus.while_frames_rest(H::wait_for_tick, work) {
         log_dac(detail);
         shared.raise(Fault::Dac, detail);
     }

@@ -2,7 +2,7 @@
 
 use frixel_layers::cost::{Worst, worst_of_scene};
 use frixel_layers::{Header, Layer, Leader, Point, Record, Waveform, electric_friction_max_n};
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardLimits, Core};
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
@@ -52,7 +52,7 @@ impl RandomScene {
 
     /// The longest tick, as compiler and loader estimate it.
     pub fn worst_tick(&self) -> Worst {
-        worst_of_scene(&self.header, &self.records, &self.points)
+        worst_of_scene(&self.header, &self.records, &self.points, Core::CortexM4f)
     }
 
     /// The scene's bytes.

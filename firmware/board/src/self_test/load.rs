@@ -41,12 +41,13 @@ impl Load {
     pub(super) fn largest(board: &Board) -> Self {
         let header = header(PEAK_V);
         let mut records = Vec::<Record, LAYERS_MAX>::new();
-        let mut core_cycles = cost::of_empty_scene(&header);
+        let core = board.limits.core;
+        let mut core_cycles = cost::of_empty_scene(&header).on(core);
         // Those that do not fit any more are passed over, so that smaller ones fill what is left.
         for layer in layers().iter().cycle().take(4 * LAYERS_MAX) {
             let record = Record { region: Region::Screen, blend: Blend::Add, gain: 1.0, layer: *layer };
-            let with_it = core_cycles + cost::of_record(&record, &[]);
-            if cost::cycles(with_it) <= board.limits.tick_cycles_max && records.push(record).is_ok() {
+            let with_it = core_cycles + cost::of_record(&record, &[]).on(core);
+            if cost::cycles(core, with_it) <= board.limits.tick_cycles_max && records.push(record).is_ok() {
                 core_cycles = with_it;
             }
         }

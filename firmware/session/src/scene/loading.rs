@@ -76,7 +76,7 @@ impl Loading {
         *self = match self {
             Self::Drive => {
                 load_drive(active, scene, board)?;
-                Self::Layer { number: 0, costs: LayerCosts::new(header) }
+                Self::Layer { number: 0, costs: LayerCosts::new(header, board.limits.core) }
             }
             Self::Layer { number, costs } => {
                 if let Some(record) = scene.record(*number) {

@@ -132,6 +132,7 @@ fn run(
 mod tests {
     use std::collections::BTreeMap;
 
+    use frixel_hil_sim::WorldFault;
     use frixel_play::StopReason;
     use frixel_scene::{Scene, compile};
     use frixel_wire::fault::Fault;
@@ -148,7 +149,7 @@ mod tests {
         let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
         let mut memory = BoardMemory::new();
         let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
-        rig.world_mut().schedule_amplifier_fault(20_000..u64::MAX);
+        rig.world_mut().schedule_fault(20_000..u64::MAX, WorldFault::AmplifierNotReady).unwrap();
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
         let mut player = Player::recording(
             Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap(),

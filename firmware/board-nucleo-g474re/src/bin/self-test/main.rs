@@ -16,12 +16,13 @@ use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::{self, Output};
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::terminal::Terminal;
-use board_nucleo_g474re::{board, clock, dac, fault, guard, period, tick};
+use board_nucleo_g474re::{board, clock, dac, fault, period, tick};
 use cortex_m::Peripherals;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::self_test;
+use frixel_cortex_m::{guard, outlasting};
 use frixel_drivers::fault_record::Text;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
@@ -50,7 +51,7 @@ fn main() -> ! {
     period::start();
     tick::start_inputs();
 
-    let kept = fault::outlasting(&KEPT).swap(0, Ordering::Relaxed);
+    let kept = outlasting(&KEPT).swap(0, Ordering::Relaxed);
     let kept = if kept & !0xff == MARK { kept & 0xff } else { 0 };
     let (frames, dac) = dac::start();
     let (spi, _) = dac.release();

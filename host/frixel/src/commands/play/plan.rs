@@ -49,14 +49,14 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         return Err(CommandError::ControlAndStream);
     }
     match target {
-        Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
+        Target::Emulator | Target::Pico if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
         Target::Simulator if args.watch && (args.control || args.stream.as_deref() == Some(Path::new("-"))) => {
             Err(CommandError::WatchReadsInputOnce)
         }
-        Target::Simulator | Target::Emulator if args.with_log.is_some() => {
+        Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => {
             Err(CommandError::LogInVirtualTime { port: port() })
         }
-        Target::Emulator if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
+        Target::Emulator | Target::Pico if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
         Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => {
             Err(CommandError::WorldOnBoard { port: port() })
@@ -84,7 +84,7 @@ impl Plan {
         print_notes(&program);
         let telemetry_period_ticks = match target {
             Target::Simulator => 0,
-            Target::Emulator => tick_hz / EMULATED_TELEMETRY_HZ,
+            Target::Emulator | Target::Pico => tick_hz / EMULATED_TELEMETRY_HZ,
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = open_feed(args, tick_hz, target)?;
@@ -133,12 +133,6 @@ impl Plan {
     /// Ticks between two rows.
     pub(super) fn ticks_per_row(&self) -> u32 {
         self.ticks_per_row
-    }
-
-    /// Ends the play after so many rows, unless it is over before.
-    pub(super) fn end_after_rows(&mut self, rows: usize) {
-        let rows_s = rows as f64 * f64::from(self.ticks_per_row) / f64::from(self.tick_hz);
-        self.seconds = Some(self.seconds().min(rows_s));
     }
 
     /// Whether the play ends when the stream of a board at a port has ended.
