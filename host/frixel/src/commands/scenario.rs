@@ -10,7 +10,7 @@ use frixel_hil_sim::RigConfig;
 #[cfg(unix)]
 use frixel_hil_sim::World;
 #[cfg(unix)]
-use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
+use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard};
 use frixel_lab::scenario::{ScenarioOutcome, run_in_process};
 #[cfg(unix)]
 use frixel_lab::scenario::{programs, stroke_and_world};
@@ -65,7 +65,7 @@ fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result
     if let Some(program) = programs.get(&scenario.scene) {
         world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
     }
-    let image = Image::find()?;
+    let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
     let mut tick = 0_u32;
     let mut board = LinkBoard::start(&image, world, move |record| {
