@@ -217,6 +217,34 @@ mod tests {
         }
     }
 
+    /// The wires of the self-test: pins as its source has them, positions of the firmware's pins as the table has them.
+    #[test]
+    fn the_wires_of_the_self_test_are_those_of_its_page() {
+        let carrier = read().unwrap();
+        let page = fs::read_to_string(root().join("docs/first-board.md")).unwrap();
+        let rows: Vec<Vec<&str>> = page
+            .lines()
+            .map(|line| line.split('|').map(str::trim).collect::<Vec<_>>())
+            .filter(|cells| cells.len() == 8 && cells[3].starts_with("CN"))
+            .collect();
+        let captures = source("bin/self-test/captures");
+        let wires = captures.lines().filter_map(|line| line.strip_prefix("//! | P"));
+        let mut count = 0;
+        for wire in wires {
+            let cells: Vec<&str> = wire.split('|').map(str::trim).collect();
+            let other = cells[2].split([' ', ',']).nth(1).unwrap();
+            let ends = [format!("P{}", cells[0]), other.to_owned()];
+            let is_wire = |row: &&Vec<&str>| ends.iter().all(|end| [row[2], row[4]].contains(&end.as_str()));
+            let row = rows.iter().find(is_wire).unwrap_or_else(|| panic!("no wire of {ends:?}"));
+            for (pin, position) in [(row[2], row[3]), (row[4], row[5])] {
+                let known = carrier.pin.iter().find(|known| known.pin == pin);
+                assert!(known.is_none_or(|known| known.position == position), "{pin} is not at {position}");
+            }
+            count += 1;
+        }
+        assert_eq!((count, rows.len()), (5, 5));
+    }
+
     #[test]
     fn every_node_is_a_part_and_in_one_net() {
         let carrier = read().unwrap();

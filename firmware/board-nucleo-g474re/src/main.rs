@@ -99,7 +99,7 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Nucle
 
     let (session_ends, tick_ends) = queues.split();
     let serial = Some(SerialLink::new(Serial::new()));
-    TICK.start(tick::tick(ticker, tick_ends, frames, output));
+    tick::start(&TICK, ticker, tick_ends, frames, output);
     MainLoop {
         shared: &tick::SHARED,
         queues: session_ends,

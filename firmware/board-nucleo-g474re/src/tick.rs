@@ -43,6 +43,7 @@ where
     }
 
     /// Starts the tick. Called once.
+    #[inline]
     pub fn start(&self, tick: Tick<H>) {
         // SAFETY: TIM3 is unmasked below.
         unsafe { self.0.give(tick) };
@@ -84,9 +85,9 @@ pub static SHARED: TickShared = TickShared::new::<Period>();
 #[cfg(feature = "log")]
 defmt::timestamp!("tick {=u32}", count());
 
-/// The tick with all parts of this board. The input pins are configured here.
-pub fn tick(ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) -> Tick<Nucleo> {
-    Tick {
+/// Starts the tick of a program with all parts of this board. The input pins are configured here.
+pub fn start(owner: &TickOwner<Nucleo>, ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
+    owner.start(Tick {
         shared: &SHARED,
         ticker,
         queues,
@@ -95,7 +96,7 @@ pub fn tick(ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: O
         amplifier: Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_READY)),
         monitor: Adc::new(),
         arm_switch: ArmSwitch::new(Pin::input_pulled_down(GPIOB, ARM_SWITCH), Nucleo::TICK_HZ),
-    }
+    });
 }
 
 /// Configures both input pins before the tick runs, for bring-up.

@@ -232,6 +232,15 @@ fn the_page_has_the_numbers_of_the_command() {
     ] {
         assert!(text.contains(found) && PAGE.replace('\n', " ").contains(said), "{found}: {text}");
     }
+    // Those of the return path.
+    let hardware = include_str!("../../../docs/hardware.md");
+    for (found, said) in [
+        ("1000 Hz   99  98  return contact", "99 % of the voltage is across the gap, and 98 % of the force"),
+        ("1000 Hz   21   4  no contact, the common isolated", "without the contact 21 % and 4 %"),
+        ("1000 Hz   50  25  no contact, the common on earth", "with the common on earth half and a quarter"),
+    ] {
+        assert!(text.contains(found) && hardware.contains(said), "{found}: {text}");
+    }
     // And those of a first board, in a row of its table.
     for (found, said) in [
         ("1000 Hz   43.9 V bound", "43.8 V | 68 kOhm | 1 kHz"),

@@ -30,7 +30,7 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
     let Some(session) = session(board, second) else { fault::never() };
     let (session_ends, tick_ends) = queues.split();
     let Still { output, frames, dac } = still;
-    TICK.start(tick::tick(ticker, tick_ends, frames, output));
+    tick::start(&TICK, ticker, tick_ends, frames, output);
     MainLoop {
         shared: &tick::SHARED,
         queues: session_ends,
