@@ -10,7 +10,7 @@ use crate::command::root;
 /// The packages whose sources use each crate, tests apart.
 const USES: [(&str, &[&str]); 6] = [
     ("defmt", &["board-nucleo-g474re", "frixel-board", "frixel-drivers"]),
-    ("embedded-hal", &["board-nucleo-g474re", "frixel-board", "frixel-drivers", "frixel-hil-sim"]),
+    ("embedded-hal", &["board-mps2-an386", "board-nucleo-g474re", "frixel-board", "frixel-drivers", "frixel-hil-sim"]),
     ("fixed", &["frixel-control", "frixel-model", "frixel-wire"]),
     (
         "heapless",

@@ -17,74 +17,46 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use crate::check::{M0_PLUS_TARGET, M4F_TARGET, WASM_TARGET};
-use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, MUSL, cargo_in, root, run, target_folder};
+use crate::check::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, root, run, target_folder};
 use crate::licences::{self, Program};
 use crate::needs::{self, Need};
 use crate::{pico_rig, studio};
 
 /// What it needs of the machine.
-const NEEDS: [Need; 7] =
-    [M4F_TARGET, M0_PLUS_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python, Need::Node, Need::Npm];
+const NEEDS: [Need; 8] =
+    [M4F_TARGET, M0_PLUS_TARGET, M33_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python, Need::Node, Need::Npm];
 /// Nearly as fast as `release`, and built in a third of the time.
 const PROFILE: &str = "wheel";
 /// The folder of the Python module.
 const PYTHON: &str = "host/python";
 /// Text in the wheel, beside frixel's own licences.
 const WHEEL_LICENCES: &str = "LICENCES.txt";
-/// An image.
-struct Image {
-    folder: &'static str,
-    program: &'static str,
-    /// Its file in the folder of images.
-    file: &'static str,
-    target: &'static str,
-    /// Arguments for cargo, beside the usual ones.
-    build: &'static [&'static str],
-}
-
-const IMAGES: [Image; 5] = [
-    Image {
-        folder: "firmware/board-mps2-an386",
-        program: "board-mps2-an386",
-        file: "board-mps2-an386.elf",
-        target: M4F,
-        build: &[],
-    },
-    Image {
-        folder: "firmware/board-nucleo-g474re",
-        program: "board-nucleo-g474re",
-        file: "board-nucleo-g474re.elf",
-        target: M4F,
-        build: &[],
-    },
-    Image {
-        folder: "firmware/board-nucleo-g474re",
-        program: "bring-up",
-        file: "board-nucleo-g474re-bring-up.elf",
-        target: M4F,
-        build: &[],
-    },
-    Image {
-        folder: "firmware/board-nucleo-g474re",
-        program: "self-test",
-        file: "board-nucleo-g474re-self-test.elf",
-        target: M4F,
-        build: &[],
-    },
-    Image {
-        folder: "firmware/board-pico",
-        program: "board-pico",
-        file: "board-pico.elf",
-        target: M0_PLUS,
+/// Program and file of each image, and what it is compiled from.
+const IMAGES: [(&str, &str, Program); 6] = [
+    ("board-mps2-an386", "board-mps2-an386.elf", board("firmware/board-mps2-an386", M4F, &[])),
+    ("board-nucleo-g474re", "board-nucleo-g474re.elf", NUCLEO),
+    ("bring-up", "board-nucleo-g474re-bring-up.elf", NUCLEO),
+    ("self-test", "board-nucleo-g474re-self-test.elf", NUCLEO),
+    ("board-pico", "board-pico-2.elf", board(PICO, M33, &[])),
+    (
+        "board-pico",
+        "board-pico.elf",
         // As `EmulatedBoard::build_arguments` in `hil-sim` has them.
-        build: &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,everything"],
-    },
+        board(PICO, M0_PLUS, &["--no-default-features", "--features", "rp2040,everything"]),
+    ),
 ];
+const NUCLEO: Program = board("firmware/board-nucleo-g474re", M4F, &[]);
+const PICO: &str = "firmware/board-pico";
 /// Folder of the emulator of the Pico among the images.
 const PICO_RIG: &str = "pico-rig";
-const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL) };
-const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None };
+const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL), features: &[] };
+const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None, features: &[] };
+
+/// The programs of a board's folder.
+const fn board(folder: &'static str, target: &'static str, features: &'static [&'static str]) -> Program {
+    Program { folder, package: None, target: Some(target), features }
+}
 
 /// Makes the folder, which must be empty or new.
 pub(crate) fn make(folder: &str) -> Result<(), String> {
@@ -98,18 +70,17 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
 
     command(&folder)?;
-    for Image { folder, program, file, target, build } in IMAGES {
-        let usual = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
-        run(file, cargo_in(folder).args(usual).args(build))?;
-        let built = root().join(folder).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(program);
+    for (program, file, Program { folder: sources, target, features, .. }) in IMAGES {
+        let target = target.unwrap_or_default();
+        let build = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
+        run(file, cargo_in(sources).args(build).args(["--target", target]).args(features))?;
+        let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(program);
         copy(&built, &images.join(file))?;
     }
     pico_rig::copy_to(&images.join(PICO_RIG))?;
     wheel(&folder)?;
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
-    let boards =
-        [("firmware/board-mps2-an386", M4F), ("firmware/board-nucleo-g474re", M4F), ("firmware/board-pico", M0_PLUS)];
-    let boards = boards.map(|(folder, target)| Program { folder, package: None, target: Some(target) });
+    let boards = IMAGES.map(|(_, _, program)| program);
     let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
     let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
     write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs, emulator)?)?;

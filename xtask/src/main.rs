@@ -30,7 +30,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use bench::programs::{self, Pace};
-use check::{CLIPPY, M3_TARGET, M4F_TARGET, Tier, WASM_TARGET};
+use check::{CLIPPY, M0_PLUS_TARGET, M3_TARGET, M4F_TARGET, M33_TARGET, Tier, WASM_TARGET};
 use needs::{Need, require};
 
 const USAGE: &str = "\
@@ -58,7 +58,7 @@ cargo xtask programs PACE FIRST COUNT
 ";
 
 /// What the commands that count instructions need.
-const EMULATED: [Need; 3] = [M4F_TARGET, M3_TARGET, Need::Emulator];
+const EMULATED: [Need; 5] = [M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();

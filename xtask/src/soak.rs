@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 10] = [
+const PARTS: [Part; 11] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",

@@ -18,6 +18,7 @@ mod dma;
 pub mod fault;
 pub mod flash;
 pub mod indicator;
+pub mod main_loop;
 #[cfg(feature = "optical-frame")]
 pub mod optical_frame;
 pub mod output;

@@ -2,30 +2,23 @@
 #![no_std]
 #![no_main]
 
-#[cfg(feature = "optical-frame")]
-use core::pin::pin;
-
 use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault;
 #[cfg(feature = "log")]
 use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
-#[cfg(feature = "optical-frame")]
-use board_nucleo_g474re::optical_frame;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, dac, indicator, period, tick_interrupt};
+use board_nucleo_g474re::{board, clock, dac, indicator, main_loop, period, tick_interrupt};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
 use frixel_board::fault::LastReset;
 use frixel_board::main_loop::MainLoop;
-#[cfg(feature = "optical-frame")]
-use frixel_board::optical_frame::{OpticalFrame, Reports};
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
@@ -52,20 +45,7 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
     static mut QUEUES: Queues = Queues::new();
 
-    let mut main_loop = start(TEXT, QUEUES);
-    #[cfg(feature = "optical-frame")]
-    let reports = Reports::new(None);
-    #[cfg(feature = "optical-frame")]
-    let reading = pin!(optical_frame::read(&reports));
-    #[cfg(feature = "optical-frame")]
-    let mut touch_source = OpticalFrame::new(reading, &reports);
-    loop {
-        #[cfg(feature = "optical-frame")]
-        let touch = touch_source.next_touch();
-        #[cfg(not(feature = "optical-frame"))]
-        let touch = None;
-        main_loop.turn(touch);
-    }
+    main_loop::run(start(TEXT, QUEUES))
 }
 
 /// Starts everything. A function of its own, so that its stack is free again afterwards.

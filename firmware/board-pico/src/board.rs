@@ -83,7 +83,7 @@ pub fn board(last_reset: &LastReset, flash: Option<&StoreFlash>) -> Board {
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
         reset_fault_starts: last_reset.fault_starts,
-        touch_from_host: true,
+        touch_from_host: !cfg!(feature = "optical-frame"),
         notices,
         ..BOARD
     }

@@ -16,6 +16,7 @@
 //! | PWM 0 | counts the cycles of the period ([`period`]) |
 //! | ADC | the amplifier's monitor ([`adc`]) |
 //! | UART 0 | the host ([`serial`]) |
+//! | I2C 0 | the optical frame, with the feature `optical-frame` |
 //!
 //! No DMA and no second core are used.
 #![no_std]
@@ -30,6 +31,8 @@ pub mod dac;
 pub mod fault;
 pub mod flash;
 pub mod indicator;
+#[cfg(feature = "optical-frame")]
+pub mod optical_frame;
 pub mod output;
 pub mod period;
 pub mod pins;

@@ -2,10 +2,15 @@
 #![no_std]
 #![no_main]
 
+#[cfg(feature = "optical-frame")]
+use core::pin::pin;
+
 use board_pico::board::Pico;
 #[cfg(feature = "store")]
 use board_pico::chip::TICK_HZ;
 use board_pico::flash::StoreFlash;
+#[cfg(feature = "optical-frame")]
+use board_pico::optical_frame;
 use board_pico::output::Output;
 use board_pico::serial::Serial;
 use board_pico::watchdog::Watchdog;
@@ -13,6 +18,8 @@ use board_pico::{board, boot, clock, dac, fault, indicator, output, tick};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 use frixel_board::main_loop::MainLoop;
+#[cfg(feature = "optical-frame")]
+use frixel_board::optical_frame::{OpticalFrame, Reports};
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
@@ -37,8 +44,18 @@ fn main() -> ! {
     static mut QUEUES: Queues = Queues::new();
 
     let mut main_loop = start(TEXT, QUEUES);
+    #[cfg(feature = "optical-frame")]
+    let reports = Reports::new(None);
+    #[cfg(feature = "optical-frame")]
+    let reading = pin!(optical_frame::read(&reports));
+    #[cfg(feature = "optical-frame")]
+    let mut touch_source = OpticalFrame::new(reading, &reports);
     loop {
-        main_loop.turn(None);
+        #[cfg(feature = "optical-frame")]
+        let touch = touch_source.next_touch();
+        #[cfg(not(feature = "optical-frame"))]
+        let touch = None;
+        main_loop.turn(touch);
     }
 }
 

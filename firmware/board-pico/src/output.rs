@@ -45,9 +45,8 @@ const PROGRAM: [Instruction; 7] = [
     set(Destination::Pins, 0),
 ];
 
-// The two pins, as a kick has them.
+/// The two pins, as a kick has them.
 const BOTH: u32 = 0b11;
-const CLEAR_ALONE: u32 = 0b10;
 
 /// The one-shot.
 pub struct Output(());
@@ -74,16 +73,6 @@ impl Output {
             pins::connect(pin, Function::Pio1);
         }
         Self(())
-    }
-
-    /// Lets the DAC put out its codes for another [`LIFE_US`], with the amplifier disabled, whatever was kicked before.
-    pub fn kick_dac_alone(&mut self) {
-        ONE_SHOT.transmit(CLEAR_ALONE | ROUNDS << 2);
-    }
-
-    /// Levels of the pins: amplifier enable, DAC clear.
-    pub fn pins(&self) -> (bool, bool) {
-        (pins::is_high(AMPLIFIER_ENABLE), pins::is_high(DAC_CLEAR))
     }
 }
 

@@ -9,6 +9,8 @@ use rp_pac::{IO_BANK0, PADS_BANK0, RESETS, SIO};
 #[derive(Clone, Copy)]
 pub(crate) enum Function {
     Uart = 2,
+    #[cfg(feature = "optical-frame")]
+    I2c = 3,
     /// Software.
     Sio = 5,
     Pio0 = 6,
@@ -52,6 +54,12 @@ impl Pin {
         SIO.gpio_oe(0).value_set().write_value(1 << number);
         connect(number, Function::Sio);
         pin
+    }
+
+    /// The level of a pin that a peripheral uses.
+    #[cfg(feature = "optical-frame")]
+    pub(crate) fn reads(number: usize) -> Self {
+        Self { number }
     }
 
     /// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring a
@@ -119,12 +127,45 @@ impl OutputPin for ForcedPin {
     }
 }
 
+/// A pin that software drives low or releases.
+#[cfg(feature = "optical-frame")]
+pub(crate) struct OpenDrainPin(usize);
+
+#[cfg(feature = "optical-frame")]
+impl OpenDrainPin {
+    /// Takes a pin from its peripheral, released and pulled up.
+    pub(crate) fn released(number: usize) -> Self {
+        SIO.gpio_oe(0).value_clr().write_value(1 << number);
+        set(number, false);
+        connect_pulled_up(number, Function::Sio);
+        Self(number)
+    }
+}
+
+#[cfg(feature = "optical-frame")]
+impl ErrorType for OpenDrainPin {
+    type Error = Infallible;
+}
+
+#[cfg(feature = "optical-frame")]
+impl OutputPin for OpenDrainPin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        SIO.gpio_oe(0).value_clr().write_value(1 << self.0);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        SIO.gpio_oe(0).value_set().write_value(1 << self.0);
+        Ok(())
+    }
+}
+
 /// Connects a pin to a peripheral that drives it. Its level can still be read.
 pub(crate) fn connect(pin: usize, function: Function) {
     configure(pin, function, Pull::None, true);
 }
 
-/// Connects an input to a peripheral, pulled up: a disconnected wire is idle.
+/// Connects an input, or a line that others drive low, to a peripheral, pulled up: a disconnected wire is idle.
 pub(crate) fn connect_pulled_up(pin: usize, function: Function) {
     configure(pin, function, Pull::Up, true);
 }

@@ -41,7 +41,7 @@ pub trait Hardware: 'static {
     type Frames: DacFrames;
     /// The main loop's half of the DAC.
     type Dac: Dac;
-    /// The enable of the amplifier.
+    /// The enable of the amplifier. Where a wire can, disabling clears the DAC, too.
     type Enable: KickedEnable;
     /// The pin that is high while the amplifier is ready.
     type Ready: InputPin;

@@ -87,28 +87,25 @@ pub const FLASH_WAIT_PERCENT: u32 = 125;
 /// The place in a scene at which a tick takes the longest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
-    /// Core cycles of the longest tick, on this core.
+    /// Core cycles of the longest tick.
     pub core_cycles: u32,
-    /// The core.
-    pub core: Core,
     /// The cell of the grid that contains the place.
     pub cell: Cell,
 }
 
 impl Worst {
     /// No place: the initial value of a search.
-    pub const NOWHERE: Self =
-        Self { core_cycles: 0, core: Core::CortexM4f, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
+    pub const NOWHERE: Self = Self { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
 
-    /// Cycles of the longest tick, including flash wait states.
-    pub const fn cycles(&self) -> u32 {
-        cycles(self.core, self.core_cycles)
+    /// Cycles of the longest tick on the core that it was found for, including flash wait states.
+    pub const fn cycles(&self, core: Core) -> u32 {
+        cycles(core, self.core_cycles)
     }
 
-    /// Refuses a scene whose longest tick is estimated at more than `cycles_max`.
-    pub fn check(&self, cycles_max: u32) -> Result<(), Refusal> {
+    /// Refuses a scene whose longest tick is estimated at more than `cycles_max` on the core that it was found for.
+    pub fn check(&self, core: Core, cycles_max: u32) -> Result<(), Refusal> {
         let Cell { x_m, y_m, .. } = self.cell;
-        let cycles = self.cycles();
+        let cycles = self.cycles(core);
         if cycles <= cycles_max { Ok(()) } else { Err(Refusal::TooCostly { cycles, cycles_max, x_m, y_m }) }
     }
 }
@@ -120,15 +117,15 @@ pub const MEASURED_LAYERS: &[(&str, Cost)] = measured::LAYERS;
 /// Cortex-M0+.
 pub const fn cycles(core: Core, core_cycles: u32) -> u32 {
     match core {
-        Core::CortexM4f => core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100),
+        #[cfg(feature = "every-core")]
         Core::CortexM0Plus => core_cycles,
+        _ => core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100),
     }
 }
 
 /// The costs of a scene's layers, from which the cost of a tick at any place follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerCosts {
-    core: Core,
     /// Core cycles of a tick with no layer near the finger, apart from `elsewhere`.
     empty: u32,
     /// Core cycles that layers add wherever the finger is.
@@ -140,16 +137,16 @@ pub struct LayerCosts {
 impl LayerCosts {
     /// A scene with this header and without layers, on a board with this core.
     pub fn new(header: &Header, core: Core) -> Self {
-        Self { core, empty: of_empty_scene(header).on(core), elsewhere: 0, layers: [0; RECORDS_MAX] }
+        Self { empty: of_empty_scene(header).on(core), elsewhere: 0, layers: [0; RECORDS_MAX] }
     }
 
-    /// Adds layer number `number`; `points` are the scene's.
-    pub fn add(&mut self, number: u8, record: &Record, points: &[Point]) {
+    /// Adds layer number `number`; `points` are the scene's, and `core` is that of [`Self::new`].
+    pub fn add(&mut self, number: u8, record: &Record, points: &[Point], core: Core) {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
-            *cost = u16::try_from(of_record(record, points).on(self.core)).unwrap_or(u16::MAX);
+            *cost = u16::try_from(of_record(record, points).on(core)).unwrap_or(u16::MAX);
         }
         // Counts once for all layers of the kind. Only one kind has it: a second one would need a sum over kinds.
-        self.elsewhere = self.elsewhere.max(record.layer.cost_elsewhere().on(self.core));
+        self.elsewhere = self.elsewhere.max(record.layer.cost_elsewhere().on(core));
     }
 
     /// Core cycles of a tick that evaluates these layers.
@@ -162,7 +159,7 @@ impl LayerCosts {
     pub fn worst(&self, cells: impl Iterator<Item = Cell>, so_far: Worst) -> Worst {
         cells.fold(so_far, |worst, cell| {
             let core_cycles = self.of_tick(cell.layers);
-            if core_cycles > worst.core_cycles { Worst { core_cycles, core: self.core, cell } } else { worst }
+            if core_cycles > worst.core_cycles { Worst { core_cycles, cell } } else { worst }
         })
     }
 }
@@ -187,7 +184,7 @@ pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point], cor
     let mut costs = LayerCosts::new(header, core);
     for (number, record) in (0..).zip(records) {
         grid.add(number, &record.region, points);
-        costs.add(number, record, points);
+        costs.add(number, record, points, core);
     }
     costs.worst(grid.cells(), Worst::NOWHERE)
 }

@@ -80,7 +80,7 @@ impl RandomScene {
         let number = |is: fn(&Layer) -> bool| self.records.iter().filter(|record| is(&record.layer)).count();
         number(|layer| matches!(layer, Layer::Noise(_))) <= NOISES_MAX
             && number(|layer| layer.click().is_some()) <= CLICKS_MAX
-            && self.worst_tick().cycles() <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
+            && self.worst_tick().cycles(Core::CortexM4f) <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
     }
 }
 

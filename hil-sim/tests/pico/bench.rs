@@ -11,6 +11,7 @@ use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
+use frixel_session::Touch;
 
 pub(super) const BOARD: Board = Board::PICO;
 pub(super) const TICK: Duration = Duration::from_micros(100);
@@ -36,6 +37,8 @@ pub(super) fn program(text: &str) -> Program {
 pub(super) struct Bench {
     rig: Rc<RefCell<PicoRig>>,
     records: Rc<RefCell<Vec<LinkRecord>>>,
+    /// Touch reports, with the number of records before each.
+    reports: Rc<RefCell<Vec<(usize, Touch)>>>,
 }
 
 impl Bench {
@@ -53,7 +56,7 @@ impl Bench {
         world.set_finger(program(CONSTANT).header.friction_law().unwrap());
         let mut rig = PicoRig::start(image, world).unwrap();
         rig.record_events();
-        Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default() }
+        Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default(), reports: Rc::default() }
     }
 
     /// Does something with the rig.
@@ -69,6 +72,9 @@ impl Bench {
     pub(super) fn step(&self) -> LinkRecord {
         let record = self.with(|rig| rig.step().unwrap());
         self.records.borrow_mut().push(record);
+        if let Some(touch) = self.with(|rig| rig.world_mut().touch()) {
+            self.reports.borrow_mut().push((self.records.borrow().len(), touch));
+        }
         record
     }
 
@@ -78,6 +84,11 @@ impl Bench {
         while self.now() < end {
             self.step();
         }
+    }
+
+    /// The touch reports since the last call, each with the number of ticks before it since then.
+    pub(super) fn take_reports(&self) -> Vec<(usize, Touch)> {
+        self.reports.take()
     }
 
     /// The ticks since the last call.

@@ -20,7 +20,7 @@ use super::titles::{LayerTitle, listed};
 /// if these alone take too long; otherwise it names all layers of the cell.
 pub(super) fn check(scene: &Scene, program: &Program, core: Core, cycles_max: u32, log: &mut Log) {
     let worst = program.worst_tick(core);
-    if worst.cycles() <= cycles_max {
+    if worst.cycles(core) <= cycles_max {
         return;
     }
     let meeting = program.dearest_meeting(&worst.cell, core);
@@ -31,7 +31,7 @@ pub(super) fn check(scene: &Scene, program: &Program, core: Core, cycles_max: u3
     };
     let titles: Vec<&LayerTitle> = layers.iter().filter_map(|number| program.titles.get(*number)).collect();
     let topmost = titles.last().and_then(|title| scene.layers.iter().find(|layer| layer.number() == title.number()));
-    let cycles = worst.cycles();
+    let cycles = worst.cycles(core);
     let mistake = FitMistake::TickTooLong { cycles, cycles_max, layers: listed(&titles), meet, x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
@@ -63,7 +63,7 @@ impl Program {
     fn dearest_meeting(&self, cell: &Cell, core: Core) -> Option<Meeting> {
         let mut costs = LayerCosts::new(&self.header, core);
         for (number, record) in (0..).zip(&self.records) {
-            costs.add(number, record, &self.points);
+            costs.add(number, record, &self.points, core);
         }
         let shapes: Vec<(usize, Shape)> = layer_numbers(cell.layers)
             .filter_map(|number| self.records.get(number).map(|record| (number, record)))
@@ -126,7 +126,7 @@ mod tests {
             &scene,
             &program,
             Core::CortexM4f,
-            program.worst_tick(Core::CortexM4f).cycles().saturating_add_signed(more_cycles),
+            program.worst_tick(Core::CortexM4f).cycles(Core::CortexM4f).saturating_add_signed(more_cycles),
             &mut log,
         );
         log.finish(Some(())).err().map(|error| error.to_string())
@@ -137,7 +137,7 @@ mod tests {
         let text = format!("{HEAD}{}{}{}", layer(0), layer(90), layer(95));
         let program = compile_text(&text).expect("it compiles");
         assert_eq!(program.worst_tick(Core::CortexM4f).cell.layers, [0b110, 0]);
-        let cycles = program.worst_tick(Core::CortexM4f).cycles();
+        let cycles = program.worst_tick(Core::CortexM4f).cycles(Core::CortexM4f);
         let line = 2 * 7 + HEAD.lines().count() + 1;
         let expected = format!(
             "test.toml:{line}:1: layer 2 (grating) and layer 3 (grating) meet at x 95 mm, y 0 mm: a tick there is estimated at \

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use svg::Document;
 use svg::node::element::{Group, Line, Rectangle, Text};
 
-use super::{Carrier, Part, value_text};
+use super::{BOARD, Carrier, Part, value_text};
 
 /// Lengths, in pixels.
 const WIDTH: f64 = 1180.0;
@@ -39,7 +39,9 @@ pub(super) fn draw(carrier: &Carrier) -> String {
         let color = if net.why.starts_with("**") { DANGER } else { INK };
         for node in &net.nodes {
             if let Some((part, pin)) = node.split_once('.') {
-                nets.entry(part).or_insert_with(Vec::new).push(Pin { name: pin, net: &net.name, color });
+                let pico = carrier.pico.iter().find(|pico| part == BOARD && pico.net.as_ref() == Some(&net.name));
+                let name = pico.map_or_else(|| pin.to_owned(), |pico| format!("{pin}, {}", pico.pin));
+                nets.entry(part).or_insert_with(Vec::new).push(Pin { name, net: &net.name, color });
             }
         }
     }
@@ -70,9 +72,8 @@ pub(super) fn draw(carrier: &Carrier) -> String {
 }
 
 /// A pin of a part, and the net that it is in.
-#[derive(Clone, Copy)]
 struct Pin<'c> {
-    name: &'c str,
+    name: String,
     net: &'c str,
     color: &'static str,
 }
@@ -160,7 +161,7 @@ impl Drawing {
             // The pin's name stands inside the box.
             let inside = if side == Side::Left { Side::Right } else { Side::Left };
             let name_at = (edge + 5.0 * inside.outwards(), at + BASELINE);
-            self.text(name_at, inside.anchor(), "#666", PIN_NAME, pin.name);
+            self.text(name_at, inside.anchor(), "#666", PIN_NAME, &pin.name);
             self.end(edge, at, side, pin);
         }
         height

@@ -124,7 +124,7 @@ impl LongestTick {
         let cell = worst.cell;
         let (x_mm, y_mm) = middle_mm(&cell);
         Self {
-            cycles: worst.cycles(),
+            cycles: worst.cycles(limits.core),
             cycles_limit: limits.tick_cycles_max,
             x_mm,
             y_mm,

@@ -7,11 +7,12 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_hil_sim::{BoardRig, LineNoise, NoiseConfig, RigError};
+use frixel_hil_sim::{BoardRig, RigError};
 use frixel_play::Recorded;
-use frixel_scene::{Cause, LineDamage, Scenario};
+use frixel_scene::{Cause, Scenario};
 
 use super::checks::Checks;
+use super::direction::Direction;
 use super::host::Failure;
 use super::told::Told;
 use super::{ScenarioError, ScenarioOutcome, TimelineEntry};
@@ -53,55 +54,6 @@ struct PlannedFault {
     line: usize,
     name: Option<String>,
     cause: Cause,
-}
-
-/// One direction of the line.
-struct Direction {
-    noise: LineNoise,
-    is_cut: bool,
-    late_ticks: u64,
-    held: VecDeque<(u64, Vec<u8>)>,
-}
-
-impl Direction {
-    fn new(seed: u64) -> Self {
-        Self { noise: LineNoise::new(seed), is_cut: false, late_ticks: 0, held: VecDeque::new() }
-    }
-
-    /// Takes bytes that are sent at a tick.
-    fn take(&mut self, bytes: &[u8], tick: u64) {
-        if bytes.is_empty() || self.is_cut {
-            return;
-        }
-        let mut arrived = Vec::new();
-        self.noise.pass(bytes, &mut arrived);
-        // Bytes do not overtake each other.
-        let due = (tick + self.late_ticks).max(self.held.back().map_or(0, |(due, _)| *due));
-        self.held.push_back((due, arrived));
-    }
-
-    /// The bytes that arrive up to a tick.
-    fn due(&mut self, tick: u64) -> Option<Vec<u8>> {
-        self.held.pop_front_if(|(due, _)| *due <= tick).map(|(_, bytes)| bytes)
-    }
-
-    fn set(&mut self, damages: &[LineDamage], tick_hz: u32) {
-        let mut noise = NoiseConfig::default();
-        (self.is_cut, self.late_ticks) = (false, 0);
-        for damage in damages {
-            match damage {
-                LineDamage::Cut => self.is_cut = true,
-                LineDamage::Late { ms } => self.late_ticks += (1e-3 * ms * f64::from(tick_hz)).round() as u64,
-                LineDamage::Noise(more) => {
-                    noise.bit_error_rate = noise.bit_error_rate.max(more.bit_error_rate);
-                    noise.lost_share = noise.lost_share.max(more.lost_share);
-                    noise.doubled_share = noise.doubled_share.max(more.doubled_share);
-                }
-            }
-        }
-        // The file's reader has checked the shares.
-        let _ = self.noise.set(noise);
-    }
 }
 
 impl<'r> ScenarioLine<'r> {
@@ -226,7 +178,7 @@ impl Inner<'_> {
             if tick >= until || reads && !self.inbox.is_empty() {
                 return Ok(());
             }
-            let next_due = [&self.to_board, &self.to_host].map(|direction| direction.held.front().map(|(due, _)| *due));
+            let next_due = [&self.to_board, &self.to_host].map(Direction::next_due);
             let next_fault = self.faults.front().map(|fault| fault.start);
             let next_end = self.present.iter().map(|fault| fault.end).min();
             let others = next_due.into_iter().chain([next_fault, next_end]).flatten();

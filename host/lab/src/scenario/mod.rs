@@ -5,6 +5,7 @@
 //! line are made at the host's end of it; everything else is the rig's.
 
 mod checks;
+mod direction;
 mod host;
 mod line;
 mod told;
