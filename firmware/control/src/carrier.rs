@@ -15,7 +15,8 @@ use fixed::types::{I1F15, I17F15};
 use frixel_layers::{Waveform, cosine};
 use frixel_wire::dac_code::DacCode;
 
-/// An integral beyond its limit falls with the envelope divided by two to this power.
+/// An integral beyond its limit falls with the envelope divided by two to this power. Below eight codes, 0.05 V at 200 V
+/// full scale, a positive one is nothing then, and the output waits for a larger envelope.
 const FALL_SHIFT: u32 = 3;
 
 /// Parameters of a carrier; part of [`Active`](crate::Active).
