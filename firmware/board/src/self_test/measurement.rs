@@ -150,7 +150,8 @@ mod tests {
                 Said::Histogram(&name, counts),
                 Said::End { measured: found, failed: counts[0] },
             ] {
-                prop_assert_eq!(Said::parse(&said.to_string()), Some(said));
+                let line = said.to_string();
+                prop_assert_eq!(Said::parse(&line), Some(said));
             }
         }
 
