@@ -7,6 +7,7 @@
 //! - [`BoardRig`]: what a scenario needs of any rig: a board with a serial line, and faults of both.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
 //! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
+//! - [`looped_board`]: a board with the wires of the self-test, with or without something wrong.
 //! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them; [`LineNoise`]:
 //!   what a bad one does to them.
 //!
@@ -27,6 +28,7 @@ mod in_process;
 mod journal;
 mod line;
 mod line_noise;
+pub mod looped_board;
 mod person;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a pseudo-terminal is a file")]

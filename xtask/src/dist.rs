@@ -33,10 +33,11 @@ const PYTHON: &str = "host/python";
 /// Text in the wheel, beside frixel's own licences.
 const WHEEL_LICENCES: &str = "LICENCES.txt";
 /// Program and file of each image, and what it is compiled from.
-const IMAGES: [(&str, &str, Program); 5] = [
+const IMAGES: [(&str, &str, Program); 6] = [
     ("board-mps2-an386", "board-mps2-an386.elf", board("firmware/board-mps2-an386", M4F, &[])),
     ("board-nucleo-g474re", "board-nucleo-g474re.elf", NUCLEO),
     ("bring-up", "board-nucleo-g474re-bring-up.elf", NUCLEO),
+    ("self-test", "board-nucleo-g474re-self-test.elf", NUCLEO),
     ("board-pico", "board-pico-2.elf", board(PICO, M33, &[])),
     (
         "board-pico",

@@ -1,4 +1,6 @@
-//! `cargo xtask hardware`: writes `docs/wiring.md` from `hardware/carrier.toml`.
+//! `cargo xtask hardware`: writes `docs/wiring.md` and `docs/schematic.svg` from `hardware/carrier.toml`.
+
+mod schematic;
 
 use std::fmt::Write;
 use std::fs;
@@ -9,6 +11,7 @@ use crate::command::root;
 
 const CARRIER: &str = "hardware/carrier.toml";
 const PAGE: &str = "docs/wiring.md";
+const SCHEMATIC: &str = "docs/schematic.svg";
 /// The processor board among the parts.
 const BOARD: &str = "U1";
 
@@ -53,6 +56,8 @@ struct Supply {
 #[serde(deny_unknown_fields)]
 struct Part {
     name: String,
+    /// The sheet of the schematic that shows it.
+    sheet: String,
     what: String,
     part: String,
     ratings: String,
@@ -69,10 +74,13 @@ struct Net {
     nodes: Vec<String>,
 }
 
-/// Writes the page.
+/// Writes the page and the schematic.
 pub(crate) fn write() -> Result<(), String> {
-    let page = page(&read()?);
-    fs::write(root().join(PAGE), page).map_err(|error| format!("{PAGE}: {error}"))
+    let carrier = read()?;
+    for (name, content) in [(PAGE, page(&carrier)), (SCHEMATIC, schematic::draw(&carrier))] {
+        fs::write(root().join(name), content).map_err(|error| format!("{name}: {error}"))?;
+    }
+    Ok(())
 }
 
 fn read() -> Result<Carrier, String> {
@@ -116,6 +124,9 @@ fn page(carrier: &Carrier) -> String {
         "# Wiring\n\nWritten by `cargo xtask hardware` from `hardware/carrier.toml`; a test holds it. Read \
          [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before anything is \
          switched on. Nobody has built this yet.\n\n\
+         ![schematic](schematic.svg)\n\n\
+         The schematic has a sheet for each function; a name at the end of a line is a net, and equal names are connected. \
+         Pins of U1 are those of the NUCLEO, and of a Pico.\n\n\
          ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before you \
          solder. Every row goes to all other nodes of its net.\n\n",
     );
@@ -129,7 +140,7 @@ fn page(carrier: &Carrier) -> String {
     }
     text += "\n## Bill of materials\n\nWhere a part is \"any\", the ratings decide.\n\n\
              | name | what | value | part | ratings |\n|---|---|---|---|---|\n";
-    for Part { name, what, part, ratings, value } in &carrier.part {
+    for Part { name, what, part, ratings, value, .. } in &carrier.part {
         let value = value.map_or(String::new(), |value| value_text(name, value));
         let _ = writeln!(text, "| {name} | {what} | {value} | {part} | {ratings} |");
     }
@@ -200,6 +211,24 @@ mod tests {
         assert!(held == page(&read().unwrap()), "`cargo xtask hardware` writes {PAGE} anew");
     }
 
+    #[test]
+    fn the_schematic_is_that_of_the_table_and_shows_every_part_once_and_every_node() {
+        let carrier = read().unwrap();
+        let held = fs::read_to_string(root().join(SCHEMATIC)).unwrap();
+        assert!(held == schematic::draw(&carrier), "`cargo xtask hardware` writes {SCHEMATIC} anew");
+        let lines: Vec<&str> = held.lines().collect();
+        let texts = |class: &str, text: &str| {
+            let class = format!("class=\"{class}\"");
+            lines.windows(2).filter(|pair| pair[0].contains(&class) && pair[1] == text).count()
+        };
+        for part in &carrier.part {
+            assert_eq!(texts(schematic::PART, &part.name), 1, "{}", part.name);
+        }
+        for net in &carrier.net {
+            assert_eq!(texts(schematic::NET, &net.name), net.nodes.len(), "{}", net.name);
+        }
+    }
+
     /// The tables at the top of the modules, and the constants that the code uses.
     #[test]
     fn pins_are_those_of_the_firmware() {
@@ -245,6 +274,34 @@ mod tests {
             of_pins.chain(supplies.iter().map(|supply| supply.net.as_str())).collect::<BTreeSet<_>>()
         });
         assert_eq!(pico, nucleo);
+    }
+
+    /// The wires of the self-test: pins as its source has them, positions of the firmware's pins as the table has them.
+    #[test]
+    fn the_wires_of_the_self_test_are_those_of_its_page() {
+        let carrier = read().unwrap();
+        let page = fs::read_to_string(root().join("docs/first-board.md")).unwrap();
+        let rows: Vec<Vec<&str>> = page
+            .lines()
+            .map(|line| line.split('|').map(str::trim).collect::<Vec<_>>())
+            .filter(|cells| cells.len() == 8 && cells[3].starts_with("CN"))
+            .collect();
+        let captures = source("firmware/board-nucleo-g474re/src", "bin/self-test/captures");
+        let wires = captures.lines().filter_map(|line| line.strip_prefix("//! | P"));
+        let mut count = 0;
+        for wire in wires {
+            let cells: Vec<&str> = wire.split('|').map(str::trim).collect();
+            let other = cells[2].split([' ', ',']).nth(1).unwrap();
+            let ends = [format!("P{}", cells[0]), other.to_owned()];
+            let is_wire = |row: &&Vec<&str>| ends.iter().all(|end| [row[2], row[4]].contains(&end.as_str()));
+            let row = rows.iter().find(is_wire).unwrap_or_else(|| panic!("no wire of {ends:?}"));
+            for (pin, position) in [(row[2], row[3]), (row[4], row[5])] {
+                let known = carrier.pin.iter().find(|known| known.pin == pin);
+                assert!(known.is_none_or(|known| known.position == position), "{pin} is not at {position}");
+            }
+            count += 1;
+        }
+        assert_eq!((count, rows.len()), (5, 5));
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub mod output;
 pub mod period;
 pub mod pins;
 pub mod serial;
+#[cfg(feature = "log")]
+pub mod terminal;
 pub mod tick;
 pub mod watchdog;
 

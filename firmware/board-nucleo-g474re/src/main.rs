@@ -12,7 +12,7 @@ use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, dac, indicator, main_loop, period};
+use board_nucleo_g474re::{board, clock, dac, indicator, main_loop, period, tick_interrupt};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
@@ -30,6 +30,9 @@ use frixel_layers::BitmapPool;
 use frixel_session::store::SceneStore;
 use frixel_session::{Queues, Session};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
+use stm32_metapac::interrupt;
+
+tick_interrupt!(Nucleo);
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
@@ -76,7 +79,7 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Nucle
 
     let (session_ends, tick_ends) = queues.split();
     let serial = Some(SerialLink::new(Serial::new()));
-    tick::start(ticker, tick_ends, frames, output);
+    tick::start(&TICK, ticker, tick_ends, frames, output);
     MainLoop {
         shared: &tick::SHARED,
         queues: session_ends,

@@ -8,6 +8,9 @@ use stm32_metapac::RCC;
 use stm32_metapac::gpio::Gpio;
 use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
 
+/// Time for a weak resistor to move a wire: 100 us.
+const PULL_CYCLES: u32 = crate::clock::CORE_HZ / 10_000;
+
 /// Enables the ports.
 pub fn start() {
     RCC.ahb2enr().modify(|w| {
@@ -110,7 +113,7 @@ impl OutputPin for ForcedPin {
 }
 
 /// Connects a pin to a peripheral.
-pub(crate) fn alternate(port: Gpio, pin: u32, function: u8) {
+pub fn alternate(port: Gpio, pin: u32, function: u8) {
     port.ospeedr().modify(|w| w.0 = field(w.0, 2, pin, Ospeedr::HIGH_SPEED as u32));
     port.afr(usize::from(pin >= 8)).modify(|w| w.0 = field(w.0, 4, pin % 8, u32::from(function)));
     mode(port, pin, Moder::ALTERNATE);
@@ -133,6 +136,24 @@ pub(crate) fn output_low(port: Gpio, pin: u32) {
 pub(crate) fn input_pulled_down(port: Gpio, pin: u32) {
     port.pupdr().modify(|w| w.0 = field(w.0, 2, pin, Pupdr::PULL_DOWN as u32));
     mode(port, pin, Moder::INPUT);
+}
+
+/// The level of a pin that is an input, through the weak resistor to either side. It is then pulled by none.
+pub fn levels_through_pulls(port: Gpio, pin: u32) -> [bool; 2] {
+    mode(port, pin, Moder::INPUT);
+    let levels = [Pupdr::PULL_UP, Pupdr::PULL_DOWN].map(|pull| {
+        port.pupdr().modify(|w| w.0 = field(w.0, 2, pin, pull as u32));
+        // 55 kOhm and 300 pF of a long wire: 17 us.
+        cortex_m::asm::delay(PULL_CYCLES);
+        is_high(port, pin)
+    });
+    port.pupdr().modify(|w| w.0 = field(w.0, 2, pin, Pupdr::FLOATING as u32));
+    levels
+}
+
+/// Makes a pin analog, as it is at reset.
+pub fn analog(port: Gpio, pin: u32) {
+    mode(port, pin, Moder::ANALOG);
 }
 
 /// Whether a pin is high.

@@ -16,7 +16,7 @@ use frixel_cortex_m::Owned;
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_session::TickEnds;
-use stm32_metapac::{GPIOB, GPIOC, Interrupt, interrupt};
+use stm32_metapac::{GPIOB, GPIOC, Interrupt};
 
 use crate::adc::Adc;
 use crate::board::Nucleo;
@@ -29,16 +29,65 @@ use crate::{period, pins};
 const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 2;
 
-static TICK: Owned<Tick<Nucleo>> = Owned::new();
+/// The tick of a program, which its interrupt owns: [`tick_interrupt`](crate::tick_interrupt) declares both.
+pub struct TickOwner<H: Hardware>(Owned<Tick<H>>);
+
+impl<H: Hardware> TickOwner<H>
+where
+    Tick<H>: Send,
+{
+    /// No tick yet.
+    #[allow(clippy::new_without_default, reason = "it belongs in a static")]
+    pub const fn new() -> Self {
+        Self(Owned::new())
+    }
+
+    /// Starts the tick. Called once.
+    #[inline]
+    pub fn start(&self, tick: Tick<H>) {
+        // SAFETY: TIM3 is unmasked below.
+        unsafe { self.0.give(tick) };
+        period::start_interrupts();
+        // SAFETY: no critical section depends on it being masked. Priority 0, the highest, is its priority from reset on.
+        unsafe { NVIC::unmask(Interrupt::TIM3) };
+    }
+
+    /// Runs the tick; its deadline is 21.8 us into the period.
+    ///
+    /// # Safety
+    /// Only the handler of TIM3 calls this.
+    #[inline]
+    pub unsafe fn run(&self) {
+        // SAFETY: the handler owns the value, says the caller.
+        if let Some(tick) = unsafe { self.0.get() } {
+            tick.run();
+        }
+    }
+}
+
+/// Declares `TICK`, the tick of a program whose parts are those of `$hardware`, and its interrupt.
+#[macro_export]
+macro_rules! tick_interrupt {
+    ($hardware:ty) => {
+        static TICK: $crate::tick::TickOwner<$hardware> = $crate::tick::TickOwner::new();
+
+        #[interrupt]
+        fn TIM3() {
+            // SAFETY: this is the handler.
+            unsafe { TICK.run() }
+        }
+    };
+}
+
 /// What the tick shares with the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
 #[cfg(feature = "log")]
 defmt::timestamp!("tick {=u32}", count());
 
-/// Starts the tick. The input pins are configured here.
-pub fn start(ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
-    let tick = Tick {
+/// Starts the tick of a program with all parts of this board. The input pins are configured here.
+pub fn start(owner: &TickOwner<Nucleo>, ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
+    owner.start(Tick {
         shared: &SHARED,
         ticker,
         queues,
@@ -47,12 +96,7 @@ pub fn start(ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: 
         amplifier: Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_READY)),
         monitor: Adc::new(),
         arm_switch: ArmSwitch::new(Pin::input_pulled_down(GPIOB, ARM_SWITCH), Nucleo::TICK_HZ),
-    };
-    // SAFETY: TIM3 is unmasked below.
-    unsafe { TICK.give(tick) };
-    period::start_interrupts();
-    // SAFETY: no critical section depends on it being masked. Priority 0, the highest, is its priority from reset on.
-    unsafe { NVIC::unmask(Interrupt::TIM3) };
+    });
 }
 
 /// Configures both input pins before the tick runs, for bring-up.
@@ -69,13 +113,4 @@ pub fn count() -> u32 {
 /// The levels of the inputs: the amplifier is ready, and the contact of the arm switch is closed.
 pub fn inputs() -> (bool, bool) {
     (pins::is_high(GPIOC, AMPLIFIER_READY), pins::is_high(GPIOB, ARM_SWITCH))
-}
-
-/// The tick; its deadline is 21.8 us into the period.
-#[interrupt]
-fn TIM3() {
-    // SAFETY: this is the handler that owns the value.
-    if let Some(tick) = unsafe { TICK.get() } {
-        tick.run();
-    }
 }

@@ -6,13 +6,18 @@
 //! - [`main_loop`]: the rest of the firmware, between two ticks;
 //! - [`optical_frame`]: a touch source of the main loop;
 //! - [`fault`]: how a start ends after a panic or a fault, and what the next one learns of it;
-//! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits.
+//! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits;
+//! - [`self_test`]: the script that measures a new board with a few wires, before there is any voltage.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 pub mod bring_up;
 pub mod fault;
 pub mod hardware;
+mod local_host;
+mod local_scene;
 pub mod main_loop;
 pub mod optical_frame;
+#[cfg(feature = "self-test")]
+pub mod self_test;
 pub mod tick;

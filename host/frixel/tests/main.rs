@@ -30,4 +30,5 @@ mod sweep;
 mod untrusted_text;
 mod virtual_board;
 mod watch;
+mod wires;
 mod wrong_inputs;

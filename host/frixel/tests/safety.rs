@@ -96,6 +96,7 @@ fn wrong_input_is_refused_with_what_was_expected() {
 }
 
 const PAGE: &str = include_str!("../../../docs/safety.md");
+const FIRST_BOARD: &str = include_str!("../../../docs/first-board.md");
 
 #[test]
 fn every_test_that_the_page_names_exists() {
@@ -204,16 +205,18 @@ fn gallery() -> String {
     text
 }
 
+/// A page with a table written anew behind its mark.
+fn with_table(page: &str, mark: &str, table: &str) -> String {
+    let start = page.find(mark).unwrap();
+    let start = start + page[start..].find('\n').unwrap() + 1;
+    let end = start + page[start..].find("<!-- end -->").unwrap();
+    format!("{}\n{table}\n{}", &page[..start], &page[end..])
+}
+
 #[test]
-fn the_page_says_what_is_felt_within_the_limits() {
-    let mut page = PAGE.to_owned();
-    for (mark, table) in [("<!-- fingers", fingers()), ("<!-- gallery", gallery())] {
-        let start = page.find(mark).unwrap();
-        let start = start + page[start..].find('\n').unwrap() + 1;
-        let end = start + page[start..].find("<!-- end -->").unwrap();
-        page.replace_range(start..end, &format!("\n{table}\n"));
-    }
-    golden::hold(&repository().join("docs/safety.md"), &page);
+fn the_pages_say_what_is_felt_within_the_limits() {
+    golden::hold(&repository().join("docs/safety.md"), &with_table(PAGE, "<!-- fingers", &fingers()));
+    golden::hold(&repository().join("docs/first-board.md"), &with_table(FIRST_BOARD, "<!-- gallery", &gallery()));
 }
 
 /// The page's other numbers are printed by its command.
@@ -228,5 +231,22 @@ fn the_page_has_the_numbers_of_the_command() {
         ("250 Hz   370 kOhm: 167.3 V peak", "167 V peak"),
     ] {
         assert!(text.contains(found) && PAGE.replace('\n', " ").contains(said), "{found}: {text}");
+    }
+    // Those of the return path.
+    let hardware = include_str!("../../../docs/hardware.md");
+    for (found, said) in [
+        ("1000 Hz   99  98  return contact", "99 % of the voltage is across the gap, and 98 % of the force"),
+        ("1000 Hz   21   4  no contact, the common isolated", "without the contact 21 % and 4 %"),
+        ("1000 Hz   50  25  no contact, the common on earth", "with the common on earth half and a quarter"),
+    ] {
+        assert!(text.contains(found) && hardware.contains(said), "{found}: {text}");
+    }
+    // And those of a first board, in a row of its table.
+    for (found, said) in [
+        ("1000 Hz   43.9 V bound", "43.8 V | 68 kOhm | 1 kHz"),
+        ("250 Hz   370 kOhm: 167.3 V peak", "167.3 V | 370 kOhm | 250 Hz"),
+        ("edges of 196 us take 20 % of the mean square", "196 us, 20 % of the mean square"),
+    ] {
+        assert!(text.contains(found) && FIRST_BOARD.contains(said), "{found}: {text}");
     }
 }

@@ -16,14 +16,14 @@ mod dialogue;
 mod drive;
 mod fault_injection;
 mod line_reader;
-mod scene;
 mod script;
 
 use core::fmt;
 
 use frixel_wire::hello::BoardLimits;
 
-pub use drive::{Drive, DriveError, Reading};
+pub use crate::local_host::DriveError;
+pub use drive::{Drive, Reading};
 pub use fault_injection::{FAULTS, Injection};
 pub use line_reader::{LineReader, Typed};
 pub use script::{Pressed, Stop, run};

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::selftest::WiresError;
 use crate::output::{DrawingError, FeltLogError};
 use crate::output_file::OutputFileError;
 use crate::report::ReportError;
@@ -205,6 +206,8 @@ pub(crate) enum CommandError {
     NothingRecorded,
     #[error("{failed} of the checks of {port} failed; docs/hardware.md says what each part needs")]
     SelftestFailed { port: String, failed: usize },
+    #[error(transparent)]
+    Wires(#[from] WiresError),
     #[error("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", name.display())]
     SceneName { name: PathBuf },
     #[error(

@@ -19,6 +19,14 @@ use crate::scene_file;
 const CONTACT_M2: f64 = 2e-4;
 /// A scratch, Ohm: a moist fingertip on bare metal through a scratch of some square millimetres (assumed).
 const SCRATCH_OHM: f64 = 10e3;
+/// The gap between a fingertip and the electrode, F (assumed).
+const GAP_F: f64 = 150e-12;
+/// Ways back for the finger's current (capacitances assumed).
+const RETURN_PATHS: [(&str, ReturnPath); 3] = [
+    ("return contact through 100 kOhm", ReturnPath::Contact(100e3)),
+    ("no contact, the common isolated: 40 pF", ReturnPath::Air(40e-12)),
+    ("no contact, the common on earth: the body's 150 pF", ReturnPath::Air(150e-12)),
+];
 /// Carriers of the tables, Hz: the slowest, the usual one and the fastest among them.
 const CARRIERS_HZ: [f64; 6] = [125.0, 250.0, 500.0, 1_000.0, 2_000.0, 5_000.0];
 /// Series resistances that are tried for a voltage, kOhm, and their step.
@@ -47,11 +55,12 @@ pub(super) fn run(args: &SafetyArgs) -> Result<(), CommandError> {
     let series_ohm = args.series_kohm.map_or(f64::from(board.limits.series_resistance_ohm), |kohm| 1e3 * kohm);
     let table = Table { board, series_ohm, capacitance_f: VACUUM_PERMITTIVITY_F_PER_M * CONTACT_M2 / gap_m };
     print(format!(
-        "{}\n{}\n{}\n{}",
+        "{}\n{}\n{}\n{}\n{}",
         table.assumptions(args),
         table.currents(),
         table.faults(),
-        table.resistances(args.voltage_v_rms)
+        table.resistances(args.voltage_v_rms),
+        table.return_paths(),
     ))
 }
 
@@ -160,6 +169,21 @@ impl Table {
         )
     }
 
+    /// Part of the drive's voltage that is across the finger's gap, and the part of the force, by return path.
+    fn return_paths(&self) -> String {
+        let mut text = format!(
+            "Voltage across the finger's gap ({:.0} pF), and force there, in % of what the model takes\n",
+            1e12 * GAP_F
+        );
+        for (name, path) in RETURN_PATHS {
+            for carrier_hz in [CARRIERS_HZ[1], CARRIERS_HZ[3]] {
+                let part = path.gap_part(GAP_F, self.series_ohm, carrier_hz);
+                let _ = writeln!(text, "{carrier_hz:5.0} Hz  {:3.0} {:3.0}  {name}", 100.0 * part, 100.0 * part * part);
+            }
+        }
+        text
+    }
+
     /// The least series resistance at which a voltage is within the bound, by carrier.
     fn resistances(&self, voltage_v_rms: f64) -> String {
         let mut text = format!(
@@ -179,6 +203,27 @@ impl Table {
             let _ = writeln!(text, "{carrier_hz:5.0} Hz  {said}");
         }
         text
+    }
+}
+
+/// A way back for the finger's current, to the amplifier's common.
+enum ReturnPath {
+    /// The return contact, Ohm.
+    Contact(f64),
+    /// Through the air and the supply's insulation, F.
+    Air(f64),
+}
+
+impl ReturnPath {
+    /// Part of the drive's voltage that is across a gap of this capacitance, at the frequency of the carrier's first
+    /// harmonic.
+    fn gap_part(&self, gap_f: f64, series_ohm: f64, carrier_hz: f64) -> f64 {
+        let gap_ohm = 1.0 / (core::f64::consts::TAU * carrier_hz * gap_f);
+        let (resistance_ohm, reactance_ohm) = match self {
+            Self::Contact(ohm) => (series_ohm + ohm, gap_ohm),
+            Self::Air(farad) => (series_ohm, gap_ohm * (1.0 + gap_f / farad)),
+        };
+        gap_ohm / resistance_ohm.hypot(reactance_ohm)
     }
 }
 

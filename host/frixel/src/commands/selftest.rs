@@ -1,4 +1,10 @@
 //! `frixel selftest`: whether link, clock and telemetry of a board are in order. The output stays at zero.
+//! With `--wires`, it is the other side of the board's own self-test.
+
+mod report;
+mod wires;
+
+use std::path::PathBuf;
 
 use std::time::{Duration, Instant};
 
@@ -11,6 +17,8 @@ use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::terminal::print_line;
 use super::waiting;
+
+pub(super) use wires::WiresError;
 
 /// Most pings whose round trip is measured, and longest time for them.
 const PINGS_MAX: u32 = 50;
@@ -30,6 +38,15 @@ pub(super) struct SelftestArgs {
     /// Path of the board's serial port.
     #[arg(long)]
     port: String,
+    /// The board runs the program `self-test`, with wires between its pins (docs/first-board.md).
+    #[arg(long)]
+    wires: bool,
+    /// Seconds for which the line is tested at its full rate; 0 leaves that out.
+    #[arg(long, value_name = "S", requires = "wires", default_value_t = 600)]
+    seconds: u32,
+    /// Write the report to this file, as JSON.
+    #[arg(short, long, value_name = "FILE", requires = "wires")]
+    output: Option<PathBuf>,
 }
 
 /// Result of a check.
@@ -40,6 +57,9 @@ struct Check {
 }
 
 pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
+    if args.wires {
+        return wires::run(&args.port, args.seconds, args.output.as_deref());
+    }
     let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
     let mut device = waiting::watch(device, &Interrupt::default());
     device.disarm()?;

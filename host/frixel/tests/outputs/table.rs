@@ -35,7 +35,7 @@ const fn recording(
 }
 
 /// Every output.
-pub(crate) const OUTPUTS: [Output; 17] = [
+pub(crate) const OUTPUTS: [Output; 18] = [
     Output {
         // It never replaces its scene.
         is_reproducible: true,
@@ -95,6 +95,11 @@ pub(crate) const OUTPUTS: [Output; 17] = [
         // It takes a board.
         is_reproducible: false,
         ..recording("record output", "record --port nowhere -o OUT", "", &["OUT"])
+    },
+    Output {
+        // It takes a board.
+        is_reproducible: false,
+        ..result("selftest output", "selftest --port nowhere --wires -o OUT", "", &["OUT"])
     },
     recording("calibrate output", "calibrate --strokes 9 --forces IN -o OUT", "forces.csv", &["OUT"]),
     recording("threshold output", "threshold --port sim --trials 12 --screen IN -o OUT", "screen.toml", &["OUT"]),

@@ -5,6 +5,7 @@ use core::fmt::Arguments;
 use board_nucleo_g474re::board::{MONITOR, Nucleo, TICK_HZ};
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::flash::BankTwo;
+use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::tick;
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading};
@@ -15,7 +16,6 @@ use frixel_wire::hello::BoardLimits;
 use stm32_metapac::ADC1;
 
 use crate::still::Still;
-use crate::terminal::Terminal;
 use crate::{fault_injection, limits, start};
 
 /// The board under test.

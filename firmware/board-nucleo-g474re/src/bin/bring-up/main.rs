@@ -9,13 +9,13 @@ mod fault_injection;
 mod limits;
 mod start;
 mod still;
-mod terminal;
 
 use board_nucleo_g474re::board::CEILINGS;
 use board_nucleo_g474re::fault;
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
+use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::{board, clock, dac, output, period, tick, watchdog};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
@@ -30,7 +30,6 @@ use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 use bench::{NucleoBench, Stage};
 use still::Still;
-use terminal::Terminal;
 
 #[entry]
 fn main() -> ! {

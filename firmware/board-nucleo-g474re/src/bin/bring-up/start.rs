@@ -4,6 +4,7 @@ use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::fault;
 use board_nucleo_g474re::indicator;
 use board_nucleo_g474re::tick;
+use board_nucleo_g474re::tick_interrupt;
 use board_nucleo_g474re::watchdog::Watchdog;
 use cortex_m::singleton;
 use frixel_board::hardware::Hardware;
@@ -11,8 +12,11 @@ use frixel_board::main_loop::MainLoop;
 use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::{Queues, Session};
+use stm32_metapac::interrupt;
 
 use crate::still::Still;
+
+tick_interrupt!(Nucleo);
 
 /// Memory for bitmaps, of which bring-up's scene has none.
 static POOL: BitmapPool = BitmapPool::new();
@@ -26,7 +30,7 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
     let Some(session) = session(board, second) else { fault::never() };
     let (session_ends, tick_ends) = queues.split();
     let Still { output, frames, dac } = still;
-    tick::start(ticker, tick_ends, frames, output);
+    tick::start(&TICK, ticker, tick_ends, frames, output);
     MainLoop {
         shared: &tick::SHARED,
         queues: session_ends,

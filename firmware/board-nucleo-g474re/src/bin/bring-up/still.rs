@@ -5,12 +5,11 @@ use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{Dac, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
+use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::{period, tick, watchdog};
 use cortex_m::peripheral::DWT;
 use frixel_board::hardware::DacFrames as _;
 use frixel_wire::dac_code::DacCode;
-
-use crate::terminal::Terminal;
 
 const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
 /// Voltage of the DAC at full scale, V.

@@ -2,27 +2,28 @@
 
 use core::fmt::{Arguments, Write as _};
 
-use board_nucleo_g474re::serial::Serial;
-use embedded_io::{Read as _, ReadReady as _, Write as _};
+use embedded_io::{Read as _, ReadReady as _, Write as _, WriteReady as _};
 use frixel_board::bring_up::{Line, LineReader, Typed};
+
+use crate::serial::Serial;
 
 /// Longest text that is shown at once, in bytes.
 const TEXT_MAX_LEN: usize = 384;
 
 /// The terminal. What it shows goes to the debug probe, too.
-pub(crate) struct Terminal {
+pub struct Terminal {
     serial: Serial,
     reader: LineReader,
 }
 
 impl Terminal {
     /// A terminal on the serial port.
-    pub(crate) fn new(serial: Serial) -> Self {
+    pub fn new(serial: Serial) -> Self {
         Self { serial, reader: LineReader::default() }
     }
 
     /// Shows a line. It waits until the port has taken it, some milliseconds.
-    pub(crate) fn say(&mut self, text: Arguments<'_>) {
+    pub fn say(&mut self, text: Arguments<'_>) {
         let mut line = heapless::String::<TEXT_MAX_LEN>::new();
         // A text that is too long is cut.
         let _ = line.write_fmt(text);
@@ -32,13 +33,13 @@ impl Terminal {
     }
 
     /// Forgets what was typed before it was asked for.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         while self.next_byte().is_some() {}
         self.reader.clear();
     }
 
     /// Reads what has been typed, without waiting. Returns the line when it has ended.
-    pub(crate) fn line(&mut self) -> Option<Line> {
+    pub fn line(&mut self) -> Option<Line> {
         while let Some(byte) = self.next_byte() {
             match self.reader.push(byte) {
                 Typed::Ignored => {}
@@ -53,12 +54,25 @@ impl Terminal {
         None
     }
 
+    /// Takes received bytes, and returns their number, without waiting.
+    pub fn read(&mut self, bytes: &mut [u8]) -> usize {
+        match self.serial.read_ready() {
+            Ok(true) => self.serial.read(bytes).unwrap_or(0),
+            _ => 0,
+        }
+    }
+
+    /// Begins to send bytes unless others are still under way, and returns the number of those that were taken.
+    pub fn send(&mut self, bytes: &[u8]) -> usize {
+        match self.serial.write_ready() {
+            Ok(true) => self.serial.write(bytes).unwrap_or(0),
+            _ => 0,
+        }
+    }
+
     fn next_byte(&mut self) -> Option<u8> {
         let mut byte = [0];
-        match self.serial.read_ready() {
-            Ok(true) => self.serial.read(&mut byte).is_ok_and(|len| len > 0).then_some(byte[0]),
-            _ => None,
-        }
+        (self.read(&mut byte) > 0).then_some(byte[0])
     }
 
     fn write(&mut self, mut bytes: &[u8]) {

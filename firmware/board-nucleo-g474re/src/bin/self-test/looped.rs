@@ -1,0 +1,265 @@
+//! This board with its wires, as the script of the self-test sees it.
+
+use core::fmt::Arguments;
+use core::mem;
+use core::sync::atomic::Ordering;
+
+use board_nucleo_g474re::adc::Adc;
+use board_nucleo_g474re::board::SCENE_SLOT;
+use board_nucleo_g474re::dac::{DacBus, Frames};
+use board_nucleo_g474re::flash::BankTwo;
+use board_nucleo_g474re::output::{LIFE_US, Output};
+use board_nucleo_g474re::period::LATCH_CYCLES;
+use board_nucleo_g474re::terminal::Terminal;
+use board_nucleo_g474re::{fault, period, tick, watchdog};
+use embedded_hal::spi::SpiDevice as _;
+use frixel_board::hardware::DacFrames as _;
+use frixel_board::main_loop::MainLoop;
+use frixel_board::self_test::{Clocks, Levels, Line, LoopedBoard, Pulse, Round, Wire};
+use frixel_control::Board;
+use frixel_session::store::Slot;
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::message::TickTimes;
+
+use crate::captures::{Captures, Counted, delay_us, us_between};
+use crate::hardware::{SWITCH_HELD, Wired};
+use crate::{reset, start};
+
+/// Time between two kicks, us, and the longest wait for the enable to fall.
+const KICK_US: u32 = 500;
+const FALL_WAIT_US: u32 = 10_000;
+/// Time for the enable to rise before it is disabled again, us.
+const RISE_WAIT_US: u32 = 20;
+
+/// The board.
+pub(crate) struct Looped {
+    pub(crate) board: Board,
+    pub(crate) terminal: Terminal,
+    pub(crate) flash: Option<BankTwo>,
+    pub(crate) stage: Stage,
+}
+
+/// Who owns the pins.
+#[allow(clippy::large_enum_variant, reason = "there is one, in the only frame that never ends")]
+pub(crate) enum Stage {
+    /// The script itself.
+    Still(Still),
+    /// The tick. The captures go on.
+    Ticking(MainLoop<Wired>, Captures),
+    /// Nobody, between the two.
+    Neither,
+}
+
+/// The pins before the tick runs.
+pub(crate) struct Still {
+    pub(crate) output: Output,
+    pub(crate) frames: Frames,
+    pub(crate) captures: Captures,
+    pub(crate) adc: Adc,
+    pub(crate) spi: DacBus,
+}
+
+impl Still {
+    /// Waits until a period begins, sends a frame of zero, and waits until the next one begins. Returns `false` if the
+    /// frame was not sent.
+    fn frame(&mut self) -> bool {
+        next_period();
+        let is_sent = self.frames.send(DacCode::ZERO).is_ok();
+        next_period();
+        is_sent
+    }
+
+    fn pulse(&mut self, kicks: u32) -> Pulse {
+        let first = self.captures.begin_pulse();
+        let mut last = first;
+        let (mut rose, mut fell_again) = (None, false);
+        for _ in 0..kicks {
+            last = Captures::now();
+            self.output.kick();
+            delay_us(KICK_US);
+            rose = rose.or(self.captures.enable_rose());
+            // It may fall only after the last kick, and that takes longer than the time between two of them.
+            fell_again |= self.captures.enable_fell().is_some();
+        }
+        let mut fell = None;
+        while fell.is_none() && us_between(last, Captures::now()) < FALL_WAIT_US {
+            watchdog::feed();
+            fell = self.captures.enable_fell();
+        }
+        self.output.zero();
+        let fell_at = fell.map(|(at, before)| {
+            fell_again |= before;
+            at
+        });
+        Pulse {
+            rise_us: rose.map(|at| us_between(first, at)),
+            fall_us: fell_at.map(|at| us_between(last, at)),
+            fell_again,
+        }
+    }
+
+    fn cut_pulse(&mut self) -> Option<u32> {
+        self.captures.begin_pulse();
+        self.output.kick();
+        delay_us(RISE_WAIT_US);
+        let cut_at = self.captures.begin_pulse();
+        self.output.zero();
+        delay_us(FALL_WAIT_US);
+        self.captures.enable_fell().map(|(at, _)| us_between(cut_at, at))
+    }
+}
+
+fn next_period() {
+    watchdog::feed();
+    let _ = period::has_begun();
+    while !period::has_begun() {}
+}
+
+impl Looped {
+    /// A round of what has to go on, with the arm switch as the tick is to see it.
+    pub(crate) fn turn(&mut self, held: bool) {
+        match &mut self.stage {
+            Stage::Still(_) | Stage::Neither => watchdog::feed(),
+            Stage::Ticking(main_loop, _) => {
+                SWITCH_HELD.store(held, Ordering::Relaxed);
+                main_loop.turn(None);
+                // The host on the board reads the state from the status instead.
+                while main_loop.session.transmit(&mut [0; 64]) > 0 {}
+            }
+        }
+    }
+
+    fn still(&mut self) -> &mut Still {
+        match &mut self.stage {
+            Stage::Still(still) => still,
+            Stage::Ticking(..) | Stage::Neither => fault::never(),
+        }
+    }
+
+    fn captures(&mut self) -> &mut Captures {
+        match &mut self.stage {
+            Stage::Still(still) => &mut still.captures,
+            Stage::Ticking(_, captures) => captures,
+            Stage::Neither => fault::never(),
+        }
+    }
+}
+
+impl LoopedBoard for Looped {
+    type Flash = BankTwo;
+
+    const SLOT: Slot = SCENE_SLOT;
+    const LATCH_CYCLES: u32 = LATCH_CYCLES;
+    const ONE_SHOT_US: u32 = LIFE_US as u32;
+    const MONITOR_ZERO_MV: u32 = 1_650;
+    // The level shifter's 0.75, of 1 V for 100 V.
+    const MONITOR_MV_PER_V: f32 = 7.5;
+
+    fn board(&self) -> &Board {
+        &self.board
+    }
+
+    fn say(&mut self, text: Arguments<'_>) {
+        self.terminal.say(text);
+    }
+
+    fn read_line(&mut self) -> Line {
+        self.terminal.forget();
+        loop {
+            self.turn(false);
+            if let Some(line) = self.terminal.line() {
+                return line;
+            }
+        }
+    }
+
+    fn idle(&mut self) {
+        self.turn(false);
+    }
+
+    fn amplifier_is_ready(&mut self) -> bool {
+        tick::inputs().0
+    }
+
+    fn levels(&mut self, wire: Wire) -> Levels {
+        self.captures().levels(wire)
+    }
+
+    fn loop_mv(&mut self, driven_mv: u32) -> u32 {
+        self.captures().loop_mv(driven_mv)
+    }
+
+    fn exchange(&mut self, bytes: &mut [u8]) -> bool {
+        self.still().spi.transfer_in_place(bytes).is_ok()
+    }
+
+    fn clocks(&mut self) -> Option<Clocks> {
+        let still = self.still();
+        still.captures.count_clocks();
+        let is_sent = still.frame();
+        let Counted { at_fall, at_rise, now } = still.captures.counted().filter(|_| is_sent)?;
+        Some(Clocks { before: at_fall, inside: at_rise.wrapping_sub(at_fall), after: now.wrapping_sub(at_rise) })
+    }
+
+    fn latch_cycles(&mut self) -> Option<u32> {
+        match &mut self.stage {
+            Stage::Still(still) => {
+                still.captures.measure_time();
+                let is_sent = still.frame();
+                still.captures.latch_cycles().filter(|_| is_sent)
+            }
+            Stage::Ticking(_, captures) => captures.latch_cycles(),
+            Stage::Neither => None,
+        }
+    }
+
+    fn pulse(&mut self, kicks: u32) -> Pulse {
+        self.still().pulse(kicks)
+    }
+
+    fn cut_pulse(&mut self) -> Option<u32> {
+        self.still().cut_pulse()
+    }
+
+    fn start_ticks(&mut self) {
+        if let Stage::Still(still) = mem::replace(&mut self.stage, Stage::Neither) {
+            let Still { output, frames, mut captures, adc, spi: _ } = still;
+            captures.measure_time();
+            self.stage = Stage::Ticking(start::tick(self.board, output, frames, adc), captures);
+        }
+    }
+
+    fn round(&mut self, held: bool) -> Round<'_> {
+        self.turn(held);
+        match &mut self.stage {
+            Stage::Ticking(main_loop, _) => {
+                Round { status: &main_loop.status, now_tick: tick::count(), session: main_loop.session }
+            }
+            Stage::Still(_) | Stage::Neither => fault::never(),
+        }
+    }
+
+    fn tick_times(&mut self) -> TickTimes {
+        let missed_deadlines = match &self.stage {
+            Stage::Ticking(main_loop, _) => main_loop.status.counters.missed_deadlines,
+            Stage::Still(_) | Stage::Neither => 0,
+        };
+        tick::SHARED.meter.times(missed_deadlines)
+    }
+
+    fn flash(&mut self) -> Option<&mut BankTwo> {
+        self.flash.as_mut()
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) -> usize {
+        self.terminal.read(bytes)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> usize {
+        self.terminal.send(bytes)
+    }
+
+    fn reset(&mut self, kept: u32) {
+        reset(kept)
+    }
+}

@@ -1,0 +1,199 @@
+//! A host on the board, which plays a stored scene to session and ticker: for programs that have no host at their port.
+
+use core::fmt;
+
+use frixel_control::Status;
+use frixel_session::{Session, Touch};
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload;
+
+/// Host timeout of the scenes that this host plays, s.
+pub(crate) const HOST_TIMEOUT_S: f32 = 0.25;
+/// Seconds to arm, and to disarm.
+const ANSWER_S: f32 = 0.5;
+/// Seconds between two pings: a fifth of the host timeout.
+const PING_S: f32 = HOST_TIMEOUT_S / 5.0;
+/// The finger moves along x, because the output is zero at standstill (below 2 mm/s).
+const FINGER_SPEED_M_PER_S: f32 = 0.02;
+const FINGER_Y_M: f32 = 0.05;
+
+/// Why a scene was not played to the end. The output is zero, and the board is disarmed or faulted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveError {
+    /// The session has refused the scene: it is beyond the board's limits.
+    Refused,
+    /// The board was not armed, or not disarmed, in time; it was in this state.
+    State(State),
+    /// The supervisor has latched a fault.
+    Fault(Fault, u32),
+    /// The monitor was not read in both half periods.
+    NoReading,
+}
+
+impl fmt::Display for DriveError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused => f.write_str("the firmware refuses this voltage: it is beyond the limits of this build"),
+            Self::State(state) => write!(f, "the board did not do what it was told, and is {state}"),
+            Self::Fault(fault, detail) => write!(f, "{fault} (detail {detail})"),
+            Self::NoReading => f.write_str("the monitor was not read: the main loop is too slow"),
+        }
+    }
+}
+
+/// Plays one stored scene for a time under a moving finger, and disarms the board again. The board's main loop calls
+/// [`LocalHost::step`] in every round, beside the session and with the tick running.
+#[derive(Debug)]
+pub(crate) struct LocalHost {
+    tick_hz: f32,
+    touch_period_ticks: u32,
+    play_ticks: u32,
+    phase: Phase,
+    /// Tick at which the phase has begun.
+    since_tick: u32,
+    pinged_at_tick: u32,
+    touched_at_tick: u32,
+    sequence: u16,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Loading,
+    Arming,
+    Starting,
+    Playing,
+    Disarming,
+}
+
+/// How far a play has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Progress {
+    /// The board is being armed, or disarmed.
+    Waiting,
+    /// The scene has played for so many ticks.
+    Playing(u32),
+    /// The board is disarmed again.
+    Done,
+}
+
+impl LocalHost {
+    /// A host that will play for `play_s` on a board that has been disarmed.
+    pub(crate) fn new(play_s: f32, board: &frixel_control::Board) -> Self {
+        let tick_hz = board.tick_hz as f32;
+        Self {
+            tick_hz,
+            touch_period_ticks: board.ticks(board.limits.touch_report_period_s),
+            play_ticks: (play_s * tick_hz) as u32,
+            phase: Phase::Loading,
+            since_tick: 0,
+            pinged_at_tick: 0,
+            touched_at_tick: 0,
+            sequence: 0,
+        }
+    }
+
+    /// Ends the play at the next step.
+    #[cfg(feature = "self-test")]
+    pub(crate) fn stop(&mut self) {
+        self.play_ticks = 0;
+    }
+
+    /// One round: tells the session what a host would. `scene` is as the store keeps it. The caller discards what the
+    /// session sends, so that it goes on listening.
+    pub(crate) fn step(
+        &mut self,
+        scene: &[u8],
+        status: &Status,
+        now_tick: u32,
+        session: &mut Session<'_>,
+    ) -> Result<Progress, DriveError> {
+        let state = status.telemetry.state;
+        if state == State::Faulted {
+            let (fault, detail) = status.fault.unwrap_or((Fault::Other(0), 0));
+            return Err(DriveError::Fault(fault, detail));
+        }
+        let ticks = now_tick.wrapping_sub(self.since_tick);
+        let is_late = ticks > (ANSWER_S * self.tick_hz) as u32;
+        match self.phase {
+            Phase::Loading => {
+                if !session.restore(|offset, bytes| read_at(scene, offset, bytes)) {
+                    return Err(DriveError::Refused);
+                }
+                self.send(Command::Arm, session, status);
+                self.enter(Phase::Arming, now_tick);
+            }
+            Phase::Arming if state == State::Armed => {
+                self.send(Command::Play, session, status);
+                self.enter(Phase::Starting, now_tick);
+            }
+            Phase::Starting if state == State::Active => {
+                self.touch(now_tick, session);
+                self.enter(Phase::Playing, now_tick);
+            }
+            Phase::Playing if state != State::Active => return Err(DriveError::State(state)),
+            Phase::Playing if ticks >= self.play_ticks => {
+                session.touch(Touch::Up, now_tick);
+                self.send(Command::Disarm, session, status);
+                self.enter(Phase::Disarming, now_tick);
+            }
+            Phase::Playing => {
+                self.keep_alive(now_tick, session, status);
+                return Ok(Progress::Playing(ticks));
+            }
+            Phase::Disarming if state == State::Disarmed => return Ok(Progress::Done),
+            Phase::Arming | Phase::Starting | Phase::Disarming if is_late => {
+                self.send(Command::Disarm, session, status);
+                return Err(DriveError::State(state));
+            }
+            Phase::Arming | Phase::Starting | Phase::Disarming => {}
+        }
+        Ok(Progress::Waiting)
+    }
+
+    fn enter(&mut self, phase: Phase, now_tick: u32) {
+        self.phase = phase;
+        self.since_tick = now_tick;
+    }
+
+    fn send(&mut self, command: Command, session: &mut Session<'_>, status: &Status) {
+        self.sequence = self.sequence.wrapping_add(1);
+        let mut frame = [0; FRAME_MAX_LEN];
+        if let Ok(frame) = payload::request_frame(&Request { sequence: self.sequence, command }, &mut frame) {
+            session.receive(frame, status);
+        }
+    }
+
+    /// Pings, and moves the finger.
+    fn keep_alive(&mut self, now_tick: u32, session: &mut Session<'_>, status: &Status) {
+        if now_tick.wrapping_sub(self.pinged_at_tick) >= (PING_S * self.tick_hz) as u32 {
+            self.pinged_at_tick = now_tick;
+            self.send(Command::Ping, session, status);
+        }
+        if now_tick.wrapping_sub(self.touched_at_tick) >= self.touch_period_ticks {
+            self.touch(now_tick, session);
+        }
+    }
+
+    fn touch(&mut self, now_tick: u32, session: &mut Session<'_>) {
+        self.touched_at_tick = now_tick;
+        let played_s = match self.phase {
+            Phase::Playing => now_tick.wrapping_sub(self.since_tick) as f32 / self.tick_hz,
+            _ => 0.0,
+        };
+        session.touch(Touch::Down { x_m: FINGER_SPEED_M_PER_S * played_s, y_m: FINGER_Y_M, age_ticks: 0 }, now_tick);
+    }
+}
+
+/// Fills `bytes` from an offset of a stored scene; `false` beyond its end.
+fn read_at(stored: &[u8], offset: u32, bytes: &mut [u8]) -> bool {
+    let Some(rest) = stored.get(offset as usize..) else { return false };
+    if rest.is_empty() {
+        return false;
+    }
+    for (to, from) in bytes.iter_mut().zip(rest) {
+        *to = *from;
+    }
+    true
+}

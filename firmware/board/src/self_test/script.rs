@@ -1,0 +1,425 @@
+//! The script. [`run`] is its table of contents.
+
+use core::fmt;
+
+use super::load::{Load, counted_since};
+use super::store::{self, Content};
+use super::{Clocks, Levels, LineTest, LoopedBoard, Measurement, Pulse, Said, VERSION, Wire};
+use crate::bring_up::DriveError;
+
+/// What is typed first, which shows that the board receives.
+pub const GREETING: &str = "frixel";
+/// What the person types once the amplifier is unplugged.
+pub const UNPLUGGED: &str = "unplugged";
+/// What is typed to test the line, followed by seconds.
+pub const LINE_TEST: &str = "line";
+/// What is typed to leave the test of the line out.
+pub const SKIP: &str = "skip";
+
+/// Bits of one byte over SDI, each alone and all but each.
+const PATTERNS: [u8; 12] = [0x00, 0xff, 0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0x55, 0xaa];
+/// Frames whose clocks and latch are measured: a quarter of a second, each.
+const FRAMES: u32 = 10_000;
+/// Clocks of a frame of the DAC.
+const FRAME_CLOCKS: u32 = 24;
+/// Cycles by which the capture of an edge may be off: its synchroniser takes some.
+const CAPTURE_CYCLES: u32 = 8;
+/// Cycles by which the instant of a latch may move: the synchroniser's one.
+const JITTER_CYCLES: u32 = 2;
+/// Kicks of the pulse that shows that the one-shot is retriggered.
+const KICKS: u32 = 5;
+/// Longest time from a kick until the enable is high, us.
+const RISE_MAX_US: u32 = 10;
+/// Longest time from the last kick until the enable is low, us, and from disabling it.
+const FALL_MAX_US: u32 = 1_000;
+const CUT_MAX_US: u32 = 2;
+/// Stands for an edge that was not seen.
+const NEVER_US: u32 = 99_999;
+/// Largest voltage at the amplifier that counts as zero, V: the offset that bring-up allows.
+const MONITOR_ZERO_V: f32 = 4.0;
+/// Voltages of the ADC's loop, mV, and how much they may be off: 1 % of either side.
+const LOOP_MV: [(u32, &str); 3] = [(300, "adc_at_300_mv"), (1_650, "adc_at_1650_mv"), (3_000, "adc_at_3000_mv")];
+const LOOP_TOLERANCE_MV: u32 = 60;
+/// Seconds for which the ticks are counted.
+const COUNTED_S: f32 = 3.0;
+/// Seconds without a byte after which the test of the line is over, before and after the first one.
+const FIRST_BYTE_S: f32 = 5.0;
+const LAST_BYTE_S: f32 = 0.5;
+/// Bytes that are taken from the port in a round.
+const CHUNK_LEN: usize = 256;
+
+/// Why the self-test has ended before its end. The enable is low.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The amplifier's ready is high.
+    Ready,
+    /// Something drives the monitor's pin.
+    MonitorDriven(Levels),
+    /// The monitor does not show zero while the loop puts zero there: mV.
+    MonitorNotZero(u32),
+    /// A wire is missing.
+    Missing(Wire),
+    /// The pin at the end of a wire has these levels at rest.
+    Resting(Wire, Levels),
+    /// SDO did not receive what SDI sent: so many of the bytes were others, all of them if the wire is missing.
+    Data(u32),
+    /// The flash is not in two banks.
+    NoFlash,
+    /// An operation of the flash has failed.
+    FlashFailed,
+    /// The scene was not played.
+    Drive(DriveError),
+    /// The board resets, and goes on at its next start.
+    Reset,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ready => f.write_str("ready is high: switch the amplifier's supply off, and unplug the amplifier"),
+            Self::MonitorDriven(levels) => {
+                write!(f, "something drives the monitor's pin ({levels}): unplug the amplifier and its monitor")
+            }
+            Self::MonitorNotZero(mv) => write!(
+                f,
+                "the monitor's pin reads {mv} mV with zero volts on its wire: is the wire there, and the amplifier \
+                 unplugged?"
+            ),
+            Self::Missing(wire) => write!(f, "the wire of {wire} is missing, or at a pin beside the right one"),
+            Self::Resting(wire, levels) => {
+                write!(f, "{wire} does not rest where it must ({levels}): is its wire at another pin?")
+            }
+            Self::Data(wrong) => write!(
+                f,
+                "of {} bytes over SDI, {wrong} came back wrong on SDO: is the wire there, and the DAC unplugged?",
+                PATTERNS.len()
+            ),
+            Self::NoFlash => f.write_str("the flash is not in two banks: set the option byte DBANK, clear BFB2"),
+            Self::FlashFailed => f.write_str("an operation of the flash has failed: it is worn out or protected"),
+            Self::Drive(error) => write!(f, "the largest scene did not play: {error}"),
+            Self::Reset => f.write_str("the board resets"),
+        }
+    }
+}
+
+impl fmt::Display for Wire {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Clock => "SCLK",
+            Self::Sync => "SYNC",
+            Self::Enable => "enable",
+            Self::Monitor => "the monitor",
+        })
+    }
+}
+
+impl fmt::Display for Levels {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let level = |high| if high { "high" } else { "low" };
+        write!(f, "{} with a pull-up, {} with a pull-down", level(self.pulled_up), level(self.pulled_down))
+    }
+}
+
+/// Numbers of measurements so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    measured: u32,
+    failed: u32,
+}
+
+impl Counts {
+    fn say(&mut self, board: &mut impl LoopedBoard, name: &str, found: u32, range: Option<(u32, u32)>) {
+        let measurement = Measurement { name, found, range };
+        self.measured += 1;
+        self.failed += u32::from(!measurement.passes());
+        board.say(format_args!("{}", Said::Measured(measurement)));
+    }
+}
+
+/// Tests a board, and returns the number of measurements out of their range. `kept` is what [`LoopedBoard::reset`] has
+/// kept over the last reset, and 0 after any other one.
+pub fn run<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
+    let result = steps(board, kept);
+    match &result {
+        Ok(_) | Err(Stop::Reset) => {}
+        Err(stop) => board.say(format_args!("{}{stop}.", Said::Stopped(""))),
+    }
+    result
+}
+
+fn steps<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
+    let mut counts = Counts::default();
+    greet(board);
+    refuse_amplifier(board)?;
+    check_store(board, kept, &mut counts)?;
+    unplug(board)?;
+    find_wires(board)?;
+    measure_frames(board, &mut counts)?;
+    measure_enable(board, &mut counts)?;
+    measure_adc(board, &mut counts);
+    board.start_ticks();
+    let mut load = Load::largest(board.board());
+    measure_ticks(board, &mut load, &mut counts)?;
+    measure_line(board, &mut load, &mut counts)?;
+    store::forget(board, |board| load.round(board).map(drop))?;
+    load.rest(board)?;
+    let Counts { measured, failed } = counts;
+    board.say(format_args!("{}", Said::End { measured, failed }));
+    Ok(failed)
+}
+
+/// The serial port works in both directions once this returns.
+fn greet(board: &mut impl LoopedBoard) {
+    let kind = board.board().kind;
+    board.say(format_args!(""));
+    board.say(format_args!("{}{kind}", Said::Begin(VERSION, "")));
+    board.say(format_args!("Read docs/first-board.md first. No amplifier is plugged in, and its supply is off."));
+    confirm(board, format_args!("This begins the self-test."), GREETING);
+}
+
+/// Says what to do until the person types `word`.
+fn confirm(board: &mut impl LoopedBoard, what: fmt::Arguments<'_>, word: &str) {
+    loop {
+        board.say(format_args!("{what} Then type: {word}"));
+        if board.read_line().trim().eq_ignore_ascii_case(word) {
+            return;
+        }
+    }
+}
+
+/// Ends the script if an amplifier is there, before anything drives the monitor's wire.
+fn refuse_amplifier(board: &mut impl LoopedBoard) -> Result<(), Stop> {
+    if board.amplifier_is_ready() {
+        return Err(Stop::Ready);
+    }
+    match board.levels(Wire::Monitor) {
+        Levels::FREE => Ok(()),
+        driven => Err(Stop::MonitorDriven(driven)),
+    }
+}
+
+/// Ends the script if ready is high, or if the monitor does not show zero while the loop puts zero there.
+fn refuse_ready_or_voltage<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
+    if board.amplifier_is_ready() {
+        return Err(Stop::Ready);
+    }
+    let found_mv = board.loop_mv(B::MONITOR_ZERO_MV);
+    let most_mv = (MONITOR_ZERO_V * B::MONITOR_MV_PER_V) as u32;
+    if found_mv.abs_diff(B::MONITOR_ZERO_MV) <= most_mv { Ok(()) } else { Err(Stop::MonitorNotZero(found_mv)) }
+}
+
+/// Stores something, and resets in the middle of the next stores: what was stored before must be there.
+fn check_store<B: LoopedBoard>(board: &mut B, kept: u32, counts: &mut Counts) -> Result<(), Stop> {
+    let idle = |board: &mut B| {
+        board.idle();
+        Ok(())
+    };
+    let done = (kept as usize).min(store::RESETS.len());
+    if done == 0 {
+        board.say(format_args!(
+            "1. Flash: the stored scene is replaced. The board resets {} times, and begins again.",
+            store::RESETS.len()
+        ));
+        Content::Before.store(board, None, idle)?;
+    }
+    let is_whole = Content::Before.is_stored(board);
+    if let Some(next) = store::RESETS.get(done).filter(|_| done == 0 || is_whole) {
+        Content::Interrupted.store(board, Some(*next), idle)?;
+        board.reset(done as u32 + 1);
+        return Err(Stop::Reset);
+    }
+    // Each reset was reached only because the one before had left it whole.
+    for (number, name) in (1..).zip(store::NAMES).take(done) {
+        counts.say(board, name, u32::from(is_whole || number < done), Some((1, 1)));
+    }
+    Ok(())
+}
+
+fn unplug<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
+    confirm(
+        board,
+        format_args!(
+            "2. Put the wires on, as docs/first-board.md lists them. The enable is pulsed: the amplifier is unplugged, and \
+             so is the DAC."
+        ),
+        UNPLUGGED,
+    );
+    refuse_amplifier(board)
+}
+
+/// Finds each wire by what rests at its beginning. The enable stays low.
+fn find_wires<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
+    for (wire, resting) in [(Wire::Clock, Levels::HIGH), (Wire::Sync, Levels::HIGH), (Wire::Enable, Levels::LOW)] {
+        match board.levels(wire) {
+            levels if levels == resting => {}
+            Levels::FREE => return Err(Stop::Missing(wire)),
+            levels => return Err(Stop::Resting(wire, levels)),
+        }
+    }
+    let mut bytes = PATTERNS;
+    let received = board.exchange(&mut bytes);
+    let wrong = bytes.iter().zip(PATTERNS).filter(|(found, sent)| **found != *sent).count() as u32;
+    if !received || wrong > 0 {
+        return Err(Stop::Data(wrong));
+    }
+    refuse_ready_or_voltage(board)?;
+    board.say(format_args!("All wires are there."));
+    Ok(())
+}
+
+/// Counts the clocks of frames, and measures when they are latched.
+fn measure_frames<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<(), Stop> {
+    let (mut before, mut after, mut unseen) = (0, 0, 0);
+    let mut inside = (u32::MAX, 0);
+    for _ in 0..FRAMES {
+        match board.clocks() {
+            Some(clocks) => {
+                let Clocks { before: early, inside: clocks, after: late } = clocks;
+                before = before.max(u32::from(early));
+                after = after.max(u32::from(late));
+                inside = (inside.0.min(clocks.into()), inside.1.max(clocks.into()));
+            }
+            None => unseen += 1,
+        }
+    }
+    counts.say(board, "frames_without_sync", unseen, Some((0, 0)));
+    counts.say(board, "clocks_before_sync_at_most", before, Some((0, 0)));
+    counts.say(board, "clocks_in_sync_at_least", inside.0, Some((FRAME_CLOCKS, FRAME_CLOCKS)));
+    counts.say(board, "clocks_in_sync_at_most", inside.1, Some((FRAME_CLOCKS, FRAME_CLOCKS)));
+    counts.say(board, "clocks_after_sync_at_most", after, Some((0, 0)));
+    measure_latch(board, ["latch_earliest_cycles", "latch_spread_cycles"], counts, |_| Ok(()))
+}
+
+/// Measures when frames are latched; `meanwhile` is called between two of them.
+fn measure_latch<B: LoopedBoard>(
+    board: &mut B,
+    [earliest, spread]: [&str; 2],
+    counts: &mut Counts,
+    mut meanwhile: impl FnMut(&mut B) -> Result<(), Stop>,
+) -> Result<(), Stop> {
+    let mut latched = (u32::MAX, 0);
+    for _ in 0..FRAMES {
+        meanwhile(board)?;
+        if let Some(cycles) = board.latch_cycles() {
+            latched = (latched.0.min(cycles), latched.1.max(cycles));
+        }
+    }
+    let expected = (B::LATCH_CYCLES - CAPTURE_CYCLES, B::LATCH_CYCLES + CAPTURE_CYCLES);
+    counts.say(board, earliest, latched.0, Some(expected));
+    counts.say(board, spread, latched.1.saturating_sub(latched.0), Some((0, JITTER_CYCLES)));
+    Ok(())
+}
+
+/// Pulses the enable. Nothing that it could switch on is there, as far as ready and monitor show.
+fn measure_enable<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<(), Stop> {
+    refuse_ready_or_voltage(board)?;
+    let Pulse { rise_us, fall_us, fell_again } = board.pulse(KICKS);
+    counts.say(board, "enable_rises_us", rise_us.unwrap_or(NEVER_US), Some((0, RISE_MAX_US)));
+    let least_us = B::ONE_SHOT_US - B::ONE_SHOT_US / 50;
+    counts.say(board, "enable_falls_us", fall_us.unwrap_or(NEVER_US), Some((least_us, FALL_MAX_US)));
+    counts.say(board, "enable_falls_between_kicks", u32::from(fell_again), Some((0, 0)));
+    refuse_ready_or_voltage(board)?;
+    let cut_us = board.cut_pulse().unwrap_or(NEVER_US);
+    counts.say(board, "enable_is_cut_within_us", cut_us, Some((0, CUT_MAX_US)));
+    Ok(())
+}
+
+fn measure_adc<B: LoopedBoard>(board: &mut B, counts: &mut Counts) {
+    for (driven_mv, name) in LOOP_MV {
+        let found_mv = board.loop_mv(driven_mv);
+        counts.say(board, name, found_mv, Some((driven_mv - LOOP_TOLERANCE_MV, driven_mv + LOOP_TOLERANCE_MV)));
+    }
+    // The monitor of an amplifier at 0 V, which the tick reads from now on.
+    board.loop_mv(B::MONITOR_ZERO_MV);
+}
+
+/// Counts the cycles of ticks under the largest scene, alone and while the flash is written.
+fn measure_ticks<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Counts) -> Result<(), Stop> {
+    let ticks = board.board().ticks(COUNTED_S);
+    board.say(format_args!("3. The tick, under the largest scene that this board accepts."));
+    while !load.round(board)? {}
+    counting(board, load, ["alone", "ticks_late_alone", "tick_longest_cycles_alone"], counts, |board, load| {
+        let from_tick = load.now_tick();
+        while load.now_tick().wrapping_sub(from_tick) < ticks {
+            load.round(board)?;
+        }
+        Ok(())
+    })?;
+    let longest = board.tick_times().worst_cycles;
+    let wait_percent = longest.saturating_mul(100).div_ceil(load.core_cycles().max(1));
+    counts.say(board, "tick_estimated_core_cycles", load.core_cycles(), None);
+    counts.say(board, "flash_wait_percent", wait_percent, Some((50, frixel_layers::cost::FLASH_WAIT_PERCENT)));
+    let names = ["latch_earliest_cycles_under_ticks", "latch_spread_cycles_under_ticks"];
+    measure_latch(board, names, counts, |board| load.round(board).map(drop))?;
+    counting(board, load, ["flash", "ticks_late_flash", "tick_longest_cycles_flash"], counts, |board, load| {
+        Content::Interrupted.store(board, None, |board| load.round(board).map(drop))
+    })
+}
+
+/// Says the ticks that were counted while `work` ran: their histogram, the late ones, and the longest so far.
+fn counting<B: LoopedBoard>(
+    board: &mut B,
+    load: &mut Load,
+    [histogram, late, longest]: [&str; 3],
+    counts: &mut Counts,
+    work: impl FnOnce(&mut B, &mut Load) -> Result<(), Stop>,
+) -> Result<(), Stop> {
+    let before = board.tick_times();
+    let worked = work(board, load);
+    let counted = counted_since(&before, &board.tick_times());
+    board.say(format_args!("{}", Said::Histogram(histogram, counted.histogram)));
+    counts.say(board, late, counted.missed_deadlines, Some((0, 0)));
+    counts.say(board, longest, counted.worst_cycles, Some((1, counted.deadline_cycles)));
+    worked
+}
+
+/// Receives and sends at the full rate of the line while the largest scene plays.
+fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Counts) -> Result<(), Stop> {
+    load.rest(board)?;
+    let wants_it = loop {
+        board.say(format_args!(
+            "4. The line, against `frixel selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
+        ));
+        match board.read_line().trim() {
+            LINE_TEST => break true,
+            SKIP => break false,
+            _ => {}
+        }
+    };
+    if !wants_it {
+        return Ok(());
+    }
+    let mut test = LineTest::new();
+    counting(board, load, ["line", "ticks_late_line", "tick_longest_cycles_line"], counts, |board, load| {
+        exchange_blocks(board, load, &mut test)
+    })?;
+    counts.say(board, "line_blocks_received", test.received(), Some((1, u32::MAX)));
+    counts.say(board, "line_blocks_missing", test.missing(), Some((0, 0)));
+    counts.say(board, "line_pieces_damaged", test.damaged(), Some((0, 0)));
+    Ok(())
+}
+
+/// Exchanges blocks until the host is silent, and then waits for a line, which says that it listens for text again.
+fn exchange_blocks<B: LoopedBoard>(board: &mut B, load: &mut Load, test: &mut LineTest) -> Result<(), Stop> {
+    let (first_byte_ticks, last_byte_ticks) = (board.board().ticks(FIRST_BYTE_S), board.board().ticks(LAST_BYTE_S));
+    load.round(board)?;
+    let mut heard_at_tick = load.now_tick();
+    loop {
+        load.round(board)?;
+        let mut bytes = [0; CHUNK_LEN];
+        let len = board.read(&mut bytes);
+        test.take(bytes.get(..len).unwrap_or_default());
+        if len > 0 {
+            heard_at_tick = load.now_tick();
+        }
+        let patience_ticks = if test.received() > 0 { last_byte_ticks } else { first_byte_ticks };
+        if load.now_tick().wrapping_sub(heard_at_tick) > patience_ticks {
+            break;
+        }
+        let taken = board.write(test.pending());
+        test.advance(taken);
+    }
+    load.rest(board)?;
+    board.read_line();
+    Ok(())
+}

@@ -1,0 +1,299 @@
+//! A simulated board with the wires of the self-test, which can have one thing wrong: what
+//! [`frixel_board::self_test`] must find. Its session, ticker and supervisor are the firmware's own.
+
+mod flash;
+#[cfg(unix)]
+#[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a terminal of another process, in real time")]
+mod terminal_port;
+mod wrong;
+
+use core::fmt::{Arguments, Write};
+
+use frixel_board::self_test::{
+    Clocks, Levels, Line, LineReader, LoopedBoard, Pulse, Round, Stop, Typed, UNPLUGGED, Wire,
+};
+use frixel_control::{Active, Board, Sense, Status, TickMeter, Ticker};
+use frixel_layers::BitmapPool;
+use frixel_session::Session;
+use frixel_session::store::Slot;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::message::TickTimes;
+
+pub use flash::SimulatedFlash;
+#[cfg(unix)]
+pub use terminal_port::TerminalPort;
+pub use wrong::Wrong;
+
+/// Ticks of a round of the main loop.
+const ROUND_TICKS: u32 = 4;
+/// Cycles of a tick at rest, and under the largest scene.
+const IDLE_CYCLES: u32 = 1_000;
+const LOADED_CYCLES: u32 = 2_300;
+/// The same on a board whose flash is slower than assumed, and the deadline of its ticks.
+const SLOW_CYCLES: u32 = 2_900;
+const DEADLINE_CYCLES: u32 = 3_700;
+/// Time from a kick to the rise of the enable, and from disabling it to its fall, us.
+const EDGE_US: u32 = 1;
+
+/// The other end of the board's serial line.
+pub trait Port {
+    /// Takes bytes for the board, and returns their number; 0 if there are none.
+    fn read(&mut self, bytes: &mut [u8]) -> usize;
+
+    /// Takes bytes from the board, and returns the number of those that it took.
+    fn write(&mut self, bytes: &[u8]) -> usize;
+
+    /// So many ticks have passed on the board: waits, if there is a clock to wait for.
+    fn pace(&mut self, ticks: u32);
+
+    /// The board waits for a byte. Returns `false` if there will be none.
+    fn wait(&mut self) -> bool;
+}
+
+/// The board, at power-on.
+#[allow(clippy::struct_excessive_bools, reason = "what has happened, each apart from the others")]
+pub struct LoopedRig<P> {
+    port: P,
+    reader: LineReader,
+    wrong: Wrong,
+    session: Session<'static>,
+    ticker: Ticker<'static>,
+    status: Status,
+    meter: TickMeter,
+    flash: SimulatedFlash,
+    kept: u32,
+    /// Bytes that the board has received, for a line that loses some.
+    received: usize,
+    latch_moved: bool,
+    monitor_mv: u32,
+    enable_was_found_low: bool,
+    said_unplugged: bool,
+    ticks_run: bool,
+}
+
+impl<P: Port> LoopedRig<P> {
+    /// A board with one thing wrong, or [`Wrong::Nothing`].
+    pub fn new(port: P, wrong: Wrong) -> Self {
+        let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
+        let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
+        let ticker = Ticker::new(&Board::NUCLEO_G474RE, pool, first);
+        Self {
+            port,
+            reader: LineReader::default(),
+            wrong,
+            session: Session::new(Board::NUCLEO_G474RE, pool, second),
+            status: ticker.status(),
+            ticker,
+            meter: TickMeter::new(DEADLINE_CYCLES),
+            flash: SimulatedFlash::new(),
+            kept: 0,
+            received: 0,
+            latch_moved: false,
+            monitor_mv: 0,
+            enable_was_found_low: false,
+            said_unplugged: false,
+            ticks_run: false,
+        }
+    }
+
+    /// Runs the self-test to its end, over its resets.
+    pub fn run(&mut self) -> Result<u32, Stop> {
+        loop {
+            let kept = core::mem::take(&mut self.kept);
+            let result = frixel_board::self_test::run(self, kept);
+            if result != Err(Stop::Reset) {
+                return result;
+            }
+        }
+    }
+
+    /// The other end of its line.
+    pub fn port(&self) -> &P {
+        &self.port
+    }
+
+    fn is(&self, wrong: Wrong) -> bool {
+        self.wrong == wrong
+    }
+
+    /// A pulse may switch an amplifier on: only a board on which nothing of one was found may have it.
+    fn check_pulse(&mut self) {
+        assert!(self.said_unplugged, "a pulse before the person has unplugged the amplifier");
+        assert!(self.enable_was_found_low, "a pulse before the wire was found with the enable low");
+        assert!(!self.amplifier_is_ready(), "a pulse with ready high");
+        assert!(!self.ticks_run, "a pulse under the tick");
+    }
+
+    fn write_all(&mut self, mut bytes: &[u8]) {
+        while !bytes.is_empty() {
+            let len = self.port.write(bytes);
+            bytes = &bytes[len..];
+            if len == 0 && !self.port.wait() {
+                return;
+            }
+        }
+    }
+}
+
+impl<P: Port> LoopedBoard for LoopedRig<P> {
+    type Flash = SimulatedFlash;
+
+    const SLOT: Slot = Slot { first_page: 2, pages: 16 };
+    const LATCH_CYCLES: u32 = 4_100;
+    const ONE_SHOT_US: u32 = 900;
+    const MONITOR_ZERO_MV: u32 = 1_650;
+    const MONITOR_MV_PER_V: f32 = 7.5;
+
+    fn board(&self) -> &Board {
+        &Board::NUCLEO_G474RE
+    }
+
+    fn say(&mut self, text: Arguments<'_>) {
+        let mut line = String::new();
+        // Writing to a string cannot fail.
+        let _ = write!(line, "{text}\r\n");
+        self.write_all(line.as_bytes());
+    }
+
+    fn read_line(&mut self) -> Line {
+        let mut byte = [0];
+        loop {
+            if self.ticks_run {
+                // The tick goes on, and the switch is not held.
+                self.round(false);
+            }
+            if self.port.read(&mut byte) == 0 {
+                assert!(self.port.wait(), "nobody types");
+                continue;
+            }
+            if let Typed::Ended(line) = self.reader.push(byte[0]) {
+                self.said_unplugged |= line == UNPLUGGED;
+                return line;
+            }
+        }
+    }
+
+    fn idle(&mut self) {}
+
+    fn amplifier_is_ready(&mut self) -> bool {
+        self.is(Wrong::ReadyHigh) || self.is(Wrong::ReadyRises) && self.enable_was_found_low
+    }
+
+    fn levels(&mut self, wire: Wire) -> Levels {
+        self.enable_was_found_low |= wire == Wire::Enable && self.wrong.levels(wire) == Levels::LOW;
+        self.wrong.levels(wire)
+    }
+
+    fn loop_mv(&mut self, driven_mv: u32) -> u32 {
+        self.monitor_mv = match self.wrong {
+            Wrong::NoMonitorWire | Wrong::AdcDead => 0,
+            Wrong::AdcFrozen => Self::MONITOR_ZERO_MV,
+            Wrong::MonitorNotZero => driven_mv + 100,
+            _ => driven_mv + 7,
+        };
+        self.monitor_mv
+    }
+
+    fn exchange(&mut self, bytes: &mut [u8]) -> bool {
+        if self.is(Wrong::NoDataWire) {
+            bytes.fill(0xff);
+        }
+        true
+    }
+
+    fn clocks(&mut self) -> Option<Clocks> {
+        let whole = Clocks { before: 0, inside: 24, after: 0 };
+        match self.wrong {
+            Wrong::Clocks23 => Some(Clocks { inside: 23, ..whole }),
+            Wrong::ClockAfterSync => Some(Clocks { inside: 23, after: 1, ..whole }),
+            Wrong::NoLatch => None,
+            _ => Some(whole),
+        }
+    }
+
+    fn latch_cycles(&mut self) -> Option<u32> {
+        self.latch_moved = !self.latch_moved;
+        match self.wrong {
+            Wrong::NoLatch => None,
+            Wrong::LatchLate => Some(Self::LATCH_CYCLES + 40),
+            Wrong::LatchMoves => Some(Self::LATCH_CYCLES + 6 * u32::from(self.latch_moved)),
+            Wrong::LatchMovesUnderTicks if self.ticks_run => Some(Self::LATCH_CYCLES + 6 * u32::from(self.latch_moved)),
+            _ => Some(Self::LATCH_CYCLES + 3),
+        }
+    }
+
+    fn pulse(&mut self, kicks: u32) -> Pulse {
+        self.check_pulse();
+        assert!(kicks > 1, "one kick does not show that the one-shot is retriggered");
+        let fall_us = if self.is(Wrong::OneShotLong) { 1_200 } else { Self::ONE_SHOT_US + 2 };
+        Pulse {
+            rise_us: (!self.is(Wrong::EnableDead)).then_some(EDGE_US),
+            fall_us: (!self.is(Wrong::EnableDead) && !self.is(Wrong::EnableStaysHigh)).then_some(fall_us),
+            fell_again: self.is(Wrong::NotRetriggered),
+        }
+    }
+
+    fn cut_pulse(&mut self) -> Option<u32> {
+        self.check_pulse();
+        Some(if self.is(Wrong::NotCut) { Self::ONE_SHOT_US } else { EDGE_US })
+    }
+
+    fn start_ticks(&mut self) {
+        self.ticks_run = true;
+    }
+
+    fn round(&mut self, held: bool) -> Round<'_> {
+        assert!(self.ticks_run, "the tick was not started");
+        for _ in 0..ROUND_TICKS {
+            self.session.hand_order_to(&mut self.ticker);
+            let monitor_v = (self.monitor_mv as f32 - Self::MONITOR_ZERO_MV as f32) / Self::MONITOR_MV_PER_V;
+            self.ticker.tick(&Sense { arm_switch: held, monitor_v, amplifier_fault: false });
+            let is_loaded = self.ticker.state() == State::Active;
+            let cycles = match self.wrong {
+                _ if !is_loaded => IDLE_CYCLES,
+                Wrong::TicksSlow => SLOW_CYCLES,
+                _ => LOADED_CYCLES,
+            };
+            self.meter.record(cycles);
+            if is_loaded && self.is(Wrong::TickLate) {
+                self.ticker.raise(Fault::Deadline, DEADLINE_CYCLES + 1);
+            }
+        }
+        self.port.pace(ROUND_TICKS);
+        let before = core::mem::replace(&mut self.status, self.ticker.status());
+        self.session.poll(&before);
+        while self.session.transmit(&mut [0; 64]) > 0 {}
+        Round { status: &self.status, now_tick: self.status.telemetry.tick, session: &mut self.session }
+    }
+
+    fn tick_times(&mut self) -> TickTimes {
+        self.meter.times(self.ticker.status().counters.missed_deadlines)
+    }
+
+    fn flash(&mut self) -> Option<&mut SimulatedFlash> {
+        (!self.is(Wrong::OneBank)).then_some(&mut self.flash)
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) -> usize {
+        let len = self.port.read(bytes);
+        self.received += len;
+        if self.is(Wrong::LineLoses) && self.received > 5_000 && len > 1 {
+            self.received = 0;
+            // The last byte is lost.
+            return len - 1;
+        }
+        len
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> usize {
+        self.port.write(bytes)
+    }
+
+    fn reset(&mut self, kept: u32) {
+        self.kept = kept;
+        self.flash.reset();
+        if self.is(Wrong::StoreLost) {
+            self.flash.erase_all();
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The host's side of a board's self-test: answers the script, tests the line, and writes the report.
+
+use std::io::{self, BufRead};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use frixel_board::self_test::{GREETING, LINE_TEST, LineTest, SKIP, UNPLUGGED};
+use frixel_driver::{DEFAULT_BAUD, Link, LinkClosed, SerialLink};
+use thiserror::Error;
+
+use super::super::error::CommandError;
+use super::super::terminal::print_line;
+use super::report::Report;
+use crate::output_file::{Inputs, OutputFile};
+
+/// Longest silence of a board that runs the self-test: it counts the clocks of 10,000 frames meanwhile.
+const SILENCE_MAX: Duration = Duration::from_secs(20);
+/// Time within which it says something first, and after which it is asked again.
+const FIRST_LINE_MAX: Duration = Duration::from_secs(6);
+const ASK_AGAIN_AFTER: Duration = Duration::from_secs(2);
+/// How long a read waits.
+const READ_WAIT: Duration = Duration::from_millis(2);
+/// Silence after the last block, by which the board's side of the test is over.
+const LINE_SILENCE: Duration = Duration::from_millis(1_000);
+/// Bytes a second at 8 data bits, a start bit and a stop bit.
+const LINE_BYTES_PER_S: f64 = DEFAULT_BAUD as f64 / 10.0;
+/// In front of a word that the board waits for.
+const ASKS: &str = "Then type: ";
+
+/// Why the self-test did not pass.
+#[derive(Debug, Error)]
+pub(crate) enum WiresError {
+    #[error(
+        "the board at {port} does not run the self-test: flash it with `cargo run --release --bin self-test` in \
+         firmware/board-nucleo-g474re, or press its reset button (docs/first-board.md)"
+    )]
+    OtherProgram { port: String },
+    #[error("the board at {port} has said nothing for {} s: press its reset button, and begin again", SILENCE_MAX.as_secs())]
+    Silent { port: String },
+    #[error("standard input ended before the answer: unplug the amplifier, then type {UNPLUGGED}")]
+    Unanswered,
+    #[error("standard input: {0}")]
+    StandardInput(#[source] io::Error),
+    #[error(transparent)]
+    Link(#[from] LinkClosed),
+    #[error("the board at {port} has ended the self-test: {reason}")]
+    Stopped { port: String, reason: String },
+    #[error("{failed} of the measurements of {port} are out of their range; docs/first-board.md says what each means")]
+    Failed { port: String, failed: usize },
+}
+
+/// Does the self-test of the board at a port.
+pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<(), CommandError> {
+    let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
+    let link = SerialLink::open(port, DEFAULT_BAUD)?;
+    let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
+    if line_seconds > 0 {
+        print_line(format_args!("The line will be tested for {line_seconds} s; --seconds is another time."))?;
+    }
+    let talked = host.talk(port);
+    let report = host.report;
+    for line in report.of_line() {
+        print_line(line)?;
+    }
+    if let Some(output) = output {
+        output.write(&report.to_json().map_err(|error| CommandError::writing(output.path())(error.into()))?)?;
+    }
+    talked?;
+    let port = port.to_owned();
+    match (report.stopped(), report.failed()) {
+        (Some(reason), _) => Err(WiresError::Stopped { port, reason: reason.trim_end_matches('.').to_owned() }.into()),
+        (None, 0) => print_line("Passed."),
+        (None, failed) => Err(WiresError::Failed { port, failed }.into()),
+    }
+}
+
+struct Host {
+    link: SerialLink,
+    /// Bytes of a line that has not ended yet.
+    heard: Vec<u8>,
+    report: Report,
+    line_seconds: u32,
+    /// The board has not said anything since the test of the line.
+    line_was_tested: bool,
+}
+
+impl Host {
+    /// Answers the board until its last line.
+    fn talk(&mut self, port: &str) -> Result<(), CommandError> {
+        let mut is_first = true;
+        let mut heard_at = Instant::now();
+        while !self.report.has_ended() {
+            // The board may have asked before anyone listened, or waits for the end of the line's test.
+            let is_nudged = is_first || self.line_was_tested;
+            let Some(line) = self.line(if is_nudged { ASK_AGAIN_AFTER } else { SILENCE_MAX })? else {
+                if is_nudged && heard_at.elapsed() < if is_first { FIRST_LINE_MAX } else { SILENCE_MAX } {
+                    self.type_line("")?;
+                    continue;
+                }
+                let port = port.to_owned();
+                let error = if is_first { WiresError::OtherProgram { port } } else { WiresError::Silent { port } };
+                return Err(error.into());
+            };
+            heard_at = Instant::now();
+            // Noise, or a firmware that speaks frames, is no line of the script.
+            is_first &= !line.contains(ASKS);
+            self.line_was_tested = false;
+            self.report.take(&line);
+            print_line(&line)?;
+            if let Some((_, word)) = line.split_once(ASKS) {
+                self.answer(word.trim())?;
+                heard_at = Instant::now();
+            }
+        }
+        Ok(())
+    }
+
+    fn answer(&mut self, word: &str) -> Result<(), WiresError> {
+        match word {
+            GREETING => self.type_line(GREETING),
+            UNPLUGGED => {
+                let mut typed = String::new();
+                if io::stdin().lock().read_line(&mut typed).map_err(WiresError::StandardInput)? == 0 {
+                    return Err(WiresError::Unanswered);
+                }
+                self.type_line(typed.trim())
+            }
+            _ if self.line_seconds == 0 => self.type_line(SKIP),
+            _ => self.test_line(),
+        }
+    }
+
+    fn test_line(&mut self) -> Result<(), WiresError> {
+        self.type_line(LINE_TEST)?;
+        let mut test = LineTest::new();
+        let (begun, length) = (Instant::now(), Duration::from_secs(self.line_seconds.into()));
+        let (mut sent, mut heard_at) = (0.0, begun);
+        loop {
+            let elapsed = begun.elapsed();
+            if elapsed < length {
+                while sent < LINE_BYTES_PER_S * elapsed.as_secs_f64() {
+                    let bytes = test.pending();
+                    self.link.write(bytes)?;
+                    sent += bytes.len() as f64;
+                    let len = bytes.len();
+                    test.advance(len);
+                }
+            } else if heard_at.elapsed() > LINE_SILENCE {
+                break;
+            }
+            let mut bytes = Vec::new();
+            self.link.read(&mut bytes, READ_WAIT)?;
+            if !bytes.is_empty() {
+                heard_at = Instant::now();
+                test.take(&bytes);
+            }
+        }
+        self.report.take_line(&test);
+        self.line_was_tested = true;
+        self.type_line("")
+    }
+
+    fn type_line(&mut self, text: &str) -> Result<(), WiresError> {
+        self.link.write(format!("{text}\r").as_bytes())?;
+        Ok(())
+    }
+
+    /// The next line of the board that is not empty; `None` if it is silent for so long.
+    fn line(&mut self, patience: Duration) -> Result<Option<String>, WiresError> {
+        let mut heard_at = Instant::now();
+        loop {
+            while let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
+                let line: Vec<u8> = self.heard.drain(..=end).collect();
+                let line = String::from_utf8_lossy(&line).trim().to_owned();
+                if !line.is_empty() {
+                    return Ok(Some(line));
+                }
+            }
+            if heard_at.elapsed() > patience {
+                return Ok(None);
+            }
+            let before = self.heard.len();
+            self.link.read(&mut self.heard, READ_WAIT)?;
+            if self.heard.len() > before {
+                heard_at = Instant::now();
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! `frixel selftest --wires` against a simulated board behind a pseudo-terminal, as a stranger uses it.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::fs;
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+use std::thread;
+
+use frixel_board::self_test::Stop;
+use frixel_hil_sim::PseudoTerminal;
+use frixel_hil_sim::looped_board::{LoopedRig, TerminalPort, Wrong};
+use serde_json::Value;
+
+/// Runs the command beside a board, and returns what the board's script returned.
+fn self_test(wrong: Wrong, seconds: u32, typed: &str, report: &str) -> (Output, thread::JoinHandle<Result<u32, Stop>>) {
+    let port = TerminalPort::open().unwrap();
+    let path = port.path().to_owned();
+    let board = thread::spawn(move || LoopedRig::new(port, wrong).run());
+    (command(&path, seconds, typed, report), board)
+}
+
+fn command(port: &str, seconds: u32, typed: &str, report: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
+        .args(["selftest", "--wires", "--port", port, "--seconds", &seconds.to_string(), "-o", report])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(typed.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn read(report: &str) -> Value {
+    serde_json::from_slice(&fs::read(report).unwrap()).unwrap()
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+#[test]
+fn a_board_in_order_passes_and_its_report_is_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = folder.path().join("report.json").display().to_string();
+    // Typed wrong first: the board asks again.
+    let (output, board) = self_test(Wrong::Nothing, 1, "done\nunplugged\n", &report);
+    assert!(output.status.success(), "{}", text(&output));
+    assert_eq!(board.join().unwrap(), Ok(0));
+    let report = read(&report);
+    assert_eq!(report["format"], "frixel self-test");
+    assert_eq!((&report["version"], &report["board"]), (&1.into(), &"NUCLEO-G474RE".into()));
+    assert_eq!((&report["passed"], &report["stopped"]), (&true.into(), &Value::Null));
+    let measurements = report["measurements"].as_array().unwrap();
+    let found = |name: &str| {
+        let found = measurements.iter().find(|found| found["name"] == name);
+        found.unwrap_or_else(|| panic!("no {name}: {report}"))["found"].as_u64().unwrap()
+    };
+    assert!(found("line_blocks_received") > 100 && found("host_blocks_received") > 100, "{report}");
+    assert_eq!(found("clocks_in_sync_at_least"), 24);
+    assert_eq!(report["ticks"]["alone"].as_array().unwrap().len(), 9, "{report}");
+    // The page says what each of them means.
+    let page = include_str!("../../../docs/first-board.md");
+    for found in measurements {
+        let name = found["name"].as_str().unwrap();
+        assert!(page.contains(&format!("`{name}`")), "docs/first-board.md does not have {name}");
+    }
+}
+
+#[test]
+fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
+    let folder = tempfile::tempdir().unwrap();
+    for (wrong, typed, said) in [
+        (Wrong::ReadyHigh, "", "unplug the amplifier"),
+        (Wrong::NoSyncWire, "unplugged\n", "the wire of SYNC is missing"),
+        (Wrong::LatchLate, "unplugged\n", "2 of the measurements"),
+    ] {
+        let report = folder.path().join(format!("{wrong:?}.json")).display().to_string();
+        let (output, board) = self_test(wrong, 0, typed, &report);
+        assert_eq!(output.status.code(), Some(1), "{}", text(&output));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(said), "{}", text(&output));
+        assert_ne!(board.join().unwrap(), Ok(0));
+        let report = read(&report);
+        assert_eq!(report["passed"], false);
+        assert_eq!(report["stopped"].is_null(), wrong == Wrong::LatchLate, "{report}");
+    }
+}
+
+#[test]
+fn nobody_who_answers_and_a_board_with_another_program_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = folder.path().join("report.json").display().to_string();
+    // The board waits for an answer that never comes: its thread ends with this process.
+    let (output, _board) = self_test(Wrong::Nothing, 0, "", &report);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output).contains("standard input ended"), "{}", text(&output));
+
+    let terminal = PseudoTerminal::open().unwrap();
+    let output = command(terminal.path(), 0, "", &report);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output).contains("does not run the self-test"), "{}", text(&output));
+    assert_eq!(read(&report)["passed"], false);
+}
