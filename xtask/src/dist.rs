@@ -8,6 +8,8 @@
 //! | `frixel-studio.html` | the page |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
 //! | `SHA256SUMS` | for `sha256sum --check` |
+//!
+//! No file says where it was built: [`machine_paths`] takes care of that, and looks.
 
 use std::fmt::Write;
 use std::fs;
@@ -19,6 +21,7 @@ use sha2::{Digest, Sha256};
 use crate::check::{M4F_TARGET, WASM_TARGET};
 use crate::command::{IMAGES_TARGET_FOLDER, M4F, MUSL, cargo_in, root, run, target_folder};
 use crate::licences::{self, Program};
+use crate::machine_paths;
 use crate::needs::{self, Need};
 use crate::studio;
 
@@ -53,7 +56,7 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     command(&folder)?;
     for (sources, program, file) in IMAGES {
         let build = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
-        run(file, cargo_in(sources).args(build))?;
+        run(file, machine_paths::left_out(cargo_in(sources).args(build))?)?;
         let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(program);
         copy(&built, &images.join(file))?;
     }
@@ -63,6 +66,9 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     let boards = boards.map(|folder| Program { folder, package: None, target: Some(M4F) });
     let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
     write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs)?)?;
+    for file in files_below(&folder)? {
+        machine_paths::check(&file)?;
+    }
     write(&folder.join("SHA256SUMS"), &checksums(&folder)?)?;
     println!("{}", folder.display());
     Ok(())
@@ -71,7 +77,7 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
 /// The command, without anything that a system has to bring.
 fn command(folder: &Path) -> Result<(), String> {
     let build = ["build", "--locked", "--profile", PROFILE, "--target", MUSL, "--package", "frixel", "--bin", "frixel"];
-    run("command", cargo_in(".").args(build))?;
+    run("command", machine_paths::left_out(cargo_in(".").args(build))?)?;
     copy(&target_folder().join(MUSL).join(PROFILE).join("frixel"), &folder.join("frixel"))
 }
 
@@ -89,9 +95,23 @@ fn wheel(folder: &Path) -> Result<(), String> {
     write(&licences, &licences::of_wheel(&MODULE)?)?;
     let mut build = Command::new(environment.join("bin/maturin"));
     build.current_dir(root().join(PYTHON)).env("CARGO_TARGET_DIR", target_folder().join("python"));
-    let built = run("wheel", build.args(["build", "--quiet", "--locked", "--profile", PROFILE, "--out"]).arg(folder));
+    build.args(["build", "--quiet", "--locked", "--profile", PROFILE, "--out"]).arg(folder);
+    let built = machine_paths::left_out(&mut build).and_then(|build| run("wheel", build));
     fs::remove_file(&licences).map_err(|error| format!("{}: {error}", licences.display()))?;
-    built
+    built?;
+    let wheels = files_below(folder)?.into_iter().filter(|file| file.extension().is_some_and(|kind| kind == "whl"));
+    wheels.map(|wheel| check_unpacked(&environment, &wheel)).collect()
+}
+
+/// Looks into a wheel, whose files are compressed.
+fn check_unpacked(environment: &Path, wheel: &Path) -> Result<(), String> {
+    let unpacked = environment.join("unpacked");
+    if unpacked.exists() {
+        fs::remove_dir_all(&unpacked).map_err(|error| format!("{}: {error}", unpacked.display()))?;
+    }
+    let mut python = Command::new(environment.join("bin/python"));
+    run("wheel's files", python.args(["-m", "zipfile", "--extract"]).arg(wheel).arg(&unpacked))?;
+    files_below(&unpacked)?.iter().try_for_each(|file| machine_paths::check(file))
 }
 
 /// The lines of `sha256sum` for every file of a folder.

@@ -18,7 +18,7 @@ use frixel_felt::recorder::FeltRow;
 
 pub use error::RecordingError;
 pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
-pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
+pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile};
 pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::{ParquetWriter, table_parquet};

@@ -29,6 +29,9 @@ pub(super) struct Control {
     waits: bool,
     interrupt: Interrupt,
     lines_read: u32,
+    /// The lines so far that a recording has, so that they can be carried out again; none where time does not wait for
+    /// them.
+    kept: Vec<String>,
     /// Time of the play before which no line is carried out, s.
     resume_at_s: f64,
 }
@@ -54,7 +57,31 @@ impl Control {
         };
         let thread = thread::Builder::new().name("frixel-control".into()).spawn(read);
         thread.map_err(CommandError::reading("standard input".as_ref()))?;
-        Ok(Self { lines, waits, interrupt: interrupt.clone(), lines_read: 0, resume_at_s: 0.0 })
+        Ok(Self::of(lines, waits, interrupt))
+    }
+
+    /// Carries out the lines of a recording again, in virtual time.
+    pub(super) fn of_recording(lines: Vec<String>, interrupt: &Interrupt) -> Self {
+        let (sender, receiver) = sync_channel(lines.len());
+        // There is room for all of them, and the receiver is there.
+        lines.into_iter().for_each(|line| drop(sender.send(line)));
+        Self::of(receiver, true, interrupt)
+    }
+
+    fn of(lines: Receiver<String>, waits: bool, interrupt: &Interrupt) -> Self {
+        Self { lines, waits, interrupt: interrupt.clone(), lines_read: 0, kept: Vec::new(), resume_at_s: 0.0 }
+    }
+
+    /// The lines so far, as a recording has them.
+    pub(super) fn kept(&self) -> &[String] {
+        &self.kept
+    }
+
+    /// Keeps a line that has put a scene on the board: that of this number among the later ones of the recording.
+    pub(super) fn keep_replace(&mut self, number: usize) {
+        if self.waits {
+            self.kept.push(format!("replace {number}"));
+        }
     }
 
     /// Longest time that the play may go on at time `t_s` without a look at the lines.
@@ -76,7 +103,12 @@ impl Control {
             let Some(line) = self.next_line() else { return Ok(Next::GoOn) };
             self.lines_read += 1;
             let origin = format!("line {} of standard input", self.lines_read);
-            let changed = match ControlLine::parse(&line) {
+            let parsed = ControlLine::parse(&line);
+            let is_kept = !matches!(parsed, Ok(None | Some(ControlLine::Replace { .. })) | Err(_));
+            if self.waits && is_kept {
+                self.kept.push(line);
+            }
+            let changed = match parsed {
                 Ok(None) => continue,
                 Ok(Some(ControlLine::Quit)) => return Ok(Next::Quit),
                 Ok(Some(ControlLine::Replace { file })) => return Ok(Next::Replace(file.into())),
