@@ -99,8 +99,9 @@ fn wheel(folder: &Path) -> Result<(), String> {
     let built = machine_paths::left_out(&mut build).and_then(|build| run("wheel", build));
     fs::remove_file(&licences).map_err(|error| format!("{}: {error}", licences.display()))?;
     built?;
-    let wheels = files_below(folder)?.into_iter().filter(|file| file.extension().is_some_and(|kind| kind == "whl"));
-    wheels.map(|wheel| check_unpacked(&environment, &wheel)).collect()
+    let mut files = files_below(folder)?.into_iter();
+    let wheel = files.find(|file| file.extension().is_some_and(|kind| kind == "whl")).ok_or("no wheel was built")?;
+    check_unpacked(&environment, &wheel)
 }
 
 /// Looks into a wheel, whose files are compressed.

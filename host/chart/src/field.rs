@@ -138,10 +138,14 @@ impl Raster {
         for row in self.pixels.chunks(self.width.max(1)) {
             let begin = bytes.len();
             for RGBColor(red, green, blue) in row {
-                (0..fine).for_each(|_| bytes.extend([*red, *green, *blue]));
+                for _ in 0..fine {
+                    bytes.extend([*red, *green, *blue]);
+                }
             }
             let line = begin..bytes.len();
-            (1..fine).for_each(|_| bytes.extend_from_within(line.clone()));
+            for _ in 1..fine {
+                bytes.extend_from_within(line.clone());
+            }
         }
         let size = ((self.width * fine) as u32, (self.height * fine) as u32);
         let picture = BitMapElement::with_owned_buffer((0, 0), size, bytes);

@@ -47,7 +47,9 @@ fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
         for row in rows.chunks_exact(fine_row) {
             for (sums, units) in sums.iter_mut().zip(row.chunks_exact(3 * side)) {
                 for unit in units.chunks_exact(3) {
-                    sums.iter_mut().zip(unit).for_each(|(sum, value)| *sum += u32::from(*value));
+                    for (sum, value) in sums.iter_mut().zip(unit) {
+                        *sum += u32::from(*value);
+                    }
                 }
             }
         }
@@ -124,7 +126,9 @@ impl Hasher for ColourHasher {
     }
 
     fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.write_u32(u32::from(*byte)));
+        for byte in bytes {
+            self.write_u32(u32::from(*byte));
+        }
     }
 
     fn write_u32(&mut self, colour: u32) {

@@ -157,7 +157,13 @@ mod stages {
     impl Costs {
         fn unknown() -> Self {
             let unknown_s = f64::INFINITY;
-            Self { world_s: unknown_s, board_s: unknown_s, recorded_s: unknown_s, played_s: unknown_s, short_s: unknown_s }
+            Self {
+                world_s: unknown_s,
+                board_s: unknown_s,
+                recorded_s: unknown_s,
+                played_s: unknown_s,
+                short_s: unknown_s,
+            }
         }
 
         fn add_round(&mut self, case: &Case) -> Outcome<()> {

@@ -253,7 +253,9 @@ impl PlayListener for Recorder {
     }
 
     fn samples_sent(&mut self, samples: &[u16]) {
-        self.sent_samples.iter_mut().for_each(|sent| sent.extend_from_slice(samples));
+        if let Some(sent) = &mut self.sent_samples {
+            sent.extend_from_slice(samples);
+        }
         self.with_stream(|stream| stream.append(samples));
     }
 

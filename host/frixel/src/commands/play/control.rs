@@ -63,8 +63,10 @@ impl Control {
     /// Carries out the lines of a recording again, in virtual time.
     pub(super) fn of_recording(lines: Vec<String>, interrupt: &Interrupt) -> Self {
         let (sender, receiver) = sync_channel(lines.len());
-        // There is room for all of them, and the receiver is there.
-        lines.into_iter().for_each(|line| drop(sender.send(line)));
+        for line in lines {
+            // There is room for all of them, and the receiver is there.
+            let _ = sender.send(line);
+        }
         Self::of(receiver, true, interrupt)
     }
 
@@ -72,9 +74,9 @@ impl Control {
         Self { lines, waits, interrupt: interrupt.clone(), lines_read: 0, kept: Vec::new(), resume_at_s: 0.0 }
     }
 
-    /// The lines so far, as a recording has them.
-    pub(super) fn kept(&self) -> &[String] {
-        &self.kept
+    /// The lines so far, as a recording has them; `None` where time does not wait for them.
+    pub(super) fn kept(&self) -> Option<&[String]> {
+        self.waits.then_some(&self.kept)
     }
 
     /// Keeps a line that has put a scene on the board: that of this number among the later ones of the recording.

@@ -57,7 +57,10 @@ fn sentences(program: &Program) -> Vec<String> {
 }
 
 /// Ends triggers, and says what the board refuses of it.
-pub(super) fn end_triggers<L: RecordedLink>(player: &mut Player<L>, say: &mut dyn FnMut(String)) -> Result<(), PlayError> {
+pub(super) fn end_triggers<L: RecordedLink>(
+    player: &mut Player<L>,
+    say: &mut dyn FnMut(String),
+) -> Result<(), PlayError> {
     loop {
         match player.end_triggers() {
             Err(refused @ PlayError::TriggerEnd { .. }) => say(refused.to_string()),
@@ -193,8 +196,8 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_refusals(self.refusals);
         let rows = recorder.take_rows();
         self.outputs.keep_samples(&recorder.take_samples());
-        if let Some(control) = &self.control {
-            self.outputs.keep_lines(control.kept());
+        if let Some(lines) = self.control.as_ref().and_then(Control::kept) {
+            self.outputs.keep_lines(lines);
         }
         let written = self.outputs.write(&rows, recorder.markers());
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
