@@ -25,7 +25,7 @@ pub(super) struct StreamArgs {
     stream_hz: Option<u32>,
     /// The samples that a recording has.
     #[arg(skip)]
-    recorded: Option<RecordedStream>,
+    recorded: Option<Box<RecordedStream>>,
 }
 
 /// What was streamed to the board of a recording.
@@ -42,7 +42,7 @@ pub(super) struct RecordedStream {
 impl StreamArgs {
     /// The stream of a recorded play.
     pub(super) fn of_recording(recorded: Option<RecordedStream>) -> Self {
-        Self { recorded, ..Self::default() }
+        Self { recorded: recorded.map(Box::new), ..Self::default() }
     }
 
     pub(super) fn is_given(&self) -> bool {
