@@ -53,7 +53,9 @@ pub fn scene_text(text: &str) {
     // There are no pictures, because only the text is tested.
     let Ok(scene) = Scene::parse(text, "fuzz.toml", &BTreeMap::new()) else { return };
     let Ok(program) = compile(&scene, &rig.board.limits, rig.board.tick_hz) else { return };
-    assert!(program.worst_tick().cycles() <= rig.board.limits.tick_cycles_max);
+    assert!(
+        program.worst_tick(rig.board.limits.core).cycles(rig.board.limits.core) <= rig.board.limits.tick_cycles_max
+    );
     if let Err(error) = board_costs(&program, &rig) {
         panic!("it compiles, and the board does not take it: {error}");
     }
@@ -90,8 +92,8 @@ pub fn scene_load(bytes: &[u8]) -> bool {
         Ok(()) => {
             let scene = WireScene::parse(bytes).expect("the board has read it");
             let (records, points): (Vec<_>, Vec<_>) = (scene.records().collect(), scene.points().collect());
-            let worst = worst_of_scene(scene.header(), &records, &points);
-            assert!(worst.cycles() <= rig_config.board.limits.tick_cycles_max, "{worst:?}");
+            let worst = worst_of_scene(scene.header(), &records, &points, rig_config.board.limits.core);
+            assert!(worst.cycles(rig_config.board.limits.core) <= rig_config.board.limits.tick_cycles_max, "{worst:?}");
         }
         Err(DeviceError::Refused { .. }) => return false,
         Err(error) => panic!("{error}"),

@@ -1,22 +1,27 @@
-//! The emulated board: the firmware image for `qemu-system-arm -M mps2-an386`, and the simulator around it.
+//! Emulated boards, and the simulator around them: `qemu-system-arm -M mps2-an386` with a firmware of its own, and the
+//! image of the Pico on `rp2040js`.
 //!
 //! - [`Image::find`] finds the image that has come with the program, or builds it if necessary.
 //! - [`replay`] sends the board the inputs of a [`Journal`](crate::Journal) of the in-process rig and compares its
 //!   outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
 //! - [`LinkBoard`] lets the board tick by itself, with its serial port behind a pseudo-terminal for a real host, and a
 //!   [`World`](crate::World) that follows the board's output. Virtual time is never ahead of wall time.
+//! - [`PicoRig`] drives an emulator that others wrote, in lockstep, by the levels of the board's pins.
 //!
-//! Simulator and board share the board's PSRAM, which is a file; [`frixel_exchange`] describes its content.
+//! Simulator and MPS2 board share the board's PSRAM, which is a file; [`frixel_exchange`] describes its content.
 
 mod error;
+mod harness;
 mod image;
 mod link;
 mod machine;
 mod memory;
+mod pico;
 mod replay;
 
 pub use error::EmulatorError;
 pub use frixel_exchange::BOARD;
-pub use image::{Image, available};
+pub use image::{EmulatedBoard, Image};
 pub use link::{InjectedFault, LinkBoard, LinkRecord};
+pub use pico::{BrokenInputs, PicoRig, Stamped, StartCause, WireEvent};
 pub use replay::{Mismatch, ReplayError, replay};

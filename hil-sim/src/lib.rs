@@ -4,9 +4,11 @@
 //!   [`Drive`], and returns what the finger [felt](Felt).
 //! - [`Stroke`]: the place of the finger over time.
 //! - [`Rig`]: a board and its world on one thread.
+//! - [`BoardRig`]: what a scenario needs of any rig: a board with a serial line, and faults of both.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
 //! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
-//! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them.
+//! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them; [`LineNoise`]:
+//!   what a bad one does to them.
 //!
 //! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
 //! platform. Mathematics comes from `libm` by name for that reason; `+ - * /` and the square root of `f64` are rounded
@@ -14,14 +16,17 @@
 #![forbid(unsafe_code)]
 
 mod amplifier;
+mod board_rig;
 pub mod chips;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "an emulator is a process with files")]
 pub mod emulated;
 mod error;
 mod fingertip;
+mod in_process;
 mod journal;
 mod line;
+mod line_noise;
 mod person;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a pseudo-terminal is a file")]
@@ -33,16 +38,19 @@ mod touch;
 mod world;
 
 pub use amplifier::{AmplifierConfig, Decay};
+pub use board_rig::{BoardRig, RigError, RigFault, RigTick};
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger, one_minus_exp};
 pub use frixel_control::{Board, Drive};
 pub use frixel_session::TableRows;
+pub use in_process::{InProcessError, InProcessRig};
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
+pub use line_noise::{LineNoise, NoiseConfig};
 pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
 pub use rig::{BoardMemory, Rig, RigConfig, TickRecord};
 pub use stroke::{FingerState, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow};
 pub use touch::{TouchConfig, TouchReport};
-pub use world::{Felt, ReferenceFriction, World, WorldConfig};
+pub use world::{Felt, ReferenceFriction, World, WorldConfig, WorldFault};

@@ -16,6 +16,7 @@ pub(crate) enum Purpose {
     LostReports = 7,
     Person = 8,
     HumanStroke = 9,
+    LineNoise = 10,
 }
 
 /// A stream of random numbers.

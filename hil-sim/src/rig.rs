@@ -1,10 +1,11 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
-use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
+use frixel_control::{Active, Board, Drive, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
 use frixel_session::{Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
+use frixel_wire::fault::Fault;
 use frixel_wire::message::Refusal;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
@@ -77,6 +78,8 @@ pub struct TickRecord {
     pub tick: u64,
     /// Status reported by the board.
     pub status: Status,
+    /// The board's output.
+    pub drive: Drive,
     /// What the finger felt.
     pub felt: Felt,
 }
@@ -100,12 +103,8 @@ pub struct Rig<'a> {
 impl<'a> Rig<'a> {
     /// A board after reset, in a world whose finger will make `stroke`.
     pub fn new(memory: &'a mut BoardMemory, config: &RigConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
-        let BoardMemory { pool, actives: [first, second], stream } = memory;
         let tick_hz = config.board.tick_hz;
-        let mut ticker = Ticker::new(&config.board, pool, first);
-        ticker.attach_stream(stream);
-        let mut session = Session::new(config.board, pool, second);
-        session.attach_stream(stream);
+        let (session, ticker) = started(config.board, memory);
         let mut to_board = Line::new(config.baud, tick_hz)?;
         to_board.limit_queue(usize::from(config.board.limits.receive_window_bytes) + RECEIVE_MARGIN_LEN);
         Ok(Self {
@@ -122,6 +121,24 @@ impl<'a> Rig<'a> {
             tick: 0,
             board: config.board,
         })
+    }
+
+    /// Resets the board, which starts with `memory`. World and line go on.
+    pub fn reset(&mut self, memory: &'a mut BoardMemory) {
+        (self.session, self.ticker) = started(self.board, memory);
+        self.status = self.ticker.status();
+        self.scene = None;
+    }
+
+    /// Lets the board find a fault of its own, as a late tick does.
+    pub fn raise(&mut self, fault: Fault, detail: u32) {
+        self.ticker.raise(fault, detail);
+    }
+
+    /// Sets the board's tick count, whose 32 bits wrap around after 30 hours. [`Self::tick`] goes on as before.
+    pub fn set_board_tick(&mut self, tick: u32) {
+        self.ticker.set_tick(tick);
+        self.status = self.ticker.status();
     }
 
     /// Ticks since power-on.
@@ -201,8 +218,7 @@ impl<'a> Rig<'a> {
             self.session.touch(touch, self.status.telemetry.tick.wrapping_add(1));
         }
         self.deliver_orders();
-        let arm_switch = !self.ticker.waits_for_release();
-        let sense = Sense { arm_switch, ..self.world.sense() };
+        let sense = self.sense();
         let drive = self.ticker.tick(&sense);
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();
@@ -214,7 +230,14 @@ impl<'a> Rig<'a> {
             let tick = self.tick as u32;
             journal.push(&TickInput { tick, received, room, touch, sense }, &TickOutput { tick, drive, sent });
         }
-        TickRecord { tick: self.tick, status: self.status, felt }
+        TickRecord { tick: self.tick, status: self.status, drive, felt }
+    }
+
+    /// The board's input. The person at the arm switch lets go of it and presses it again when the board wants that.
+    fn sense(&self) -> Sense {
+        let sense = self.world.sense();
+        let is_held = !self.ticker.waits_for_release() || self.world.is_switch_welded();
+        Sense { arm_switch: sense.arm_switch && is_held, ..sense }
     }
 
     /// Passes the session's next order to the ticker, which takes one before each tick.
@@ -257,4 +280,14 @@ impl<'a> Rig<'a> {
         self.at_host.extend_from_slice(self.to_host.tick());
         sent
     }
+}
+
+/// A board that has just started.
+fn started(board: Board, memory: &mut BoardMemory) -> (Session<'_>, Ticker<'_>) {
+    let BoardMemory { pool, actives: [first, second], stream } = memory;
+    let mut ticker = Ticker::new(&board, pool, first);
+    ticker.attach_stream(stream);
+    let mut session = Session::new(board, pool, second);
+    session.attach_stream(stream);
+    (session, ticker)
 }

@@ -1,8 +1,10 @@
 //! The simulated world: everything outside the board's pins.
 
+mod faults;
+
 use core::ops::Range;
 
-use frixel_control::{Drive, Sense};
+use frixel_control::{Board, Drive, Sense};
 use frixel_model::FrictionLaw;
 use frixel_session::Touch;
 
@@ -11,6 +13,9 @@ use crate::error::{OutOfRange, WorldError};
 use crate::fingertip::{Fingertip, FingertipConfig, Friction, SlipStep, example_finger};
 use crate::stroke::{FingerState, Stroke};
 use crate::touch::{TouchConfig, TouchReport, TouchSource};
+use faults::FaultSchedule;
+
+pub use faults::WorldFault;
 
 /// Configuration of a [`World`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,11 +43,27 @@ impl WorldConfig {
         touch: TouchConfig::IDEAL,
     };
 
-    /// This world with every effect that was measured on real amplifiers, fingers and touch sources.
+    /// The ideal plant around a board, with the lags that the board expects.
+    pub fn of(board: &Board) -> Self {
+        Self {
+            tick_hz: board.tick_hz,
+            full_scale_v_peak: board.limits.full_scale_v_peak.into(),
+            amplifier: AmplifierConfig::of(board),
+            ..Self::IDEAL
+        }
+    }
+
+    /// This world with every effect that was measured on real amplifiers, fingers and touch sources. The amplifier's and
+    /// the electrode's lag stay.
     #[must_use]
     pub fn realistic(self) -> Self {
+        let AmplifierConfig { output_time_constant_s, electrode_time_constant_s, .. } = self.amplifier;
         Self {
-            amplifier: AmplifierConfig::REALISTIC,
+            amplifier: AmplifierConfig {
+                output_time_constant_s,
+                electrode_time_constant_s,
+                ..AmplifierConfig::REALISTIC
+            },
             fingertip: FingertipConfig::REALISTIC,
             touch: TouchConfig::REALISTIC,
             ..self
@@ -128,11 +149,15 @@ pub struct World {
     seed: u64,
     full_scale_v_peak: f64,
     amplifier: Amplifier,
-    amplifier_faults: Vec<Range<u64>>,
+    /// The amplifier without the faults that are scheduled.
+    healthy_amplifier: AmplifierConfig,
+    faults: FaultSchedule,
     fingertip: Fingertip,
     /// Whether the finger is that of a scenario, and stays when a scene with another profile is loaded.
     owns_finger: bool,
     touch_source: TouchSource,
+    /// The report that arrived at the current tick.
+    touch: Option<Touch>,
     stroke: Stroke,
     motion: Motion,
 }
@@ -163,10 +188,12 @@ impl World {
             seed,
             full_scale_v_peak,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
-            amplifier_faults: Vec::new(),
+            healthy_amplifier: amplifier,
+            faults: FaultSchedule::default(),
             fingertip: Fingertip::new(fingertip, example_finger().map_err(WorldError::Finger)?.into(), tick_hz, seed)?,
             owns_finger: false,
             touch_source,
+            touch: None,
             stroke,
             motion: Motion::Lifted,
         })
@@ -194,6 +221,7 @@ impl World {
     /// [`OutOfRange`] names a number of the configuration that no source has; the source before stays.
     pub fn set_touch_source(&mut self, config: &TouchConfig) -> Result<(), OutOfRange> {
         self.touch_source = TouchSource::from_tick(config, self.tick_hz, self.seed, self.tick)?;
+        self.touch = None;
         Ok(())
     }
 
@@ -235,16 +263,26 @@ impl World {
         self.motion = Motion::Lifted;
     }
 
-    /// Raises the amplifier's fault line for a range of ticks. The amplifier itself keeps working: the board must
-    /// disable it.
-    pub fn schedule_amplifier_fault(&mut self, ticks: Range<u64>) {
-        self.amplifier_faults.push(ticks);
+    /// Lets a fault be there for a range of ticks, from the current one on at the earliest.
+    ///
+    /// # Errors
+    ///
+    /// [`OutOfRange`] names a number of the fault that no amplifier has.
+    pub fn schedule_fault(&mut self, ticks: Range<u64>, fault: WorldFault) -> Result<(), OutOfRange> {
+        let ticks = ticks.start.max(self.tick)..ticks.end;
+        self.faults.add(ticks, fault, self.healthy_amplifier)
     }
 
     /// Gives the amplifier other properties from now on, such as those of a broken one. Its voltages stay.
     pub fn set_amplifier(&mut self, config: &AmplifierConfig) -> Result<(), WorldError> {
         self.amplifier = self.amplifier.reconfigured(config, self.full_scale_v_peak, self.tick_hz)?;
+        self.healthy_amplifier = *config;
         Ok(())
+    }
+
+    /// Ticks a second.
+    pub fn tick_hz(&self) -> u32 {
+        self.tick_hz
     }
 
     /// Number of ticks since the start.
@@ -254,6 +292,9 @@ impl World {
 
     /// The finger at the current tick, if it is on the screen.
     pub fn finger(&self) -> Option<FingerState> {
+        if self.faults.has(self.tick, WorldFault::FingerLifted) {
+            return None;
+        }
         match self.motion {
             Motion::Lifted => None,
             Motion::Stroke { start_tick } => self.stroke.at(self.stroke_s(start_tick)),
@@ -278,15 +319,20 @@ impl World {
     /// Returns the board's input at the current tick. Repeated calls return the same value.
     pub fn sense(&self) -> Sense {
         Sense {
-            amplifier_fault: self.amplifier_faults.iter().any(|ticks| ticks.contains(&self.tick)),
+            amplifier_fault: self.faults.has(self.tick, WorldFault::AmplifierNotReady),
             monitor_v: self.amplifier.monitor_v() as f32,
-            arm_switch: true,
+            arm_switch: self.faults.arm_switch(self.tick),
         }
     }
 
     /// Returns the touch report that arrived at the current tick.
     pub fn touch(&self) -> Option<Touch> {
-        self.touch_source.arrived()
+        self.touch
+    }
+
+    /// Whether the arm switch is welded: closed, whatever the person at it does.
+    pub(crate) fn is_switch_welded(&self) -> bool {
+        self.faults.has(self.tick, WorldFault::SwitchWelded)
     }
 
     /// Returns the place that arrived at the current tick, with its times.
@@ -303,7 +349,13 @@ impl World {
 
     /// Holds the board's output for one tick, and advances to the next.
     pub fn apply(&mut self, drive: Drive) -> Felt {
-        let output = self.amplifier.tick(drive);
+        if let Some(config) = self.faults.new_amplifier(self.tick, self.healthy_amplifier) {
+            // Its numbers were checked when the fault was scheduled.
+            if let Ok(amplifier) = self.amplifier.reconfigured(&config, self.full_scale_v_peak, self.tick_hz) {
+                self.amplifier = amplifier;
+            }
+        }
+        let output = self.amplifier.tick(self.faults.drive(self.tick, drive));
         self.tick += 1;
         let finger = self.finger();
         let Friction { natural_friction_n, electric_friction_n, normal_load_n, load_mismatch_n, slip } = match &finger {
@@ -311,6 +363,7 @@ impl World {
             None => self.fingertip.lift(),
         };
         self.touch_source.tick(self.tick, finger.as_ref());
+        self.touch = self.faults.touch(self.tick, self.touch_source.arrived());
         Felt {
             finger,
             friction_n: natural_friction_n + electric_friction_n,

@@ -4,4 +4,5 @@
 mod emulator;
 mod integer_table;
 mod parity;
+mod pico;
 mod script;

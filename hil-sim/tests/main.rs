@@ -5,6 +5,7 @@ mod chips;
 mod dac;
 mod link_credit;
 mod live;
+mod properties;
 mod resting;
 mod rig;
 mod script;

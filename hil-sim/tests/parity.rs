@@ -11,7 +11,7 @@ use crate::script;
 use frixel_control::Board;
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, ReplayError, replay};
-use frixel_hil_sim::{Journal, LineFault, Point, RigConfig, Stroke};
+use frixel_hil_sim::{Journal, LineFault, Point, RigConfig, Stroke, WorldFault};
 use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
 };
@@ -162,7 +162,7 @@ fn a_bad_day_is_the_same() {
         script.command(Command::SetLayer { layer: 3, on: true, gain: -0.3 });
         script.run(20_000);
         let now = script.rig.tick();
-        script.rig.world_mut().schedule_amplifier_fault(now..now + 3);
+        script.rig.world_mut().schedule_fault(now..now + 3, WorldFault::AmplifierNotReady).unwrap();
         script.run(5_000);
         assert_eq!(script.status().telemetry.state, State::Faulted);
         script.command(Command::ClearFault);

@@ -4,7 +4,7 @@
 use frixel_control::{Drive, Sense};
 use frixel_hil_sim::{
     AmplifierConfig, Felt, FingerState, FingertipConfig, Person, Point, ReferenceFriction, Stroke, StrokeRow,
-    TouchConfig, World, WorldConfig, example_finger,
+    TouchConfig, World, WorldConfig, WorldFault, example_finger,
 };
 use frixel_model::{Contact, Finger};
 use frixel_session::Touch;
@@ -207,8 +207,8 @@ fn the_monitor_shows_the_output_of_the_tick_before_the_last_and_the_switch_is_he
 #[test]
 fn the_amplifier_s_fault_line_follows_its_schedule() {
     let mut world = world(WorldConfig::default());
-    world.schedule_amplifier_fault(10..12);
-    world.schedule_amplifier_fault(20..21);
+    world.schedule_fault(10..12, WorldFault::AmplifierNotReady).unwrap();
+    world.schedule_fault(20..21, WorldFault::AmplifierNotReady).unwrap();
     let faulty: Vec<u64> = (0..100)
         .filter(|_| {
             let fault = world.sense().amplifier_fault;

@@ -14,7 +14,7 @@ mod thumb;
 use std::fs;
 use std::process::Command;
 
-use crate::command::{M3, M4F, root};
+use crate::command::{M0_PLUS, M3, M4F, root};
 pub(crate) use figures::Figures;
 use image::Image;
 
@@ -28,6 +28,8 @@ struct Core {
 
 const M4F_CORE: Core = Core { name: "m4f", target: M4F, machine: "mps2-an386" };
 const M3_CORE: Core = Core { name: "m3", target: M3, machine: "mps2-an385" };
+/// Code for a Cortex-M0+, which a Cortex-M3 executes, too, with as many instructions.
+const M0_PLUS_CORE: Core = Core { name: "m0plus", target: M0_PLUS, machine: "mps2-an385" };
 
 /// Name of the emulator's executable.
 const EMULATOR: &str = "qemu-system-arm";
@@ -41,6 +43,7 @@ pub(crate) fn bench() -> Result<Figures, String> {
     for core in [&M4F_CORE, &M3_CORE] {
         Image::build(core, false)?.measure(&mut figures)?;
     }
+    Image::build(&M0_PLUS_CORE, false)?.count(&mut figures)?;
     size::measure(&mut figures)?;
     let folder = root().join("target/bench");
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;

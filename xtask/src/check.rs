@@ -3,13 +3,13 @@
 use std::fs;
 
 use crate::bench::programs::{self, Pace};
-use crate::command::{IMAGES_TARGET_FOLDER, M3, M4F, WASM, cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, cargo_in, root, run};
 use crate::inputs::packages;
 use crate::needs::{Machine, Missing, Need};
 use crate::outcome::{Outcome, skip};
 use crate::stages::Stages;
 use crate::test_programs::{self, Programs};
-use crate::{bench, budgets, fuzz, inputs, portability, python, results, stamps, studio_tests};
+use crate::{bench, budgets, fuzz, inputs, pico_rig, portability, python, results, stamps, studio_tests};
 
 /// Inputs of the images and of the budgets.
 const FIRMWARE_INPUTS: [&str; 8] =
@@ -38,6 +38,8 @@ pub(crate) const CLIPPY: Need = Need::Component("clippy", "clippy");
 const FORMAT: Need = Need::Component("fmt", "rustfmt");
 pub(crate) const M4F_TARGET: Need = Need::Target(M4F);
 pub(crate) const M3_TARGET: Need = Need::Target(M3);
+pub(crate) const M0_PLUS_TARGET: Need = Need::Target(M0_PLUS);
+pub(crate) const M33_TARGET: Need = Need::Target(M33);
 pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 
 /// All checks, in the order in which they run: a cheap one fails first.
@@ -48,7 +50,7 @@ const STAGES: [Stage; 16] = [
     Stage {
         name: "images",
         tier: Tier::First,
-        needs: &[M4F_TARGET, M3_TARGET, CLIPPY, FORMAT, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, CLIPPY, FORMAT, Need::Git],
         run: images,
     },
     Stage { name: "tests", tier: Tier::First, needs: &[Need::Git], run: tests },
@@ -76,13 +78,13 @@ const STAGES: [Stage; 16] = [
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
         run: tests_on_emulators,
     },
     Stage {
         name: "budgets",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, Need::Emulator, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator, Need::Git],
         run: budgets_stage,
     },
     Stage { name: "python", tier: Tier::All, needs: &python::NEEDS, run: python_module },
@@ -145,7 +147,9 @@ fn tests() -> Result<Outcome, String> {
 }
 
 fn tests_on_emulators() -> Result<Outcome, String> {
-    test_programs::run_all(Programs::OnEmulators)
+    let inputs = ["hil-sim/pico", "xtask"].map(str::to_owned);
+    let scripts = stamps::unless_unchanged("pico-rig", &inputs, || passed(pico_rig::test_scripts()))?;
+    Ok(scripts.and(test_programs::run_all(Programs::OnEmulators)?))
 }
 
 fn documentation() -> Result<Outcome, String> {
@@ -159,7 +163,7 @@ fn page() -> Result<Outcome, String> {
 }
 
 fn studio_scripts() -> Result<Outcome, String> {
-    let inputs = ["host/studio", "xtask"].map(str::to_owned);
+    let inputs = ["hil-sim/pico", "host/studio", "xtask"].map(str::to_owned);
     stamps::unless_unchanged("studio-scripts", &inputs, || passed(studio_tests::check_scripts()))
 }
 
@@ -223,7 +227,7 @@ pub(crate) struct Image {
     more: &'static [&'static [&'static str]],
 }
 
-pub(crate) const IMAGES: [Image; 4] = [
+pub(crate) const IMAGES: [Image; 5] = [
     Image {
         folder: "firmware/board-nucleo-g474re",
         more: &[
@@ -231,6 +235,14 @@ pub(crate) const IMAGES: [Image; 4] = [
             &["--no-default-features"],
             &["--no-default-features", "--features", "grating"],
             &["--no-default-features", "--features", "bitmap,store,panic-message"],
+        ],
+    },
+    Image {
+        folder: "firmware/board-pico",
+        more: &[
+            &["--no-default-features", "--features", "rp2350,grating"],
+            &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,everything"],
+            &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,grating"],
         ],
     },
     Image { folder: "firmware/board-mps2-an386", more: &[] },
@@ -306,7 +318,9 @@ mod tests {
         for image in &IMAGES {
             assert_eq!(of(image.folder), first, "{}", image.folder);
         }
-        for folder in ["firmware/board-nucleo-g474re", "firmware/board-mps2-an386", "firmware/bench"] {
+        for folder in
+            ["firmware/board-nucleo-g474re", "firmware/board-pico", "firmware/board-mps2-an386", "firmware/bench"]
+        {
             let packages = manifest(folder, "Cargo.toml")["profile"]["release"]["package"].clone();
             assert_eq!(packages["frixel-control"]["opt-level"].as_integer(), Some(3), "{folder}");
         }

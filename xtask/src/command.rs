@@ -8,6 +8,10 @@ use std::process::{Command, Stdio};
 pub(crate) const M4F: &str = "thumbv7em-none-eabihf";
 /// Compiler target of a processor without floating point.
 pub(crate) const M3: &str = "thumbv7m-none-eabi";
+/// Compiler target of the Raspberry Pi Pico.
+pub(crate) const M0_PLUS: &str = "thumbv6m-none-eabi";
+/// Compiler target of the Raspberry Pi Pico 2.
+pub(crate) const M33: &str = "thumbv8m.main-none-eabihf";
 /// Compiler target of the command that needs nothing of a system.
 pub(crate) const MUSL: &str = "x86_64-unknown-linux-musl";
 /// Compiler target of the studio's page.

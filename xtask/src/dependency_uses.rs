@@ -9,8 +9,8 @@ use crate::command::root;
 
 /// The packages whose sources use each crate, tests apart.
 const USES: [(&str, &[&str]); 6] = [
-    ("defmt", &["board-nucleo-g474re", "frixel-drivers"]),
-    ("embedded-hal", &["board-nucleo-g474re", "frixel-drivers", "frixel-hil-sim"]),
+    ("defmt", &["board-nucleo-g474re", "frixel-board", "frixel-drivers"]),
+    ("embedded-hal", &["board-mps2-an386", "board-nucleo-g474re", "frixel-board", "frixel-drivers", "frixel-hil-sim"]),
     ("fixed", &["frixel-control", "frixel-model", "frixel-wire"]),
     (
         "heapless",

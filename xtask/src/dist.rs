@@ -3,7 +3,8 @@
 //! | file | what |
 //! |---|---|
 //! | `frixel` | the command for Linux, static |
-//! | `images/*.elf` | the firmware of each board; that of the emulated one is what `frixel play --port qemu` runs |
+//! | `images/*.elf` | the firmware of each board; those of the emulated ones are what `frixel play --port qemu` and `--port pico` run |
+//! | `images/pico-rig` | the emulator of the Pico, with the programs that `frixel play --port pico` runs by node |
 //! | `frixel-*.whl` | the Python module |
 //! | `frixel-studio.html` | the page |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
@@ -18,29 +19,46 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use crate::check::{M4F_TARGET, WASM_TARGET};
-use crate::command::{IMAGES_TARGET_FOLDER, M4F, MUSL, cargo_in, root, run, target_folder};
+use crate::check::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, root, run, target_folder};
 use crate::licences::{self, Program};
 use crate::machine_paths;
 use crate::needs::{self, Need};
-use crate::studio;
+use crate::{pico_rig, studio};
 
 /// What it needs of the machine.
-const NEEDS: [Need; 4] = [M4F_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python];
+const NEEDS: [Need; 8] =
+    [M4F_TARGET, M0_PLUS_TARGET, M33_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python, Need::Node, Need::Npm];
 /// Nearly as fast as `release`, and built in a third of the time.
 const PROFILE: &str = "wheel";
 /// The folder of the Python module.
 const PYTHON: &str = "host/python";
 /// Text in the wheel, beside frixel's own licences.
 const WHEEL_LICENCES: &str = "LICENCES.txt";
-/// Folder, program and file of each image.
-const IMAGES: [(&str, &str, &str); 3] = [
-    ("firmware/board-mps2-an386", "board-mps2-an386", "board-mps2-an386.elf"),
-    ("firmware/board-nucleo-g474re", "board-nucleo-g474re", "board-nucleo-g474re.elf"),
-    ("firmware/board-nucleo-g474re", "bring-up", "board-nucleo-g474re-bring-up.elf"),
+/// Program and file of each image, and what it is compiled from.
+const IMAGES: [(&str, &str, Program); 5] = [
+    ("board-mps2-an386", "board-mps2-an386.elf", board("firmware/board-mps2-an386", M4F, &[])),
+    ("board-nucleo-g474re", "board-nucleo-g474re.elf", NUCLEO),
+    ("bring-up", "board-nucleo-g474re-bring-up.elf", NUCLEO),
+    ("board-pico", "board-pico-2.elf", board(PICO, M33, &[])),
+    (
+        "board-pico",
+        "board-pico.elf",
+        // As `EmulatedBoard::build_arguments` in `hil-sim` has them.
+        board(PICO, M0_PLUS, &["--no-default-features", "--features", "rp2040,everything"]),
+    ),
 ];
-const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL) };
-const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None };
+const NUCLEO: Program = board("firmware/board-nucleo-g474re", M4F, &[]);
+const PICO: &str = "firmware/board-pico";
+/// Folder of the emulator of the Pico among the images.
+const PICO_RIG: &str = "pico-rig";
+const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL), features: &[] };
+const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None, features: &[] };
+
+/// The programs of a board's folder.
+const fn board(folder: &'static str, target: &'static str, features: &'static [&'static str]) -> Program {
+    Program { folder, package: None, target: Some(target), features }
+}
 
 /// Makes the folder, which must be empty or new.
 pub(crate) fn make(folder: &str) -> Result<(), String> {
@@ -54,18 +72,22 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
 
     command(&folder)?;
-    for (sources, program, file) in IMAGES {
-        let build = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
-        run(file, machine_paths::left_out(cargo_in(sources).args(build))?)?;
-        let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(program);
+    for (program, file, Program { folder: sources, target, features, .. }) in IMAGES {
+        let target = target.unwrap_or_default();
+        let build_args = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
+        let mut build = cargo_in(sources);
+        build.args(build_args).args(["--target", target]).args(features);
+        run(file, machine_paths::left_out(&mut build)?)?;
+        let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(program);
         copy(&built, &images.join(file))?;
     }
+    pico_rig::copy_to(&images.join(PICO_RIG))?;
     wheel(&folder)?;
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
-    let boards = ["firmware/board-mps2-an386", "firmware/board-nucleo-g474re"];
-    let boards = boards.map(|folder| Program { folder, package: None, target: Some(M4F) });
+    let boards = IMAGES.map(|(_, _, program)| program);
     let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
-    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs)?)?;
+    let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
+    write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs, emulator)?)?;
     for file in files_below(&folder)? {
         machine_paths::check(&file)?;
     }
@@ -192,7 +214,7 @@ mod tests {
     /// The licences of everything that is compiled into what is handed on, without building it.
     #[test]
     fn the_licences_name_crates_of_every_program() {
-        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE]).unwrap();
+        let text = licences::of_dist(&[COMMAND, MODULE, licences::PAGE], String::new()).unwrap();
         for expected in
             ["clap 4", "pyo3 0", "heapless 0", "musl, the C library", "uplot ", "Apache License", "flatbuffers 25"]
         {

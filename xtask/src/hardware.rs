@@ -16,8 +16,12 @@ const BOARD: &str = "U1";
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Carrier {
+    /// Of the NUCLEO.
     pin: Vec<Pin>,
     supply: Vec<Supply>,
+    /// Of a Pico or Pico 2 in its place.
+    pico: Vec<Pin>,
+    pico_supply: Vec<Supply>,
     part: Vec<Part>,
     net: Vec<Net>,
 }
@@ -27,7 +31,7 @@ struct Carrier {
 #[serde(deny_unknown_fields)]
 struct Pin {
     pin: String,
-    /// Connector and number, such as `CN7-1`.
+    /// Connector and number, such as `CN7-1`, or the number alone; empty for a pin that is on no connector.
     position: String,
     function: String,
     /// The module of the board's firmware that uses it, and the constant there that has its number.
@@ -76,10 +80,35 @@ fn read() -> Result<Carrier, String> {
     toml::from_str(&text).map_err(|error| format!("{CARRIER}: {error}"))
 }
 
-/// Connector and number of a position, by which positions are in order.
+/// Connector and number of a position, by which positions are in order. The only connector of a board is number 0.
 fn place(position: &str) -> Option<(u32, u32)> {
-    let (connector, number) = position.strip_prefix("CN")?.split_once('-')?;
+    let Some(position) = position.strip_prefix("CN") else { return Some((0, position.parse().ok()?)) };
+    let (connector, number) = position.split_once('-')?;
     Some((connector.parse().ok()?, number.parse().ok()?))
+}
+
+/// A table of pins and supplies by position. `on_board` says where a pin leads that has no net.
+fn pin_table(carrier: &Carrier, pins: &[Pin], supplies: &[Supply], on_board: &str) -> String {
+    let mut text = String::from("| position | pin | net | to | function | module |\n|---|---|---|---|---|---|\n");
+    let others = |name: &str| {
+        let net = carrier.net.iter().find(|net| net.name == name);
+        let is_outside = |node: &&String| !node.starts_with(&format!("{BOARD}."));
+        let nodes = net.into_iter().flat_map(|net| &net.nodes).filter(is_outside).cloned();
+        nodes.collect::<Vec<_>>().join(", ")
+    };
+    let mut pins: Vec<&Pin> = pins.iter().collect();
+    pins.sort_by_key(|pin| place(&pin.position));
+    for Pin { pin, position, function, module, constant, net } in pins {
+        let net = net.as_deref().unwrap_or_default();
+        let to = if net.is_empty() { on_board.to_owned() } else { others(net) };
+        // Writing to a string cannot fail.
+        let constant = constant.as_ref().map_or(String::new(), |constant| format!("::{constant}"));
+        let _ = writeln!(text, "| {position} | {pin} | {net} | {to} | {function} | `{module}{constant}` |");
+    }
+    for Supply { net, positions } in supplies {
+        let _ = writeln!(text, "| {} | | {net} | {} | | |", positions.join(", "), others(net));
+    }
+    text
 }
 
 fn page(carrier: &Carrier) -> String {
@@ -88,27 +117,12 @@ fn page(carrier: &Carrier) -> String {
          [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before anything is \
          switched on. Nobody has built this yet.\n\n\
          ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before you \
-         solder. Every row goes to all other nodes of its net.\n\n\
-         | position | pin | net | to | function | module |\n|---|---|---|---|---|---|\n",
+         solder. Every row goes to all other nodes of its net.\n\n",
     );
-    let others = |name: &str| {
-        let net = carrier.net.iter().find(|net| net.name == name);
-        let is_outside = |node: &&String| !node.starts_with(&format!("{BOARD}."));
-        let nodes = net.into_iter().flat_map(|net| &net.nodes).filter(is_outside).cloned();
-        nodes.collect::<Vec<_>>().join(", ")
-    };
-    let mut pins: Vec<&Pin> = carrier.pin.iter().collect();
-    pins.sort_by_key(|pin| place(&pin.position));
-    for Pin { pin, position, function, module, constant, net } in pins {
-        let net = net.as_deref().unwrap_or_default();
-        let to = if net.is_empty() { "on the NUCLEO".to_owned() } else { others(net) };
-        // Writing to a string cannot fail.
-        let constant = constant.as_ref().map_or(String::new(), |constant| format!("::{constant}"));
-        let _ = writeln!(text, "| {position} | {pin} | {net} | {to} | {function} | `{module}{constant}` |");
-    }
-    for Supply { net, positions } in &carrier.supply {
-        let _ = writeln!(text, "| {} | | {net} | {} | | |", positions.join(", "), others(net));
-    }
+    text += &pin_table(carrier, &carrier.pin, &carrier.supply, "on the NUCLEO");
+    text += "\n## With a Pico or Pico 2\n\nIn place of the NUCLEO: the pins around the board, by their number. The nodes of U1 \
+             among the nets below are the NUCLEO's.\n\n";
+    text += &pin_table(carrier, &carrier.pico, &carrier.pico_supply, "serial port, or on the board");
     text += "\n## Nets\n\n| net | nodes | |\n|---|---|---|\n";
     for Net { name, why, nodes } in &carrier.net {
         let _ = writeln!(text, "| {name} | {} | {why} |", nodes.join(", "));
@@ -138,12 +152,37 @@ mod tests {
 
     use super::*;
 
-    const SOURCES: &str = "firmware/board-nucleo-g474re/src";
     /// A bridge between two of these, or from one to a supply, would defeat a protection.
     const GUARDED: [&str; 3] = ["ENABLE_MCU", "READY", "SWITCH_IN"];
 
-    fn source(module: &str) -> String {
-        let path = root().join(SOURCES).join(format!("{module}.rs"));
+    /// A processor board: the sources that name its pins, and its pins and supplies in the table.
+    struct Processor<'a> {
+        sources: &'static str,
+        /// How the name of a pin begins.
+        prefix: &'static str,
+        pins: &'a [Pin],
+        supplies: &'a [Supply],
+    }
+
+    fn processors(carrier: &Carrier) -> [Processor<'_>; 2] {
+        [
+            Processor {
+                sources: "firmware/board-nucleo-g474re/src",
+                prefix: "P",
+                pins: &carrier.pin,
+                supplies: &carrier.supply,
+            },
+            Processor {
+                sources: "firmware/board-pico/src",
+                prefix: "GP",
+                pins: &carrier.pico,
+                supplies: &carrier.pico_supply,
+            },
+        ]
+    }
+
+    fn source(sources: &str, module: &str) -> String {
+        let path = root().join(sources).join(format!("{module}.rs"));
         fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     }
 
@@ -165,28 +204,47 @@ mod tests {
     #[test]
     fn pins_are_those_of_the_firmware() {
         let carrier = read().unwrap();
-        let mut in_code = BTreeSet::new();
-        for entry in fs::read_dir(root().join(SOURCES)).unwrap() {
-            let path = entry.unwrap().path();
-            let Some(module) = path.file_stem().and_then(|stem| stem.to_str()).filter(|_| path.is_file()) else {
-                continue;
-            };
-            for row in source(module).lines().filter_map(|line| line.strip_prefix("//! | P")) {
-                let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-                in_code.insert((format!("P{}", cells[0]), cells[1].to_owned(), module.to_owned()));
+        for Processor { sources, prefix, pins, .. } in processors(&carrier) {
+            let mut in_code = BTreeSet::new();
+            let row_start = format!("//! | {prefix}");
+            for entry in fs::read_dir(root().join(sources)).unwrap() {
+                let path = entry.unwrap().path();
+                let Some(module) = path.file_stem().and_then(|stem| stem.to_str()).filter(|_| path.is_file()) else {
+                    continue;
+                };
+                for row in source(sources, module).lines().filter_map(|line| line.strip_prefix(&row_start)) {
+                    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+                    in_code.insert((format!("{prefix}{}", cells[0]), cells[1].to_owned(), module.to_owned()));
+                }
+            }
+            let in_table: BTreeSet<_> =
+                pins.iter().map(|pin| (pin.pin.clone(), pin.function.clone(), pin.module.clone())).collect();
+            assert_eq!(in_table, in_code);
+            for Pin { pin, module, constant, .. } in pins {
+                let Some(constant) = constant else { continue };
+                let text = source(sources, module);
+                let (port, number) = (&pin[1..2], &pin[2..]);
+                let has_ports = prefix == "P";
+                // Pins of one bus are connected in a loop.
+                assert!(!has_ports || text.contains(&format!("GPIO{port}")), "{pin}: no port in {module}");
+                let kind = if has_ports { "u32" } else { "usize" };
+                assert!(
+                    text.contains(&format!("const {constant}: {kind} = {number};")),
+                    "{pin}: {constant} in {module}"
+                );
             }
         }
-        let in_table: BTreeSet<_> =
-            carrier.pin.iter().map(|pin| (pin.pin.clone(), pin.function.clone(), pin.module.clone())).collect();
-        assert_eq!(in_table, in_code);
-        for Pin { pin, module, constant, .. } in &carrier.pin {
-            let Some(constant) = constant else { continue };
-            let (port, number) = pin[1..].split_at(1);
-            let text = source(module);
-            assert!(text.contains(&format!("const {constant}: u32 = {number};")), "{pin}: {constant} in {module}");
-            // Pins of one bus are connected in a loop.
-            assert!(text.contains(&format!("GPIO{port}")), "{pin}: no port in {module}");
-        }
+    }
+
+    /// Either processor board is wired to the same nets.
+    #[test]
+    fn both_processor_boards_have_the_same_nets() {
+        let carrier = read().unwrap();
+        let [nucleo, pico] = processors(&carrier).map(|Processor { pins, supplies, .. }| {
+            let of_pins = pins.iter().filter_map(|pin| pin.net.as_deref());
+            of_pins.chain(supplies.iter().map(|supply| supply.net.as_str())).collect::<BTreeSet<_>>()
+        });
+        assert_eq!(pico, nucleo);
     }
 
     #[test]
@@ -231,28 +289,47 @@ mod tests {
         assert!((10.0 * 25e-6..1e-3 / 1.1).contains(&time_s), "{time_s}");
     }
 
-    /// Pins of a double row, of which number 1 is beside 2 and 3.
+    /// The nets of a processor board by connector and pin.
+    fn used<'a>(Processor { pins, supplies, .. }: &Processor<'a>) -> BTreeMap<(u32, u32), &'a str> {
+        let mut used = BTreeMap::new();
+        for pin in pins.iter().filter(|pin| !pin.position.is_empty()) {
+            let name = pin.net.as_deref().unwrap_or("on the board");
+            assert!(used.insert(place(&pin.position).unwrap(), name).is_none(), "{}", pin.position);
+        }
+        for supply in *supplies {
+            for position in &supply.positions {
+                assert!(used.insert(place(position).unwrap(), supply.net.as_str()).is_none(), "{position}");
+            }
+        }
+        used
+    }
+
+    /// Fails if a pin of a guarded net has a neighbour that may drive it high.
+    fn check_neighbours(used: &BTreeMap<(u32, u32), &str>, beside: fn(u32) -> Vec<u32>, harmless: &[(&str, &str)]) {
+        for name in GUARDED {
+            let (&(connector, number), _) = used.iter().find(|(_, net)| **net == name).unwrap();
+            for beside in beside(number) {
+                let Some(neighbour) = used.get(&(connector, beside)).copied().filter(|net| *net != "COMMON") else {
+                    continue;
+                };
+                assert!(harmless.contains(&(name, neighbour)), "{name} is beside {neighbour}");
+            }
+        }
+    }
+
     #[test]
     fn no_guarded_pin_has_a_neighbour_that_could_drive_it_high() {
         let carrier = read().unwrap();
-        let mut used: BTreeMap<(u32, u32), &str> = BTreeMap::new();
-        for pin in &carrier.pin {
-            let name = pin.net.as_deref().unwrap_or("on the NUCLEO");
-            assert!(used.insert(place(&pin.position).unwrap(), name).is_none(), "{}", pin.position);
-        }
-        for supply in &carrier.supply {
-            for position in &supply.positions {
-                assert!(used.insert(place(position).unwrap(), &supply.net).is_none(), "{position}");
-            }
-        }
-        for name in GUARDED {
-            let (&(connector, number), _) = used.iter().find(|(_, net)| **net == name).unwrap();
+        let [nucleo, pico] = processors(&carrier);
+        // A double row, of which number 1 is beside 2 and 3.
+        let in_double_row = |number: u32| {
             let across = if number % 2 == 1 { number + 1 } else { number - 1 };
-            for beside in [Some(across), number.checked_sub(2), Some(number + 2)].into_iter().flatten() {
-                let neighbour = used.get(&(connector, beside)).copied();
-                assert!(matches!(neighbour, None | Some("COMMON")), "{name} is beside {neighbour:?}");
-            }
-        }
+            [Some(across), number.checked_sub(2), Some(number + 2)].into_iter().flatten().collect()
+        };
+        check_neighbours(&used(&nucleo), in_double_row, &[]);
+        // Two rows, 17.8 mm apart. The enable and CLEAR are high together, as the one-shot makes them.
+        let in_row = |number: u32| vec![number - 1, number + 1];
+        check_neighbours(&used(&pico), in_row, &[("ENABLE_MCU", "CLEAR")]);
     }
 
     #[test]

@@ -29,10 +29,10 @@ struct Reads {
 }
 
 const READS: [Reads; 7] = [
-    Reads { package: "frixel", source: &["scenes"], tests: &["README.md", "docs", "firmware"] },
+    Reads { package: "frixel", source: &["scenes"], tests: &["README.md", "docs", "firmware", "hil-sim"] },
     Reads { package: "frixel-fuzz", source: &["scenes"], tests: &[] },
     Reads { package: "frixel-hil-sim", source: &[], tests: &["firmware"] },
-    Reads { package: "frixel-lab", source: &[], tests: &["scenes"] },
+    Reads { package: "frixel-lab", source: &[], tests: &["docs", "hil-sim", "scenes"] },
     Reads { package: "frixel-scene", source: &["scenes"], tests: &["docs"] },
     Reads { package: "frixel-studio", source: &["scenes"], tests: &[] },
     // It looks at the manifests, lock files and sources of every package, and at the licences in the page.

@@ -16,13 +16,20 @@ pub(crate) struct Program {
     pub(crate) package: Option<&'static str>,
     /// What it is compiled for, if not for this machine.
     pub(crate) target: Option<&'static str>,
+    /// Features, as arguments of cargo; none for the default ones.
+    pub(crate) features: &'static [&'static str],
 }
 
 /// The WebAssembly module of the page.
-pub(crate) const PAGE: Program = Program { folder: ".", package: Some("frixel-studio"), target: Some(WASM) };
+pub(crate) const PAGE: Program =
+    Program { folder: ".", package: Some("frixel-studio"), target: Some(WASM), features: &[] };
 /// The licence of the C library in static programs, from its file COPYRIGHT.
 const MUSL_LICENCE: &str = "musl, the C library in the command (MIT)\n\nCopyright © 2005-2020 Rich Felker, et al.\n\n\
                             The text is that of frixel's MIT licence, with this line in place of its copyright.";
+/// The licence of crates by Raspberry Pi, whose packages have no file of it, and whose copyright their sources state.
+const BSD: &str = "BSD-3-Clause";
+const BSD_COPYRIGHT: &str = "Copyright (c) Raspberry Pi (Trading) Ltd.";
+const BSD_TEXT: &str = include_str!("bsd-3-clause.txt");
 /// frixel's own licences, and those of the vendored scripts.
 pub(crate) const FILES: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "host/studio/vendor/LICENCES.txt"];
 /// A line between two licences.
@@ -35,9 +42,9 @@ pub(crate) fn text() -> Result<String, String> {
     Ok(joined(&[own()?, scripts()?, crates("CRATES IN THE MODULE", &[PAGE])?]))
 }
 
-/// All licences of these programs, of the page's scripts, and of the C library.
-pub(crate) fn of_dist(programs: &[Program]) -> Result<String, String> {
-    Ok(joined(&[own()?, scripts()?, MUSL_LICENCE.to_owned(), crates("CRATES IN THE PROGRAMS", programs)?]))
+/// All licences of these programs, of the page's scripts, of the C library, and of the emulator, which has this one.
+pub(crate) fn of_dist(programs: &[Program], emulator: String) -> Result<String, String> {
+    Ok(joined(&[own()?, scripts()?, emulator, MUSL_LICENCE.to_owned(), crates("CRATES IN THE PROGRAMS", programs)?]))
 }
 
 /// All licences of the Python module.
@@ -101,8 +108,13 @@ fn add_crates(program: &Program, names: &mut BTreeMap<String, BTreeSet<String>>)
     Ok(())
 }
 
-/// What is said of a crate without a licence file, if its licence is one of frixel's, whose texts stand above.
+/// What is said of a crate without a licence file, if its licence is one of frixel's, whose texts stand above, or that of
+/// the crates by Raspberry Pi.
 fn without_file(package: &serde_json::Value) -> Option<String> {
+    let is_by_raspberry_pi = package["name"].as_str().is_some_and(|name| name.starts_with("rp"));
+    if is_by_raspberry_pi && package["license"] == BSD {
+        return Some(format!("{BSD_COPYRIGHT}\n\n{BSD_TEXT}"));
+    }
     let licence =
         package["license"].as_str().filter(|licence| ["MIT", "Apache-2.0"].iter().any(|own| licence.contains(own)))?;
     let authors: Vec<&str> = package["authors"].as_array()?.iter().filter_map(serde_json::Value::as_str).collect();
@@ -117,6 +129,7 @@ fn compiled(program: &Program) -> Result<BTreeSet<String>, String> {
     tree.args(["tree", "--locked"]).args(kinds);
     tree.args(program.package.iter().flat_map(|package| ["--package", package]));
     tree.args(program.target.iter().flat_map(|target| ["--target", target]));
+    tree.args(program.features);
     let tree = text_of(&mut tree)?;
     let words = tree.lines().map(|line| line.split_whitespace());
     Ok(words.filter_map(|mut words| Some(format!("{} {}", words.next()?, words.next()?.strip_prefix('v')?))).collect())
@@ -152,6 +165,15 @@ fn read(path: &Path) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Their manifests say BSD-3-Clause, which is none of frixel's licences.
+    #[test]
+    fn crates_by_raspberry_pi_have_the_text_of_their_licence() {
+        let of = |name: &str, license: &str| without_file(&serde_json::json!({ "name": name, "license": license }));
+        let text = of("rp-pac", "BSD-3-Clause").unwrap();
+        assert!(text.starts_with("Copyright (c) Raspberry Pi") && text.contains("Redistributions in binary form"));
+        assert_eq!((of("other", "BSD-3-Clause"), of("rp-pac", "GPL-2.0")), (None, None));
+    }
 
     #[test]
     fn each_crate_of_the_module_has_a_licence_text() {

@@ -15,6 +15,7 @@ mod machine_paths;
 mod needs;
 mod outcome;
 mod packages;
+mod pico_rig;
 mod portability;
 mod python;
 mod results;
@@ -30,7 +31,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use bench::programs::{self, Pace};
-use check::{CLIPPY, M3_TARGET, M4F_TARGET, Tier, WASM_TARGET};
+use check::{CLIPPY, M0_PLUS_TARGET, M3_TARGET, M4F_TARGET, M33_TARGET, Tier, WASM_TARGET};
 use needs::{Need, require};
 
 const USAGE: &str = "\
@@ -58,7 +59,7 @@ cargo xtask programs PACE FIRST COUNT
 ";
 
 /// What the commands that count instructions need.
-const EMULATED: [Need; 3] = [M4F_TARGET, M3_TARGET, Need::Emulator];
+const EMULATED: [Need; 5] = [M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();

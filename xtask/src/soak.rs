@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use crate::bench::programs::{self, Pace};
-use crate::check::M4F_TARGET;
+use crate::check::{M0_PLUS_TARGET, M4F_TARGET};
 use crate::command::cargo_in;
 use crate::needs::{self, Need};
 use crate::outcome::Outcome;
@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 9] = [
+const PARTS: [Part; 11] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -61,10 +61,22 @@ const PARTS: [Part; 9] = [
         run: scenes,
     },
     Part {
+        name: "pico",
+        what: "the Pico's image: a hundred random instructions of a play for each way to end it, power cuts at each flash operation",
+        needs: &[M0_PLUS_TARGET, Need::Node, Need::Npm],
+        run: pico,
+    },
+    Part {
         name: "fuzz",
         what: "each fuzz target for 15 minutes, with libFuzzer",
         needs: &[Need::CppCompiler],
         run: fuzz_targets,
+    },
+    Part {
+        name: "faults",
+        what: "what holds in every tick whatever goes wrong, and what bit errors leave of uploads and streams",
+        needs: &[],
+        run: faults,
     },
     Part {
         name: "packages",
@@ -110,7 +122,7 @@ fn strokes() -> Result<(), String> {
 }
 
 fn people() -> Result<(), String> {
-    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &[])?;
+    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &["coverage::"])?;
     ignored("fits of 600 tables of means", &["--release", "--package", "frixel-lab", "--lib"], &["fit::means"])
 }
 
@@ -127,8 +139,18 @@ fn experiments() -> Result<(), String> {
     ignored("experiments in real time", &["--package", "frixel", "--test", "main"], &one_by_one)
 }
 
+fn faults() -> Result<(), String> {
+    let in_every_tick = &["--release", "--package", "frixel-hil-sim", "--test", "main"];
+    ignored("what holds in every tick", in_every_tick, &["properties::"])?;
+    ignored("bit errors", &["--release", "--package", "frixel-lab", "--test", "main"], &["goodput::"])
+}
+
 fn scenes() -> Result<(), String> {
     Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, programs::FEW, programs::MANY))
+}
+
+fn pico() -> Result<(), String> {
+    ignored("the Pico's image", &["--package", "frixel-hil-sim", "--test", "emulated"], &["pico::"])
 }
 
 fn fuzz_targets() -> Result<(), String> {

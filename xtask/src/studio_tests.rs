@@ -1,4 +1,4 @@
-//! The checks of the studio: types and lints of its scripts, and its tests in Chromium (`host/studio/test`), driven by
+//! The checks of JavaScript, most of which is the studio's: types and lints of its scripts, and its tests in Chromium (`host/studio/test`), driven by
 //! node and playwright-core.
 
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::process::Command;
 use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
 use crate::inputs::{self, Package};
 use crate::needs::Need;
-use crate::{results, studio};
+use crate::{pico_rig, results, studio};
 
 /// What types and lints need.
 pub(crate) const SCRIPT_NEEDS: [Need; 3] = [Need::Node, Need::Npm, Need::Git];
@@ -33,7 +33,7 @@ pub(crate) fn check_scripts() -> Result<(), String> {
         install(&folder)?;
         run(name, Command::new("npm").current_dir(&folder).args(["run", "--silent", "check"]))?;
     }
-    Ok(())
+    pico_rig::check_scripts(&test_folder())
 }
 
 /// What the tests of the page read: the crates and files that the page is made of, and how it is built.
@@ -84,7 +84,7 @@ fn test_folder() -> PathBuf {
 }
 
 /// Installs the packages of the lock file, unless they are there.
-fn install(folder: &Path) -> Result<(), String> {
+pub(crate) fn install(folder: &Path) -> Result<(), String> {
     // npm writes this file last, so it is newer than the lock file that it was made from.
     let modified = |name: &str| fs::metadata(folder.join(name)).and_then(|metadata| metadata.modified()).ok();
     if modified("node_modules/.package-lock.json") >= modified("package-lock.json") {

@@ -6,7 +6,7 @@ use frixel_layers::cost;
 use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point, Record, Region, Speed, Stream, Wave, Waveform,
 };
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardLimits, Core};
 use frixel_wire::message::Command;
 use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
@@ -187,10 +187,10 @@ impl Bench {
         let mut records = [under(AROUND, CONSTANT); RECORDS_MAX];
         let mut count = 0;
         let core_cycles_max = BoardLimits::SMALLEST_TICK_CYCLES_MAX * 100 / cost::FLASH_WAIT_PERCENT;
-        let mut left = core_cycles_max.saturating_sub(cost::of_empty_scene(&header));
+        let mut left = core_cycles_max.saturating_sub(cost::of_empty_scene(&header).on(Core::CortexM4f));
         for layer in [bitmap(crc32), GRATING, CONSTANT] {
             let record = under(AROUND, layer);
-            let cost = cost::of_record(&record, &[]).max(1);
+            let cost = cost::of_record(&record, &[]).on(Core::CortexM4f).max(1);
             while left >= cost && count < RECORDS_MAX {
                 left -= cost;
                 records[count] = record;

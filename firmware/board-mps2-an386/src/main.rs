@@ -1,22 +1,19 @@
 //! The firmware on an emulated Cortex-M4F: `qemu-system-arm -M mps2-an386`.
 //!
-//! [`tick`] runs in the `SysTick` interrupt, above everything; [`main_loop`] runs the session in the main loop, between
-//! [`uart`] and the tick. Amplifier and touch source are words of memory that it shares with the simulator
-//! ([`shared`]). Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault`] stores a
-//! fault for the next hello, [`guard`] makes a stack overflow one, and [`fault_injection`] causes one on demand.
+//! Tick, main loop and fault handling are those of every board (`frixel-board`). [`tick`] runs in the `SysTick` interrupt,
+//! above everything. Amplifier and touch source are words of memory that it shares with the simulator ([`shared`]).
+//! Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`] causes faults on
+//! demand.
 #![no_std]
 #![no_main]
 
+mod board;
 mod fault;
 mod fault_injection;
-// The NUCLEO's own file, so that the tests on the emulator run it. Below RAM the emulator has no memory, but no bus fault
-// either: without the guard, an overflow reads zeros there.
-#[path = "../../board-nucleo-g474re/src/guard.rs"]
-mod guard;
+mod inputs;
 mod lockstep;
-mod main_loop;
-#[path = "../../board-nucleo-g474re/src/owned.rs"]
-mod owned;
+mod output;
+mod period;
 mod shared;
 mod tick;
 mod uart;
@@ -24,13 +21,21 @@ mod uart;
 use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
+use frixel_board::fault::LastReset;
+use frixel_board::hardware::Hardware;
+use frixel_board::main_loop::MainLoop;
 use frixel_control::{Active, Board, StreamBuffer, Ticker};
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
+use frixel_drivers::serial::SerialLink;
+use frixel_drivers::state_light::StateLight;
 use frixel_exchange::{BOARD, layout};
 use frixel_layers::BitmapPool;
-use frixel_session::Session;
-use frixel_wire::hello::ResetCause;
+use frixel_session::{Queues, Session};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
+
+use board::{Mps2, NoDac, NoLight, NoWatchdog};
+use uart::Uart;
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
@@ -44,11 +49,41 @@ fn main() -> ! {
     let Some(mut peripherals) = Peripherals::take() else { fault::never() };
     guard::start(&mut peripherals.MPU);
     shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
-    let board = started(TEXT);
-    let (ticker, session) = make(board);
+    let (ticker, session) = make(started(TEXT));
     match shared::get(layout::MODE) {
-        layout::MODE_LINK => main_loop::run(&board, session, ticker, peripherals),
+        layout::MODE_LINK => run(session, ticker, peripherals),
         _ => lockstep::run(session, ticker),
+    }
+}
+
+/// Starts the tick on the board's own timer, and runs the main loop with the host on the serial port.
+fn run(session: &'static mut Session<'static>, ticker: Ticker<'static>, mut peripherals: Peripherals) -> ! {
+    let (Some(queues), Some(bytes)) =
+        (singleton!(: Queues = Queues::new()), singleton!(: uart::Queues = uart::Queues::new()))
+    else {
+        fault::never()
+    };
+    session.attach_tick_meter(&tick::SHARED.meter);
+    let (session_ends, tick_ends) = queues.split();
+    let status = ticker.status();
+    tick::start(ticker, tick_ends, peripherals.SYST);
+    let mut main_loop = MainLoop::<Mps2> {
+        shared: &tick::SHARED,
+        queues: session_ends,
+        session,
+        status,
+        serial: Some(SerialLink::new(Uart::start(bytes, &mut peripherals.NVIC))),
+        dac: NoDac,
+        light: StateLight::new(NoLight, Mps2::TICK_HZ),
+        store: (),
+        watchdog: NoWatchdog,
+        record: &fault::RECORD,
+    };
+    // Without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by several ticks,
+    // which the tick treats as a missed deadline.
+    loop {
+        main_loop.turn(shared::touch(tick::SHARED.count()));
+        fault_injection::in_main();
     }
 }
 
@@ -81,17 +116,12 @@ fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Sess
     singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
 
-/// The board's description at the start. A stored fault is the cause of the reset.
+/// The board's description at the start.
 fn started(text: &'static mut Text) -> Board {
-    let last_fault = fault::take(text);
-    let (number, detail) = last_fault.map_or((0, 0), |(fault, detail, _)| (fault.number(), detail));
+    let LastReset { cause, fault, text, fault_starts } = fault::last_reset(text);
+    let (number, detail) = fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
     shared::set(layout::LAST_FAULT, number.into());
     shared::set(layout::LAST_FAULT_DETAIL, detail);
     shared::publish(layout::STARTS, shared::get(layout::STARTS).wrapping_add(1));
-    match last_fault {
-        Some((fault, detail, reset_text)) => {
-            Board { reset_cause: ResetCause::Software, reset_fault: Some((fault, detail)), reset_text, ..BOARD }
-        }
-        None => BOARD,
-    }
+    Board { reset_cause: cause, reset_fault: fault, reset_text: text, reset_fault_starts: fault_starts, ..BOARD }
 }

@@ -5,10 +5,10 @@ use core::convert::Infallible;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
+use frixel_cortex_m::Owned;
 use frixel_exchange::{BOARD, layout};
 use heapless::spsc::{Consumer, Producer, Queue};
 
-use crate::owned::Owned;
 use crate::shared;
 
 /// Room for the host's credit, and for hello requests and noise, which need no credit.

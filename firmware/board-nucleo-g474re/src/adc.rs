@@ -5,6 +5,7 @@
 //! | PA0 | ADC12_IN1 | monitor, 1.65 V for 0 V at the amplifier's output |
 
 use cortex_m::asm;
+use frixel_board::hardware::Monitor;
 use frixel_drivers::monitor::MonitorScale;
 use stm32_metapac::adc::vals::{Adcaldif, Ovrmod, Res, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
@@ -56,10 +57,12 @@ impl Adc {
         ADC1.cr().modify(|w| w.set_adstart(true));
         Self { monitor: MONITOR }
     }
+}
 
-    /// Volts at the amplifier's output, before the series resistor, at most 2.5 us ago.
+impl Monitor for Adc {
+    /// Converted at most 2.5 us ago.
     #[inline]
-    pub fn monitor_v(&self) -> f32 {
+    fn monitor_v(&mut self) -> f32 {
         self.monitor.volts(ADC1.dr().read().rdata())
     }
 }

@@ -1,14 +1,46 @@
 //! Identity, stores and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them, too.
 
+use frixel_board::fault::LastReset;
+use frixel_board::hardware::Hardware;
 use frixel_control::{AmplifierSpec, Board};
 use frixel_drivers::monitor::MonitorScale;
+#[cfg(feature = "store")]
+use frixel_session::store::SceneStore;
 use frixel_session::store::{Ceilings, Flash, Slot, check_ceilings, load_limits};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
 use stm32_metapac::UID;
 
-use crate::fault::LastReset;
+use crate::adc::Adc;
+use crate::dac::{Dac, Frames};
 use crate::flash::{BankTwo, PAGES};
+use crate::output::Output;
+use crate::period::Period;
+use crate::pins::Pin;
+use crate::serial::Serial;
+use crate::watchdog::Watchdog;
+
+/// The parts of this board.
+pub enum Nucleo {}
+
+impl Hardware for Nucleo {
+    const TICK_HZ: u32 = TICK_HZ;
+
+    type Period = Period;
+    type Frames = Frames;
+    type Dac = Dac;
+    type Enable = Output;
+    type Ready = Pin;
+    type Monitor = Adc;
+    type Switch = Pin;
+    type Light = Pin;
+    type Serial = Serial;
+    #[cfg(feature = "store")]
+    type Store = Option<(SceneStore, BankTwo)>;
+    #[cfg(not(feature = "store"))]
+    type Store = ();
+    type Watchdog = Watchdog;
+}
 
 /// Ticks a second.
 pub const TICK_HZ: u32 = 40_000;

@@ -1,7 +1,7 @@
 //! The DAC, an AD5761R on SPI2. Two halves take turns on the bus
 //! ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
 //!
-//! - [`DacFrames`], in the tick: one output frame a period by DMA, latched by a timer's edge ([`crate::period`]);
+//! - [`Frames`], in the tick: one output frame a period by DMA, latched by a timer's edge ([`crate::period`]);
 //! - [`DacBus`], in the main loop: an `SpiDevice` for the driver that configures the DAC and reads it back.
 //!
 //! | pin | function | |
@@ -14,6 +14,7 @@ use core::sync::atomic::{AtomicU8, Ordering};
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
+use frixel_board::hardware::{DacFrames, Late};
 use frixel_drivers::ad5761r::{self, Ad5761r, FRAME_LEN};
 use frixel_wire::dac_code::DacCode;
 use stm32_metapac::bdma::vals::{Dir, Pl};
@@ -42,7 +43,7 @@ pub type Dac = Ad5761r<DacBus, CycleDelay>;
 pub type DacError = ad5761r::Error<SpiError>;
 
 /// Starts SPI2 and returns its two halves. Call [`period::start`] first. The DAC is not configured yet.
-pub fn start() -> (DacFrames, Dac) {
+pub fn start() -> (Frames, Dac) {
     // SCLK is high between frames, and the DAC samples at falling edges: mode 2.
     SPI2.cr1().write(|w| {
         w.set_mstr(Mstr::MASTER);
@@ -69,27 +70,24 @@ pub fn start() -> (DacFrames, Dac) {
         register: SPI2.dr8().as_ptr().cast(),
     };
     dma::set_up(dma::DAC, &transfer, &FRAME);
-    (DacFrames(()), Ad5761r::new(DacBus(()), CycleDelay))
+    (Frames(()), Ad5761r::new(DacBus(()), CycleDelay))
 }
 
 /// The tick's half of the DAC.
-pub struct DacFrames(());
+pub struct Frames(());
 
-impl DacFrames {
-    /// Begins to send a code, which the DAC puts out at the end of the period. Returns `false`, and sends nothing,
-    /// when it is too late for that or the previous frame is still under way.
+impl DacFrames for Frames {
     #[inline]
-    #[must_use]
-    pub fn send(&mut self, code: DacCode) -> bool {
+    fn send(&mut self, code: DacCode) -> Result<(), Late> {
         if period::cycles() > period::DEADLINE_CYCLES || dma::remaining(dma::DAC) > 0 {
-            return false;
+            return Err(Late);
         }
         for (to, from) in FRAME.iter().zip(ad5761r::output(code)) {
             to.store(from, Ordering::Relaxed);
         }
         period::begin_frame();
         dma::begin(dma::DAC, FRAME_LEN as u16);
-        true
+        Ok(())
     }
 }
 

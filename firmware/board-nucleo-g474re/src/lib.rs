@@ -3,13 +3,13 @@
 //! headings in these documents.
 //!
 //! One interrupt, [`tick`], runs above everything, 40,000 times a second. Everything else runs in the main loop,
-//! [`main_loop`]: serial port, session, stores, optical frame, watchdog. The lock-free queues of `heapless` connect
+//! [`frixel_board::main_loop`]: serial port, session, stores, optical frame, watchdog. The lock-free queues of `heapless` connect
 //! the two; no critical section masks the tick ([`critical`]). This repository's CI runs none of it on hardware. The
-//! code that can be tested without hardware is in `firmware/control`, `firmware/session` and `firmware/drivers`.
+//! code that can be tested without hardware is in `firmware/board`, `firmware/control`, `firmware/session` and
+//! `firmware/drivers`.
 #![no_std]
 
 pub mod adc;
-pub mod arming;
 pub mod board;
 pub mod clock;
 pub mod critical;
@@ -17,13 +17,11 @@ pub mod dac;
 mod dma;
 pub mod fault;
 pub mod flash;
-pub mod guard;
 pub mod indicator;
 pub mod main_loop;
 #[cfg(feature = "optical-frame")]
 pub mod optical_frame;
 pub mod output;
-mod owned;
 pub mod period;
 pub mod pins;
 pub mod serial;

@@ -2,30 +2,27 @@
 #![no_std]
 #![no_main]
 
-#[cfg(feature = "optical-frame")]
-use core::pin::pin;
-
-use board_nucleo_g474re::adc::Adc;
+use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::dac::DacError;
-use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::fault;
 #[cfg(feature = "log")]
 use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
-use board_nucleo_g474re::main_loop::MainLoop;
-#[cfg(feature = "optical-frame")]
-use board_nucleo_g474re::optical_frame::{self, OpticalFrame, Reports};
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::tick::{self, Tick};
+use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{board, clock, dac, guard, indicator, period};
+use board_nucleo_g474re::{board, clock, dac, indicator, main_loop, period};
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 #[cfg(feature = "log")]
 use defmt_rtt as _;
+use frixel_board::fault::LastReset;
+use frixel_board::main_loop::MainLoop;
 #[cfg(feature = "stream")]
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_layers::BitmapPool;
@@ -45,24 +42,16 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
     static mut QUEUES: Queues = Queues::new();
 
-    let main_loop = start(TEXT, QUEUES);
-    #[cfg(feature = "optical-frame")]
-    {
-        let reports = Reports::new(None);
-        let reading = pin!(optical_frame::read(&reports));
-        main_loop.run(OpticalFrame::new(reading, &reports))
-    }
-    #[cfg(not(feature = "optical-frame"))]
-    main_loop.run()
+    main_loop::run(start(TEXT, QUEUES))
 }
 
 /// Starts everything. A function of its own, so that its stack is free again afterwards.
 #[inline(never)]
-fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
+fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop<Nucleo> {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
-    let last_reset = LastReset::take(text);
+    let last_reset = fault::last_reset(text);
     // First, so that a board that fails during start-up has logged the cause of its last reset.
     log_reset(&last_reset);
     clock::start();
@@ -80,25 +69,25 @@ fn start(text: &'static mut Text, queues: &'static mut Queues) -> MainLoop {
     log(&board, flash.is_some());
     let (ticker, session) = make(board);
     let status = ticker.status();
+    #[cfg(not(feature = "store"))]
+    let store = ();
     #[cfg(feature = "store")]
     let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let (session_ends, tick_ends) = queues.split();
-    let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
-    let tick = Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch };
     let serial = Some(SerialLink::new(Serial::new()));
-    tick::start(tick);
-    let watchdog = Watchdog::start();
+    tick::start(ticker, tick_ends, frames, output);
     MainLoop {
-        tick: session_ends,
+        shared: &tick::SHARED,
+        queues: session_ends,
         session,
         status,
         serial,
         dac,
         light,
-        #[cfg(feature = "store")]
         store,
-        watchdog,
+        watchdog: Watchdog::start(),
+        record: &fault::RECORD,
     }
 }
 
@@ -110,7 +99,7 @@ fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
     let mut ticker = Ticker::new(&board, &POOL, first);
     let Some(session) = session(board, second) else { fault::never() };
     #[cfg(feature = "telemetry")]
-    session.attach_tick_meter(&tick::METER);
+    session.attach_tick_meter(&tick::SHARED.meter);
     #[cfg(feature = "stream")]
     {
         ticker.attach_stream(&STREAM);

@@ -9,18 +9,14 @@
 //! | PC9 | I2C3_SDA | |
 //! | PD2 | input, pulled down | data ready |
 
-use core::cell::Cell;
 use core::future::poll_fn;
-use core::pin::Pin as Pinned;
 use core::sync::atomic::{AtomicU8, Ordering};
 use core::task::Poll;
 
-use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{self, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
+use frixel_board::optical_frame::{self, Reports, TickDelay};
 use frixel_drivers::i2c_bus_clear::clear_bus;
-use frixel_drivers::polling::{poll_once, yield_now};
 use frixel_drivers::zforce::{self, MESSAGE_MAX_LEN, ZForce};
-use frixel_session::Touch;
 use stm32_metapac::bdma::vals::{Dir as DmaDir, Pl};
 use stm32_metapac::i2c::vals::{Autoend, Dir};
 use stm32_metapac::rcc::vals::I2csel;
@@ -45,44 +41,10 @@ const AGE_TICKS: u32 = TICK_HZ / 100;
 #[unsafe(link_section = ".dma.BYTES")]
 static BYTES: [AtomicU8; MESSAGE_MAX_LEN] = [const { AtomicU8::new(0) }; MESSAGE_MAX_LEN];
 
-/// The last report that the frame has read, until it is taken.
-pub type Reports = Cell<Option<Touch>>;
-
-/// The frame as a touch source: a future that reads reports, and the cell in which it stores them.
-pub struct OpticalFrame<'a> {
-    reading: Pinned<&'a mut dyn Future<Output = ()>>,
-    reports: &'a Reports,
-}
-
-impl<'a> OpticalFrame<'a> {
-    /// A source from the future of [`read`] and the cell that was passed to it.
-    pub fn new(reading: Pinned<&'a mut dyn Future<Output = ()>>, reports: &'a Reports) -> Self {
-        Self { reading, reports }
-    }
-
-    /// Continues to read without waiting, and returns a report when one is complete. To be called repeatedly.
-    pub fn next_touch(&mut self) -> Option<Touch> {
-        let _ = poll_once(self.reading.as_mut());
-        self.reports.take()
-    }
-}
-
 /// Takes the bus, and stores one report after the other in `reports`. Never returns.
 pub async fn read(reports: &Reports) {
-    let mut frame = ZForce::new(Bus::new(), Pin::input_pulled_down(GPIOD, DATA_READY), TickDelay);
-    loop {
-        match frame.next_touch().await {
-            Ok(zforce::Touch::Down { x_m, y_m }) => {
-                reports.set(Some(Touch::Down { x_m, y_m, age_ticks: AGE_TICKS }));
-            }
-            Ok(zforce::Touch::Up) => reports.set(Some(Touch::Up)),
-            Err(error) => log(error),
-        }
-        // Waits until the report is taken before it reads the next.
-        while reports.get().is_some() {
-            yield_now().await;
-        }
-    }
+    let frame = ZForce::new(Bus::new(), Pin::input_pulled_down(GPIOD, DATA_READY), delay());
+    optical_frame::read(frame, AGE_TICKS, reports, log).await;
 }
 
 #[cfg(feature = "log")]
@@ -93,16 +55,8 @@ fn log(error: zforce::Error<Error>) {
 #[cfg(not(feature = "log"))]
 fn log(_: zforce::Error<Error>) {}
 
-/// A delay that counts ticks.
-struct TickDelay;
-
-impl DelayNs for TickDelay {
-    async fn delay_ns(&mut self, ns: u32) {
-        let (from_tick, ticks) = (tick::count(), ns.div_ceil(1_000_000_000 / TICK_HZ));
-        while tick::count().wrapping_sub(from_tick) <= ticks {
-            yield_now().await;
-        }
-    }
+fn delay() -> TickDelay<TICK_HZ> {
+    TickDelay(&tick::SHARED)
 }
 
 /// I2C3 at 400 kHz.
@@ -183,7 +137,7 @@ async fn clear() -> bool {
     // Releases both lines.
     I2C3.cr1().write(|w| w.set_pe(false));
     let mut scl = ForcedPin::new(GPIOC, SCL);
-    let is_free = clear_bus(&mut scl, &mut Pin::reads(GPIOC, SDA), &mut TickDelay).await;
+    let is_free = clear_bus(&mut scl, &mut Pin::reads(GPIOC, SDA), &mut delay()).await;
     connect();
     is_free
 }

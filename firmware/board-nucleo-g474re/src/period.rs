@@ -9,6 +9,7 @@
 //! |---|---|---|
 //! | PC6 | TIM3_CH1 | SYNC of the DAC |
 
+use frixel_board::hardware;
 use stm32_metapac::timer::vals::Ocm;
 use stm32_metapac::{GPIOC, TIM3};
 
@@ -27,6 +28,24 @@ pub(crate) const SYNC: u32 = 6;
 const TIM3_FUNCTION: u8 = 2;
 
 const _: () = assert!(CORE_HZ.is_multiple_of(crate::board::TICK_HZ) && PERIOD_CYCLES <= 1 << 16);
+
+/// TIM3, as the tick uses it.
+pub struct Period;
+
+impl hardware::Period for Period {
+    const PERIOD_CYCLES: u32 = PERIOD_CYCLES;
+    const DEADLINE_CYCLES: u32 = DEADLINE_CYCLES;
+
+    #[inline]
+    fn cycles(&self) -> u32 {
+        cycles()
+    }
+
+    #[inline]
+    fn has_begun(&mut self) -> bool {
+        has_begun()
+    }
+}
 
 /// Starts the timer, with SYNC high and without interrupts.
 pub fn start() {

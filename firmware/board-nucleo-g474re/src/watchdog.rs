@@ -1,10 +1,11 @@
 //! The independent watchdog: resets the processor when the main loop or the tick stops (RM0440, "Independent
 //! watchdog").
 
+use frixel_board::hardware::{self, Watchdog as _};
 use stm32_metapac::iwdg::vals::{Key, Pr};
 use stm32_metapac::{DBGMCU, IWDG};
 
-use crate::{tick, wait_until};
+use crate::{clock, wait_until};
 
 /// Reload value, in counts of 4 clocks of the 32 kHz oscillator: 100 ms. The longest operations of the main loop are
 /// the table of a committed scene, 14 ms as measured on the emulated board (2026-11-20), and the check of a written
@@ -12,9 +13,7 @@ use crate::{tick, wait_until};
 const RELOAD: u16 = 800;
 
 /// The watchdog.
-pub struct Watchdog {
-    fed_at_tick: u32,
-}
+pub struct Watchdog(());
 
 impl Watchdog {
     /// Starts the watchdog. It cannot be stopped again.
@@ -24,26 +23,23 @@ impl Watchdog {
         IWDG.pr().write(|w| w.set_pr(Pr::DIVIDE_BY4));
         IWDG.rlr().write(|w| w.set_rl(RELOAD));
         wait_until(|| !IWDG.sr().read().pvu() && !IWDG.sr().read().rvu(), "the watchdog");
-        let mut watchdog = Self { fed_at_tick: tick::count() };
-        watchdog.freeze_with_debugger(false);
+        let mut watchdog = Self(());
+        watchdog.let_debugger_stop_it(false);
         feed();
         watchdog
     }
+}
 
-    /// Feeds the watchdog if there was a tick since the last call.
-    pub fn feed(&mut self) {
-        let now_tick = tick::count();
-        if now_tick != self.fed_at_tick {
-            self.fed_at_tick = now_tick;
-            feed();
-        }
+impl hardware::Watchdog for Watchdog {
+    fn feed(&mut self) {
+        feed();
     }
 
-    /// Sets whether the watchdog stops while a debugger halts the core. It may do so only while the board is disarmed.
-    pub fn freeze_with_debugger(&mut self, freeze: bool) {
-        if DBGMCU.apb1lfzr().read().iwdg() != freeze {
-            DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(freeze));
+    fn let_debugger_stop_it(&mut self, may_stop: bool) {
+        if DBGMCU.apb1lfzr().read().iwdg() != may_stop {
+            DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(may_stop));
         }
+        clock::keep_timers_running_in_debug();
     }
 }
 

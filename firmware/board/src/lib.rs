@@ -1,8 +1,18 @@
 //! What every board does in the same way, whatever its processor. A board's own crate holds registers and wiring, and
 //! implements the traits of this one.
 //!
+//! - [`hardware`]: the traits, one for each part of a board;
+//! - [`tick`]: what the timer's interrupt does;
+//! - [`main_loop`]: the rest of the firmware, between two ticks;
+//! - [`optical_frame`]: a touch source of the main loop;
+//! - [`fault`]: how a start ends after a panic or a fault, and what the next one learns of it;
 //! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 pub mod bring_up;
+pub mod fault;
+pub mod hardware;
+pub mod main_loop;
+pub mod optical_frame;
+pub mod tick;

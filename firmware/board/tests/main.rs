@@ -2,5 +2,9 @@
 
 mod bring_up;
 mod drive;
+mod fault;
+mod main_loop;
+mod optical_frame;
 mod support;
+mod tick;
 mod whole;

@@ -1,7 +1,7 @@
 //! Properties of a board that do not depend on the scene.
 
 use frixel_wire::fault::Fault;
-use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
+use frixel_wire::hello::{BoardKind, BoardLimits, Core, ResetCause};
 use frixel_wire::scene::RECORDS_MAX;
 
 use frixel_layers::{BITMAP_POOL_LEN, ticks};
@@ -64,6 +64,7 @@ impl Board {
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
             // Nobody touches it.
             series_resistance_ohm: f32::INFINITY,
+            core: Core::CortexM4f,
         },
         // The edges' 20 us contain the amplifier's own time constant. It switches at once.
         amplifier: AmplifierSpec {
@@ -119,9 +120,41 @@ impl Board {
         ..Self::SIMULATOR
     };
 
+    /// The Raspberry Pi Pico 2 with the parts of the NUCLEO-G474RE, until bring-up has stored other limits.
+    pub const PICO_2: Self = Self {
+        kind: BoardKind::Pico2,
+        limits: BoardLimits {
+            // 60 % of the 3,750 cycles that the RP2350 at 150 MHz has between two ticks. They are estimated as those of a
+            // Cortex-M4F with flash wait states; its Cortex-M33 runs the tick from RAM, without them.
+            tick_cycles_max: 2_250,
+            ..Self::NUCLEO_G474RE.limits
+        },
+        ..Self::NUCLEO_G474RE
+    };
+
+    /// The Raspberry Pi Pico with the same parts. It computes in software what the others' floating-point unit does, so
+    /// it has a quarter of their ticks, and takes little more than one layer.
+    pub const PICO: Self = Self {
+        kind: BoardKind::Pico,
+        tick_hz: 10_000,
+        limits: BoardLimits {
+            // 75 % of the 20,000 cycles that the RP2040 at 200 MHz has between two ticks; the frame for the DAC begins
+            // after 94 %. The tick runs from RAM, and nothing delays it.
+            tick_cycles_max: 15_000,
+            core: Core::CortexM0Plus,
+            ..Self::NUCLEO_G474RE.limits
+        },
+        ..Self::NUCLEO_G474RE
+    };
+
     /// The real board of a name.
     pub fn named(name: &str) -> Option<Self> {
-        (name == "nucleo-g474re").then_some(Self::NUCLEO_G474RE)
+        match name {
+            "nucleo-g474re" => Some(Self::NUCLEO_G474RE),
+            "pico-2" => Some(Self::PICO_2),
+            "pico" => Some(Self::PICO),
+            _ => None,
+        }
     }
 
     /// This board with another resistance between amplifier and electrode, whose bring-up has stored the full scale as
@@ -138,7 +171,7 @@ impl Board {
     }
 
     /// The names that [`Self::named`] knows.
-    pub const NAMES: [&'static str; 1] = ["nucleo-g474re"];
+    pub const NAMES: [&'static str; 3] = ["nucleo-g474re", "pico-2", "pico"];
 
     /// Seconds between two ticks.
     pub fn tick_period_s(&self) -> f32 {

@@ -22,9 +22,12 @@ const FLOOR: f32 = 0.04;
 /// amplifier), for an amplifier that is faster or slower than its board says, and for the 2 us for which the newest code
 /// is out when the monitor is read.
 const GAIN_TOLERANCE: f32 = 0.25;
-/// The monitor faults once ticks with a wrong voltage exceed ticks with a right one by as many as are in this time, in
-/// s. Long against a disturbed reading, short against the 100 ms in which a hand lets go.
+/// The monitor faults once ticks with a wrong voltage exceed a third of those with a right one by as many as are in this
+/// time, in s. Long against a disturbed reading, short against the 100 ms in which a hand lets go.
 const WRONG_S: f32 = 0.5e-3;
+/// Right ticks that make up for a wrong one. A DAC that holds its last code is right in every other half period of a
+/// square carrier, however fast: it is found after three times that time. A healthy amplifier has no wrong tick.
+const RIGHT_PER_WRONG: u32 = 3;
 /// Ticks between an edge of the enable and the first reading that shows it for a whole tick, one more for an edge that
 /// falls anywhere within its tick.
 const EDGE_TICKS: u32 = 2;
@@ -49,8 +52,9 @@ pub(crate) struct MonitorCheck {
     switching_ticks: u32,
     /// Largest magnitude that the monitor may read while the amplifier switches; zero when it has switched.
     ceiling_v: f32,
-    wrong_ticks: u32,
-    wrong_ticks_max: u32,
+    /// [`RIGHT_PER_WRONG`] for each wrong tick, less one for each right one.
+    wrong_count: u32,
+    wrong_count_max: u32,
     turn_on_ticks: u32,
     turn_off_ticks: u32,
     ready_while_disabled: ReadyWhileDisabled,
@@ -86,8 +90,8 @@ impl MonitorCheck {
             is_enabled: false,
             switching_ticks: 0,
             ceiling_v: 0.0,
-            wrong_ticks: 0,
-            wrong_ticks_max: board.ticks(WRONG_S).max(1),
+            wrong_count: 0,
+            wrong_count_max: RIGHT_PER_WRONG * board.ticks(WRONG_S).max(1),
             turn_on_ticks: amplifier.turn_on.ticks(board.tick_hz) + EDGE_TICKS,
             turn_off_ticks: amplifier.turn_off.ticks(board.tick_hz) + EDGE_TICKS,
             ready_while_disabled: amplifier.ready_while_disabled,
@@ -144,7 +148,7 @@ impl MonitorCheck {
             self.ceiling_v = 0.0;
         }
         if !self.is_enabled && !is_right {
-            self.wrong_ticks = self.wrong_ticks_max;
+            self.wrong_count = self.wrong_count_max;
         }
         self.count_one(is_right)
     }
@@ -152,13 +156,13 @@ impl MonitorCheck {
     /// Counts a right or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so that
     /// it soon falls again however long the monitor was wrong.
     fn count_one(&mut self, is_right: bool) -> bool {
-        self.wrong_ticks = if is_right {
-            self.wrong_ticks.saturating_sub(1)
+        self.wrong_count = if is_right {
+            self.wrong_count.saturating_sub(1)
         } else {
-            (self.wrong_ticks + 1).min(self.wrong_ticks_max)
+            (self.wrong_count + RIGHT_PER_WRONG).min(self.wrong_count_max)
         };
         self.choose_ticks_to_count();
-        !is_right && self.wrong_ticks == self.wrong_ticks_max
+        !is_right && self.wrong_count == self.wrong_count_max
     }
 
     fn is_right_while_turning_on(&mut self) -> bool {
@@ -213,7 +217,7 @@ impl MonitorCheck {
     fn choose_ticks_to_count(&mut self) {
         // A ready line that is wrong when it is high does not call for attention by itself.
         let watches_ready = self.ready_while_disabled == ReadyWhileDisabled::Low && !self.is_enabled;
-        let counts_all = self.wrong_ticks > 0 || self.switching_ticks > 0 || watches_ready;
+        let counts_all = self.wrong_count > 0 || self.switching_ticks > 0 || watches_ready;
         self.uncounted_below_v = if counts_all { f32::NEG_INFINITY } else { self.floor_v };
     }
 }

@@ -52,14 +52,24 @@ impl FaultRecord {
         }
     }
 
+    /// Whether the record was in memory that has kept its content since an earlier start. To be asked before this start
+    /// is counted.
+    pub fn has_outlasted_reset(&self) -> bool {
+        self.starts().is_some()
+    }
+
     /// Counts this start, once, and returns the number of starts in a row before it that ended in a fault, at most 255.
     /// `after_fault` is whether a fault ended the last start; otherwise the row ends.
     pub fn count_start(&self, after_fault: bool) -> u8 {
-        let [count, rest @ ..] = (self.starts.load(Ordering::Relaxed) ^ STARTS_MARK).to_le_bytes();
-        let before = if rest == [count; 3] { count } else { 0 };
-        let starts = if after_fault { before.saturating_add(1) } else { 0 };
+        let starts = if after_fault { self.starts().unwrap_or(0).saturating_add(1) } else { 0 };
         self.store_starts(starts);
         starts
+    }
+
+    /// The count of the last start; `None` if no start has counted since power-on.
+    fn starts(&self) -> Option<u8> {
+        let [count, rest @ ..] = (self.starts.load(Ordering::Relaxed) ^ STARTS_MARK).to_le_bytes();
+        (rest == [count; 3]).then_some(count)
     }
 
     /// Ends the row of starts that ended in a fault once this start has run for a minute: its own fault is the first of

@@ -16,7 +16,8 @@
 //! | [`ring`] | reading a ring that DMA writes | |
 //! | [`fault_record`] | the last fault, kept in RAM over a reset | |
 //! | [`i2c_bus_clear`] | freeing an I2C bus whose data line is held low | `OutputPin`, `InputPin`, `DelayNs` |
-//! | [`stm32g4`] | meaning of registers of the STM32G4 | |
+//! | [`stm32g4`], [`rp2`] | meaning of registers of the STM32G4, and of the RP2040 and RP2350 | |
+//! | [`pio`] | instructions of the programmable I/O of the RP2040 and RP2350 | |
 //!
 //! With the feature `defmt`, the errors implement `defmt::Format`.
 #![cfg_attr(not(test), no_std)]
@@ -29,8 +30,10 @@ pub mod bus_handover;
 pub mod fault_record;
 pub mod i2c_bus_clear;
 pub mod monitor;
+pub mod pio;
 pub mod polling;
 pub mod ring;
+pub mod rp2;
 pub mod serial;
 pub mod state_light;
 pub mod stm32g4;

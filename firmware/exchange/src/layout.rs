@@ -54,9 +54,9 @@ pub const TOUCHES_READ: usize = 10;
 pub const OUTPUT_AT_START: usize = 11;
 
 /// Number of the fault that ended the previous run; 0 if none did.
-pub const LAST_FAULT: usize = 16;
+pub const LAST_FAULT: usize = 18;
 /// That fault's detail.
-pub const LAST_FAULT_DETAIL: usize = 17;
+pub const LAST_FAULT_DETAIL: usize = 19;
 
 /// Number of the batch of ticks that the simulator has sent last, from 1.
 pub const BATCH_GIVEN: usize = 12;

@@ -1,11 +1,15 @@
-//! Estimates the cost of a scene in a tick, in processor cycles of a Cortex-M4F. Compiler and board use the same
+//! Estimates the cost of a scene in a tick, in processor cycles of a board's [`Core`]. Compiler and board use the same
 //! numbers, so that the board accepts what the compiler accepts. The limit of a tick is
 //! [`BoardLimits::tick_cycles_max`](frixel_wire::hello::BoardLimits::tick_cycles_max).
 //!
-//! The module `measured` holds the cost of every kind and region in **core cycles**: the cycles of each instruction by its class
-//! (Cortex-M4 technical reference, Arm 100166, tables 3-1 and 7-1), with a memory without wait states. The file of
-//! each kind adds up those that apply to it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles.
+//! The module `measured` holds the cost of every kind and region in **core cycles**, with a memory without wait states.
+//! For the Cortex-M4F they are the cycles of each instruction by its class (Cortex-M4 technical reference, Arm 100166,
+//! tables 3-1 and 7-1), for the Cortex-M0+ its instructions times a bound on the cycles of each. The file of each kind
+//! adds up those that apply to it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles on boards that run from flash.
 
+use core::ops::{Add, Mul};
+
+use frixel_wire::hello::Core;
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::RECORDS_MAX;
 
@@ -15,6 +19,63 @@ use crate::measured;
 use crate::point::Point;
 use crate::record::Record;
 use frixel_model::Waveform;
+
+/// Core cycles on each core.
+///
+/// Without the feature `every-core`, which images for a Cortex-M4F leave out, they are those of that core alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    cortex_m4f: u32,
+    #[cfg(feature = "every-core")]
+    cortex_m0_plus: u32,
+}
+
+impl Cost {
+    pub(crate) const ZERO: Self = Self::new(0, 0);
+
+    /// Core cycles on a Cortex-M4F, and on a Cortex-M0+.
+    #[cfg_attr(not(feature = "every-core"), allow(unused_variables, reason = "of a core that the image is not for"))]
+    pub(crate) const fn new(cortex_m4f: u32, cortex_m0_plus: u32) -> Self {
+        Self {
+            cortex_m4f,
+            #[cfg(feature = "every-core")]
+            cortex_m0_plus,
+        }
+    }
+
+    /// Core cycles on this core.
+    pub const fn on(self, core: Core) -> u32 {
+        match core {
+            #[cfg(feature = "every-core")]
+            Core::CortexM0Plus => self.cortex_m0_plus,
+            _ => self.cortex_m4f,
+        }
+    }
+}
+
+impl Add for Cost {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            cortex_m4f: self.cortex_m4f + other.cortex_m4f,
+            #[cfg(feature = "every-core")]
+            cortex_m0_plus: self.cortex_m0_plus + other.cortex_m0_plus,
+        }
+    }
+}
+
+impl Mul<u32> for Cost {
+    type Output = Self;
+
+    fn mul(self, count: u32) -> Self {
+        Self {
+            cortex_m4f: self.cortex_m4f * count,
+            #[cfg(feature = "every-core")]
+            cortex_m0_plus: self.cortex_m0_plus * count,
+        }
+    }
+}
 
 /// Cycles for 100 core cycles when the tick runs from flash. **Assumed**; not measured on a board yet.
 ///
@@ -36,25 +97,30 @@ impl Worst {
     /// No place: the initial value of a search.
     pub const NOWHERE: Self = Self { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
 
-    /// Cycles of the longest tick, including flash wait states.
-    pub const fn cycles(&self) -> u32 {
-        cycles(self.core_cycles)
+    /// Cycles of the longest tick on the core that it was found for, including flash wait states.
+    pub const fn cycles(&self, core: Core) -> u32 {
+        cycles(core, self.core_cycles)
     }
 
-    /// Refuses a scene whose longest tick is estimated at more than `cycles_max`.
-    pub fn check(&self, cycles_max: u32) -> Result<(), Refusal> {
+    /// Refuses a scene whose longest tick is estimated at more than `cycles_max` on the core that it was found for.
+    pub fn check(&self, core: Core, cycles_max: u32) -> Result<(), Refusal> {
         let Cell { x_m, y_m, .. } = self.cell;
-        let cycles = self.cycles();
+        let cycles = self.cycles(core);
         if cycles <= cycles_max { Ok(()) } else { Err(Refusal::TooCostly { cycles, cycles_max, x_m, y_m }) }
     }
 }
 
 /// Name and core cycles of each layer that was measured, or of the part of it that another does not have.
-pub const MEASURED_LAYERS: &[(&str, u32)] = measured::LAYERS;
+pub const MEASURED_LAYERS: &[(&str, Cost)] = measured::LAYERS;
 
-/// Converts core cycles to cycles of code that runs from flash, rounded up.
-pub const fn cycles(core_cycles: u32) -> u32 {
-    core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100)
+/// Converts core cycles to cycles, rounded up: of code that runs from flash on a Cortex-M4F, and from RAM on a
+/// Cortex-M0+.
+pub const fn cycles(core: Core, core_cycles: u32) -> u32 {
+    match core {
+        #[cfg(feature = "every-core")]
+        Core::CortexM0Plus => core_cycles,
+        _ => core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100),
+    }
 }
 
 /// The costs of a scene's layers, from which the cost of a tick at any place follows.
@@ -69,18 +135,18 @@ pub struct LayerCosts {
 }
 
 impl LayerCosts {
-    /// A scene with this header and without layers.
-    pub const fn new(header: &Header) -> Self {
-        Self { empty: of_empty_scene(header), elsewhere: 0, layers: [0; RECORDS_MAX] }
+    /// A scene with this header and without layers, on a board with this core.
+    pub fn new(header: &Header, core: Core) -> Self {
+        Self { empty: of_empty_scene(header).on(core), elsewhere: 0, layers: [0; RECORDS_MAX] }
     }
 
-    /// Adds layer number `number`; `points` are the scene's.
-    pub fn add(&mut self, number: u8, record: &Record, points: &[Point]) {
+    /// Adds layer number `number`; `points` are the scene's, and `core` is that of [`Self::new`].
+    pub fn add(&mut self, number: u8, record: &Record, points: &[Point], core: Core) {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
-            *cost = u16::try_from(of_record(record, points)).unwrap_or(u16::MAX);
+            *cost = u16::try_from(of_record(record, points).on(core)).unwrap_or(u16::MAX);
         }
         // Counts once for all layers of the kind. Only one kind has it: a second one would need a sum over kinds.
-        self.elsewhere = self.elsewhere.max(record.layer.cost_elsewhere());
+        self.elsewhere = self.elsewhere.max(record.layer.cost_elsewhere().on(core));
     }
 
     /// Core cycles of a tick that evaluates these layers.
@@ -99,26 +165,26 @@ impl LayerCosts {
 }
 
 /// Core cycles that a layer adds to a tick with the finger in its region, or near it; `points` are the scene's.
-pub fn of_record(record: &Record, points: &[Point]) -> u32 {
+pub fn of_record(record: &Record, points: &[Point]) -> Cost {
     record.region.cost(points) + record.layer.cost()
 }
 
 /// Core cycles of a tick with no layer near the finger.
-pub const fn of_empty_scene(header: &Header) -> u32 {
+pub fn of_empty_scene(header: &Header) -> Cost {
     match header.waveform {
         Waveform::Square => measured::EMPTY,
         Waveform::Sine => measured::EMPTY + measured::SINE_CARRIER,
     }
 }
 
-/// Finds the place in a scene at which a tick takes the longest.
-pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point]) -> Worst {
+/// Finds the place in a scene at which a tick takes the longest on a core.
+pub fn worst_of_scene(header: &Header, records: &[Record], points: &[Point], core: Core) -> Worst {
     let mut grid = Grid::EMPTY;
     grid.reset(header.screen_width_m, header.screen_height_m);
-    let mut costs = LayerCosts::new(header);
+    let mut costs = LayerCosts::new(header, core);
     for (number, record) in (0..).zip(records) {
         grid.add(number, &record.region, points);
-        costs.add(number, record, points);
+        costs.add(number, record, points, core);
     }
     costs.worst(grid.cells(), Worst::NOWHERE)
 }

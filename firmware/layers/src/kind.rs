@@ -5,6 +5,7 @@ use frixel_wire::scene::SceneError;
 
 use crate::click::Click;
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
 use crate::measured;
 use crate::parameters::Parameters;
@@ -19,7 +20,7 @@ pub(crate) trait Kind: Parameters + Copy {
     type Coefficients: Evaluate;
     /// Core cycles that the kind adds to every tick of a scene with at least one such layer, wherever the finger is.
     /// They count once for all layers of the kind.
-    const COST_ELSEWHERE: u32 = 0;
+    const COST_ELSEWHERE: Cost = Cost::ZERO;
     /// Whether the layer plays the host's stream, and fades with it.
     const STREAMED: bool = false;
 
@@ -37,7 +38,7 @@ pub(crate) trait Kind: Parameters + Copy {
     }
 
     /// Most core cycles of an evaluation.
-    fn cost(&self) -> u32;
+    fn cost(&self) -> Cost;
 
     /// Bounds of the layer's friction before its gain, in N, or as a factor.
     fn bounds(&self, points: &[Point]) -> Interval<f32>;
@@ -61,18 +62,18 @@ pub(crate) trait Kind: Parameters + Copy {
     fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Self::Coefficients, Refusal>;
 }
 
-/// Core cycles of the layer that the benchmark counts under this name: `tick_NAME_alone`. 0 until it has been measured,
+/// Cost of the layer that the benchmark counts under this name: `tick_NAME_alone`. 0 until it has been measured,
 /// which the tests of the samples find.
-pub(crate) const fn core_cycles(name: &str) -> u32 {
+pub(crate) const fn measured_cost(name: &str) -> Cost {
     let mut number = 0;
     while number < measured::LAYERS.len() {
-        let (measured, core_cycles) = measured::LAYERS[number];
+        let (measured, cost) = measured::LAYERS[number];
         if is_same(measured.as_bytes(), name.as_bytes()) {
-            return core_cycles;
+            return cost;
         }
         number += 1;
     }
-    0
+    Cost::ZERO
 }
 
 /// `==` of slices, which no constant can use.

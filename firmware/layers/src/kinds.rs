@@ -31,6 +31,7 @@ use frixel_wire::scene::SceneError;
 
 use crate::click::Click;
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
 use crate::kind::{Evaluate, Kind, evaluate};
 use crate::layout::{FORM_AT, RecordBytes};
@@ -113,7 +114,7 @@ macro_rules! kinds {
                 .map_err(|UnknownForm(value)| SceneError::UnknownChoice { record, offset: FORM_AT as u8, value })
             }
 
-            pub(crate) const fn cost_elsewhere(&self) -> u32 {
+            pub(crate) const fn cost_elsewhere(&self) -> Cost {
                 match self { $( $(#[cfg(feature = $feature)])? Self::$kind(_) => <$kind as Kind>::COST_ELSEWHERE, )* }
             }
 
@@ -235,7 +236,7 @@ impl Layer {
         })
     }
 
-    pub(crate) fn cost(&self) -> u32 {
+    pub(crate) fn cost(&self) -> Cost {
         of_kind!(self, kind => Kind::cost(kind))
     }
 

@@ -9,6 +9,7 @@ use frixel_wire::message::ConfigRefusal;
 use frixel_wire::scene::{POLYGON_POINTS_MAX, SceneError};
 
 use crate::context::{Context, Inputs, STEPS_PER_M, place_steps};
+use crate::cost::Cost;
 use crate::layout::{REGION_AT, REGION_NUMBERS_AT, RecordBytes};
 use crate::measured;
 use crate::parameters::{Parameter, UnknownForm, range};
@@ -129,15 +130,15 @@ impl Region {
 
     /// Most core cycles that the test for the region takes in addition to the test for a rectangle; `points` are the
     /// scene's.
-    pub(crate) fn cost(&self, points: &[Point]) -> u32 {
+    pub(crate) fn cost(&self, points: &[Point]) -> Cost {
         match *self {
-            Self::Screen | Self::Rectangle { .. } => 0,
+            Self::Screen | Self::Rectangle { .. } => Cost::ZERO,
             Self::Ellipse { .. } => measured::ELLIPSE,
             Self::Polygon { first, count } => {
                 let vertices = points_of(points, first, count);
                 measured::POLYGON
-                    + u32::from(count) * measured::POLYGON_EDGE
-                    + edges_level_max(vertices) * measured::POLYGON_EDGE_LEVEL
+                    + measured::POLYGON_EDGE * u32::from(count)
+                    + measured::POLYGON_EDGE_LEVEL * edges_level_max(vertices)
             }
         }
     }

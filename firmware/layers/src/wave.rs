@@ -4,7 +4,8 @@
 use frixel_wire::message::ConfigRefusal;
 
 use crate::cosine::{centred, cosine};
-use crate::kind::core_cycles;
+use crate::cost::Cost;
+use crate::kind::measured_cost;
 use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, form, put_form, range};
 
@@ -40,12 +41,12 @@ pub enum Wave {
 
 impl Wave {
     /// Most core cycles of a grating of this shape.
-    pub(crate) fn cost(&self) -> u32 {
+    pub(crate) fn cost(&self) -> Cost {
         match self {
-            Self::Sine => const { core_cycles("sine") },
-            Self::Square { .. } => const { core_cycles("square") },
-            Self::Triangle => const { core_cycles("triangle") },
-            Self::Saw => const { core_cycles("saw") },
+            Self::Sine => const { measured_cost("sine") },
+            Self::Square { .. } => const { measured_cost("square") },
+            Self::Triangle => const { measured_cost("triangle") },
+            Self::Saw => const { measured_cost("saw") },
         }
     }
 }

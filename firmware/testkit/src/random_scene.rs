@@ -2,7 +2,7 @@
 
 use frixel_layers::cost::{Worst, worst_of_scene};
 use frixel_layers::{Header, Layer, Leader, Point, Record, Waveform, electric_friction_max_n};
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardLimits, Core};
 use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX};
 use heapless::Vec;
 
@@ -52,7 +52,7 @@ impl RandomScene {
 
     /// The longest tick, as compiler and loader estimate it.
     pub fn worst_tick(&self) -> Worst {
-        worst_of_scene(&self.header, &self.records, &self.points)
+        worst_of_scene(&self.header, &self.records, &self.points, Core::CortexM4f)
     }
 
     /// The scene's bytes.
@@ -80,7 +80,7 @@ impl RandomScene {
         let number = |is: fn(&Layer) -> bool| self.records.iter().filter(|record| is(&record.layer)).count();
         number(|layer| matches!(layer, Layer::Noise(_))) <= NOISES_MAX
             && number(|layer| layer.click().is_some()) <= CLICKS_MAX
-            && self.worst_tick().cycles() <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
+            && self.worst_tick().cycles(Core::CortexM4f) <= BoardLimits::SMALLEST_TICK_CYCLES_MAX
     }
 }
 

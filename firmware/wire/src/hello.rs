@@ -137,6 +137,10 @@ pub enum BoardKind {
     NucleoG474re,
     /// Emulated Cortex-M4F.
     Mps2An386,
+    /// Raspberry Pi Pico (RP2040) with amplifier and electrode, or its emulation. Since protocol 1.4.
+    Pico,
+    /// Raspberry Pi Pico 2 (RP2350) with amplifier and electrode. Since protocol 1.4.
+    Pico2,
     /// A kind that this crate does not know, by number.
     Other(u8),
 }
@@ -153,6 +157,8 @@ impl BoardKind {
             Self::Simulator => 1,
             Self::NucleoG474re => 2,
             Self::Mps2An386 => 3,
+            Self::Pico => 4,
+            Self::Pico2 => 5,
             Self::Other(number) => number,
         }
     }
@@ -164,6 +170,8 @@ impl From<u8> for BoardKind {
             1 => Self::Simulator,
             2 => Self::NucleoG474re,
             3 => Self::Mps2An386,
+            4 => Self::Pico,
+            5 => Self::Pico2,
             number => Self::Other(number),
         }
     }
@@ -175,6 +183,8 @@ impl fmt::Display for BoardKind {
             Self::Simulator => f.write_str("simulator"),
             Self::NucleoG474re => f.write_str("NUCLEO-G474RE"),
             Self::Mps2An386 => f.write_str("emulated MPS2-AN386"),
+            Self::Pico => f.write_str("Raspberry Pi Pico"),
+            Self::Pico2 => f.write_str("Raspberry Pi Pico 2"),
             Self::Other(number) => write!(f, "board of kind {number}, which this program does not know"),
         }
     }
@@ -237,6 +247,35 @@ impl fmt::Display for ResetCause {
     }
 }
 
+/// The processor core by whose costs a board estimates the ticks of a scene. The numbers on the wire never change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Core {
+    /// Cortex-M4F, or another that has a floating-point unit and takes no more cycles.
+    CortexM4f,
+    /// Cortex-M0+, which computes floating-point numbers in software.
+    CortexM0Plus,
+}
+
+impl Core {
+    /// The core's number on the wire.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::CortexM4f => 0,
+            Self::CortexM0Plus => 1,
+        }
+    }
+}
+
+impl From<u8> for Core {
+    /// A number that this crate does not know is read as the Cortex-M4F: the board refuses what its core cannot do.
+    fn from(number: u8) -> Self {
+        match number {
+            1 => Self::CortexM0Plus,
+            _ => Self::CortexM4f,
+        }
+    }
+}
+
 /// Limits of a board. The board refuses a command that exceeds a limit; it never clamps the value silently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardLimits {
@@ -267,6 +306,8 @@ pub struct BoardLimits {
     /// protects, and with it the peak voltage at each carrier frequency (`frixel_model::TouchBound`). Infinite on a
     /// board that nobody can touch, such as a simulated one. Since protocol 1.4; boards before it have no such bound.
     pub series_resistance_ohm: f32,
+    /// The core whose cycles [`Self::tick_cycles_max`] are. Since protocol 1.4; boards before it have a Cortex-M4F.
+    pub core: Core,
 }
 
 impl BoardLimits {
@@ -290,5 +331,6 @@ impl BoardLimits {
         touch_report_period_s: 0.0,
         tick_cycles_max: Self::SMALLEST_TICK_CYCLES_MAX,
         series_resistance_ohm: f32::INFINITY,
+        core: Core::CortexM4f,
     };
 }

@@ -5,7 +5,8 @@ use crate::support;
 
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{
-    BoardKind, BoardLimits, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause, notice,
+    BoardKind, BoardLimits, Core, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause,
+    notice,
 };
 use support::hex::from_hex;
 use support::samples::hello;
@@ -50,11 +51,12 @@ fn the_layout_is_frozen() {
             touch_report_period_s: 5.0,
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
             series_resistance_ohm: f32::INFINITY,
+            core: Core::CortexM4f,
         },
         notices: 0,
     };
     assert_eq!(Hello::parse(&bytes), Ok(hello));
-    let appended = from_hex("0b 04 f6 09 00 00  0c 01 00  0d 04 00 00 80 7f");
+    let appended = from_hex("0b 04 f6 09 00 00  0c 01 00  0d 04 00 00 80 7f  0e 01 00");
     let mut expected = [bytes, appended.clone()].concat();
     expected[LIMITS_LEN_AT] += appended.len() as u8;
     assert_eq!(expected.len(), HELLO_LEN);
@@ -71,7 +73,7 @@ fn a_hello_of_the_future_is_read() {
     bytes[36] = 201;
     bytes[37] = 202;
     bytes[42] = 203;
-    let unknown = [200, 1, 7, 201, 0, 1, 2, 0xff, 0xff, 4, 1, 0xff];
+    let unknown = [200, 1, 7, 201, 0, 4, 1, 0xff];
     bytes.splice(LIMITS_AT..LIMITS_AT, unknown);
     bytes[LIMITS_LEN_AT] += unknown.len() as u8;
     bytes.extend([0x55; 2]);
@@ -111,7 +113,7 @@ fn limits_that_are_left_out_allow_nothing() {
 fn notices_follow_the_limits_of_protocol_1_3() {
     let with = Hello { notices: notice::STORED_SCENE_SKIPPED, ..hello() };
     assert_eq!(Hello::parse(&with.write()), Ok(with));
-    let at = HELLO_LEN - 9;
+    let at = HELLO_LEN - 12;
     assert_eq!(with.write()[at..at + 3], [12, 1, 1]);
     assert_eq!(with.write()[..at + 2], hello().write()[..at + 2]);
     assert_eq!(with.write()[at + 3..], hello().write()[at + 3..]);
@@ -120,7 +122,8 @@ fn notices_follow_the_limits_of_protocol_1_3() {
 /// An omitted limit has its default value; the others have the values sent.
 #[test]
 fn each_limit_is_read_by_its_tag() {
-    let whole = Hello { notices: 0xff, ..hello() }.write();
+    let limits = BoardLimits { core: Core::CortexM0Plus, ..hello().limits };
+    let whole = Hello { notices: 0xff, limits, ..hello() }.write();
     let mut at = LIMITS_AT;
     let mut tags = 0;
     while at < whole.len() {
@@ -144,7 +147,7 @@ fn each_limit_is_read_by_its_tag() {
         at += len;
         tags += 1;
     }
-    assert_eq!(tags, 13);
+    assert_eq!(tags, 14);
 }
 
 /// A hello truncated at any byte is an error.

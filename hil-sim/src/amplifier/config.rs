@@ -1,5 +1,8 @@
 //! What a simulated amplifier deviates from an ideal one by.
 
+use frixel_control::Board;
+use frixel_wire::hello::BoardLimits;
+
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 
 /// Deviations of the amplifier from an ideal one.
@@ -74,8 +77,20 @@ impl AmplifierConfig {
     /// [`Self::IDEAL`].
     pub const REALISTIC: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
 
+    /// [`Self::IDEAL`] with the lags that a board says of its amplifier and of its electrode, the latter as its series
+    /// resistance has it. A board without one says both as one lag of the electrode.
+    pub fn of(board: &Board) -> Self {
+        let BoardLimits { series_resistance_ohm, electrode_capacitance_max_f, edge_time_constant_s, .. } = board.limits;
+        let electrode_s = series_resistance_ohm * electrode_capacitance_max_f;
+        Self {
+            output_time_constant_s: board.amplifier.time_constant_s.into(),
+            electrode_time_constant_s: if electrode_s.is_finite() { electrode_s } else { edge_time_constant_s }.into(),
+            ..Self::IDEAL
+        }
+    }
+
     /// Checks the range of every number.
-    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
         above_zero("amplifier gain", self.gain)?;
         above_zero("amplifier saturation_v_peak", self.saturation_v_peak)?;
         zero_to_ten("amplifier output_time_constant_s", self.output_time_constant_s)?;

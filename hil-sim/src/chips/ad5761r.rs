@@ -173,6 +173,18 @@ impl Ad5761rChip {
         let _ = self.0.borrow_mut().clock(bit);
     }
 
+    /// The levels of SDO during the next frame, 24 bits, the first one at the top. They change when a frame ends.
+    #[must_use]
+    pub fn shifting_out(&self) -> u32 {
+        let chip = self.0.borrow();
+        let [first, second, third] = chip.shifting_out;
+        match (chip.has_sdo, chip.is_supplied) {
+            (false, _) => 0xff_ffff,
+            (true, false) => 0,
+            (true, true) => u32::from_be_bytes([0, first, second, third]),
+        }
+    }
+
     /// The chip's virtual time, in nanoseconds.
     #[must_use]
     pub fn now_ns(&self) -> u64 {

@@ -11,6 +11,17 @@ pub enum EmulatorError {
     /// The emulator is not installed.
     #[error("the emulator is not installed: `apt-get install qemu-system-arm`")]
     NoEmulator,
+    /// The program that runs the emulator of the Pico is not installed.
+    #[error("the Pico's emulator runs on node, which is not installed: `apt-get install nodejs npm`")]
+    NoNode,
+    /// The packages that run the image of the Pico could not be installed.
+    #[error("the emulator rp2040js could not be installed by `npm ci` in {folder}:\n{output}")]
+    NoPackages {
+        /// The folder of the programs that use it.
+        folder: String,
+        /// The output of npm.
+        output: String,
+    },
     /// The compiler cannot compile for the board.
     #[error("the compiler's target for the board is not installed: `rustup target add {target}`")]
     NoTarget {

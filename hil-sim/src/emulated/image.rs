@@ -7,51 +7,106 @@ use std::process::{Command, Stdio};
 
 use super::EmulatorError;
 
-/// Name of the emulator.
+/// Name of the emulator of [`EmulatedBoard::Mps2An386`].
 pub(super) const EMULATOR: &str = "qemu-system-arm";
-/// The compiler's name for the board's processor.
-const TARGET: &str = "thumbv7em-none-eabihf";
-const BOARD: &str = "board-mps2-an386";
+/// Name of the program that runs the emulator of [`EmulatedBoard::Pico`].
+pub(super) const NODE: &str = "node";
 
 /// Environment variable with the checkout to build from, if it is not the one around the working directory.
 const CHECKOUT: &str = "FRIXEL_CHECKOUT";
 
 /// Folder of the images that come with a program, beside it.
-const IMAGES: &str = "images";
+pub(super) const IMAGES: &str = "images";
+
+/// A board that runs in an emulator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EmulatedBoard {
+    /// A Cortex-M4F with a firmware of its own.
+    Mps2An386,
+    /// A Raspberry Pi Pico, with the image that is flashed.
+    Pico,
+}
+
+impl EmulatedBoard {
+    /// The folder of its firmware, and the name of its image.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mps2An386 => "board-mps2-an386",
+            Self::Pico => "board-pico",
+        }
+    }
+
+    /// The compiler's name for its processor.
+    pub fn target(self) -> &'static str {
+        match self {
+            Self::Mps2An386 => "thumbv7em-none-eabihf",
+            Self::Pico => "thumbv6m-none-eabi",
+        }
+    }
+
+    /// The arguments with which cargo builds its image, beside `build --release`.
+    pub fn build_arguments(self) -> &'static [&'static str] {
+        match self {
+            Self::Mps2An386 => &[],
+            Self::Pico => {
+                &["--target", "thumbv6m-none-eabi", "--no-default-features", "--features", "rp2040,everything"]
+            }
+        }
+    }
+
+    /// Returns an error if its emulator is not installed.
+    fn emulator(self) -> Result<(), EmulatorError> {
+        let (program, missing) = match self {
+            Self::Mps2An386 => (EMULATOR, EmulatorError::NoEmulator),
+            Self::Pico => (NODE, EmulatorError::NoNode),
+        };
+        match Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
+            Ok(_) => Ok(()),
+            Err(error) if error.kind() == ErrorKind::NotFound => Err(missing),
+            Err(error) => Err(EmulatorError::system("starting the emulator")(error)),
+        }
+    }
+
+    /// Returns an error that names what is missing to build and run this board. It does not check for the sources.
+    pub fn available(self) -> Result<(), EmulatorError> {
+        self.emulator()?;
+        let output = Command::new("rustc")
+            .args(["--print", "target-libdir", "--target", self.target()])
+            .stderr(Stdio::null())
+            .output()
+            .map_err(|error| no_compiler_or("starting rustc", error))?;
+        let libraries = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+        if libraries.is_dir() { Ok(()) } else { Err(EmulatorError::NoTarget { target: self.target() }) }
+    }
+}
 
 /// An image to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image(PathBuf);
 
 impl Image {
-    /// The image `images/board-mps2-an386.elf` beside this program, if it has come with one (`cargo xtask dist`), or else
-    /// as [`Self::build`], which is what happens where the environment has `FRIXEL_CHECKOUT`.
-    pub fn find() -> Result<Self, EmulatorError> {
-        let program = env::current_exe().unwrap_or_default();
-        match Self::beside(&program).filter(|_| env::var_os(CHECKOUT).is_none()) {
-            Some(image) => emulator().map(|()| image),
-            None => Self::build(),
+    /// The image `images/BOARD.elf` beside this program, if it has come with one (`cargo xtask dist`), or else as
+    /// [`Self::build`], which is what happens where the environment has `FRIXEL_CHECKOUT`.
+    pub fn find(board: EmulatedBoard) -> Result<Self, EmulatorError> {
+        match beside_program(&format!("{}.elf", board.name())) {
+            Some(image) => board.emulator().map(|()| Self(image)),
+            None => Self::build(board),
         }
     }
 
-    /// The image that has come with a program.
-    fn beside(program: &Path) -> Option<Self> {
-        let path = program.parent()?.join(IMAGES).join(format!("{BOARD}.elf"));
-        path.is_file().then_some(Self(path))
-    }
-
-    /// Builds the image of the emulated board if it is not up to date.
+    /// Builds the image of an emulated board if it is not up to date.
     ///
     /// It is built from the checkout that the environment's `FRIXEL_CHECKOUT` names, or else the one around the working
     /// directory, or else the one that this program was built in.
-    pub fn build() -> Result<Self, EmulatorError> {
-        available()?;
-        let folder = sources()?;
+    pub fn build(board: EmulatedBoard) -> Result<Self, EmulatorError> {
+        board.available()?;
+        let folder = source_folder(&format!("firmware/{}", board.name()))?;
         // The folder that all images share.
         let target = folder.join("../target");
         let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .args(["build", "--release", "--locked", "--quiet", "--target-dir"])
             .arg(&target)
+            .args(board.build_arguments())
             .current_dir(&folder)
             .stdin(Stdio::null())
             .output()
@@ -59,7 +114,7 @@ impl Image {
         if !output.status.success() {
             return Err(EmulatorError::NotBuilt { output: String::from_utf8_lossy(&output.stderr).into_owned() });
         }
-        Ok(Self(target.join(TARGET).join("release").join(BOARD)))
+        Ok(Self(target.join(board.target()).join("release").join(board.name())))
     }
 
     /// Where the image is.
@@ -68,25 +123,14 @@ impl Image {
     }
 }
 
-/// Returns an error that names what is missing to build and run the emulated board. It does not check for the sources.
-pub fn available() -> Result<(), EmulatorError> {
-    emulator()?;
-    let output = Command::new("rustc")
-        .args(["--print", "target-libdir", "--target", TARGET])
-        .stderr(Stdio::null())
-        .output()
-        .map_err(|error| no_compiler_or("starting rustc", error))?;
-    let libraries = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
-    if libraries.is_dir() { Ok(()) } else { Err(EmulatorError::NoTarget { target: TARGET }) }
+/// What has come with this program in its folder of images, unless the environment names a checkout.
+pub(super) fn beside_program(name: &str) -> Option<PathBuf> {
+    beside(&env::current_exe().unwrap_or_default(), name).filter(|_| env::var_os(CHECKOUT).is_none())
 }
 
-/// Returns an error if the emulator is not installed.
-fn emulator() -> Result<(), EmulatorError> {
-    match Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
-        Ok(_) => Ok(()),
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(EmulatorError::NoEmulator),
-        Err(error) => Err(EmulatorError::system("starting the emulator")(error)),
-    }
+fn beside(program: &Path, name: &str) -> Option<PathBuf> {
+    let path = program.parent()?.join(IMAGES).join(name);
+    path.exists().then_some(path)
 }
 
 fn no_compiler_or(action: &'static str, error: io::Error) -> EmulatorError {
@@ -97,8 +141,8 @@ fn no_compiler_or(action: &'static str, error: io::Error) -> EmulatorError {
 /// the machine that built it.
 const BUILT_IN: Option<&str> = if cfg!(debug_assertions) { Some(env!("CARGO_MANIFEST_DIR")) } else { None };
 
-/// The folder of the board's sources.
-fn sources() -> Result<PathBuf, EmulatorError> {
+/// A folder of the sources.
+pub(super) fn source_folder(name: &str) -> Result<PathBuf, EmulatorError> {
     let here = env::current_dir().unwrap_or_default();
     let checkouts: Vec<PathBuf> = if let Some(checkout) = env::var_os(CHECKOUT) {
         vec![checkout.into()]
@@ -106,8 +150,8 @@ fn sources() -> Result<PathBuf, EmulatorError> {
         let built_in = BUILT_IN.and_then(|folder| Path::new(folder).parent());
         here.ancestors().chain(built_in).map(Path::to_path_buf).collect()
     };
-    let mut folders = checkouts.into_iter().map(|checkout| checkout.join("firmware").join(BOARD));
-    folders.find(|folder| folder.join("Cargo.toml").is_file()).ok_or(EmulatorError::NoSources)
+    let mut folders = checkouts.into_iter().map(|checkout| checkout.join(name));
+    folders.find(|folder| folder.is_dir()).ok_or(EmulatorError::NoSources)
 }
 
 #[cfg(test)]
@@ -119,12 +163,12 @@ mod tests {
     #[test]
     fn an_image_that_has_come_with_a_program_is_found_beside_it() {
         let folder = tempfile::tempdir().unwrap();
-        let program = folder.path().join("frixel");
-        assert_eq!(Image::beside(&program), None);
-        let path = folder.path().join("images/board-mps2-an386.elf");
+        let (program, name) = (folder.path().join("frixel"), "board-mps2-an386.elf");
+        assert_eq!(beside(&program, name), None);
+        let path = folder.path().join("images").join(name);
         fs::create_dir(folder.path().join("images")).unwrap();
         fs::write(&path, "ELF").unwrap();
-        assert_eq!(Image::beside(&program), Some(Image(path)));
-        assert_eq!(Image::beside(Path::new("/")), None);
+        assert_eq!(beside(&program, name), Some(path));
+        assert_eq!(beside(Path::new("/"), name), None);
     }
 }

@@ -13,7 +13,7 @@ use frixel_exchange::{drive_of, layout};
 
 use super::machine::Machine;
 use super::{EmulatorError, Image};
-use crate::{Felt, World};
+use crate::{Felt, World, WorldFault};
 use follower::{ControlFlags, Follower};
 use serial::Serial;
 
@@ -42,7 +42,8 @@ pub enum InjectedFault {
 /// Result of one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkRecord {
-    /// Ticks since the board's last reset, this one included.
+    /// Ticks since the board's last reset, this one included. Of a [`PicoRig`](super::PicoRig), ticks since the board was
+    /// first switched on.
     pub tick: u32,
     /// The board's output.
     pub drive: Drive,
@@ -94,6 +95,19 @@ impl LinkBoard {
     /// Starts the finger's stroke.
     pub fn start_stroke(&self) {
         self.flags.stroke.store(true, Ordering::Release);
+    }
+
+    /// Causes a fault of touch source or finger within some milliseconds, for so many ticks. Returns whether this rig
+    /// can: its amplifier's monitor is simulated on the board, so that no fault of the amplifier reaches it.
+    pub fn cause(&self, fault: WorldFault, ticks: u64) -> bool {
+        let reaches_board = matches!(
+            fault,
+            WorldFault::TouchSilent | WorldFault::TouchStuck | WorldFault::TouchJumps { .. } | WorldFault::FingerLifted
+        );
+        if reaches_board {
+            self.flags.cause(fault, ticks);
+        }
+        reaches_board
     }
 
     /// Returns the board's current output.

@@ -3,14 +3,25 @@
 
 use std::io::Write;
 
-use frixel_hil_sim::emulated::{EmulatorError, Image};
+use frixel_hil_sim::emulated::{EmulatedBoard, EmulatorError, Image};
 
 /// The image. Where emulator or target are missing, the test is skipped with a word; under CI it fails.
 pub fn image() -> Option<Image> {
-    match Image::build() {
+    built(EmulatedBoard::Mps2An386)
+}
+
+/// The image of the Pico, likewise.
+pub fn pico_image() -> Option<Image> {
+    built(EmulatedBoard::Pico)
+}
+
+fn built(board: EmulatedBoard) -> Option<Image> {
+    match Image::build(board) {
         Ok(image) => Some(image),
-        Err(missing @ (EmulatorError::NoEmulator | EmulatorError::NoTarget { .. })) if !is_ci() => {
-            let _ = writeln!(std::io::stderr(), "SKIPPED on the emulated board: {missing}");
+        Err(missing @ (EmulatorError::NoEmulator | EmulatorError::NoNode | EmulatorError::NoTarget { .. }))
+            if !is_ci() =>
+        {
+            let _ = writeln!(std::io::stderr(), "SKIPPED on {board:?}: {missing}");
             None
         }
         Err(error) => panic!("{error}"),

@@ -26,6 +26,8 @@ const COMMIT_TICKS_MAX: u32 = 128;
 /// A host that says what it wants and trusts the board.
 pub struct Script {
     pub rig: Rig<'static>,
+    /// Is called with every tick, and with the number of bytes that have arrived at the board.
+    pub watch: Option<Box<dyn FnMut(&TickRecord, u64)>>,
     sequence: u16,
     status: Option<Status>,
 }
@@ -34,7 +36,7 @@ impl Script {
     /// A host of a rig whose memory lives as long as the program.
     pub fn new(config: &RigConfig, stroke: Stroke, seed: u64) -> Self {
         let rig = Rig::new(Box::leak(BoardMemory::new()), config, stroke, seed).unwrap();
-        Self { rig, sequence: 0, status: None }
+        Self { rig, watch: None, sequence: 0, status: None }
     }
 
     /// Asks who is there.
@@ -125,9 +127,19 @@ impl Script {
         self.step();
     }
 
+    /// Runs in silence.
+    pub fn steps(&mut self, ticks: u64) {
+        for _ in 0..ticks {
+            self.step();
+        }
+    }
+
     pub fn step(&mut self) -> TickRecord {
         let record = self.rig.step();
         self.status = Some(record.status);
+        if let Some(watch) = &mut self.watch {
+            watch(&record, self.rig.line_to_board_mut().bytes().delivered);
+        }
         record
     }
 }

@@ -21,9 +21,12 @@ const PING_MAX_LEN: usize = 12;
 /// Pings without an answer that no other follows at its time. A board that is slow, or whose line is, then does not
 /// spend its time on pings.
 const UNANSWERED_MAX: usize = 2;
-/// Round trips of the last answered ping after which two pings without an answer count as damaged.
+/// Pings after those which are made up for while they count as damaged, for a board that has answered one. So many are
+/// damaged in a row once in a hundred thousand pings on a line that inverts one bit in a thousand.
+const MADE_UP_MAX: usize = 3;
+/// Round trips of the last answered ping after which pings without an answer count as damaged.
 const ROUND_TRIPS: u32 = 4;
-/// Longest time after two pings without an answer to the third, and time from the third to the fourth.
+/// Longest time after two pings without an answer to the next, and time after those that are made up for.
 const LOST_AFTER: Duration = Duration::from_millis(750);
 /// How often that time is doubled for further pings without an answer.
 const DOUBLINGS_MAX: usize = 10;
@@ -34,9 +37,10 @@ const PERIOD_MIN: Duration = Duration::from_millis(1);
 ///
 /// A ping is due when nothing was written for the period, but not while the two before it are unanswered: a board that
 /// answers more slowly than it is pinged would have more and more of them ahead of every command. Two that stay
-/// unanswered for the period, and for four times the last round trip, count as damaged, and a third one is due. The next
-/// one is due 0.75 s after that, and each further one after twice the time; a board that takes longer than 0.75 s for one
-/// frame counts as silent.
+/// unanswered for the period, and for four times the last round trip, count as damaged, and a third one is due; on a board
+/// that has answered one, two more after that. The next one is due 0.75 s later, and each further one after twice the
+/// time; a board that takes longer than 0.75 s for one frame counts as silent. A frame that arrives damaged counts as the
+/// answer to a ping.
 ///
 /// No ping is due once the application has made no call to the link for [`KEEP_ALIVE_TIMEOUT`]: a board does not play on
 /// for a program that hangs. The next call resumes the pings.
@@ -54,8 +58,8 @@ pub struct KeepAlive {
     next: u16,
     /// Sequence number of each ping without an answer, and when it was written.
     unanswered: VecDeque<(u16, Duration)>,
-    /// Time from the last answered ping to its answer.
-    round_trip: Duration,
+    /// Time from the last answered ping to its answer; `None` before the first answer.
+    round_trip: Option<Duration>,
     decoder: Decoder,
 }
 
@@ -67,7 +71,7 @@ impl Default for KeepAlive {
             last_call: None,
             next: *PING_SEQUENCES.start(),
             unanswered: VecDeque::new(),
-            round_trip: Duration::ZERO,
+            round_trip: None,
             decoder: Decoder::new(),
         }
     }
@@ -102,10 +106,14 @@ impl KeepAlive {
         if self.last_call.is_some_and(|last_call| now.saturating_sub(last_call) >= KEEP_ALIVE_TIMEOUT) {
             return None;
         }
-        let wait = match self.unanswered.len() {
-            ..UNANSWERED_MAX => Duration::ZERO,
-            UNANSWERED_MAX => LOST_AFTER.min(period.max(ROUND_TRIPS * self.round_trip)),
-            more => LOST_AFTER * (1 << (more - UNANSWERED_MAX - 1).min(DOUBLINGS_MAX)),
+        let unanswered = self.unanswered.len();
+        let damaged_max = UNANSWERED_MAX + self.round_trip.map_or(0, |_| MADE_UP_MAX - 1);
+        let wait = if unanswered < UNANSWERED_MAX {
+            Duration::ZERO
+        } else if unanswered <= damaged_max {
+            LOST_AFTER.min(period.max(ROUND_TRIPS * self.round_trip.unwrap_or_default()))
+        } else {
+            LOST_AFTER * (1 << (unanswered - damaged_max - 1).min(DOUBLINGS_MAX))
         };
         let held_back = self.unanswered.back().map_or(Duration::ZERO, |(_, written)| *written + wait);
         Some(held_back.max(self.last_write + period))
@@ -132,7 +140,7 @@ impl KeepAlive {
     /// is one.
     pub fn hear(&mut self, bytes: &[u8], now: Duration) -> bool {
         let mut input = bytes;
-        let before = self.unanswered.len();
+        let (before, rejected_before) = (self.unanswered.len(), self.decoder.rejected());
         while let Some(payload) = self.decoder.next_frame(&mut input) {
             let Ok(Payload::FromBoard(FromBoard::Answer(answer))) = Payload::parse_from_board(payload) else {
                 continue;
@@ -140,9 +148,11 @@ impl KeepAlive {
             if let Some(position) = self.unanswered.iter().position(|(sequence, _)| *sequence == answer.sequence) {
                 // The board answers in order: a ping before this one is lost, or its answer is.
                 let answered = self.unanswered.drain(..=position).next_back();
-                self.round_trip = answered.map_or(Duration::ZERO, |(_, written)| now.saturating_sub(written));
+                self.round_trip = answered.map(|(_, written)| now.saturating_sub(written));
             }
         }
+        let damaged = self.decoder.rejected().wrapping_sub(rejected_before) as usize;
+        self.unanswered.drain(..damaged.min(self.unanswered.len()));
         self.unanswered.len() < before
     }
 }
@@ -207,6 +217,28 @@ mod tests {
             pings.next_ping(sent);
             assert_eq!(pings.due_at(sent), Some(sent + wait), "the board is slow or silent");
         }
+    }
+
+    #[test]
+    fn four_damaged_pings_in_a_row_leave_no_gap_on_a_board_that_has_answered_one() {
+        let mut pings = pinging();
+        pings.next_ping(Duration::ZERO);
+        assert!(pings.hear(&answer(FIRST), MS));
+        let mut now = 10 * MS;
+        for _ in 0..5 {
+            pings.next_ping(now);
+            assert_eq!(pings.due_at(now), Some(now + if pings.unanswered.len() < 5 { 10 * MS } else { LOST_AFTER }));
+            now += 10 * MS;
+        }
+    }
+
+    #[test]
+    fn an_answer_that_arrives_damaged_settles_a_ping() {
+        let mut pings = pinging();
+        pings.next_ping(Duration::ZERO);
+        let mut damaged = answer(FIRST);
+        damaged[2] ^= 4;
+        assert!(pings.hear(&damaged, MS) && pings.unanswered.is_empty());
     }
 
     /// An early ping's answer is not taken for that of a later one, which would seem quick.

@@ -16,8 +16,9 @@ use super::link::Link;
 const STALL_AFTER: Duration = Duration::from_millis(150);
 /// Longest time in which the board acknowledges no further byte.
 const ACKNOWLEDGE_TIMEOUT: Duration = Duration::from_secs(10);
-/// Most restarts in a row of an upload from the same chunk.
-const TRIES: u32 = 3;
+/// Most restarts in a row of an upload from the same chunk. On a line that inverts three bits in ten thousand, a third of
+/// the chunks are damaged, and one in a hundred thousand is so often.
+const TRIES: u32 = 10;
 /// Most starts of an upload whose outcome stays unknown.
 const STARTS: u32 = 3;
 

@@ -1,6 +1,7 @@
 //! The tests of the crate as a whole, one program for all of them.
 
 mod agreement;
+mod boards;
 mod brick;
 #[path = "designer/main.rs"]
 mod designer;

@@ -110,6 +110,22 @@ fn every_test_that_the_page_names_exists() {
     }
 }
 
+#[test]
+fn every_scenario_of_a_fault_stands_on_the_page_and_no_other() {
+    let folder = repository().join("hil-sim/scenarios");
+    let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+    let scenarios = files.filter(|file| fs::read_to_string(file).unwrap().contains("[[fault]]"));
+    let names = |file: PathBuf| format!("hil-sim/scenarios/{}", file.file_name().unwrap().to_str().unwrap());
+    let mut expected: Vec<String> = scenarios.map(names).collect();
+    // Faults of the host are its commands.
+    expected.extend(["two-clients", "host-hangs", "host-dies"].map(|name| format!("hil-sim/scenarios/{name}.toml")));
+    let named = PAGE.split('`').filter(|name| name.starts_with("hil-sim/scenarios/"));
+    let mut found: Vec<String> = named.map(str::to_owned).collect();
+    expected.sort();
+    found.sort();
+    assert_eq!(found, expected);
+}
+
 /// A drive, as a board gives it.
 struct Drive {
     name: &'static str,

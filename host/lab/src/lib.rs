@@ -5,6 +5,7 @@
 //! - [`threshold`]: what a person just feels, from a staircase of answers.
 //! - [`default_stroke`]: the stroke of a play that names none.
 //! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
+//! - [`scenario`]: what happens to a board while a scene plays, on any rig, and what has to be seen of it.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
 //! - [`model_csv`]: the contact model over rows of CSV.
@@ -21,6 +22,7 @@ pub mod default_stroke;
 pub mod fit;
 pub mod model_csv;
 pub mod recording;
+pub mod scenario;
 pub mod score;
 pub mod simulation;
 mod statistics;

@@ -1,11 +1,13 @@
-//! Fits recover people: what is recovered, how often intervals are right, and what is refused.
+//! Fits recover people, and scenarios show what they expect.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod coverage;
 mod empirical;
 mod examples;
+mod goodput;
 mod person;
 mod refusals;
+mod scenarios;
 mod simulated;
 mod slow_sensors;
 

@@ -3,11 +3,13 @@
 mod observed;
 mod worker;
 
+use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
+use frixel_lab::recording::Metadata;
 use frixel_scene::{Program, compile};
 use frixel_wire::fault::State;
 use frixel_wire::hello::Hello;
@@ -16,11 +18,11 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use super::error::{parameter_error, raised, scene_error};
+use super::recording::Made;
 use super::scene::Scene;
+use super::signals::{SIGNALS_PERIOD, raised_by_signal};
 use worker::{Interrupted, Report, Request, Trouble};
 
-/// Time between two looks at Python's signals.
-const SIGNALS_PERIOD: Duration = Duration::from_millis(50);
 /// The port of the simulated board.
 const SIMULATOR: &str = "sim";
 const CLOSED: &str = "this device is closed: open it again, by Device.open";
@@ -76,9 +78,7 @@ impl Line {
                 Err(RecvTimeoutError::Disconnected) => return Err(ended()),
                 Err(RecvTimeoutError::Timeout) if signal.is_some() => {}
                 Err(RecvTimeoutError::Timeout) => {
-                    #[allow(clippy::redundant_closure_for_method_calls, reason = "the method is of one lifetime only")]
-                    let looked = Python::attach(|py| py.check_signals());
-                    signal = looked.err();
+                    signal = raised_by_signal();
                     self.interrupted.set(signal.is_some());
                 }
             }
@@ -199,6 +199,16 @@ impl Device {
     /// Takes in what the board has sent.
     fn look(&self, py: Python<'_>) -> PyResult<Answer> {
         self.ask(py, Request::Look)
+    }
+
+    /// What [`super::recording::write_parquet`] needs of a play on this board, beside its rows and its scene.
+    fn made(&self, py: Python<'_>, messages_per_s: u32) -> PyResult<String> {
+        let metadata = Metadata {
+            ticks_per_row: self.hello.tick_hz.checked_div(messages_per_s).unwrap_or(0),
+            ..Metadata::new("board", Some(&self.hello), self.hello.board.is_simulated(), None)
+        };
+        let made = Made { metadata, files: BTreeMap::new(), markers: Vec::new() };
+        serde_json::to_string(&made).map_err(|error| raised(py, "PlayError", (error.to_string(),)))
     }
 
     /// Sets the output to zero and disarms the board.

@@ -12,7 +12,10 @@ mod model;
 mod profile;
 mod recording;
 mod scene;
+mod score;
+mod signals;
 mod simulator;
+mod sweep;
 
 use pyo3::prelude::*;
 
@@ -28,11 +31,15 @@ mod _frixel {
     #[pymodule_export]
     use super::profile::{bundled_profiles, check_profile};
     #[pymodule_export]
-    use super::recording::{play_fields, write_parquet};
+    use super::recording::{play_fields, replay, write_parquet};
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]
+    use super::score::score_scene;
+    #[pymodule_export]
     use super::simulator::simulate;
+    #[pymodule_export]
+    use super::sweep::{play_cell, study_files, sweep_cells};
 
     use pyo3::types::PyModuleMethods;
     use pyo3::{Bound, PyResult};

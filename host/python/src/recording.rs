@@ -1,7 +1,7 @@
 //! Recordings: columns as arrays, and as Parquet.
 
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::PathBuf;
 
@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::raised;
 use super::scene::NamedFiles;
+use super::signals::interruptible;
 
 /// How a play was made, beside its scene: with it, a recording is played again. Python keeps it as JSON.
 #[derive(Serialize, Deserialize)]
@@ -64,7 +65,8 @@ fn numbers(column: &Bound<'_, PyAny>) -> PyResult<impl Iterator<Item = Option<f6
     Ok(column.as_array().to_vec().into_iter().map(|value| value.is_finite().then_some(value)))
 }
 
-/// Writes a simulated play as Parquet, as `frixel play --record` does. `made` is what [`super::simulator::simulate`] says of it.
+/// Writes a play as Parquet, as `frixel play --record` does. `made` is what [`super::simulator::simulate`] or
+/// [`super::device::Device`] says of it.
 #[pyfunction]
 pub(crate) fn write_parquet(
     py: Python<'_>,
@@ -73,6 +75,7 @@ pub(crate) fn write_parquet(
     scene: String,
     files: NamedFiles,
     made: &str,
+    participant: Option<String>,
 ) -> PyResult<()> {
     let failed = |error: &dyn std::fmt::Display| {
         raised(py, "FrixelError", (format!("{}: this file cannot be written ({error})", path.display()),))
@@ -88,9 +91,26 @@ pub(crate) fn write_parquet(
     let own = made.files.iter().map(|(name, text)| (name.clone(), text.as_bytes()));
     let of_scene = files.iter().map(|(name, bytes)| (format!("{}{name}", PlayOptions::OF_SCENE), bytes.as_slice()));
     let files = SourceFile::all(own.chain(of_scene));
-    let metadata = Metadata { scene, files, markers: made.markers, ..made.metadata };
+    let metadata = Metadata { scene, files, markers: made.markers, participant, ..made.metadata };
     let recording = Recording { metadata, columns: taken, is_cut_off: false };
     let file = File::create(&path).map_err(|error| failed(&error))?;
     let written = py.detach(|| recording.write_parquet(BufWriter::new(file)));
     written.map_err(|error| failed(&error))
+}
+
+/// Plays a recording again, and compares it. Returns the number of its rows.
+#[pyfunction]
+pub(crate) fn replay(py: Python<'_>, path: PathBuf) -> PyResult<usize> {
+    let failed = |sentence: &str| raised(py, "PlayError", (format!("{}{sentence}", path.display()),));
+    let bytes =
+        fs::read(&path).map_err(|error| failed(&format!(": this file cannot be read ({error}): check the path")))?;
+    let recorded = Recording::read_parquet(bytes).map_err(|error| failed(&format!(": {error}")))?;
+    let played = interruptible(py, |goes_on| recorded.replay(&mut || goes_on()))?;
+    let played = played.map_err(|error| failed(&format!(" cannot be played again: {error}")))?;
+    match recorded.first_difference(&played) {
+        None => Ok(recorded.rows()),
+        Some(difference) => Err(failed(&format!(
+            " plays other bits: {difference}; the file was changed, or this machine computes differently"
+        ))),
+    }
 }

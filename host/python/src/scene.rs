@@ -69,7 +69,7 @@ impl Scene {
         let screen = screen.map(|screen| Ok::<_, PyErr>((screen.screen(py)?, screen))).transpose()?;
         let finger = finger.map(|finger| Ok::<_, PyErr>((finger.finger(py)?, finger))).transpose()?;
         let read = py.detach(|| {
-            let files = ReadFiles { folder, read: RefCell::new(files) };
+            let files = ReadFiles::new(folder, files);
             let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
             let (mut own_finger, mut own_screen) = (None, None);
             if let Some((screen, text)) = screen {
@@ -82,7 +82,7 @@ impl Scene {
             }
             let board = RigConfig::default().board;
             let program = compile_draft(&parsed, &board.limits, board.tick_hz)?;
-            let files = files.read.into_inner();
+            let files = files.into_read();
             Ok::<_, CompileError>(Self { parsed, program, files, finger: own_finger, screen: own_screen })
         });
         read.map_err(|error| scene_error(py, &error))
@@ -157,9 +157,21 @@ impl Scene {
 }
 
 /// Keeps what it reads from a folder, so that the scene can be sent elsewhere.
-struct ReadFiles {
+pub(crate) struct ReadFiles {
     folder: Option<PathBuf>,
     read: RefCell<NamedFiles>,
+}
+
+impl ReadFiles {
+    /// Reads what is not among `read` from a folder.
+    pub(crate) fn new(folder: Option<PathBuf>, read: NamedFiles) -> Self {
+        Self { folder, read: RefCell::new(read) }
+    }
+
+    /// All that was read.
+    pub(crate) fn into_read(self) -> NamedFiles {
+        self.read.into_inner()
+    }
 }
 
 impl Files for ReadFiles {

@@ -1,15 +1,13 @@
 //! Plays on the simulated board, in virtual time.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
 
-use frixel_hil_sim::{Person, RigConfig, Stroke as SimulatedStroke, TouchConfig, WorldConfig};
-use frixel_lab::default_stroke::default_stroke;
-use frixel_lab::recording::{Metadata, PlayOptions, StrokeOptions, play_fields, play_values};
-use frixel_lab::simulation::{Simulated, Simulation, simulate_while};
-use frixel_lab::stroke_file::{self, StrokeFile};
-use frixel_model::FrictionLaw;
+use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
+use frixel_lab::recording::{
+    Metadata, PlayOptions, PreparedPlay, PreparedPlayError, StrokeOptions, play_fields, play_values,
+};
+use frixel_lab::simulation::{Simulated, Simulation};
+use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
 use frixel_scene::Program;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -19,14 +17,13 @@ use super::error::{parameter_error, raised, scene_error};
 use super::profile::ProfileText;
 use super::recording::{Made, columns};
 use super::scene::Scene;
+use super::signals::interruptible;
 
 const M_PER_MM: f64 = 1e-3;
 /// Time between two places of a stroke that are looked at, s.
 const CHECK_PERIOD_S: f64 = 1e-3;
 /// Longest play, s: a day.
 const SECONDS_MAX: f64 = 86_400.0;
-/// Time between two looks at Python's signals.
-const SIGNALS_PERIOD: Duration = Duration::from_millis(50);
 
 /// A stroke, an object of `python/frixel/stroke.py`.
 #[derive(FromPyObject)]
@@ -67,6 +64,20 @@ impl Stroke<'_> {
         }
     }
 
+    /// The stroke of rows; `None` for one that is generated.
+    fn of_rows(&self) -> Result<Option<SimulatedStroke>, StrokeFileError> {
+        Ok(self.csv().map(|csv| StrokeFile::read(csv.as_bytes())).transpose()?.map(|file| file.stroke))
+    }
+
+    /// The stroke on the screen of a program.
+    pub(crate) fn on_screen(&self, py: Python<'_>, program: &Program) -> PyResult<Option<SimulatedStroke>> {
+        if let Some(stroke) = self.of_rows().map_err(|error| parameter_error(py, error))? {
+            return Ok(Some(stroke));
+        }
+        let generated = self.options().generated(screen_m(program), None, 1);
+        generated.map_err(|error| parameter_error(py, error))
+    }
+
     /// The rows as the text of a file.
     fn csv(&self) -> Option<String> {
         let Self::Rows { t_s, x_mm, y_mm, load_n } = self else { return None };
@@ -100,9 +111,7 @@ struct Play<'s> {
     options: PlayOptions,
     /// Texts of finger, screen, touch source and stroke.
     files: BTreeMap<String, String>,
-    simulation: Simulation,
-    own_finger: Option<FrictionLaw>,
-    through_finger: bool,
+    prepared: PreparedPlay,
 }
 
 impl Settings<'_> {
@@ -110,49 +119,30 @@ impl Settings<'_> {
     fn play<'s>(&self, py: Python<'_>, scene: &'s Scene, seconds: Option<f64>) -> PyResult<Play<'s>> {
         let program = scene.program();
         let tick_hz = RigConfig::default().board.tick_hz;
-        let checked = |seconds: f64| {
+        let check = |seconds: f64| {
             let is_playable = seconds * f64::from(tick_hz) >= 1.0 && seconds <= SECONDS_MAX;
             let message = || format!("a play lasts from a tick to {SECONDS_MAX} s, found {seconds} s");
-            if is_playable { Ok(seconds) } else { Err(parameter_error(py, message())) }
+            if is_playable { Ok(()) } else { Err(parameter_error(py, message())) }
         };
-        seconds.map_or(Ok(0.0), checked)?;
-        let (options, files) = (self.options(scene, seconds), self.files(scene));
-        let file = files.get(PlayOptions::STROKE).map(|csv| StrokeFile::read(csv.as_bytes())).transpose();
-        let file = file.map_err(|error| parameter_error(py, error))?;
-        let generated = options.stroke.generated(screen_m(program), seconds, self.seed);
-        let generated = generated.map_err(|error| parameter_error(py, error))?;
-        let stroke = match file.map(|file| file.stroke).or(generated) {
-            Some(stroke) => stroke,
-            None => default_stroke(program, seconds).map_err(|error| parameter_error(py, error))?,
-        };
-        let seconds = checked(seconds.unwrap_or(stroke.duration_s()))?;
-        let mut rig = RigConfig::default();
-        if !is_on_screen(&stroke, screen_m(program), seconds) {
+        seconds.map_or(Ok(()), check)?;
+        let stroke = self.stroke.as_ref().map(Stroke::of_rows).transpose();
+        let stroke = stroke.map_err(|error| parameter_error(py, error))?.flatten();
+        let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
+        let options = self.options(scene, seconds);
+        let prepared = PreparedPlay::new(&options, scene.parsed(), program, stroke, touch);
+        let prepared = prepared.map_err(|error| match error {
+            PreparedPlayError::Screen(error) => scene_error(py, &error),
+            error => parameter_error(py, error),
+        })?;
+        let Simulation { stroke, seconds, .. } = &prepared.simulation;
+        check(*seconds)?;
+        if !is_on_screen(stroke, screen_m(program), *seconds) {
             let (width_mm, height_mm) = (scene.parsed().screen().width_mm, scene.parsed().screen().height_mm);
             let message =
                 format!("the stroke is never on the screen of {width_mm} mm by {height_mm} mm: move it there");
             return Err(parameter_error(py, message));
         }
-        if self.rows_per_s == 0 || !tick_hz.is_multiple_of(self.rows_per_s) {
-            let message = format!("rows_per_s divides {tick_hz} evenly, found {}", self.rows_per_s);
-            return Err(parameter_error(py, message));
-        }
-        let person = self.person.map(|seed| {
-            let screen = scene.parsed().screen_without_skin().map_err(|error| scene_error(py, &error))?;
-            let person = Person::drawn(seed);
-            let contact = person.contact(1e-6 * screen.coating_gap_um()).map_err(|error| parameter_error(py, error))?;
-            Ok::<_, PyErr>((person, contact))
-        });
-        let person = person.transpose()?;
-        let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
-        rig.world = self.world(rig.world, person.as_ref().map(|(person, _)| person), touch);
-        // A draft may take longer than a board has time for.
-        rig.board.limits.tick_cycles_max = u32::MAX;
-        let through_finger = !self.ideal || person.is_some() || stroke.has_loads();
-        let ticks_per_row = tick_hz / self.rows_per_s;
-        let simulation = Simulation { rig, stroke, seconds, seed: self.seed, ticks_per_row };
-        let own_finger = person.map(|(_, contact)| contact.into());
-        Ok(Play { program, options, files, simulation, own_finger, through_finger })
+        Ok(Play { program, options, files: self.files(scene), prepared })
     }
 
     /// The options that a recording has, with which `frixel replay` plays the same.
@@ -188,16 +178,6 @@ impl Settings<'_> {
         ];
         texts.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))).collect()
     }
-
-    fn world(&self, ideal: WorldConfig, person: Option<&Person>, touch: Option<TouchConfig>) -> WorldConfig {
-        if self.ideal {
-            return WorldConfig { touch: touch.map_or(ideal.touch, TouchConfig::without_losses), ..ideal };
-        }
-        let realistic = ideal.realistic();
-        let fingertip = person.map_or(realistic.fingertip, |person| person.fingertip);
-        let fingertip = if self.leakage { fingertip } else { fingertip.without_leakage() };
-        WorldConfig { fingertip, touch: touch.unwrap_or(realistic.touch), ..realistic }
-    }
 }
 
 fn is_on_screen(stroke: &SimulatedStroke, [width_m, height_m]: [f64; 2], seconds: f64) -> bool {
@@ -218,27 +198,12 @@ pub(crate) fn simulate<'py>(
     settings: Settings<'py>,
     seconds: Option<f64>,
 ) -> PyResult<(Bound<'py, PyDict>, String)> {
-    let Play { program, options, files, simulation, own_finger, through_finger } = settings.play(py, scene, seconds)?;
-    let mut signal = None;
-    let played = py.detach(|| {
-        let mut looked_at = Instant::now();
-        simulate_while(program, &simulation, own_finger, through_finger, &mut || {
-            if looked_at.elapsed() >= SIGNALS_PERIOD {
-                looked_at = Instant::now();
-                #[allow(clippy::redundant_closure_for_method_calls, reason = "the method is of one lifetime only")]
-                let looked = Python::attach(|py| py.check_signals());
-                signal = looked.err();
-            }
-            if signal.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })
-    });
-    if let Some(signal) = signal {
-        return Err(signal);
-    }
+    let Play { program, options, files, prepared } = settings.play(py, scene, seconds)?;
+    let played = interruptible(py, |goes_on| prepared.run(program, &mut || goes_on()))?;
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (error.to_string(),));
     let Simulated { recorder, board, .. } = played.map_err(|error| failed(&error))?;
     let metadata = Metadata {
-        ticks_per_row: simulation.ticks_per_row,
+        ticks_per_row: prepared.simulation.ticks_per_row,
         play: serde_json::to_value(&options).map_err(|error| failed(&error))?,
         ..Metadata::new("sim", Some(&board), true, None)
     };

@@ -11,12 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import nbformat
 import numpy as np
 import pytest
+from nbclient import NotebookClient
 
 from .conftest import REPOSITORY
 
 EXAMPLES = sorted((REPOSITORY / "host/python/examples").glob("*.py"))
+NOTEBOOKS = sorted((REPOSITORY / "host/python/examples").glob("*.ipynb"))
 
 
 def test_the_blocks_of_the_document_run_one_after_the_other(
@@ -37,7 +40,9 @@ def test_the_blocks_of_the_document_run_one_after_the_other(
     np.testing.assert_allclose(names["recordings"][2]["t_s"][-1], 0.5)
 
 
-@pytest.mark.parametrize("name", ["frixel.simulator", "frixel.profiles"])
+@pytest.mark.parametrize(
+    "name", ["frixel._tables", "frixel.simulator", "frixel.profiles", "frixel.scoring", "frixel.sweep"]
+)
 def test_the_examples_in_docstrings_are_true(name: str) -> None:
     failed, attempted = doctest.testmod(importlib.import_module(name))
     assert attempted > 0
@@ -47,3 +52,28 @@ def test_the_examples_in_docstrings_are_true(name: str) -> None:
 @pytest.mark.parametrize("example", EXAMPLES, ids=[path.stem for path in EXAMPLES])
 def test_an_example_runs(example: Path, tmp_path: Path) -> None:
     subprocess.run([sys.executable, str(example)], check=True, cwd=tmp_path, env={"MPLBACKEND": "agg"}, timeout=600)
+
+
+def test_there_are_notebooks() -> None:
+    assert [path.stem for path in NOTEBOOKS] == ["experiment_and_sweep", "figures_and_fit"]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
+def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
+    notebook = nbformat.read(path, as_version=4)
+    codes = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert not any(cell.outputs or cell.execution_count for cell in codes), "notebooks are kept without outputs"
+    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output for cell in codes for output in cell.outputs]
+    text = "".join(output.text for output in shown if output.output_type == "stream")
+    pictures = {kind for output in shown if "data" in output for kind in output.data}
+    if path.stem == "figures_and_fit":
+        assert sum("image/png" in output.get("data", {}) for output in shown) == 2
+        assert "friction map" in str(shown[-1].data["text/html"])
+    else:
+        lines = [line for line in text.splitlines() if line.startswith("observer ")]
+        assert len(lines) == 10
+        assert all("threshold 0.0" in line or "threshold 0.1" in line for line in lines)
+        assert "2 plays with the same bits" in text
+        assert "40 cells" in text
+        assert {"image/png", "image/svg+xml"} <= pictures

@@ -1,15 +1,10 @@
-"""Methods, estimates, the simulated observer, and sessions that are cut off."""
+"""Methods, estimates, and the simulated observer."""
 
 import doctest
 import io
 import itertools
-import json
 import math
 import re
-import subprocess
-import sys
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,14 +13,11 @@ from frixel.experiment import (
     TWO_ALTERNATIVES,
     Answers,
     ConstantStimuli,
-    ExperimentError,
     Grid,
     Method,
     Observer,
     QuestPlus,
-    Session,
     Task,
-    Trial,
     UpDown,
     _estimate,
     estimate,
@@ -35,8 +27,6 @@ from frixel.experiment.coverage import LEVELS, measure, methods
 from numpy.typing import NDArray
 
 from .conftest import REPOSITORY
-
-TEXTS = {"bars.toml": "version = 2\n"}
 
 
 def level_of(method: Method) -> float:
@@ -228,132 +218,6 @@ def test_the_table_of_answers_is_that_of_psignifit() -> None:
     assert file.getvalue() == "level,correct,total\n0.1,1,2\n0.2,2,3\n"
     with pytest.raises(ValueError, match="a number from 0"):
         answers.add(float("nan"), True)
-
-
-# Sessions
-
-
-class Person:
-    """Answers by a simulated observer, and counts what was presented."""
-
-    def __init__(self, fails_at: int | None = None) -> None:
-        self.presented: list[Trial] = []
-        self._fails_at = fails_at
-
-    def play(self, trial: Trial) -> None:
-        if trial.number == self._fails_at:
-            raise KeyboardInterrupt
-        self.presented.append(trial)
-
-    def answer(self, trial: Trial) -> int:
-        observer = Observer(0.12, seed=trial.number)
-        return trial.target if observer.answers(trial.level, TWO_ALTERNATIVES) else 1 - trial.target
-
-
-def opened(folder: Path, **changed: Any) -> Session:
-    settings: dict[str, Any] = {"participant": "p01", "task": TWO_ALTERNATIVES, "seed": 7, "played": TEXTS, **changed}
-    return Session(folder, **settings)
-
-
-def run(session: Session, person: Person) -> Answers:
-    method = QuestPlus(LEVELS, TWO_ALTERNATIVES, trials=12, grid=Grid(np.geomspace(0.01, 1.0, 15)))
-    return session.run(method, person.play, person.answer, practice=[1.0, 1.0], catch_every=5)
-
-
-def test_a_session_that_was_cut_off_goes_on_without_repeating_an_answer(tmp_path: Path) -> None:
-    with opened(tmp_path / "whole") as session:
-        whole, person = run(session, Person()), Person()
-        rows = session.rows
-    with opened(tmp_path / "cut") as session:
-        with pytest.raises(KeyboardInterrupt):
-            run(session, Person(fails_at=6))
-        with pytest.raises(ExperimentError, match="open the session again"):
-            run(session, Person())
-    # As a crash in the middle of a write leaves it.
-    with (tmp_path / "cut" / "trials.jsonl").open("ab") as file:
-        file.write(b'{"number": 6, "bl')
-    with opened(tmp_path / "cut") as session:
-        assert len(session.rows) == 6
-        assert run(session, person).table == whole.table
-        without_times = [{key: value for key, value in row.items() if not key.endswith("_s")} for row in session.rows]
-    assert [trial.number for trial in person.presented] == list(range(6, 16))
-    assert without_times == [{key: value for key, value in row.items() if not key.endswith("_s")} for row in rows]
-    assert sum(row["is_practice"] for row in rows) == 2
-    assert [row["level"] for row in rows if row["is_catch"]] == [0.0, 0.0]
-
-
-def test_a_killed_session_has_lost_at_most_the_trial_that_ran(tmp_path: Path) -> None:
-    program = f"""
-import os
-from frixel.experiment import *
-def play(trial):
-    if trial.number == 4:
-        os.kill(os.getpid(), 9)
-with Session({str(tmp_path)!r}, "p01", TWO_ALTERNATIVES, seed=7, played={TEXTS!r}) as session:
-    session.run(ConstantStimuli([0.1, 0.2], 5), play, lambda trial: trial.target)
-"""
-    assert subprocess.run([sys.executable, "-c", program], check=False).returncode != 0
-    with opened(tmp_path) as session:
-        assert [row["number"] for row in session.rows] == [0, 1, 2, 3]
-
-
-def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) -> None:
-    opened(tmp_path).close()
-    manifest = json.loads((tmp_path / "manifest.json").read_text())
-    assert manifest["played"] == {"bars.toml": "436f6de28726501973ddd9fb91fa92c6ec6225e5c28d8fbdb698dc1720e43714"}
-    assert str(tmp_path) not in (tmp_path / "manifest.json").read_text()
-    wrong: list[tuple[dict[str, Any], str]] = [
-        ({"participant": "p02"}, "participant is 'p01' there, and 'p02' here"),
-        ({"seed": 8}, "seed is 7 there"),
-        ({"played": {"bars.toml": "version = 1\n"}}, "played is"),
-        ({"participant": "Jane Doe"}, "give a code"),
-    ]
-    for changed, said in wrong:
-        with pytest.raises(ExperimentError, match=said):
-            opened(tmp_path, **changed)
-
-
-def test_a_session_has_one_writer(tmp_path: Path) -> None:
-    with opened(tmp_path), pytest.raises(ExperimentError, match="another process writes"):
-        opened(tmp_path)
-    opened(tmp_path).close()
-
-
-def test_another_method_is_not_gone_on_with(tmp_path: Path) -> None:
-    with opened(tmp_path) as session:
-        session.run(ConstantStimuli([0.1, 0.2], 2), lambda trial: None, lambda trial: 0)
-    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="trial 0 had level"):
-        session.run(ConstantStimuli([0.3, 0.4], 2), lambda trial: None, lambda trial: 0)
-
-
-def test_a_full_disk_keeps_the_trials_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with opened(tmp_path) as session:
-        session.run(ConstantStimuli([0.1], 2), lambda trial: None, lambda trial: 0)
-
-    def full(_: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.fsync", full)
-    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="No space left on device"):
-        session.run(ConstantStimuli([0.1], 3), lambda trial: None, lambda trial: 0)
-    assert len((tmp_path / "trials.jsonl").read_bytes().splitlines()) == 2
-
-
-def test_an_answer_that_is_none_is_refused(tmp_path: Path) -> None:
-    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="an answer is 0 or 1, and this one is 2"):
-        session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 2)
-    assert not (tmp_path / "trials.jsonl").exists()
-
-
-def test_breaks_come_between_trials_and_not_while_answers_are_read_again(tmp_path: Path) -> None:
-    breaks: list[int] = []
-    settings: dict[str, Any] = {"break_every": 2, "on_break": breaks.append}
-    with opened(tmp_path) as session:
-        session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
-    assert breaks == [2, 4]
-    with opened(tmp_path) as session:
-        session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
-    assert breaks == [2, 4, 4]
 
 
 # The document

@@ -185,7 +185,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         header.electric_friction_max_n = electric_friction_max_n(header, records, points);
     }
     program.layers = layer_map(scene, &program.titles);
-    tick_cost::check(scene, &program, limits.tick_cycles_max, log);
+    tick_cost::check(scene, &program, limits.core, limits.tick_cycles_max, log);
     Some(program)
 }
 

@@ -26,6 +26,7 @@
 //! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`TargetRange`]: the target friction of a program over its screen.
+//! - [`Scenario`]: what happens to a board while a scene plays, and what has to be seen of it.
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 #![forbid(unsafe_code)]
 
@@ -63,6 +64,7 @@ mod program;
 mod reach;
 pub mod reference;
 mod resample;
+mod scenario;
 mod schema;
 mod screen;
 mod source;
@@ -100,6 +102,9 @@ pub use printable::{NAME_MAX_CHARS, Shown, is_printable, printable, printable_li
 pub use profiles::ProfileSource;
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
+pub use scenario::{
+    Action, At, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke,
+};
 pub use schema::json_schema;
 pub use screen::{Screen, Slab};
 pub use target_range::{OutOfReach, TargetRange};

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 
 use frixel_layers::cost::{self, LayerCosts, Worst, worst_of_scene};
 use frixel_layers::{Cell, layer_numbers, layer_set};
+use frixel_wire::hello::Core;
 
 use super::file::Scene;
 use super::log::Log;
@@ -12,17 +13,17 @@ use super::program::Program;
 use super::reference::Shape;
 use super::titles::{LayerTitle, listed};
 
-/// Reports a mistake if the longest tick is estimated at more than `cycles_max`. Its position is that of the topmost
+/// Reports a mistake if the longest tick is estimated at more than `cycles_max` on a core. Its position is that of the topmost
 /// layer at the place.
 ///
 /// The board adds up all layers of a cell of its grid. The message names the layers that meet at one place of that cell
 /// if these alone take too long; otherwise it names all layers of the cell.
-pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut Log) {
-    let worst = program.worst_tick();
-    if worst.cycles() <= cycles_max {
+pub(super) fn check(scene: &Scene, program: &Program, core: Core, cycles_max: u32, log: &mut Log) {
+    let worst = program.worst_tick(core);
+    if worst.cycles(core) <= cycles_max {
         return;
     }
-    let meeting = program.dearest_meeting(&worst.cell);
+    let meeting = program.dearest_meeting(&worst.cell, core);
     let meet = meeting.as_ref().is_some_and(|meeting| meeting.cycles > cycles_max);
     let (layers, (x_mm, y_mm)) = match meeting {
         Some(Meeting { layers, place_m, .. }) if meet => (layers, rounded_mm(place_m)),
@@ -30,7 +31,7 @@ pub(super) fn check(scene: &Scene, program: &Program, cycles_max: u32, log: &mut
     };
     let titles: Vec<&LayerTitle> = layers.iter().filter_map(|number| program.titles.get(*number)).collect();
     let topmost = titles.last().and_then(|title| scene.layers.iter().find(|layer| layer.number() == title.number()));
-    let cycles = worst.cycles();
+    let cycles = worst.cycles(core);
     let mistake = FitMistake::TickTooLong { cycles, cycles_max, layers: listed(&titles), meet, x_mm, y_mm };
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
@@ -45,9 +46,9 @@ struct Meeting {
 }
 
 impl Program {
-    /// The longest tick, as the board estimates it.
-    pub fn worst_tick(&self) -> Worst {
-        worst_of_scene(&self.header, &self.records, &self.points)
+    /// The longest tick on a core, as the board estimates it.
+    pub fn worst_tick(&self, core: Core) -> Worst {
+        worst_of_scene(&self.header, &self.records, &self.points, core)
     }
 
     /// Titles in messages of the layers that may act in a cell, from bottom to top.
@@ -59,10 +60,10 @@ impl Program {
     ///
     /// Tries every pair of a left and a top edge, moved inside by a micrometre: if rectangles overlap, one of these
     /// places lies within all of them. Also tries centres, for ellipses and polygons.
-    fn dearest_meeting(&self, cell: &Cell) -> Option<Meeting> {
-        let mut costs = LayerCosts::new(&self.header);
+    fn dearest_meeting(&self, cell: &Cell, core: Core) -> Option<Meeting> {
+        let mut costs = LayerCosts::new(&self.header, core);
         for (number, record) in (0..).zip(&self.records) {
-            costs.add(number, record, &self.points);
+            costs.add(number, record, &self.points, core);
         }
         let shapes: Vec<(usize, Shape)> = layer_numbers(cell.layers)
             .filter_map(|number| self.records.get(number).map(|record| (number, record)))
@@ -77,16 +78,16 @@ impl Program {
         let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
-            .map(|place_m| meeting_at(place_m, &shapes, &costs))
+            .map(|place_m| meeting_at(place_m, &shapes, &costs, core))
             // The first of the places that take most: a corner if there is one.
             .min_by_key(|meeting| Reverse(meeting.cycles))
     }
 }
 
-fn meeting_at(place_m: (f64, f64), shapes: &[(usize, Shape)], costs: &LayerCosts) -> Meeting {
+fn meeting_at(place_m: (f64, f64), shapes: &[(usize, Shape)], costs: &LayerCosts, core: Core) -> Meeting {
     let here = shapes.iter().filter(|(_, shape)| shape.covers(place_m.0, place_m.1));
     let layers: Vec<usize> = here.map(|(number, _)| *number).collect();
-    let cycles = cost::cycles(costs.of_tick(layer_set(layers.iter().copied())));
+    let cycles = cost::cycles(core, costs.of_tick(layer_set(layers.iter().copied())));
     Meeting { place_m, layers, cycles }
 }
 
@@ -121,7 +122,13 @@ mod tests {
         let program = compile_text(text).expect("it compiles");
         let scene = Scene::parse(text, "test.toml", &*PICTURES).expect("it reads");
         let mut log = Log::new(&scene.source);
-        check(&scene, &program, program.worst_tick().cycles().saturating_add_signed(more_cycles), &mut log);
+        check(
+            &scene,
+            &program,
+            Core::CortexM4f,
+            program.worst_tick(Core::CortexM4f).cycles(Core::CortexM4f).saturating_add_signed(more_cycles),
+            &mut log,
+        );
         log.finish(Some(())).err().map(|error| error.to_string())
     }
 
@@ -129,8 +136,8 @@ mod tests {
     fn layers_that_meet_are_named_with_their_place_and_number() {
         let text = format!("{HEAD}{}{}{}", layer(0), layer(90), layer(95));
         let program = compile_text(&text).expect("it compiles");
-        assert_eq!(program.worst_tick().cell.layers, [0b110, 0]);
-        let cycles = program.worst_tick().cycles();
+        assert_eq!(program.worst_tick(Core::CortexM4f).cell.layers, [0b110, 0]);
+        let cycles = program.worst_tick(Core::CortexM4f).cycles(Core::CortexM4f);
         let line = 2 * 7 + HEAD.lines().count() + 1;
         let expected = format!(
             "test.toml:{line}:1: layer 2 (grating) and layer 3 (grating) meet at x 95 mm, y 0 mm: a tick there is estimated at \

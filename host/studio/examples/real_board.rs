@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use frixel_control::Board;
-use frixel_hil_sim::{BoardMemory, PseudoTerminal, Rig, RigConfig, Stroke, TickRecord};
+use frixel_hil_sim::{BoardMemory, PseudoTerminal, Rig, RigConfig, Stroke, TickRecord, WorldFault};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use serde_json::{Value, json};
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         match commands.try_recv() {
             Ok(command) if command == "fault" => {
                 let now = rig.tick();
-                rig.world_mut().schedule_amplifier_fault(now..now + FAULT_TICKS);
+                rig.world_mut().schedule_fault(now..now + FAULT_TICKS, WorldFault::AmplifierNotReady)?;
             }
             Ok(command) => return Err(format!("unknown command `{command}`: write `fault`").into()),
             Err(TryRecvError::Disconnected) => return Ok(()),

@@ -116,6 +116,7 @@ mod tests {
                 TickRecord {
                     tick,
                     status: frixel_control::Status { telemetry: Telemetry::default(), ..Default::default() },
+                    drive: frixel_control::Drive::default(),
                     felt,
                 }
             })

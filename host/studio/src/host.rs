@@ -67,7 +67,7 @@ mod tests {
 
     use frixel_driver::LinkClosed;
     use frixel_felt::recorder::Recorder;
-    use frixel_hil_sim::{BoardMemory, RigConfig};
+    use frixel_hil_sim::{BoardMemory, RigConfig, WorldFault};
     use frixel_play::PlayError;
     use frixel_wire::fault::State;
 
@@ -186,7 +186,7 @@ mod tests {
         host.arm_and_play().unwrap();
         let rig = &mut stream_mut(&mut host).rig;
         let now = rig.tick();
-        rig.world_mut().schedule_amplifier_fault(now..now + 400);
+        rig.world_mut().schedule_fault(now..now + 400, WorldFault::AmplifierNotReady).unwrap();
         while rig.state().0 != State::Faulted {
             rig.step();
         }

@@ -9,7 +9,7 @@ use object::read::elf::{FileHeader, ProgramHeader};
 
 use super::figures::Figures;
 use super::stack::Functions;
-use crate::command::{IMAGES_TARGET_FOLDER, M4F, cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, cargo_in, root, run};
 
 /// A set of features that a board's image is built with.
 struct Build {
@@ -18,28 +18,53 @@ struct Build {
     features: &'static [&'static str],
 }
 
-/// Folder of the real board, and the name of its image.
-const G474: (&str, &str) = ("firmware/board-nucleo-g474re", "board-nucleo-g474re");
+/// A board: its folder, the name of its image, and what that is compiled for.
+struct Board(&'static str, &'static str, &'static str);
+
+const G474: Board = Board("firmware/board-nucleo-g474re", "board-nucleo-g474re", M4F);
 const FULL: Build = Build { name: "full", features: &[] };
 const G474_BUILDS: [Build; 2] =
     [FULL, Build { name: "grating_only", features: &["--no-default-features", "--features", "grating"] }];
+/// Both boards of one folder, with the prefix of the names of their figures.
+const PICOS: [(&str, Board, [Build; 2]); 2] = [
+    (
+        "pico_2",
+        Board("firmware/board-pico", "board-pico", M33),
+        [FULL, Build { name: "grating_only", features: &["--no-default-features", "--features", "rp2350,grating"] }],
+    ),
+    (
+        "pico",
+        Board("firmware/board-pico", "board-pico", M0_PLUS),
+        [
+            Build { name: "full", features: &["--no-default-features", "--features", "rp2040,everything"] },
+            Build { name: "grating_only", features: &["--no-default-features", "--features", "rp2040,grating"] },
+        ],
+    ),
+];
 /// The main program and the exceptions that can interrupt each other: the tick, and the fault of unreadable flash.
 const MAIN: &str = "main";
 const TICK: &str = "TIM3";
 const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];
-/// Folder of the emulated board, which is the name of its image, too.
-const AN386: (&str, &str) = ("firmware/board-mps2-an386", "board-mps2-an386");
+const AN386: Board = Board("firmware/board-mps2-an386", "board-mps2-an386", M4F);
 /// The serial port's interrupts, of one priority, are counted as if one could interrupt the other.
 const AN386_EXCEPTIONS: [&str; 3] = ["UART0_RX", "UART0_TX", "SysTick"];
 /// Where RAM begins on every Cortex-M.
 const RAM: u64 = 0x2000_0000;
 const PERIPHERALS: u64 = 0x4000_0000;
 
-/// Measures the images of the real board, if its folder exists, and the stack of the emulated board.
+/// Measures the images of the real boards, and the stack of the emulated board. An image for the Pico takes as much RAM
+/// as flash for its code, which runs there.
 pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
+    for (name, board, builds) in &PICOS {
+        for build in builds {
+            let (flash, ram) = sizes(&image(board, build)?)?;
+            figures.put(format!("{name}.flash_{}", build.name), flash);
+            figures.put(format!("{name}.ram_{}", build.name), ram);
+        }
+    }
     if root().join(G474.0).is_dir() {
         for build in &G474_BUILDS {
-            let path = image(G474, build)?;
+            let path = image(&G474, build)?;
             let (flash, ram) = sizes(&path)?;
             figures.put(format!("g474.flash_{}", build.name), flash);
             figures.put(format!("g474.ram_{}", build.name), ram);
@@ -49,19 +74,19 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
             measure_stack(figures, format!("g474.stack_{}", build.name), &functions, &EXCEPTIONS);
         }
     }
-    let functions = Functions::read(&image(AN386, &FULL)?)?;
+    let functions = Functions::read(&image(&AN386, &FULL)?)?;
     measure_stack(figures, "an386.stack".to_owned(), &functions, &AN386_EXCEPTIONS);
     Ok(())
 }
 
 /// Builds an image. The next build of the same image takes its place.
-fn image((folder, image): (&str, &str), build: &Build) -> Result<PathBuf, String> {
+fn image(Board(folder, image, target): &Board, build: &Build) -> Result<PathBuf, String> {
     let mut command = cargo_in(folder);
     command
-        .args(["build", "--release", "--locked", "--quiet", "--target-dir", IMAGES_TARGET_FOLDER])
+        .args(["build", "--release", "--locked", "--quiet", "--target", target, "--target-dir", IMAGES_TARGET_FOLDER])
         .args(build.features);
-    run(&format!("image of {folder}, {}", build.name), &mut command)?;
-    Ok(root().join(folder).join(IMAGES_TARGET_FOLDER).join(M4F).join("release").join(image))
+    run(&format!("image of {folder} for {target}, {}", build.name), &mut command)?;
+    Ok(root().join(folder).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(image))
 }
 
 /// Measures the depth of the stack. Without the figure, its limit fails.

@@ -18,7 +18,7 @@ use super::thumb::{Instruction, decode};
 /// B1.5.6).
 const EXCEPTION_BYTES: u64 = 27 * 4;
 /// Parts of the names of functions that end the program; the last one overflows the stack for a test.
-const ENDS: [&str; 5] = ["panic", "rust_begin_unwind", "5fault3end", "5fault5never", "15fault_injection8overflow"];
+const ENDS: [&str; 5] = ["panic", "rust_begin_unwind", "5fault15Ending", "5fault5never", "15fault_injection8overflow"];
 
 /// Prefix of the names of functions that the linker outlined from several functions.
 const OUTLINED: &str = "OUTLINED_FUNCTION";

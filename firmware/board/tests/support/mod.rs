@@ -1,5 +1,7 @@
-//! What the tests of bring-up share.
+//! What the tests share.
 #![allow(dead_code, reason = "a test uses its part")]
 
 pub(crate) mod firmware;
+pub(crate) mod hardware;
 pub(crate) mod person;
+pub(crate) mod played;

@@ -5,8 +5,9 @@ use frixel_wire::message::Refusal;
 
 use crate::context::Context;
 use crate::cosine::{centred, direction};
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -39,8 +40,8 @@ parameters! {
 impl Kind for Bitmap {
     type Coefficients = BitmapCoefficients;
 
-    fn cost(&self) -> u32 {
-        if self.tiled { const { core_cycles("bitmap_tiled") } } else { const { core_cycles("bitmap") } }
+    fn cost(&self) -> Cost {
+        if self.tiled { const { measured_cost("bitmap_tiled") } } else { const { measured_cost("bitmap") } }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -7,8 +7,9 @@ use crate::click::Click;
 use crate::clicks::ClickNumber;
 use crate::context::Context;
 use crate::cosine::cosine;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -39,8 +40,8 @@ impl Kind for Button {
         }
     }
 
-    fn cost(&self) -> u32 {
-        const { core_cycles("button") }
+    fn cost(&self) -> Cost {
+        const { measured_cost("button") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -3,8 +3,9 @@
 use frixel_wire::message::Refusal;
 
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -21,8 +22,8 @@ parameters! {
 impl Kind for Constant {
     type Coefficients = Self;
 
-    fn cost(&self) -> u32 {
-        const { core_cycles("constant") }
+    fn cost(&self) -> Cost {
+        const { measured_cost("constant") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

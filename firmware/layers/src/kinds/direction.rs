@@ -4,8 +4,9 @@ use frixel_wire::message::Refusal;
 
 use crate::context::Context;
 use crate::cosine::direction;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -32,8 +33,8 @@ parameters! {
 impl Kind for Direction {
     type Coefficients = DirectionCoefficients;
 
-    fn cost(&self) -> u32 {
-        const { core_cycles("direction") }
+    fn cost(&self) -> Cost {
+        const { measured_cost("direction") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

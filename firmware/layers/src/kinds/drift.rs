@@ -6,8 +6,9 @@ use frixel_wire::message::{ConfigRefusal, Refusal};
 use super::grating::Grating;
 use super::rings::Rings;
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, Parameters, UnknownForm, parameters, range};
 use crate::point::Point;
@@ -61,8 +62,8 @@ parameter!(Grating, Rings);
 impl Kind for DriftingGrating {
     type Coefficients = Drifting<<Grating as Kind>::Coefficients>;
 
-    fn cost(&self) -> u32 {
-        self.grating.cost() + const { core_cycles("drift") }
+    fn cost(&self) -> Cost {
+        self.grating.cost() + const { measured_cost("drift") }
     }
 
     fn bounds(&self, points: &[Point]) -> Interval<f32> {
@@ -78,8 +79,8 @@ impl Kind for DriftingGrating {
 impl Kind for DriftingRings {
     type Coefficients = Drifting<<Rings as Kind>::Coefficients>;
 
-    fn cost(&self) -> u32 {
-        self.rings.wave.cost() + const { core_cycles("drifting_rings") }
+    fn cost(&self) -> Cost {
+        self.rings.wave.cost() + const { measured_cost("drifting_rings") }
     }
 
     fn bounds(&self, points: &[Point]) -> Interval<f32> {

@@ -6,8 +6,9 @@ use crate::click::Click;
 use crate::clicks::ClickNumber;
 use crate::context::Context;
 use crate::cosine::{cosine, direction};
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -36,8 +37,8 @@ parameters! {
 impl Kind for Edge {
     type Coefficients = EdgeCoefficients;
 
-    fn cost(&self) -> u32 {
-        const { core_cycles("edge") }
+    fn cost(&self) -> Cost {
+        const { measured_cost("edge") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -3,6 +3,7 @@
 use frixel_wire::message::Refusal;
 
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
 use crate::kind::{Evaluate, Kind};
 use crate::parameters::{parameters, range};
@@ -32,7 +33,7 @@ parameters! {
 impl Kind for Grating {
     type Coefficients = GratingCoefficients;
 
-    fn cost(&self) -> u32 {
+    fn cost(&self) -> Cost {
         self.wave.cost()
     }
 

@@ -4,8 +4,9 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::context::Context;
 use crate::cosine::cosine;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::noise_waves::{WAVES, Waves};
 use crate::parameters::{parameters, range, within};
 use crate::point::Point;
@@ -41,8 +42,8 @@ impl Kind for Noise {
         within(ConfigField::Wavelength, self.wavelength_min_m, min_m, self.wavelength_max_m, layer)
     }
 
-    fn cost(&self) -> u32 {
-        const { core_cycles("noise") }
+    fn cost(&self) -> Cost {
+        const { measured_cost("noise") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

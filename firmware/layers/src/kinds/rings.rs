@@ -3,8 +3,9 @@
 use frixel_wire::message::Refusal;
 
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -34,8 +35,8 @@ parameters! {
 impl Kind for Rings {
     type Coefficients = RingsCoefficients;
 
-    fn cost(&self) -> u32 {
-        self.wave.cost() + const { core_cycles("rings") }
+    fn cost(&self) -> Cost {
+        self.wave.cost() + const { measured_cost("rings") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -4,6 +4,7 @@ use frixel_wire::message::{ConfigRefusal, Refusal};
 use frixel_wire::scene::{CURVE_POINTS_MAX, SceneError};
 
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
 use crate::kind::{Evaluate, Kind};
 use crate::measured;
@@ -42,8 +43,8 @@ impl Kind for Speed {
         Ok(())
     }
 
-    fn cost(&self) -> u32 {
-        measured::SPEED + u32::from(self.count) * measured::SPEED_POINT
+    fn cost(&self) -> Cost {
+        measured::SPEED + measured::SPEED_POINT * u32::from(self.count)
     }
 
     fn bounds(&self, points: &[Point]) -> Interval<f32> {

@@ -4,8 +4,9 @@ use frixel_wire::message::Refusal;
 
 use crate::angle::angle_turns;
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::parameters::{parameters, range};
 use crate::point::Point;
 use crate::prepare::Preparation;
@@ -40,8 +41,8 @@ parameters! {
 impl Kind for Spokes {
     type Coefficients = SpokesCoefficients;
 
-    fn cost(&self) -> u32 {
-        self.wave.cost() + const { core_cycles("spokes") }
+    fn cost(&self) -> Cost {
+        self.wave.cost() + const { measured_cost("spokes") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -3,8 +3,9 @@
 use frixel_wire::message::Refusal;
 
 use crate::context::Context;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::measured;
 use crate::parameters::{parameters, range};
 use crate::point::Point;
@@ -24,11 +25,11 @@ parameters! {
 impl Kind for Stream {
     type Coefficients = StreamCoefficients;
 
-    const COST_ELSEWHERE: u32 = measured::STREAM_ELSEWHERE;
+    const COST_ELSEWHERE: Cost = measured::STREAM_ELSEWHERE;
     const STREAMED: bool = true;
 
-    fn cost(&self) -> u32 {
-        const { core_cycles("stream") }
+    fn cost(&self) -> Cost {
+        const { measured_cost("stream") }
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {

@@ -6,8 +6,9 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::context::Context;
 use crate::cosine::cosine;
+use crate::cost::Cost;
 use crate::interval::Interval;
-use crate::kind::{Evaluate, Kind, core_cycles};
+use crate::kind::{Evaluate, Kind, measured_cost};
 use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, form, parameters, put_form, range, within};
 use crate::point::Point;
@@ -93,10 +94,10 @@ impl Parameter for Burst {
 impl Kind for Vibration {
     type Coefficients = VibrationCoefficients;
 
-    fn cost(&self) -> u32 {
+    fn cost(&self) -> Cost {
         match self.beat {
-            Beat::Sine => const { core_cycles("vibration_sine") },
-            Beat::Square => const { core_cycles("vibration_square") },
+            Beat::Sine => const { measured_cost("vibration_sine") },
+            Beat::Square => const { measured_cost("vibration_square") },
         }
     }
 

@@ -76,12 +76,12 @@ impl Loading {
         *self = match self {
             Self::Drive => {
                 load_drive(active, scene, board)?;
-                Self::Layer { number: 0, costs: LayerCosts::new(header) }
+                Self::Layer { number: 0, costs: LayerCosts::new(header, board.limits.core) }
             }
             Self::Layer { number, costs } => {
                 if let Some(record) = scene.record(*number) {
                     active.layers.push(&record, board.tick_hz, &|crc32| directory.find(crc32))?;
-                    costs.add(*number as u8, &record, active.layers.points());
+                    costs.add(*number as u8, &record, active.layers.points(), board.limits.core);
                     Self::Layer { number: *number + 1, costs: *costs }
                 } else {
                     Self::Cost { next_cell: 0, worst: Worst::NOWHERE, costs: *costs }
@@ -93,7 +93,7 @@ impl Loading {
                 if next_cell < Grid::CELLS {
                     Self::Cost { next_cell, worst, costs: *costs }
                 } else {
-                    worst.check(board.limits.tick_cycles_max)?;
+                    worst.check(board.limits.core, board.limits.tick_cycles_max)?;
                     Self::Table
                 }
             }

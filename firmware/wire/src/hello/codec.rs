@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{BoardKind, BoardLimits, HELLO_LEN, Hello, MAGIC, ResetCause};
+use super::{BoardKind, BoardLimits, Core, HELLO_LEN, Hello, MAGIC, ResetCause};
 use crate::bytes::{get, get_u8, get_u16, get_u32, put, put_u8, put_u16, put_u32};
 use crate::fault::{Fault, State};
 
@@ -10,8 +10,8 @@ use crate::fault::{Fault, State};
 pub(super) const FIXED_LEN: usize = 44;
 /// Bytes of the limits before the notices, tags and lengths included: one of 1 byte, one of 2, nine of 4.
 const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
-/// Bytes of the limits, of the notices, and of the limit behind them.
-pub(super) const VALUES_LEN: usize = LIMITS_LEN + (2 + 1) + (2 + 4);
+/// Bytes of the limits, of the notices, and of the limits behind them.
+pub(super) const VALUES_LEN: usize = LIMITS_LEN + (2 + 1) + (2 + 4) + (2 + 1);
 
 const TAG_BITMAP_POOL_BYTES: u8 = 1;
 const TAG_RECORDS_MAX: u8 = 2;
@@ -26,6 +26,7 @@ const TAG_TOUCH_REPORT_PERIOD_S: u8 = 10;
 const TAG_TICK_CYCLES_MAX: u8 = 11;
 const TAG_NOTICES: u8 = 12;
 const TAG_SERIES_RESISTANCE_OHM: u8 = 13;
+const TAG_CORE: u8 = 14;
 
 /// Why bytes are not a hello of any protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +81,7 @@ impl Hello {
         let values = [TAG_NOTICES, 1, self.notices, TAG_SERIES_RESISTANCE_OHM, 4];
         put::<{ FIXED_LEN + LIMITS_LEN }, 5, _>(&mut b, values);
         put_u32::<{ FIXED_LEN + LIMITS_LEN + 5 }, _>(&mut b, self.limits.series_resistance_ohm.to_bits());
+        put::<{ FIXED_LEN + LIMITS_LEN + 9 }, 3, _>(&mut b, [TAG_CORE, 1, self.limits.core.number()]);
         b
     }
 
@@ -139,6 +141,7 @@ impl BoardLimits {
     fn set(&mut self, tag: u8, value: &[u8]) {
         match (tag, value) {
             (TAG_RECORDS_MAX, &[a]) => self.records_max = a,
+            (TAG_CORE, &[a]) => self.core = Core::from(a),
             (TAG_RECEIVE_WINDOW_BYTES, &[a, b]) => self.receive_window_bytes = u16::from_le_bytes([a, b]),
             (TAG_BITMAP_POOL_BYTES, &[a, b, c, d]) => self.bitmap_pool_bytes = u32::from_le_bytes([a, b, c, d]),
             (TAG_TICK_CYCLES_MAX, &[a, b, c, d]) => self.tick_cycles_max = u32::from_le_bytes([a, b, c, d]),

@@ -2,7 +2,7 @@
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
-use frixel_wire::hello::{BoardKind, BoardLimits, Hello, ResetCause, notice};
+use frixel_wire::hello::{BoardKind, BoardLimits, Core, Hello, ResetCause, notice};
 use frixel_wire::message::{
     Accepted, Answer, Command, ConfigField, ConfigRefusal, FromBoard, Refusal, Request, TICK_TIME_CLASSES, Telemetry,
     TickTimes,
@@ -100,6 +100,7 @@ pub fn hello() -> Hello {
             touch_report_period_s: 0.01,
             tick_cycles_max: 2_000,
             series_resistance_ohm: 68e3,
+            core: Core::CortexM4f,
         },
         notices: 0,
     }
@@ -107,7 +108,9 @@ pub fn hello() -> Hello {
 
 fn hellos() -> Vec<Hello> {
     let mut hellos = vec![hello()];
-    hellos.extend((2..=4).map(|number| Hello { board: BoardKind::from(number), ..hello() }));
+    hellos.extend((2..=6).map(|number| Hello { board: BoardKind::from(number), ..hello() }));
+    let core = Core::CortexM0Plus;
+    hellos.push(Hello { limits: BoardLimits { core, ..hello().limits }, ..hello() });
     hellos.extend((2..=6).map(|number| Hello { reset_cause: ResetCause::from(number), ..hello() }));
     hellos.extend(faults().map(|fault| Hello { last_fault: Some(fault), fault_detail: 0x0a0b_0c0d, ..hello() }));
     hellos.extend(STATES.map(|state| Hello { state, scene_crc32: 0xcbf4_3926, ..hello() }));

@@ -1,7 +1,7 @@
 //! The world of a board that ticks by itself: it follows the board's output.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use frixel_control::Drive;
@@ -9,15 +9,27 @@ use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
 
 use super::serial::Serial;
 use super::{LinkRecord, POLL_PERIOD};
-use crate::World;
 use crate::emulated::EmulatorError;
 use crate::emulated::memory::Memory;
+use crate::{World, WorldFault};
 
 /// Requests from the board's owner to the world's thread.
 #[derive(Debug, Default)]
 pub(super) struct ControlFlags {
     pub(super) end: AtomicBool,
     pub(super) stroke: AtomicBool,
+    /// Faults of the world from now on, each with its number of ticks.
+    faults: Mutex<Vec<(WorldFault, u64)>>,
+}
+
+impl ControlFlags {
+    pub(super) fn cause(&self, fault: WorldFault, ticks: u64) {
+        self.faults.lock().unwrap_or_else(PoisonError::into_inner).push((fault, ticks));
+    }
+
+    fn take_faults(&self) -> Vec<(WorldFault, u64)> {
+        std::mem::take(&mut *self.faults.lock().unwrap_or_else(PoisonError::into_inner))
+    }
 }
 
 /// A world that follows the board's output.
@@ -43,6 +55,11 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
         while !self.flags.end.load(Ordering::Acquire) {
             if self.flags.stroke.swap(false, Ordering::AcqRel) {
                 self.world.start_stroke();
+            }
+            for (fault, ticks) in self.flags.take_faults() {
+                let now = self.world.tick();
+                // `LinkBoard::cause` has checked the fault.
+                let _ = self.world.schedule_fault(now..now.saturating_add(ticks), fault);
             }
             self.follow()?;
             self.serial.let_the_next_host_in()?;

@@ -103,7 +103,7 @@ pub struct RamBytes {
     pub table_room_bytes: usize,
 }
 
-/// The longest tick on a Cortex-M4F.
+/// The longest tick on the core of the board that the program is for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LongestTick {
     /// Estimated processor cycles.
@@ -119,13 +119,13 @@ pub struct LongestTick {
 }
 
 impl LongestTick {
-    fn of(program: &Program, cycles_limit: u32) -> Self {
-        let worst = program.worst_tick();
+    fn of(program: &Program, limits: &BoardLimits) -> Self {
+        let worst = program.worst_tick(limits.core);
         let cell = worst.cell;
         let (x_mm, y_mm) = middle_mm(&cell);
         Self {
-            cycles: worst.cycles(),
-            cycles_limit,
+            cycles: worst.cycles(limits.core),
+            cycles_limit: limits.tick_cycles_max,
             x_mm,
             y_mm,
             layers: program.titles_in(&cell).into_iter().map(ToString::to_string).collect(),
@@ -179,7 +179,7 @@ impl SceneCheck {
                 table_whole_bytes: InverseTable::ROW_BYTES * costs.table_rows_whole,
                 table_room_bytes: size_of::<InverseTable>(),
             },
-            tick: LongestTick::of(program, limits.tick_cycles_max),
+            tick: LongestTick::of(program, limits),
             finger: CheckedFinger { title: program.finger.title.clone(), origin: program.finger.origin.word() },
             reach: ReachableFriction {
                 natural_n: reach.natural_friction_n,

@@ -19,7 +19,9 @@ use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
-use frixel_lab::recording::{Difference, RecordingError};
+use frixel_lab::recording::{Difference, RecordingError, ReplayError};
+use frixel_lab::scenario::ScenarioError;
+use frixel_lab::score::TrialsError;
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::sweep::{CellError, PlanError, StudyError};
@@ -65,6 +67,15 @@ pub(crate) enum CommandError {
     NoSweepFile { path: PathBuf, what: &'static str, reason: String },
     #[error("{}: this {what} cannot be read ({source}): {advice}", path.display())]
     SweepInput { path: PathBuf, what: &'static str, source: io::Error, advice: &'static str },
+    #[error("{}: this scenario cannot be read ({source}): {advice}", file.display())]
+    ScenarioUnreadable { file: PathBuf, source: io::Error, advice: String },
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    #[error(
+        "{}: {unmet} {} not as expected: see above", file.display(),
+        if *unmet == 1 { "thing was" } else { "things were" }
+    )]
+    Unmet { file: PathBuf, unmet: usize },
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]
@@ -80,6 +91,8 @@ pub(crate) enum CommandError {
     NoPseudoTerminal { what: &'static str },
     #[error("the contact model rejects the scene's finger: {0}")]
     Finger(ParameterError),
+    #[error(transparent)]
+    Trials(#[from] TrialsError),
     #[error("the threads of --jobs cannot start: {0}; give a smaller number")]
     Threads(ThreadPoolBuildError),
     #[error("{}: {source}", path.display())]
@@ -163,13 +176,13 @@ pub(crate) enum CommandError {
     )]
     StrokeOffScreen { name: String, width_mm: f64, height_mm: f64 },
     #[error(
-        "a stroke moves the finger of --port sim and --port qemu only; a board at {port} has its own: leave out --stroke \
-         and --from"
+        "a stroke moves the finger of --port sim, --port qemu and --port pico only; a board at {port} has its own: leave \
+         out --stroke and --from"
     )]
     StrokeOnBoard { port: String },
     #[error(
-        "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim and --port qemu only; a board at {port} has \
-         its own: leave them out"
+        "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim, --port qemu and --port pico \
+         only; a board at {port} has its own: leave them out"
     )]
     WorldOnBoard { port: String },
     #[error("{port} sends telemetry at most {max} times a second, --csv-hz {found} is more; give {max} or less")]
@@ -249,8 +262,8 @@ pub(crate) enum CommandError {
     Recording { path: PathBuf, source: RecordingError },
     #[error("--participant goes into a Parquet file, and {} is none by its name: give one that ends in .parquet", path.display())]
     ParticipantInTable { path: PathBuf },
-    #[error("{} cannot be played again: {reason}", path.display())]
-    NoReplay { path: PathBuf, reason: String },
+    #[error("{} cannot be played again: {source}", path.display())]
+    NoReplay { path: PathBuf, source: Box<ReplayError> },
     #[error(
         "{} plays other bits: {difference}; the file was changed, or this machine computes differently", path.display()
     )]

@@ -20,6 +20,7 @@ mod profiles;
 mod record;
 mod report;
 mod safety;
+mod scenario;
 mod scene;
 mod score;
 mod selftest;
@@ -69,7 +70,7 @@ enum Command {
     Score(score::ScoreArgs),
     /// Play every combination of scenes, people, screens and values, and draw which simulated fingers feel what.
     Sweep(sweep::SweepArgs),
-    /// Serve a virtual board on a pseudo-terminal, for other programs to play to.
+    /// Serve a virtual board on a pseudo-terminal, for other programs to play to; or run a scenario of faults.
     Sim(SimArgs),
     /// Open the studio, a page in which scenes are made, seen and heard.
     Studio(studio::StudioArgs),
@@ -130,6 +131,20 @@ struct SimArgs {
     /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
+    /// Run a scenario in place of serving a board, as fast as it goes: what a host does, what goes wrong, and what has to
+    /// be seen (docs/scenarios.md). Prints what happened.
+    #[arg(
+        long,
+        value_name = "FILE.toml",
+        conflicts_with_all = ["finger", "finger_seed", "screen", "ideal", "seed", "out", "stroke", "from", "touch"]
+    )]
+    scenario: Option<PathBuf>,
+    /// Fail, with exit code 1, unless all is seen that the scenario expects.
+    #[arg(long, requires = "scenario")]
+    expect: bool,
+    /// What the scenario runs on: the simulator in this process, or the firmware on an emulated board.
+    #[arg(long, value_enum, default_value_t, requires = "scenario")]
+    rig: scenario::RigKind,
 }
 
 impl Cli {
@@ -142,6 +157,7 @@ impl Cli {
             Some(Command::Scene(command)) => scene::run(&command),
             Some(Command::Score(args)) => score::run(&args),
             Some(Command::Sweep(args)) => sweep::run(&args),
+            Some(Command::Sim(SimArgs { scenario: Some(file), expect, rig, .. })) => scenario::run(&file, expect, rig),
             #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]

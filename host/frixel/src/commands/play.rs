@@ -45,8 +45,8 @@ pub(super) struct PlayArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated board, or the path of a board's
-    /// serial port.
+    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated Cortex-M4F, `pico` for the image of
+    /// the Pico on an emulated RP2040, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
     #[command(flatten)]
@@ -171,6 +171,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
     let played = match target {
         Target::Simulator => rigs::play_on_simulator(args, &scene, (outputs, live_scene), &interrupt),
         Target::Emulator => rigs::play_on_emulator(args, &scene, (outputs, live_scene), &interrupt),
+        Target::Pico => rigs::play_on_pico(args, &scene, (outputs, live_scene), &interrupt),
         Target::Port => rigs::play_on_port(args, &scene, (outputs, live_scene), &interrupt),
     }?;
     finish(args, played)

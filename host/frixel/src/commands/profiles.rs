@@ -28,17 +28,9 @@ pub(super) struct TouchArgs {
     /// (docs/touch.md). Without it, 100.
     #[arg(long, value_name = "NAME|FILE")]
     touch: Option<String>,
-    /// The source that a recording has, in place of that of a name.
-    #[arg(skip)]
-    recorded: Option<TouchConfig>,
 }
 
 impl TouchArgs {
-    /// The source of a recorded play.
-    pub(super) fn of_recording(source: Option<TouchConfig>) -> Self {
-        Self { touch: None, recorded: source }
-    }
-
     /// The name of the source, if it is a bundled one.
     pub(super) fn bundled_name(&self) -> Option<&str> {
         self.touch.as_deref().filter(|name| TouchConfig::bundled(name).is_some())
@@ -55,8 +47,7 @@ impl TouchArgs {
 
     /// The source, if it is given. In an ideal world it loses nothing.
     pub(super) fn source(&self, is_ideal: bool) -> Result<Option<TouchConfig>, SceneFileError> {
-        let named = self.touch.as_deref().map(scene_file::touch_source).transpose()?;
-        let source = self.recorded.or(named);
+        let source = self.touch.as_deref().map(scene_file::touch_source).transpose()?;
         Ok(source.map(|source| if is_ideal { source.without_losses() } else { source }))
     }
 

@@ -6,9 +6,9 @@ use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use clap::Args;
 use frixel_hil_sim::RigConfig;
-use frixel_lab::score::{Score, Trial, TrialFinger, TrialPlan, Way};
+use frixel_lab::score::{Score, TrialPlan, Way};
 use frixel_lab::simulation::SimulationError;
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::compile;
 
 use super::argument::number;
 use super::error::CommandError;
@@ -67,7 +67,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let (csv, layers, svg) = (file("score.csv")?, file("score-layers.csv")?, file("score.svg")?);
     let scene = scene?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
-    let trials = trials(args, &scene, &program)?;
+    let trials = trial_plan(args)?.of_people(args.people, &scene, &program, args.ideal)?;
     let _folder = OutputFolder::open(&args.out)?;
     let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(|error| match error {
         SimulationError::Play(error) => CommandError::of_play("sim", error),
@@ -118,20 +118,6 @@ fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan, CommandError> {
         seconds: args.seconds,
         median_speed_m_per_s: args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
     })
-}
-
-/// Every trial of every finger.
-fn trials(args: &ScoreArgs, scene: &Scene, program: &Program) -> Result<Vec<Trial>, CommandError> {
-    let plan = trial_plan(args)?;
-    let of_finger = |finger| plan.trials(program, finger).map_err(CommandError::GeneratedStroke);
-    let Some(people) = args.people else { return of_finger(None) };
-    // A scene of version 1 has no screen without its own finger's skin.
-    let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
-    let of_person = |person| {
-        let finger = TrialFinger::of_person(person, coating_gap_um, args.ideal).map_err(CommandError::Finger)?;
-        of_finger(Some(finger))
-    };
-    Ok((1..=people).map(of_person).collect::<Result<Vec<_>, CommandError>>()?.concat())
 }
 
 /// Parses the median speed of a stroke.

@@ -41,17 +41,9 @@ pub(super) struct StrokeArgs {
     /// Start and end a straight stroke at rest, as a hand does, rather than at constant speed.
     #[arg(long, alias = "natural", requires = "from")]
     minimum_jerk: bool,
-    /// The stroke of a recording, in place of all options.
-    #[arg(skip)]
-    recorded: Option<(StrokeOptions, Option<Stroke>)>,
 }
 
 impl StrokeArgs {
-    /// The stroke of a recorded play; `file` is that of its file.
-    pub(super) fn of_recording(options: StrokeOptions, file: Option<Stroke>) -> Self {
-        Self { recorded: Some((options, file)), ..Self::default() }
-    }
-
     /// The options as a recording has them, without the path of a file.
     pub(super) fn options(&self) -> StrokeOptions {
         let place = |point: Point| [point.x_m, point.y_m];
@@ -87,20 +79,15 @@ impl StrokeArgs {
         seconds: Option<f64>,
         seed: u64,
     ) -> Result<Option<Stroke>, CommandError> {
-        let generated = |options: &StrokeOptions| {
-            options.generated(screen_m, seconds, seed).map_err(|error| match error {
-                StrokeOptionsError::InPlace => CommandError::StrokeInPlace,
-                StrokeOptionsError::TooLong { seconds } => CommandError::StrokeTooLong { name: self.name(), seconds },
-                StrokeOptionsError::Straight(source) => CommandError::StraightStroke(source),
-                StrokeOptionsError::Human(source) => CommandError::GeneratedStroke(source),
-            })
-        };
-        match (&self.recorded, self.file()) {
-            (Some((_, Some(stroke))), _) => Ok(Some(stroke.clone())),
-            (Some((options, None)), _) => generated(options),
-            (None, Some(path)) => from_file(path).map(Some),
-            (None, None) => generated(&self.options()),
+        if let Some(path) = self.file() {
+            return from_file(path).map(Some);
         }
+        self.options().generated(screen_m, seconds, seed).map_err(|error| match error {
+            StrokeOptionsError::InPlace => CommandError::StrokeInPlace,
+            StrokeOptionsError::TooLong { seconds } => CommandError::StrokeTooLong { name: self.name(), seconds },
+            StrokeOptionsError::Straight(source) => CommandError::StraightStroke(source),
+            StrokeOptionsError::Human(source) => CommandError::GeneratedStroke(source),
+        })
     }
 
     /// What the stroke is called in messages.

@@ -1,15 +1,16 @@
 //! The host's side of an emulated board: its serial port with the board's clock, and the record of the felt friction.
 
 use std::cell::Cell;
-use std::collections::VecDeque;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use frixel_driver::{ByteStream, DEFAULT_BAUD, Link as _, LinkClosed, PortError, SerialLink};
-use frixel_felt::recorder::{Observation, Recorder};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
 use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
+
+use super::held_ticks::HeldTicks;
 
 /// Wall time between two readings of the board's clock.
 const POLL_PERIOD: Duration = Duration::from_millis(1);
@@ -40,10 +41,7 @@ pub struct EmulatedStream<'b> {
     /// Ticks that have passed on the link's clock.
     clock_ticks: Cell<u64>,
     records: Receiver<LinkRecord>,
-    /// Ticks without their telemetry yet, and telemetry without its tick yet.
-    held: VecDeque<LinkRecord>,
-    telemetry: VecDeque<Telemetry>,
-    recorder: Recorder,
+    held: HeldTicks,
 }
 
 impl<'b> EmulatedStream<'b> {
@@ -63,9 +61,7 @@ impl<'b> EmulatedStream<'b> {
             seen_ticks: Cell::new(ticks),
             clock_ticks: Cell::new(0),
             records,
-            held: VecDeque::new(),
-            telemetry: VecDeque::new(),
-            recorder: Recorder::default(),
+            held: HeldTicks::default(),
         };
         let opened = board.host_answers_to(ticks.wrapping_add(SLICE_TICKS)).and_then(|()| board.set_host_open(true));
         opened.map(|()| link).map_err(not_opened)
@@ -94,40 +90,26 @@ impl<'b> EmulatedStream<'b> {
 
     /// Records all ticks so far except the last `held`.
     fn record_ticks(&mut self, held: usize) {
-        self.held.extend(self.records.try_iter());
-        let count = self.held.len().saturating_sub(held);
-        for record in self.held.drain(..count) {
-            let telemetry = telemetry_of(record.tick, &mut self.telemetry);
-            let observation = Observation::of_world(record.tick, &record.felt, record.drive.dac_code.bits());
-            self.recorder.record(&Observation { telemetry, ..observation });
-        }
+        self.held.hold(self.records.try_iter());
+        self.held.record(held);
     }
-}
-
-/// Removes the telemetry up to a tick, and returns the message of that tick.
-fn telemetry_of(tick: u32, telemetry: &mut VecDeque<Telemetry>) -> Option<Telemetry> {
-    let mut last = None;
-    while let Some(earlier) = telemetry.pop_front_if(|telemetry| tick.wrapping_sub(telemetry.tick) as i32 >= 0) {
-        last = Some(earlier);
-    }
-    last.filter(|last| last.tick == tick)
 }
 
 impl Recorded for EmulatedStream<'_> {
     type Recorder = Recorder;
 
     fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.recorder
+        &mut self.held.recorder
     }
 
     fn begin(&mut self) -> Result<(), LinkClosed> {
         self.board.start_stroke();
-        self.recorder.start(self.board.tick().map_err(|error| closed(self.board, &error))?);
+        self.held.recorder.start(self.board.tick().map_err(|error| closed(self.board, &error))?);
         Ok(())
     }
 
     fn record(&mut self, telemetry: &[Telemetry]) {
-        self.telemetry.extend(telemetry);
+        self.held.hear(telemetry.iter().copied());
         self.record_ticks(HELD_TICKS);
     }
 

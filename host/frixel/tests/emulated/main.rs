@@ -12,3 +12,4 @@ mod credit;
 mod emulator;
 mod injected_faults;
 mod link;
+mod pico;

@@ -111,7 +111,7 @@ pub(crate) const OUTPUTS: [Output; 17] = [
 
 /// Every argument that names a file to read, or a port, by the type of a path.
 #[allow(dead_code, reason = "only the test of the command line reads it")]
-pub(crate) const INPUTS: [&str; 20] = [
+pub(crate) const INPUTS: [&str; 21] = [
     "calibrate forces",
     "fit data",
     "model eval input",
@@ -128,6 +128,7 @@ pub(crate) const INPUTS: [&str; 20] = [
     "scene migrate scene",
     "scene preview scene",
     "score scene",
+    "sim scenario",
     "sim stroke",
     "studio page",
     "sweep merge out",

@@ -23,7 +23,7 @@ pub struct Metadata {
     pub git_revision: Option<String>,
     /// Protocol that it speaks: `major.minor`.
     pub protocol: String,
-    /// Where the scene played: `sim`, `qemu`, or `board` for one at a port.
+    /// Where the scene played: `sim`, `qemu`, `pico`, or `board` for one at a port.
     pub rig: String,
     /// Whether finger or board is simulated. Otherwise a person's finger was on a board, which cannot be played again.
     pub is_simulated: bool,

@@ -2,7 +2,8 @@
 //!
 //! A [`Recording`] is a value: [`Recording::of_rows`] makes one of the rows of a recorder, [`Recording::write_parquet`]
 //! and [`Recording::read_parquet`] are its way to bytes and back. [`ParquetWriter`] writes one while it grows. The same
-//! recording gives the same bytes: no time, path or name of a machine is in them.
+//! recording gives the same bytes: no time, path or name of a machine is in them. [`Recording::replay`] plays a simulated
+//! one again.
 
 mod arrow_schema;
 mod error;
@@ -11,6 +12,9 @@ mod metadata;
 mod parquet_reader;
 mod parquet_writer;
 mod play_options;
+mod prepared_play;
+mod replay;
+mod replayed_changes;
 
 use std::fmt::{self, Display};
 
@@ -23,6 +27,8 @@ pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::{ParquetWriter, table_parquet};
 pub use play_options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
+pub use prepared_play::{PreparedPlay, PreparedPlayError};
+pub use replay::ReplayError;
 
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.
 pub const ROWS_PER_GROUP: usize = 65_536;

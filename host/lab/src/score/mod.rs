@@ -10,6 +10,8 @@ mod sentence;
 mod text;
 mod trials;
 
+use std::ops::ControlFlow;
+
 use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
 use frixel_felt::noticed::Noticing;
 use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
@@ -24,12 +26,15 @@ use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use metric::{interval, metric_keys};
-pub use trials::{TrialPlan, Way};
+pub use trials::{TrialPlan, TrialsError, Way};
 
-use crate::simulation::{Simulation, SimulationError, simulate_through_finger};
+use crate::simulation::{Simulation, SimulationError, simulate_while};
 
 /// Plays of which a thread's samples wait in memory: those of all plays together would not fit.
 const PLAYS_PER_THREAD: usize = 4;
+
+/// Is asked many times a second of each play, by several threads; when it breaks, the plays end.
+type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// One play to score.
 #[derive(Clone, Debug)]
@@ -59,6 +64,15 @@ impl Trial {
     /// Plays the trial on the simulated board of `rig`, and returns what the finger felt and the reference: a sample for
     /// every quarter of a millisecond.
     pub fn play(&self, program: &Program, rig: &RigConfig) -> Result<Vec<FidelitySample>, SimulationError> {
+        self.play_while(program, rig, &|| ControlFlow::Continue(()))
+    }
+
+    fn play_while(
+        &self,
+        program: &Program,
+        rig: &RigConfig,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Vec<FidelitySample>, SimulationError> {
         let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
         let simulation = Simulation {
             rig: RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig },
@@ -68,7 +82,7 @@ impl Trial {
             ticks_per_row: (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32,
         };
         let own_finger = self.finger.map(|finger| finger.contact.into());
-        let mut recorder = simulate_through_finger(program, &simulation, own_finger)?.recorder;
+        let mut recorder = simulate_while(program, &simulation, own_finger, true, &mut || goes_on())?.recorder;
         let start_s = recorder.start_s().unwrap_or(0.0);
         Ok(recorder.take_rows().iter().map(|row| FidelitySample::of_row(row, start_s)).collect())
     }
@@ -120,11 +134,25 @@ impl Score {
     /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number of
     /// threads.
     pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, SimulationError> {
+        Self::of_while(program, rig, trials, &|| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::of`]. `goes_on` is asked many times a second of each play, by several threads; when it breaks, the plays
+    /// end there, and the score is that of what was played.
+    pub fn of_while(
+        program: &Program,
+        rig: &RigConfig,
+        trials: &[Trial],
+        goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Self, SimulationError> {
         let mut fingers: Vec<(Option<u64>, Noticing)> = Vec::new();
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
+            if goes_on().is_break() {
+                break;
+            }
             let felt = |trial: &Trial| {
-                trial.play(program, rig).map(|samples| {
+                trial.play_while(program, rig, goes_on).map(|samples| {
                     let fidelity = Fidelity::of(&samples);
                     (samples, fidelity)
                 })

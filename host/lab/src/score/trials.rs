@@ -2,7 +2,8 @@
 
 use frixel_hil_sim::{Person, Stroke, StrokeError};
 use frixel_model::ParameterError;
-use frixel_scene::Program;
+use frixel_scene::{CompileError, Program, Scene};
+use thiserror::Error;
 
 use super::{Trial, TrialFinger};
 
@@ -22,6 +23,20 @@ pub enum Way {
     Stroke(Stroke),
 }
 
+/// Why there are no trials.
+#[derive(Debug, Error)]
+pub enum TrialsError {
+    /// The screen is too small for a stroke.
+    #[error("no stroke can be generated for this scene's screen: {0}")]
+    Stroke(#[from] StrokeError),
+    /// The contact model refuses a person on this screen.
+    #[error("the contact model rejects the finger of a person: {0}")]
+    Finger(#[from] ParameterError),
+    /// The scene's screen is not known without its own finger.
+    #[error(transparent)]
+    Screen(#[from] CompileError),
+}
+
 /// The strokes of a finger.
 #[derive(Clone, Debug)]
 pub struct TrialPlan {
@@ -38,14 +53,35 @@ pub struct TrialPlan {
 }
 
 impl TrialPlan {
+    /// The trials of so many simulated people, the first of an assumed population, whom the board does not know; without
+    /// a number, of the finger that `program`, compiled from `scene`, is meant for.
+    pub fn of_people(
+        &self,
+        people: Option<u64>,
+        scene: &Scene,
+        program: &Program,
+        is_ideal: bool,
+    ) -> Result<Vec<Trial>, TrialsError> {
+        let Some(people) = people else { return Ok(self.trials(program, None)?) };
+        // A scene of version 1 has no screen without its own finger's skin.
+        let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
+        let of_person = |person| {
+            let finger = TrialFinger::of_person(person, coating_gap_um, is_ideal)?;
+            Ok(self.trials(program, Some(finger))?)
+        };
+        Ok((1..=people).map(of_person).collect::<Result<Vec<_>, TrialsError>>()?.concat())
+    }
+
     /// The trials of a finger: without one, of that which the scene is meant for. Each person makes strokes of their
     /// own, and each play has a world seed of its own.
     pub fn trials(&self, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, StrokeError> {
         let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * self.strokes);
         let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
         let strokes = match &self.way {
-            Way::Human => self.of_people("human", Stroke::human, (width_m, height_m), first_stroke)?,
-            Way::HumanRough => self.of_people("human-rough", Stroke::human_rough, (width_m, height_m), first_stroke)?,
+            Way::Human => self.human_strokes("human", Stroke::human, (width_m, height_m), first_stroke)?,
+            Way::HumanRough => {
+                self.human_strokes("human-rough", Stroke::human_rough, (width_m, height_m), first_stroke)?
+            }
             Way::Sweep => vec![("sweep".to_owned(), Stroke::sweep(width_m, height_m, self.seconds)?)],
             Way::Stroke(stroke) => vec![("file".to_owned(), stroke.clone())],
         };
@@ -61,7 +97,7 @@ impl TrialPlan {
         Ok(trials.collect())
     }
 
-    fn of_people(
+    fn human_strokes(
         &self,
         name: &str,
         hand: Generator,

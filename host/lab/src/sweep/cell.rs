@@ -1,6 +1,7 @@
 //! One simulated finger on one scene: all that its plays need, and what it noticed.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use frixel_felt::perception::Verdict;
 use frixel_hil_sim::{Person, RigConfig, StrokeError, TouchConfig};
@@ -165,6 +166,12 @@ impl Cell {
 
     /// Plays the cell. The result is the same on every machine and for any number of threads.
     pub fn play(&self) -> Result<CellResult, CellError> {
+        self.play_while(&|| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::play`]. `goes_on` is asked many times a second of each play; when it breaks, the plays end there, and the
+    /// result is that of what was played.
+    pub fn play_while(&self, goes_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Result<CellResult, CellError> {
         if self.version != env!("CARGO_PKG_VERSION") {
             return Err(CellError::OtherVersion { found: self.version.clone() });
         }
@@ -184,7 +191,7 @@ impl Cell {
             seconds: self.seconds,
             median_speed_m_per_s: self.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
         };
-        let score = Score::of(&program, &rig, &trials.trials(&program, Some(finger))?)?;
+        let score = Score::of_while(&program, &rig, &trials.trials(&program, Some(finger))?, goes_on)?;
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 

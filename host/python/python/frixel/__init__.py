@@ -1,16 +1,18 @@
 """frixel: a touchscreen's friction made programmable.
 
-`frixel.model` is the contact model over arrays; `Scene` is what is felt where; `docs/python.md` has the first steps.
+`frixel.model` is the contact model over arrays, `Scene` is what is felt where, `frixel.sweep` has studies of many
+simulated fingers, and `frixel.experiment` asks people; `docs/python.md` has the first steps.
 """
 
-from . import errors, model
+from . import errors, experiment, model, sweep
 from ._frixel import __version__
 from .device import Device, Telemetry
 from .errors import FitError, FrixelError, Mistake, ParameterError, PlayError, SceneError
 from .fitting import Fit, fit
 from .profiles import Finger, Screen, TouchSource
-from .recording import COLUMNS, Recording
+from .recording import COLUMNS, Recording, replay
 from .scene import Scene
+from .scoring import Score, score
 from .simulator import Simulator, run
 from .stroke import Stroke
 
@@ -27,6 +29,7 @@ __all__ = [
     "Recording",
     "Scene",
     "SceneError",
+    "Score",
     "Screen",
     "Simulator",
     "Stroke",
@@ -34,7 +37,11 @@ __all__ = [
     "TouchSource",
     "__version__",
     "errors",
+    "experiment",
     "fit",
     "model",
+    "replay",
     "run",
+    "score",
+    "sweep",
 ]

@@ -10,10 +10,11 @@ from types import TracebackType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
-from .errors import FrixelError, ParameterError, whole
+from .errors import FrixelError, ParameterError, number, whole
+from .recording import COLUMNS, Recording
 from .scene import Scene
 
 __all__ = ["Device", "Telemetry"]
@@ -126,7 +127,7 @@ class Device:
         PlayError
             The board refuses, for example because its arm switch is not held, or is gone.
         """
-        self._take(self._device.play(_scene(scene).compiled))
+        self._take(self._device.play(Scene.of(scene).compiled))
 
     def replace(self, scene: Scene | Mapping[str, Any]) -> list[str]:
         """Play another scene from the next tick on, without a break.
@@ -146,7 +147,7 @@ class Device:
         PlayError
             The board refuses, has stopped, or is gone.
         """
-        return self._take(self._device.replace(_scene(scene).compiled))
+        return self._take(self._device.replace(Scene.of(scene).compiled))
 
     def set_layer(self, layer: str | int, *, on: bool | None = None, gain: float | None = None) -> list[str]:
         """Switch a layer on or off, or set the factor on its friction; what is not given stays.
@@ -175,7 +176,7 @@ class Device:
         if on is None and gain is None:
             raise ParameterError("a layer is changed by `on`, by `gain` or by both: give one")
         if gain is not None:
-            gain = _number("gain", gain, -GAIN_MAX, GAIN_MAX)
+            gain = number("gain", gain, -GAIN_MAX, GAIN_MAX)
         return self._take(self._device.set_layer(_layer(layer), None if on is None else bool(on), gain))
 
     def trigger(self, layer: str | int, seconds: float | None = None) -> list[str]:
@@ -201,7 +202,7 @@ class Device:
             No scene plays, or the board has stopped, or is gone.
         """
         if seconds is not None:
-            seconds = _number("seconds", seconds, 1e-6, 3600.0)
+            seconds = number("seconds", seconds, 1e-6, 3600.0)
         return self._take(self._device.trigger(_layer(layer), seconds))
 
     def stream(self, samples: ArrayLike, sample_hz: int) -> None:
@@ -245,7 +246,7 @@ class Device:
         KeyboardInterrupt
             Ctrl-C. The board is disarmed.
         """
-        until_s = math.inf if seconds is None else self._now_s + _number("seconds", seconds, 0.0, math.inf)
+        until_s = math.inf if seconds is None else self._now_s + number("seconds", seconds, 0.0, math.inf)
         with self._disarming():
             while self._now_s < until_s and (seconds is not None or self._streaming):
                 self._take(self._device.listen(self._step_s(until_s)))
@@ -267,7 +268,7 @@ class Device:
         KeyboardInterrupt
             Ctrl-C. The board is disarmed.
         """
-        lasts_s = math.inf if seconds is None else _number("seconds", seconds, 0.0, math.inf)
+        lasts_s = math.inf if seconds is None else number("seconds", seconds, 0.0, math.inf)
         return self._messages(lasts_s, whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX))
 
     def _messages(self, lasts_s: float, messages_per_s: int) -> Iterator[Telemetry]:
@@ -286,6 +287,47 @@ class Device:
         finally:
             if not self._device.is_closed:
                 self._take(self._device.subscribe(0))
+
+    def record(self, scene: Scene | Mapping[str, Any], seconds: float, *, messages_per_s: int = 100) -> Recording:
+        """Play a scene from its beginning, record what the board says of itself meanwhile, and stop.
+
+        Parameters
+        ----------
+        scene
+            What to play.
+        seconds
+            How long.
+        messages_per_s
+            Rows a second, at most 1000.
+
+        Returns
+        -------
+        Recording
+            What the board reports: place, speed, what is asked for, voltage and flags; `t_s` is 0 at the first row.
+            What only a simulator knows, such as the felt friction, is not a number.
+
+        Raises
+        ------
+        SceneError, PlayError, KeyboardInterrupt
+            As `play` and `telemetry`.
+        """
+        scene = Scene.of(scene)
+        self.play(scene)
+        messages = list(self.telemetry(number("seconds", seconds, 1e-3, 86_400.0), messages_per_s=messages_per_s))
+        self.stop()
+        columns: dict[str, NDArray[Any]] = {name: np.full(len(messages), np.nan) for name in COLUMNS}
+        for name in ("t_s", "x_mm", "y_mm", "speed_mm_s", "asked_n", "voltage_v_rms"):
+            columns[name] = np.array([getattr(message, name) for message in messages], dtype=float)
+        columns["t_s"] = columns["t_s"] - (messages[0].t_s if messages else 0.0)
+        columns["flags"] = np.array(["+".join(message.flags) for message in messages], dtype=np.str_)
+        settings = {
+            "scene": scene.name,
+            "seconds": seconds,
+            "board": self.board,
+            "board_s": messages[0].t_s if messages else self._now_s,
+            "rows_per_s": messages_per_s,
+        }
+        return Recording(columns, settings, scene, self._device.made(messages_per_s))
 
     def stop(self) -> None:
         """Set the output to zero and disarm the board, which stays connected: for a break. `play` arms it again.
@@ -338,26 +380,7 @@ class Device:
         return sentences
 
 
-def _scene(scene: Scene | Mapping[str, Any]) -> Scene:
-    scene = Scene.from_dict(scene) if isinstance(scene, Mapping) else scene
-    if not isinstance(scene, Scene):
-        raise ParameterError(f"a scene is a Scene or its tables, and Scene.load reads a file, found {scene!r}")
-    return scene
-
-
 def _layer(layer: str | int) -> str:
     if isinstance(layer, bool) or not isinstance(layer, (str, int)):
         raise ParameterError(f"a layer is its name or its number, found {layer!r}")
     return str(layer)
-
-
-def _number(name: str, value: object, least: float, most: float) -> float:
-    """A number from `least` to `most`; `name` is what the message calls it."""
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        number = math.nan
-    if not least <= number <= most:
-        limits = f"from {least:g} to {most:g}" if math.isfinite(most) else f"of at least {least:g}"
-        raise ParameterError(f"{name} is a number {limits}, found {value!r}")
-    return number

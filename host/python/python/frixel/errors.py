@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import index
@@ -26,6 +27,18 @@ def whole(name: str, value: object, least: int, most: int = 2**64 - 1) -> int:
     if number is None or not least <= number <= most:
         raise ParameterError(f"{name} is a whole number from {least} to {most}, found {value!r}")
     return number
+
+
+def number(name: str, value: object, least: float, most: float) -> float:
+    """A number from `least` to `most`; `name` is what the message calls it."""
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = math.nan
+    if not least <= found <= most:
+        limits = f"from {least:g} to {most:g}" if math.isfinite(most) else f"of at least {least:g}"
+        raise ParameterError(f"{name} is a number {limits}, found {value!r}")
+    return found
 
 
 class FitError(FrixelError, ValueError):

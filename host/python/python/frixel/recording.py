@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -12,15 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel
+from .errors import ParameterError
 from .scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["COLUMNS", "Recording"]
+__all__ = ["COLUMNS", "Recording", "replay"]
 
 COLUMNS: Mapping[str, tuple[str, str]] = {name: (unit, meaning) for name, unit, meaning in _frixel.play_fields()}
 """Unit and meaning of each column."""
+
+_CODE = re.compile(r"[A-Za-z0-9_.-]{1,32}")
 
 TICKS_PER_S = 40_000
 """Ticks of the simulated board a second."""
@@ -73,19 +77,26 @@ class Recording(Mapping[str, NDArray[Any]]):
         times = ("t_s", self.columns["t_s"], described["t_s"])
         return xr.Dataset(variables, coords={"t_s": times}, attrs=dict(self.settings))
 
-    def to_parquet(self, path: str | PathLike[str]) -> None:
+    def to_parquet(self, path: str | PathLike[str], *, participant: str | None = None) -> None:
         """Write the columns as Parquet, in the format of `frixel play --record` (`docs/outputs.md`).
 
         All that made the play is in the metadata of the file, so that `frixel replay` plays it again: the scene with
-        its files, finger, screen, touch source, stroke, seeds, rate and versions.
+        its files, finger, screen, touch source, stroke, seeds, rate and versions. `participant` is the code of a
+        person, 1 to 32 letters, digits, `-`, `_` and `.`.
 
         Raises
         ------
         FrixelError
             The file cannot be written.
+        ParameterError
+            The participant is no code.
         """
+        if participant is not None and not _CODE.fullmatch(participant):
+            raise ParameterError(
+                f"participant {participant!r}: give a code of 1 to 32 letters, digits, -, _ and ., and no name"
+            )
         columns = {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.items()}
-        _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made)
+        _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made, participant)
 
     def _repr_html_(self) -> str:
         lines = {"wanted_n": ("#888", self["wanted_n"]), "felt_n": ("#c33", self["felt_n"])}
@@ -97,3 +108,19 @@ class Recording(Mapping[str, NDArray[Any]]):
         touched = np.isfinite(felt)
         range_n = f", felt {np.min(felt[touched]):.3f} to {np.max(felt[touched]):.3f} N" if touched.any() else ""
         return f"<frixel.Recording: {self.rows} rows, {end_s:.3f} s{range_n}>"
+
+
+def replay(path: str | PathLike[str]) -> int:
+    """Play a recording of the simulator again, from its file alone, and compare every bit, as `frixel replay` does.
+
+    Returns
+    -------
+    int
+        The number of rows, which are the same.
+
+    Raises
+    ------
+    PlayError
+        The bits differ, and where; or why it cannot be played again: it is of a board at a port, or of another version.
+    """
+    return _frixel.replay(path)

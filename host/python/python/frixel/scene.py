@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel, _toml
-from .errors import whole
+from .errors import ParameterError, whole
 from .profiles import Finger, Screen, TouchSource, read_bytes
 
 __all__ = ["Scene"]
@@ -78,6 +78,14 @@ class Scene:
     def dict_text(tables: Mapping[str, Any]) -> str:
         """The text of the scene file with these tables."""
         return _toml.dumps({"version": 2, **tables})
+
+    @classmethod
+    def of(cls, scene: Scene | Mapping[str, Any]) -> Scene:
+        """One as arguments name it: itself, or the tables of its file."""
+        scene = cls.from_dict(scene) if isinstance(scene, Mapping) else scene
+        if not isinstance(scene, Scene):
+            raise ParameterError(f"a scene is a Scene or its tables, and Scene.load reads a file, found {scene!r}")
+        return scene
 
     def with_finger(self, finger: Finger | str | Mapping[str, Any]) -> Scene:
         """The scene for another finger: one, the name of a bundled one, or the fields of its file."""

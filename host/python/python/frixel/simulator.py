@@ -66,9 +66,7 @@ class Simulator:
     ) -> None:
         if not (stroke is None or isinstance(stroke, Stroke)):
             raise ParameterError(f"a stroke is made by Stroke.straight, human or from_arrays, found {stroke!r}")
-        scene = Scene.from_dict(scene) if isinstance(scene, Mapping) else scene
-        if not isinstance(scene, Scene):
-            raise ParameterError(f"a scene is a Scene or its tables, and Scene.load reads a file, found {scene!r}")
+        scene = Scene.of(scene)
         if screen is not None:
             scene = scene.with_screen(screen)
         if finger is not None:

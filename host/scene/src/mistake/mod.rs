@@ -26,6 +26,11 @@ pub enum Mistake {
     /// The scene asks for more than screen, finger and board have.
     #[error(transparent)]
     Fit(#[from] FitMistake),
+    /// An expectation of a scenario does not say what has to be seen.
+    #[error(
+        "this [[expect]] expects nothing: add `output`, `electrode_below_v`, `friction_n`, `state`, `fault` or `error`"
+    )]
+    NothingExpected,
 }
 
 impl Mistake {

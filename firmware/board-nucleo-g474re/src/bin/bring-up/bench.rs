@@ -2,13 +2,13 @@
 
 use core::fmt::Arguments;
 
-use board_nucleo_g474re::board::{MONITOR, TICK_HZ};
+use board_nucleo_g474re::board::{MONITOR, Nucleo, TICK_HZ};
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::flash::BankTwo;
-use board_nucleo_g474re::main_loop::MainLoop;
 use board_nucleo_g474re::tick;
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading};
+use frixel_board::main_loop::MainLoop;
 use frixel_control::Board;
 use frixel_wire::fault::State;
 use frixel_wire::hello::BoardLimits;
@@ -33,7 +33,7 @@ pub(crate) enum Stage {
     /// The script itself, with the amplifier off.
     Still(Still),
     /// The tick.
-    Ticking(MainLoop),
+    Ticking(MainLoop<Nucleo>),
     /// Nobody, between the two.
     Neither,
 }

@@ -2,9 +2,9 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use board_nucleo_g474re::fault::LastReset;
 use board_nucleo_g474re::watchdog::Watchdog;
 use frixel_board::bring_up::{FAULTS, Injection};
+use frixel_board::fault::LastReset;
 use frixel_wire::fault::Fault;
 
 /// Marks the memory below as valid; the number of injected faults stands in its lowest byte.

@@ -12,16 +12,17 @@ mod still;
 mod terminal;
 
 use board_nucleo_g474re::board::CEILINGS;
-use board_nucleo_g474re::fault::{self, LastReset};
+use board_nucleo_g474re::fault;
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::{board, clock, dac, guard, output, period, tick, watchdog};
+use board_nucleo_g474re::{board, clock, dac, output, period, tick, watchdog};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::bring_up::{self, Injection};
 use frixel_control::Board;
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_session::store::Ceilings;
 use frixel_wire::hello::BoardLimits;
@@ -38,7 +39,7 @@ fn main() -> ! {
     let output = Output::new();
     let Some(mut core) = Peripherals::take() else { fault::never() };
     guard::start(&mut core.MPU);
-    let last_reset = LastReset::take(TEXT);
+    let last_reset = fault::last_reset(TEXT);
     clock::start();
     clock::start_peripherals();
     clock::keep_timers_running_in_debug();

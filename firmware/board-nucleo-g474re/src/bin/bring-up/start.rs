@@ -1,12 +1,13 @@
 //! Starts the firmware's own tick and main loop, with the host on the board.
 
-use board_nucleo_g474re::adc::Adc;
+use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::fault;
 use board_nucleo_g474re::indicator;
-use board_nucleo_g474re::main_loop::MainLoop;
-use board_nucleo_g474re::tick::{self, Tick};
+use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
 use cortex_m::singleton;
+use frixel_board::hardware::Hardware;
+use frixel_board::main_loop::MainLoop;
 use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::{Queues, Session};
@@ -17,7 +18,7 @@ use crate::still::Still;
 static POOL: BitmapPool = BitmapPool::new();
 
 /// Starts the tick and the watchdog, and returns the main loop, whose turns feed it. Called once.
-pub(crate) fn tick(board: Board, still: Still) -> MainLoop {
+pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
     let (Some(first), Some(second)) = (first_coefficients(), second_coefficients()) else { fault::never() };
     let Some(queues) = singleton!(: Queues = Queues::new()) else { fault::never() };
     let ticker = Ticker::new(&board, &POOL, first);
@@ -25,18 +26,18 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop {
     let Some(session) = session(board, second) else { fault::never() };
     let (session_ends, tick_ends) = queues.split();
     let Still { output, frames, dac } = still;
-    let (amplifier, arm_switch) = (tick::amplifier(output), tick::arm_switch());
-    tick::start(Tick { ticker, queues: tick_ends, adc: Adc::new(), dac: frames, amplifier, arm_switch });
+    tick::start(ticker, tick_ends, frames, output);
     MainLoop {
-        tick: session_ends,
+        shared: &tick::SHARED,
+        queues: session_ends,
         session,
         status,
         serial: None,
         dac,
         light: indicator::start(),
-        #[cfg(feature = "store")]
-        store: None,
+        store: <Nucleo as Hardware>::Store::default(),
         watchdog: Watchdog::start(),
+        record: &fault::RECORD,
     }
 }
 

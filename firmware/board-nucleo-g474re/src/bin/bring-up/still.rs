@@ -3,10 +3,11 @@
 
 use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
-use board_nucleo_g474re::dac::{Dac, DacFrames};
+use board_nucleo_g474re::dac::{Dac, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::{period, tick, watchdog};
 use cortex_m::peripheral::DWT;
+use frixel_board::hardware::DacFrames as _;
 use frixel_wire::dac_code::DacCode;
 
 use crate::terminal::Terminal;
@@ -20,7 +21,7 @@ const OFF_WITHIN_US: u32 = 1000;
 /// What the tick takes over when it starts.
 pub(crate) struct Still {
     pub(crate) output: Output,
-    pub(crate) frames: DacFrames,
+    pub(crate) frames: Frames,
     pub(crate) dac: Dac,
 }
 
@@ -33,7 +34,7 @@ impl Still {
         while !period::has_begun() {}
         let may_drive = !tick::inputs().0;
         match dac_v {
-            Some(volts) if may_drive && self.frames.send(code(volts)) => self.output.kick_dac_alone(),
+            Some(volts) if may_drive && self.frames.send(code(volts)).is_ok() => self.output.kick_dac_alone(),
             _ => self.output.zero(),
         }
     }

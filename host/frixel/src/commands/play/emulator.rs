@@ -1,12 +1,12 @@
-//! Playing on the firmware in an emulator.
+//! Playing on the firmware in an emulator: the one for QEMU, and the image of the Pico.
 
 use std::sync::mpsc;
 
-use crate::rigs::EmulatedStream;
+use crate::rigs::{EmulatedStream, PicoStream};
 use frixel_driver::{Device, PollingLink};
-use frixel_hil_sim::emulated::{BOARD, Image, LinkBoard};
-use frixel_hil_sim::{Stroke, World, WorldConfig};
-use frixel_scene::{Program, Scene};
+use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoRig};
+use frixel_hil_sim::{Board, World, WorldConfig};
+use frixel_scene::Scene;
 
 use super::follow::follow;
 use super::live_scene::LiveScene;
@@ -23,13 +23,8 @@ pub(super) fn play_on_emulator(
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
-    let mut plan = Plan::new(args, scene, Target::Emulator, (&BOARD.limits, BOARD.tick_hz))?;
-    let stroke = plan.choose_stroke(args)?;
-    let simulated = SimulatedWorld::new(args, scene)?;
-    plan.world = Some(simulated.report());
-    plan.has_own_reference = simulated.has_own_reference(&stroke);
-    let world = world(&plan.program, &simulated, stroke, args.seed)?;
-    let image = Image::find()?;
+    let (plan, world) = prepare(args, scene, Target::Emulator, &BOARD)?;
+    let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
     let mut board = LinkBoard::start(&image, world, move |record| {
         // The receiver is gone once the play has ended.
@@ -43,16 +38,29 @@ pub(super) fn play_on_emulator(
     Ok(played)
 }
 
-/// Creates the world around the emulated board, with the drawn person's finger or else the one that the scene was made
-/// for.
-fn world(program: &Program, simulated: &SimulatedWorld, stroke: Stroke, seed: u64) -> Result<World, CommandError> {
-    let config = WorldConfig {
-        tick_hz: BOARD.tick_hz,
-        full_scale_v_peak: f64::from(BOARD.limits.full_scale_v_peak),
-        ..WorldConfig::default()
-    };
-    let mut world = World::new(simulated.config(config), stroke, seed)?;
-    world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
+/// Plays on the image of the Pico in an emulator, under a simulated finger.
+pub(super) fn play_on_pico(
+    args: &PlayArgs,
+    scene: &Scene,
+    outputs: (PlayFiles, Option<LiveScene>),
+    interrupt: &Interrupt,
+) -> Result<Played, CommandError> {
+    let (plan, world) = prepare(args, scene, Target::Pico, &Board::PICO)?;
+    let rig = PicoRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
+    let device = Device::connect(PollingLink::new(PicoStream::new(rig)))?;
+    follow(args, plan, device, outputs, interrupt)
+}
+
+/// The plan of a play on an emulated board, and the world around the board, with the drawn person's finger or else the
+/// one that the scene was made for.
+fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World), CommandError> {
+    let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
+    let stroke = plan.choose_stroke(args)?;
+    let simulated = SimulatedWorld::new(args, scene)?;
+    plan.world = Some(simulated.report());
+    plan.has_own_reference = simulated.has_own_reference(&stroke);
+    let mut world = World::new(simulated.config(WorldConfig::of(board)), stroke, args.seed)?;
+    world.set_finger(plan.program.header.friction_law().map_err(CommandError::Finger)?);
     simulated.set_finger(&mut world);
-    Ok(world)
+    Ok((plan, world))
 }

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use crate::output::Report;
 use crate::rigs::RecordedLink;
 use frixel_driver::Device;
-use frixel_play::{LiveLayers, PlayError, Player};
+use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
 
-use super::control::{Control, Next};
+use super::control::Control;
 use super::live_scene::{Fate, LiveScene};
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
@@ -54,19 +54,6 @@ fn check_log(args: &PlayArgs, is_simulated: bool) -> Result<(), CommandError> {
 /// Why a board refuses a program, a sentence each.
 fn sentences(program: &Program) -> Vec<String> {
     program.refusals().map(ToString::to_string).collect()
-}
-
-/// Ends triggers, and says what the board refuses of it.
-pub(super) fn end_triggers<L: RecordedLink>(
-    player: &mut Player<L>,
-    say: &mut dyn FnMut(String),
-) -> Result<(), PlayError> {
-    loop {
-        match player.end_triggers() {
-            Err(refused @ PlayError::TriggerEnd { .. }) => say(refused.to_string()),
-            ended => return ended,
-        }
-    }
 }
 
 /// A play in progress.
@@ -138,16 +125,15 @@ impl<L: RecordedLink> Play<'_, L> {
             return Ok(Some(Duration::MAX));
         };
         let say = &mut |sentence| note(format_args!("frixel: {sentence}"));
-        let ended = end_triggers(&mut self.player, say);
-        let next = ended.and_then(|()| control.step(&mut self.player, t_s, say));
+        let next = control.step(&mut self.player, t_s, say);
         let step_max = control.time_max(t_s);
         self.outputs.switch(t_s, self.player.playing().map_or(Vec::new(), LiveLayers::off));
         match next.map_err(|error| self.error(error))? {
             Next::GoOn => {}
             Next::Quit => return Ok(None),
-            Next::Replace(path) => {
+            Next::Replace(file) => {
                 if let Some(live_scene) = &mut self.live_scene {
-                    live_scene.load(&path, &self.player);
+                    live_scene.load(file.as_ref(), &self.player);
                     self.refresh_scene()?;
                     return Ok(Some(Duration::ZERO));
                 }

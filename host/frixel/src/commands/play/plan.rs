@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::output::{Effects, WorldReport};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
-use frixel_lab::default_stroke::default_stroke;
+use frixel_lab::default_stroke::{REPEAT_PAUSE_S, default_stroke};
 use frixel_play::Feed;
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
@@ -14,8 +14,6 @@ use super::super::stroke::check_on_screen;
 use super::target::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
 
-/// Time for which the finger is lifted before it repeats a stroke that is shorter than the stream, s.
-const PAUSE_S: f64 = 0.2;
 /// Highest rate of telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
 const TELEMETRY_MAX_HZ: u32 = 1000;
 /// Highest rate of telemetry that the emulated serial port can transfer, in messages a second.
@@ -48,14 +46,14 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         return Err(CommandError::ControlAndStream);
     }
     match target {
-        Target::Emulator if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
+        Target::Emulator | Target::Pico if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
         Target::Simulator if args.watch && (args.control || args.stream.is_standard_input()) => {
             Err(CommandError::WatchReadsInputOnce)
         }
-        Target::Simulator | Target::Emulator if args.with_log.is_some() => {
+        Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => {
             Err(CommandError::LogInVirtualTime { port: port() })
         }
-        Target::Emulator if args.stream.is_given() => Err(CommandError::StreamOnEmulated),
+        Target::Emulator | Target::Pico if args.stream.is_given() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
         Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => {
             Err(CommandError::WorldOnBoard { port: port() })
@@ -83,7 +81,7 @@ impl Plan {
         print_notes(&program);
         let telemetry_period_ticks = match target {
             Target::Simulator => 0,
-            Target::Emulator => tick_hz / EMULATED_TELEMETRY_HZ,
+            Target::Emulator | Target::Pico => tick_hz / EMULATED_TELEMETRY_HZ,
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = args.stream.open(tick_hz, target)?;
@@ -95,7 +93,7 @@ impl Plan {
         Ok(Self {
             target,
             program,
-            stream_s: args.stream.file_s(feed.as_ref()),
+            stream_s: feed.as_ref().and_then(Feed::duration_s),
             feed,
             world: None,
             has_own_reference: false,
@@ -125,7 +123,7 @@ impl Plan {
         }
         self.seconds = Some(seconds);
         if args.seconds.is_none() && stroke.duration_s() < seconds {
-            return stroke.looped(PAUSE_S).map_err(CommandError::GeneratedStroke);
+            return stroke.looped(REPEAT_PAUSE_S).map_err(CommandError::GeneratedStroke);
         }
         Ok(stroke)
     }
@@ -133,12 +131,6 @@ impl Plan {
     /// Ticks between two rows.
     pub(super) fn ticks_per_row(&self) -> u32 {
         self.ticks_per_row
-    }
-
-    /// Ends the play after so many rows, unless it is over before.
-    pub(super) fn end_after_rows(&mut self, rows: usize) {
-        let rows_s = rows as f64 * f64::from(self.ticks_per_row) / f64::from(self.tick_hz);
-        self.seconds = Some(self.seconds().min(rows_s));
     }
 
     /// Whether the play ends when the stream of a board at a port has ended.

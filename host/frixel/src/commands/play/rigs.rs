@@ -8,7 +8,7 @@ use frixel_scene::Scene;
 
 use super::super::experiment;
 #[cfg(unix)]
-pub(super) use super::emulator::play_on_emulator;
+pub(super) use super::emulator::{play_on_emulator, play_on_pico};
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
@@ -63,6 +63,17 @@ pub(super) fn play_on_emulator(
     _: &Interrupt,
 ) -> Result<Played, CommandError> {
     Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
+}
+
+/// Rejects the emulator, which is there for Unix only, with the other one.
+#[cfg(not(unix))]
+pub(super) fn play_on_pico(
+    _: &PlayArgs,
+    _: &Scene,
+    _: (PlayFiles, Option<LiveScene>),
+    _: &Interrupt,
+) -> Result<Played, CommandError> {
+    Err(CommandError::NoPseudoTerminal { what: "--port pico" })
 }
 
 /// Plays on the board on a serial port. The scene is compiled for the limits that this board reports.

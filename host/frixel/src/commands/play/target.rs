@@ -11,6 +11,8 @@ pub(super) enum Target {
     Simulator,
     /// The firmware in an emulator.
     Emulator,
+    /// The image of the Pico in an emulator.
+    Pico,
     /// A board on a serial port, real or virtual.
     Port,
 }
@@ -21,6 +23,7 @@ impl Target {
         match port {
             "sim" => Self::Simulator,
             "qemu" => Self::Emulator,
+            "pico" => Self::Pico,
             _ => Self::Port,
         }
     }
@@ -34,7 +37,7 @@ impl Target {
     pub(super) fn compile(self, scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
         match self {
             Self::Simulator => compile_draft(scene, limits, tick_hz),
-            Self::Emulator | Self::Port => compile(scene, limits, tick_hz),
+            Self::Emulator | Self::Pico | Self::Port => compile(scene, limits, tick_hz),
         }
     }
 
@@ -50,6 +53,7 @@ impl Target {
         match self {
             Self::Simulator => "sim",
             Self::Emulator => "qemu",
+            Self::Pico => "pico",
             Self::Port => "board",
         }
     }

@@ -3,17 +3,19 @@
 A *method* (:class:`ConstantStimuli`, :class:`UpDown`, :class:`QuestPlus`) chooses the level of each trial. A *task*
 (:data:`TWO_ALTERNATIVES`, :data:`SAME_DIFFERENT`) says what a person who feels nothing answers. :func:`estimate` fits
 one psychometric function to the answers, by whatever method they were gathered, and refuses to name a threshold for
-somebody who guesses. :class:`Session` presents the trials and keeps every answer on the disk before the next one.
+somebody who guesses. :class:`Session` presents the trials, records what it plays, and keeps every answer on the disk
+before the next one.
 
 A level is a relative difference of friction: 0.2 is 20 % more than the standard.
 """
 
 from ._estimate import Answers, Estimate, magnitude_exponent
 from ._estimate import estimate as estimate
+from ._folder import ExperimentError
 from ._methods import ConstantStimuli, Method, QuestPlus, UpDown
 from ._observer import Observer
 from ._psychometric import SAME_DIFFERENT, TWO_ALTERNATIVES, Grid, Task
-from ._session import ExperimentError, Session, Trial
+from ._session import Session, Trial
 
 __all__ = [
     "SAME_DIFFERENT",

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
+import logging
 import re
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
-from ..errors import FrixelError
+from ..device import Device
+from ..errors import ParameterError, whole
+from ..recording import Recording, replay
+from ..scene import Scene
+from ..simulator import Simulator
 from ._estimate import Answers, Estimate, estimate
+from ._folder import ExperimentError, Folder, sha256
 from ._methods import Method
 from ._psychometric import Task
 
-FORMAT = 1
+FORMAT = 2
+KEPT_MAX = 64
+"""Most plays of the simulator that are not played again in the same run."""
 _CODE = re.compile(r"[A-Za-z0-9_-]{1,32}")
-
-
-class ExperimentError(FrixelError):
-    """Why a session cannot begin or go on, and what to do."""
+_LOG = logging.getLogger("frixel.experiment")
 
 
 @dataclass(frozen=True)
@@ -46,43 +49,56 @@ class Trial:
 
 
 class Session:
-    """The answers of one participant in a folder: ``manifest.json``, and ``trials.jsonl`` with a line for each trial.
+    """The answers of one participant in a folder: a manifest, a line for each trial, and the recordings of all plays.
 
     A folder that has trials already is gone on with, if its manifest is the same: no answered trial is repeated, and at
     most the one that ran is lost. ``participant`` is a code of letters, digits, ``-`` and ``_``, not a name.
-    ``played`` is the text of all that is played, by a name of your choice; its SHA-256 stands in the manifest.
+
+    :meth:`play` plays and records, and the manifest gets the SHA-256 of each recording by itself. ``played`` are texts
+    of what is played in another way, or must not change between two runs, by a name of your choice; their SHA-256
+    stands in the manifest, too, and a folder with others is refused.
+
+    ``on_marker`` is called with ``"began"``, ``"play"``, ``"presented"`` and ``"answered"`` and the trial, at that
+    moment: for an outlet of Lab Streaming Layer, or a trigger line.
 
     Raises :class:`ExperimentError` for a folder of another session, or one that another process writes into.
     """
 
     def __init__(
-        self, folder: str | Path, participant: str, task: Task, *, seed: int, played: Mapping[str, str | bytes]
+        self,
+        folder: str | Path,
+        participant: str,
+        task: Task,
+        *,
+        seed: int,
+        played: Mapping[str, str | bytes] | None = None,
+        on_marker: Callable[[str, Trial], object] | None = None,
     ) -> None:
-        if not _CODE.fullmatch(participant):
+        if not isinstance(task, Task):
+            raise ExperimentError(f"a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found {task!r}")
+        whole("seed", seed, 0)
+        if not (isinstance(participant, str) and _CODE.fullmatch(participant)):
             raise ExperimentError(
                 f"participant {participant!r}: give a code of 1 to 32 letters, digits, - and _, and no name"
             )
-        self._task, self._seed = task, seed
-        self._folder = Path(folder)
+        self._participant, self._task, self._seed, self._on_marker = participant, task, seed, on_marker
+        contents = sorted((played or {}).items())
         manifest = {
             "format": FORMAT,
             "participant": participant,
             "task": task.name,
             "seed": seed,
-            "played": {name: _sha256(content) for name, content in sorted(played.items())},
+            "played": {name: sha256(text.encode() if isinstance(text, str) else text) for name, text in contents},
         }
-        self._folder.mkdir(parents=True, exist_ok=True)
-        self._lock = _locked(self._folder / ".lock")
-        self._path = self._folder / "trials.jsonl"
-        try:
-            _check_manifest(self._folder / "manifest.json", manifest)
-            self._rows = _rows(self._path)
-        except BaseException:
-            self.close()
-            raise
-        self._replayed = 0
-        self._is_cut_off = False
+        self._folder = Folder(Path(folder), manifest)
+        # Times of different runs are on different clocks.
+        self._run = 1 + max((row["run"] for row in self._folder.rows), default=-1)
         self._begin_s = time.monotonic()
+        self._repeated = 0
+        self._is_cut_off = False
+        self._trial_now: Trial | None = None
+        self._plays: list[dict[str, Any]] = []
+        self._kept: dict[Any, tuple[Recording, str]] = {}
 
     def __enter__(self) -> Session:
         return self
@@ -92,14 +108,62 @@ class Session:
 
     def close(self) -> None:
         """Lets another process write into the folder."""
-        self._lock.close()
+        self._folder.close()
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """The answered trials: the fields of :class:`Trial`, ``response``, ``correct``, and ``played_s``,
-        ``presented_s`` and ``answered_s`` after the beginning of the run, in seconds.
+        """The answered trials: the fields of :class:`Trial`, ``response``, ``correct``, ``run``, ``plays``, and
+        ``played_s``, ``presented_s`` and ``answered_s`` after the beginning of that run, in seconds.
+
+        Each of ``plays`` has ``recording``, its file in the folder, ``scene``, the SHA-256 of the scene's text,
+        ``began_s`` and ``ended_s``, and of a board ``board_s``, the board's time of the recording's first row.
         """
-        return [dict(row) for row in self._rows]
+        return [dict(row) for row in self._folder.rows]
+
+    def play(
+        self,
+        scene: Scene | Mapping[str, Any],
+        *,
+        on: Device | None = None,
+        seconds: float | None = None,
+        **settings: Any,
+    ) -> Recording:
+        """Plays a scene, and keeps its recording with the trial that runs.
+
+        On the simulator, ``settings`` are those of :class:`frixel.Simulator`; what was played with the same ones in
+        this run is not played again. With a board, ``on``, it plays for ``seconds`` (:meth:`frixel.Device.record`).
+        """
+        if not (on is None or isinstance(on, Device)):
+            raise ParameterError(f"`on` is a board, of Device.open, found {on!r}; without it the simulator plays")
+        if on is not None and (settings or seconds is None):
+            raise ParameterError("a play on a board takes `seconds`, and no settings of the simulator")
+        self._mark("play")
+        began_s = self._now_s()
+        if on is None or seconds is None:
+            recording, name = self._simulated(Simulator(scene, **settings), seconds)
+        else:
+            recording = on.record(scene, seconds)
+            name = self._folder.keep(recording, self._participant)
+        times = {"began_s": began_s, "ended_s": self._now_s()}
+        if "board_s" in recording.settings:
+            times["board_s"] = recording.settings["board_s"]
+        self._plays.append({"recording": name, "scene": sha256(recording.scene.text.encode()), **times})
+        return recording
+
+    def replay(self, number: int) -> int:
+        """Plays the plays of a trial again, from their recordings alone, and compares every bit.
+
+        Returns the number of plays, which are the same. Raises :class:`ExperimentError` for a trial without any, and
+        :class:`frixel.PlayError` where a play differs, or was on a board.
+        """
+        if whole("number", number, 0) >= len(self._folder.rows):
+            raise ExperimentError(f"trial {number} is not answered: there are {len(self._folder.rows)}, from 0")
+        plays = self._folder.rows[number]["plays"]
+        if not plays:
+            raise ExperimentError(f"trial {number} played nothing through its session: play by `session.play`")
+        for play in plays:
+            replay(self._folder.recording(play["recording"]))
+        return len(plays)
 
     def run(
         self,
@@ -115,12 +179,12 @@ class Session:
     ) -> Answers:
         """Presents the trials of a block, and returns its answers, those of an earlier run included.
 
-        ``play`` presents a trial on a simulator, a board or the page, and returns when the person has felt it.
-        ``answer`` returns the number of the presentation that felt stronger, 0 or 1; where the task is same-different,
-        1 for "different". ``practice`` are levels of trials before the first one, which count for nothing. After every
-        ``catch_every`` trials of the method, a trial at level 0 follows. ``on_break`` is called with the number of
-        trials so far, after every ``break_every``; an exception in it or in ``play`` and ``answer`` ends the run, and
-        the same program goes on there when it opens the session again.
+        ``play`` presents a trial, by :meth:`play`, and returns when the person has felt it. ``answer`` returns the
+        number of the presentation that felt stronger, 0 or 1; where the task is same-different, 1 for "different".
+        ``practice`` are levels of trials before the first one, which count for nothing. After every ``catch_every``
+        trials of the method, a trial at level 0 follows. ``on_break`` is called with the number of trials so far, after
+        every ``break_every``; an exception in it or in ``play`` and ``answer`` ends the run, and the same program goes
+        on there when it opens the session again.
         """
         if self._is_cut_off:
             raise ExperimentError("the run before this one was cut off: open the session again, and it goes on there")
@@ -136,7 +200,7 @@ class Session:
             count += 1
             if catch_every and count % catch_every == 0:
                 answers.add(0.0, self._trial(play, answer, block, 0.0, is_catch=True))
-            if on_break and break_every and count % break_every == 0 and self._replayed == len(self._rows):
+            if on_break and break_every and count % break_every == 0 and self._repeated == len(self._folder.rows):
                 on_break(count)
         self._is_cut_off = False
         return answers
@@ -156,28 +220,52 @@ class Session:
         is_catch: bool = False,
     ) -> bool:
         """Presents a trial, or reads its answer if an earlier run had one. Returns whether it is correct."""
-        number = self._replayed
+        number = self._repeated
         # By the number alone, so that a resumed session presents what it would have.
         target = int(np.random.default_rng([self._seed, number]).integers(2))
         trial = Trial(number, block, level, target, is_practice, is_catch)
-        self._replayed += 1
-        if number < len(self._rows):
+        self._repeated += 1
+        if number < len(self._folder.rows):
             return self._recorded(trial)
-        played_s = self._now_s()
-        play(trial)
-        presented_s = self._now_s()
-        response = answer(trial)
-        if response not in (0, 1):
-            raise ExperimentError(f"trial {number}: an answer is 0 or 1, and this one is {response!r}")
-        correct = bool(response == (1 if self._task.name == "same-different" else target))
-        times = {"played_s": played_s, "presented_s": presented_s, "answered_s": self._now_s()}
-        row = {**asdict(trial), "response": int(response), "correct": correct, **times}
-        _append(self._path, row)
-        self._rows.append(row)
+        if number > 0 and self._folder.rows[-1]["run"] != self._run:
+            _LOG.warning(
+                "the session goes on with trial %d: those before it are answered, and if the run before ended in it, "
+                "that presentation is lost",
+                number,
+            )
+        with self._presenting(trial):
+            played_s = self._now_s()
+            play(trial)
+            self._mark("presented")
+            presented_s = self._now_s()
+            response = answer(trial)
+            if response not in (0, 1):
+                raise ExperimentError(f"trial {number}: an answer is 0 or 1, and this one is {response!r}")
+            times = {"played_s": played_s, "presented_s": presented_s, "answered_s": self._now_s()}
+            self._mark("answered")
+            correct = bool(response == (1 if self._task.name == "same-different" else target))
+            answered = {"response": int(response), "correct": correct, "run": self._run, "plays": self._plays}
+            self._folder.append({**asdict(trial), **answered, **times})
         return correct
 
+    @contextmanager
+    def _presenting(self, trial: Trial) -> Iterator[None]:
+        """The time in which a trial runs. Says what is lost if it is left by an exception."""
+        self._trial_now, self._plays = trial, []
+        try:
+            self._mark("began")
+            yield
+        except BaseException:
+            _LOG.warning(
+                "trial %d is lost: it was not answered; those before it are kept, and the same program goes on there",
+                trial.number,
+            )
+            raise
+        finally:
+            self._trial_now = None
+
     def _recorded(self, trial: Trial) -> bool:
-        row = self._rows[trial.number]
+        row = self._folder.rows[trial.number]
         differing = [name for name, value in asdict(trial).items() if row.get(name) != value]
         if differing:
             name = differing[0]
@@ -187,87 +275,22 @@ class Session:
             )
         return bool(row["correct"])
 
+    def _simulated(self, simulator: Simulator, seconds: float | None) -> tuple[Recording, str]:
+        """A play of the simulator with the name of its recording: that of before, if it is the same."""
+        key = (*vars(simulator).values(), seconds)
+        if key not in self._kept:
+            recording = simulator.run(seconds)
+            for values in recording.values():
+                # The next trial with the same play gets them as they are.
+                values.setflags(write=False)
+            self._kept[key] = recording, self._folder.keep(recording, self._participant)
+            if len(self._kept) > KEPT_MAX:
+                del self._kept[next(iter(self._kept))]
+        return self._kept[key]
+
+    def _mark(self, marker: str) -> None:
+        if self._on_marker is not None and self._trial_now is not None:
+            self._on_marker(marker, self._trial_now)
+
     def _now_s(self) -> float:
         return round(time.monotonic() - self._begin_s, 6)
-
-
-def _sha256(content: str | bytes) -> str:
-    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
-
-
-def _check_manifest(path: Path, manifest: dict[str, Any]) -> None:
-    if not path.exists():
-        written = path.with_suffix(".partial")
-        written.write_text(json.dumps(manifest, indent=2) + "\n", encoding="utf-8")
-        written.replace(path)
-        return
-    try:
-        earlier = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise ExperimentError(f"{path.name} is no manifest ({error}): give another folder") from error
-    for name, value in manifest.items():
-        if not isinstance(earlier, dict) or earlier.get(name) != value:
-            found = earlier.get(name) if isinstance(earlier, dict) else None
-            raise ExperimentError(
-                f"this folder is that of another session: {name} is {found!r} there, and {value!r} here: "
-                "give another folder"
-            )
-
-
-def _rows(path: Path) -> list[dict[str, Any]]:
-    """The whole lines of a file. What a crash has left of a line is cut off."""
-    if not path.exists():
-        return []
-    content = path.read_bytes()
-    whole = content[: content.rfind(b"\n") + 1]
-    if len(whole) < len(content):
-        with path.open("r+b") as file:
-            file.truncate(len(whole))
-    rows = []
-    for number, line in enumerate(whole.splitlines()):
-        try:
-            row = json.loads(line)
-        except ValueError as error:
-            raise ExperimentError(
-                f"line {number + 1} of {path.name} is no trial ({error}): mend or remove it"
-            ) from error
-        rows.append(row)
-    return rows
-
-
-def _append(path: Path, row: dict[str, Any]) -> None:
-    """Adds a line, and waits until the disk has it. A line that does not fit is cut off again."""
-    line = (json.dumps(row) + "\n").encode()
-    before = path.stat().st_size if path.exists() else 0
-    try:
-        with path.open("ab") as file:
-            file.write(line)
-            file.flush()
-            os.fsync(file.fileno())
-    except OSError as error:
-        if path.exists():
-            os.truncate(path, before)
-        raise ExperimentError(
-            f"the answer of trial {row['number']} cannot be written ({error.strerror}): the trials before it are kept; "
-            "check the free space, and run the session again"
-        ) from error
-
-
-def _locked(path: Path) -> BinaryIO:
-    """A file that one process at a time has locked, until it closes it or ends."""
-    file = path.open("ab")
-    try:
-        if os.name == "nt":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        file.close()
-        raise ExperimentError(
-            "another process writes into this folder: wait for its end, or give another one"
-        ) from error
-    return file

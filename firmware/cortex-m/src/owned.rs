@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 /// Holds a value that the main program gives to one interrupt handler before it enables the interrupt.
-pub(crate) struct Owned<T> {
+pub struct Owned<T> {
     given: AtomicBool,
     value: UnsafeCell<MaybeUninit<T>>,
 }
@@ -16,7 +16,8 @@ unsafe impl<T: Send> Sync for Owned<T> {}
 
 impl<T> Owned<T> {
     /// An empty place.
-    pub(crate) const fn new() -> Self {
+    #[allow(clippy::new_without_default, reason = "it belongs in a static")]
+    pub const fn new() -> Self {
         Self { given: AtomicBool::new(false), value: UnsafeCell::new(MaybeUninit::uninit()) }
     }
 
@@ -24,7 +25,7 @@ impl<T> Owned<T> {
     ///
     /// # Safety
     /// The handler's interrupt has not been enabled yet.
-    pub(crate) unsafe fn give(&self, value: T) {
+    pub unsafe fn give(&self, value: T) {
         // SAFETY: the caller guarantees that there is no other reference.
         unsafe { (*self.value.get()).write(value) };
         self.given.store(true, Ordering::Release);
@@ -35,7 +36,7 @@ impl<T> Owned<T> {
     /// # Safety
     /// Only the handler that owns the value calls this, once in each run.
     #[allow(clippy::mut_from_ref, reason = "the handler is the one owner, says the caller")]
-    pub(crate) unsafe fn get(&self) -> Option<&mut T> {
+    pub unsafe fn get(&self) -> Option<&mut T> {
         // SAFETY: it was given, and a handler does not interrupt itself, so this is the only reference.
         self.given.load(Ordering::Acquire).then(|| unsafe { (*self.value.get()).assume_init_mut() })
     }

@@ -1,0 +1,68 @@
+//! Numbers in which the two chips differ, and the registers that they name differently.
+
+use frixel_drivers::rp2::ResetFlags;
+use frixel_wire::hello::BoardKind;
+use rp_pac::WATCHDOG;
+
+#[cfg(feature = "rp2040")]
+pub use rp2040::*;
+#[cfg(feature = "rp2350")]
+pub use rp2350::*;
+
+#[cfg(feature = "rp2350")]
+mod rp2350 {
+    use frixel_control::Board;
+
+    /// What this board is, until bring-up has stored other limits.
+    pub const BOARD: Board = Board::PICO_2;
+    /// Clock of the core, in Hz.
+    pub const CORE_HZ: u32 = 150_000_000;
+    /// Of the PLL: 12 MHz * 125 / 5 / 2.
+    pub(crate) const PLL: crate::clock::PllSettings = crate::clock::PllSettings { multiply: 125, divide: [5, 2] };
+    /// Interrupts of the chip.
+    pub(crate) const INTERRUPTS: usize = 52;
+    /// Counts of the watchdog in a microsecond.
+    pub(crate) const WATCHDOG_COUNTS_PER_US: u32 = 1;
+}
+
+#[cfg(feature = "rp2040")]
+mod rp2040 {
+    use frixel_control::Board;
+
+    /// What this board is, until bring-up has stored other limits.
+    pub const BOARD: Board = Board::PICO;
+    /// Clock of the core, in Hz: the most that the vendor supports, at 1.15 V.
+    pub const CORE_HZ: u32 = 200_000_000;
+    /// Of the PLL: 12 MHz * 100 / 6 / 1.
+    pub(crate) const PLL: crate::clock::PllSettings = crate::clock::PllSettings { multiply: 100, divide: [6, 1] };
+    /// Interrupts of the chip.
+    pub(crate) const INTERRUPTS: usize = 26;
+    /// Counts of the watchdog in a microsecond: it decrements twice (erratum RP2040-E1).
+    pub(crate) const WATCHDOG_COUNTS_PER_US: u32 = 2;
+}
+
+/// Kind of this board.
+pub const KIND: BoardKind = BOARD.kind;
+/// Ticks a second.
+pub const TICK_HZ: u32 = BOARD.tick_hz;
+
+/// What the chip says of its last reset.
+pub(crate) fn reset_flags() -> ResetFlags {
+    let reason = WATCHDOG.reason().read();
+    let flags = ResetFlags { watchdog_timer: reason.timer(), watchdog_forced: reason.force(), ..ResetFlags::default() };
+    #[cfg(feature = "rp2040")]
+    {
+        let chip = rp_pac::VREG_AND_CHIP_RESET.chip_reset().read();
+        ResetFlags { power_on: chip.had_por(), run_pin: chip.had_run(), ..flags }
+    }
+    #[cfg(feature = "rp2350")]
+    {
+        let chip = rp_pac::POWMAN.chip_reset().read();
+        ResetFlags {
+            power_on: chip.had_por(),
+            brown_out: chip.had_bor() || chip.had_glitch_detect(),
+            run_pin: chip.had_run_low(),
+            ..flags
+        }
+    }
+}

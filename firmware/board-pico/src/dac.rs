@@ -1,0 +1,163 @@
+//! The DAC, an AD5761R behind state machine 0 of PIO 0, which sends a frame of 24 bits at the same instant of every
+//! period for which it was given one ([`crate::period`]), and keeps what the DAC shifts out meanwhile. Without a frame
+//! there are no edges. Two halves take turns ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
+//!
+//! - [`Frames`], in the tick: one output frame a period;
+//! - [`DacBus`], in the main loop: an `SpiDevice` for the driver that configures the DAC and reads it back, a frame a
+//!   period, too.
+//!
+//! SCLK is high between frames, and the DAC samples at falling edges: mode 2, at 6.25 MHz. SDO is read at the falling
+//! edges, too: it follows the rising edges by up to 40 ns, of the 80 that there are.
+//!
+//! | pin | function | |
+//! |---|---|---|
+//! | GP2 | PIO0 | SYNC |
+//! | GP3 | PIO0 | SCLK |
+//! | GP4 | PIO0 | SDI |
+//! | GP5 | PIO0 | SDO, to read back |
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
+use frixel_board::hardware::{self, DacFrames, Late};
+use frixel_drivers::ad5761r::{self, Ad5761r, FRAME_LEN, Frame};
+use frixel_drivers::pio::{Condition, Destination, Instruction, PULL, PUSH};
+use frixel_drivers::pio::{jump, set, shift_in, shift_out, wait_flag};
+use frixel_wire::dac_code::DacCode;
+use rp_pac::PIO0;
+
+use crate::clock::CycleDelay;
+use crate::period::{self, DEADLINE_CYCLES, Period};
+use crate::pins::{self, Function};
+use crate::pio::Machine;
+
+pub(crate) const SYNC: usize = 2;
+const SCLK: usize = 3;
+const SDI: usize = 4;
+const SDO: usize = 5;
+
+const FRAMES: Machine = Machine { pio: PIO0, number: 0, address: 0 };
+/// Cycles of the state machine from the flag that starts a frame until SYNC is high again, and 4 more.
+pub(crate) const FRAME_CYCLES: u32 = 5 + 24 * 4 + 1 + 4;
+
+// Levels of SYNC (1) and SCLK (2).
+const IDLE: u16 = 0b11;
+const SELECTED: u16 = 0b10;
+const FALLEN: u16 = 0b00;
+
+/// A word for the machine: a one, 24 bits, the most significant first, and seven that do not matter. It takes register
+/// X, zero, where there is no word.
+const PROGRAM: [Instruction; 10] = [
+    set(Destination::X, 0).side(IDLE, 2),
+    wait_flag(period::FRAME).side(IDLE, 2),
+    PULL.side(IDLE, 2),
+    shift_out(Destination::Y, 1).side(IDLE, 2),
+    jump(Condition::YZero, 0).side(IDLE, 2),
+    set(Destination::Y, 23).side(SELECTED, 2),
+    shift_out(Destination::Pins, 1).delay(1).side(SELECTED, 2),
+    shift_in(1).side(FALLEN, 2),
+    jump(Condition::YNotZeroDecrement, 6).side(FALLEN, 2),
+    PUSH.side(SELECTED, 2),
+];
+
+/// The driver of this board's DAC.
+pub type Dac = Ad5761r<DacBus, CycleDelay>;
+/// Errors of the DAC's driver.
+pub type DacError = ad5761r::Error<SpiError>;
+
+/// Starts the beat and the state machine, and returns the two halves. The DAC is not configured yet.
+pub fn start() -> (Frames, Dac) {
+    let set_pins = |w: &mut rp_pac::pio::regs::SmPinctrl| {
+        w.set_out_base(SDI as u8);
+        w.set_out_count(1);
+        w.set_in_base(SDO as u8);
+        w.set_sideset_base(SYNC as u8);
+        w.set_sideset_count(2);
+        w.set_set_base(SYNC as u8);
+        w.set_set_count(3);
+    };
+    // Left, the most significant bit first, both ways: zeros.
+    FRAMES.load(&PROGRAM, set_pins, |_| ());
+    FRAMES.execute(set(Destination::Pins, IDLE).side(IDLE, 2));
+    FRAMES.execute(set(Destination::PinDirections, 0b111).side(IDLE, 2));
+    FRAMES.execute(jump(Condition::Always, FRAMES.address as u16).side(IDLE, 2));
+    for pin in [SYNC, SCLK, SDI, SDO] {
+        pins::connect(pin, Function::Pio0);
+    }
+    period::start(&FRAMES);
+    (Frames(()), Ad5761r::new(DacBus(()), CycleDelay))
+}
+
+/// Gives a frame to the machine.
+#[inline]
+fn transmit(frame: Frame) {
+    let [first, second, third] = frame;
+    FRAMES.transmit(1 << 31 | u32::from_be_bytes([0, first, second, third]) << 7);
+}
+
+/// The tick's half of the DAC.
+pub struct Frames(());
+
+impl DacFrames for Frames {
+    #[inline]
+    fn send(&mut self, code: DacCode) -> Result<(), Late> {
+        if hardware::Period::cycles(&Period) > DEADLINE_CYCLES || !FRAMES.has_taken_all() {
+            return Err(Late);
+        }
+        transmit(ad5761r::output(code));
+        Ok(())
+    }
+}
+
+/// The main loop's half of the DAC. It polls, while the tick sends nothing.
+pub struct DacBus(());
+
+/// Why a transfer failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpiError {
+    /// The state machine did not send the frame.
+    Timeout,
+    /// Anything but one frame in a transaction, which the driver never needs.
+    Unsupported,
+}
+
+impl spi::Error for SpiError {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
+    }
+}
+
+impl ErrorType for DacBus {
+    type Error = SpiError;
+}
+
+impl SpiDevice for DacBus {
+    /// Sends one frame in the period that comes, and waits for its end.
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), SpiError> {
+        match operations {
+            [Operation::Write(bytes)] => {
+                exchange((*bytes).try_into().map_err(|_| SpiError::Unsupported)?)?;
+            }
+            [Operation::TransferInPlace(bytes)] => {
+                let frame: &mut Frame = (&mut **bytes).try_into().map_err(|_| SpiError::Unsupported)?;
+                *frame = exchange(*frame)?;
+            }
+            [Operation::DelayNs(ns)] => CycleDelay.delay_ns(*ns),
+            _ => return Err(SpiError::Unsupported),
+        }
+        Ok(())
+    }
+}
+
+/// Sends a frame, and returns the one received meanwhile.
+fn exchange(frame: Frame) -> Result<Frame, SpiError> {
+    /// Reads of a register, 20 ns or more each: ten periods of the slower board.
+    const ROUNDS_MAX: u32 = 50_000;
+    // Discard what was received during the tick's frames.
+    while FRAMES.receive().is_some() {}
+    transmit(frame);
+    let received = (0..ROUNDS_MAX).find_map(|_| FRAMES.receive()).ok_or(SpiError::Timeout)?;
+    let [_, first, second, third] = received.to_be_bytes();
+    Ok([first, second, third])
+}
+
+const _: () = assert!(FRAME_LEN == 3);

@@ -1,0 +1,201 @@
+//! Pins, by their GPIO number. The modules that use them and the table of `docs/hardware.md` state their functions.
+
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use rp_pac::{IO_BANK0, PADS_BANK0, RESETS, SIO};
+
+/// What drives a pin (RP2040, 2.19.2, "Function Select").
+#[derive(Clone, Copy)]
+pub(crate) enum Function {
+    Uart = 2,
+    #[cfg(feature = "optical-frame")]
+    I2c = 3,
+    /// Software.
+    Sio = 5,
+    Pio0 = 6,
+    Pio1 = 7,
+    /// Nothing: the pin is analog.
+    None = 31,
+}
+
+/// Pulls of a pad.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pull {
+    None,
+    Up,
+    Down,
+}
+
+/// Enables the pins. It does not fail, because it is part of what a panic does.
+pub fn start() {
+    /// Longest wait; a reset ends within some cycles.
+    const ROUNDS_MAX: u32 = 1_000;
+    RESETS.reset().modify(|w| {
+        w.set_io_bank0(false);
+        w.set_pads_bank0(false);
+    });
+    let _ = (0..ROUNDS_MAX).find(|_| {
+        let done = RESETS.reset_done().read();
+        done.io_bank0() && done.pads_bank0()
+    });
+}
+
+/// A pin that software reads or sets.
+pub struct Pin {
+    number: usize,
+}
+
+impl Pin {
+    /// An output that is low.
+    pub(crate) fn output_low(number: usize) -> Self {
+        let pin = Self { number };
+        set(number, false);
+        SIO.gpio_oe(0).value_set().write_value(1 << number);
+        connect(number, Function::Sio);
+        pin
+    }
+
+    /// The level of a pin that a peripheral uses.
+    #[cfg(feature = "optical-frame")]
+    pub(crate) fn reads(number: usize) -> Self {
+        Self { number }
+    }
+
+    /// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring a
+    /// pin down that was high (erratum RP2350-E9): `docs/hardware.md` asks for a resistor.
+    pub(crate) fn input_pulled_down(number: usize) -> Self {
+        SIO.gpio_oe(0).value_clr().write_value(1 << number);
+        configure(number, Function::Sio, Pull::Down, true);
+        Self { number }
+    }
+}
+
+impl ErrorType for Pin {
+    type Error = Infallible;
+}
+
+impl InputPin for Pin {
+    #[inline]
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(is_high(self.number))
+    }
+
+    #[inline]
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(!is_high(self.number))
+    }
+}
+
+impl OutputPin for Pin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        set(self.number, true);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        set(self.number, false);
+        Ok(())
+    }
+}
+
+/// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other
+/// level.
+pub(crate) struct ForcedPin(pub(crate) usize);
+
+impl ForcedPin {
+    fn force(&self, high: bool) {
+        set(self.0, high);
+        SIO.gpio_oe(0).value_set().write_value(1 << self.0);
+        connect(self.0, Function::Sio);
+    }
+}
+
+impl ErrorType for ForcedPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for ForcedPin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.force(true);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.force(false);
+        Ok(())
+    }
+}
+
+/// A pin that software drives low or releases.
+#[cfg(feature = "optical-frame")]
+pub(crate) struct OpenDrainPin(usize);
+
+#[cfg(feature = "optical-frame")]
+impl OpenDrainPin {
+    /// Takes a pin from its peripheral, released and pulled up.
+    pub(crate) fn released(number: usize) -> Self {
+        SIO.gpio_oe(0).value_clr().write_value(1 << number);
+        set(number, false);
+        connect_pulled_up(number, Function::Sio);
+        Self(number)
+    }
+}
+
+#[cfg(feature = "optical-frame")]
+impl ErrorType for OpenDrainPin {
+    type Error = Infallible;
+}
+
+#[cfg(feature = "optical-frame")]
+impl OutputPin for OpenDrainPin {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        SIO.gpio_oe(0).value_clr().write_value(1 << self.0);
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        SIO.gpio_oe(0).value_set().write_value(1 << self.0);
+        Ok(())
+    }
+}
+
+/// Connects a pin to a peripheral that drives it. Its level can still be read.
+pub(crate) fn connect(pin: usize, function: Function) {
+    configure(pin, function, Pull::None, true);
+}
+
+/// Connects an input, or a line that others drive low, to a peripheral, pulled up: a disconnected wire is idle.
+pub(crate) fn connect_pulled_up(pin: usize, function: Function) {
+    configure(pin, function, Pull::Up, true);
+}
+
+/// Makes a pin analog.
+pub(crate) fn analog(pin: usize) {
+    configure(pin, Function::None, Pull::None, false);
+}
+
+/// The pad comes last: on the RP2350 it holds its state until it is told to follow the function (RP2350, 9.7,
+/// "Isolation latches").
+fn configure(pin: usize, function: Function, pull: Pull, reads: bool) {
+    IO_BANK0.gpio(pin).ctrl().write(|w| w.set_funcsel(function as u8));
+    PADS_BANK0.gpio(pin).modify(|w| {
+        w.set_pde(pull == Pull::Down);
+        w.set_pue(pull == Pull::Up);
+        w.set_ie(reads);
+        w.set_od(false);
+        #[cfg(feature = "rp2350")]
+        w.set_iso(false);
+    });
+}
+
+/// Whether a pin is high.
+#[inline]
+pub(crate) fn is_high(pin: usize) -> bool {
+    SIO.gpio_in(0).read() & 1 << pin != 0
+}
+
+fn set(pin: usize, high: bool) {
+    let output = SIO.gpio_out(0);
+    if high { output.value_set().write_value(1 << pin) } else { output.value_clr().write_value(1 << pin) }
+}

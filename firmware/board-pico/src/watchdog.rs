@@ -1,0 +1,62 @@
+//! The watchdog: resets the chip when the main loop or the tick stops (RP2040, 4.7, "Watchdog"). The firmware resets
+//! itself by it, too, because nothing else that software can do resets the state machines of the PIOs.
+
+use cortex_m::asm;
+use frixel_board::hardware;
+use rp_pac::{PSM, WATCHDOG};
+
+use crate::chip::WATCHDOG_COUNTS_PER_US;
+
+/// Time in which the main loop and the tick must both have run. The longest operation of the main loop, but for those of
+/// the flash, is the table of a committed scene.
+const LIFE_US: u32 = 500_000;
+
+/// The watchdog.
+pub struct Watchdog(());
+
+impl Watchdog {
+    /// Starts the watchdog.
+    pub fn start() -> Self {
+        reset_all_but_oscillators();
+        feed_for(LIFE_US);
+        WATCHDOG.ctrl().write(|w| w.set_enable(true));
+        Self(())
+    }
+}
+
+impl hardware::Watchdog for Watchdog {
+    fn feed(&mut self) {
+        feed_for(LIFE_US);
+    }
+
+    fn let_debugger_stop_it(&mut self, may_stop: bool) {
+        WATCHDOG.ctrl().modify(|w| {
+            w.set_pause_dbg0(may_stop);
+            w.set_pause_dbg1(may_stop);
+            w.set_pause_jtag(may_stop);
+        });
+    }
+}
+
+/// Feeds the watchdog for a time, at most 8 s.
+pub(crate) fn feed_for(us: u32) {
+    WATCHDOG.load().write(|w| w.set_load(us * WATCHDOG_COUNTS_PER_US));
+}
+
+/// Resets the chip.
+pub(crate) fn reset() -> ! {
+    reset_all_but_oscillators();
+    WATCHDOG.ctrl().modify(|w| w.set_trigger(true));
+    loop {
+        asm::nop();
+    }
+}
+
+/// What a reset by the watchdog resets: all, with the PIOs and the pins, but for the oscillators.
+fn reset_all_but_oscillators() {
+    PSM.wdsel().write(|w| {
+        w.0 = !0;
+        w.set_rosc(false);
+        w.set_xosc(false);
+    });
+}

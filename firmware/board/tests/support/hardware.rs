@@ -1,0 +1,287 @@
+//! A board of plain values, whose tick runs when a test says so.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use std::cell::{Cell, RefCell};
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use embedded_io::{Read, ReadReady, Write, WriteReady};
+use frixel_board::hardware::{Dac, DacFrames, Hardware, Late, Monitor, Period, Watchdog};
+use frixel_board::tick::{Tick, TickShared};
+use frixel_control::Ticker;
+use frixel_drivers::amplifier::{Amplifier, KickedEnable};
+use frixel_drivers::arm_switch::ArmSwitch;
+use frixel_session::TickEnds;
+use frixel_testkit::IdealMonitor;
+use frixel_wire::dac_code::DacCode;
+
+use super::firmware::{BOARD, monitor};
+
+pub(crate) const PERIOD_CYCLES: u32 = 4_250;
+pub(crate) const DEADLINE_CYCLES: u32 = 3_700;
+
+/// What a part of the board was told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Event {
+    Sent(DacCode),
+    Kicked,
+    Disabled,
+    Prepared,
+    Checked,
+    Fed,
+    DebuggerMayStop(bool),
+}
+
+/// The wires of the board, which its parts share with the test.
+pub(crate) struct Wires {
+    pub(crate) events: RefCell<Vec<Event>>,
+    /// Cycles that the tick has taken when it asks.
+    pub(crate) cycles: Cell<u32>,
+    /// The next period begins before the tick ends.
+    pub(crate) overruns: Cell<bool>,
+    /// Calls of `has_begun` in this tick.
+    asked: Cell<u32>,
+    pub(crate) is_late: Cell<bool>,
+    pub(crate) ready: Cell<bool>,
+    pub(crate) switch_closed: Cell<bool>,
+    pub(crate) light: Cell<bool>,
+    /// What the DAC answers when it is read back.
+    pub(crate) dac: Cell<Result<(), u32>>,
+    pub(crate) received: RefCell<Vec<u8>>,
+    pub(crate) transmitted: RefCell<Vec<u8>>,
+    monitor: RefCell<IdealMonitor>,
+    code: Cell<DacCode>,
+}
+
+/// A board with its amplifier on and its switch released, on time.
+pub(crate) fn wires() -> Rc<Wires> {
+    Rc::new(Wires {
+        events: RefCell::default(),
+        cycles: Cell::new(1_000),
+        overruns: Cell::new(false),
+        asked: Cell::new(0),
+        is_late: Cell::new(false),
+        ready: Cell::new(true),
+        switch_closed: Cell::new(false),
+        light: Cell::new(false),
+        dac: Cell::new(Ok(())),
+        received: RefCell::default(),
+        transmitted: RefCell::default(),
+        monitor: RefCell::new(monitor()),
+        code: Cell::new(DacCode::ZERO),
+    })
+}
+
+impl Wires {
+    fn say(&self, event: Event) {
+        self.events.borrow_mut().push(event);
+    }
+
+    /// What was said since the last call.
+    pub(crate) fn take(&self) -> Vec<Event> {
+        self.events.take()
+    }
+}
+
+/// Any part of the board.
+pub(crate) struct Part(pub(crate) Rc<Wires>);
+
+/// A pin that reads one of the wires.
+pub(crate) struct Input(Rc<Wires>, fn(&Wires) -> bool);
+
+/// The board's parts.
+pub(crate) struct Fake;
+
+thread_local! {
+    /// The tick of this thread's test, which runs while the main loop waits for it.
+    static TICK: RefCell<Option<Tick<Fake>>> = const { RefCell::new(None) };
+}
+
+/// Leaves the tick to [`run_tick`].
+pub(crate) fn start(tick: Tick<Fake>) {
+    TICK.set(Some(tick));
+}
+
+/// Runs a tick.
+pub(crate) fn run_tick() {
+    TICK.with_borrow_mut(|tick| {
+        let tick = tick.as_mut().unwrap();
+        tick.monitor.0.asked.set(0);
+        tick.run();
+    });
+}
+
+impl Hardware for Fake {
+    const TICK_HZ: u32 = BOARD.tick_hz;
+
+    type Period = Part;
+    type Frames = Part;
+    type Dac = Part;
+    type Enable = Part;
+    type Ready = Input;
+    type Monitor = Part;
+    type Switch = Input;
+    type Light = Part;
+    type Serial = Part;
+    type Store = ();
+    type Watchdog = Part;
+
+    fn wait_for_tick() {
+        run_tick();
+    }
+}
+
+/// The tick of a board with these wires.
+pub(crate) fn tick(
+    wires: &Rc<Wires>,
+    shared: &'static TickShared,
+    ticker: Ticker<'static>,
+    queues: TickEnds,
+) -> Tick<Fake> {
+    let part = || Part(Rc::clone(wires));
+    Tick {
+        shared,
+        ticker,
+        queues,
+        period: part(),
+        frames: part(),
+        amplifier: Amplifier::new(part(), Input(Rc::clone(wires), |wires| wires.ready.get())),
+        monitor: part(),
+        arm_switch: ArmSwitch::new(Input(Rc::clone(wires), |wires| wires.switch_closed.get()), BOARD.tick_hz),
+    }
+}
+
+impl Period for Part {
+    const PERIOD_CYCLES: u32 = PERIOD_CYCLES;
+    const DEADLINE_CYCLES: u32 = DEADLINE_CYCLES;
+
+    fn cycles(&self) -> u32 {
+        self.0.cycles.get()
+    }
+
+    fn has_begun(&mut self) -> bool {
+        self.0.asked.set(self.0.asked.get() + 1);
+        self.0.asked.get() == 1 || self.0.overruns.get()
+    }
+}
+
+impl DacFrames for Part {
+    fn send(&mut self, code: DacCode) -> Result<(), Late> {
+        if self.0.is_late.get() {
+            return Err(Late);
+        }
+        self.0.say(Event::Sent(code));
+        self.0.code.set(code);
+        Ok(())
+    }
+}
+
+impl KickedEnable for Part {
+    fn kick(&mut self) {
+        self.0.say(Event::Kicked);
+    }
+
+    fn disable(&mut self) {
+        self.0.say(Event::Disabled);
+        self.0.code.set(DacCode::ZERO);
+    }
+}
+
+impl Monitor for Part {
+    fn monitor_v(&mut self) -> f32 {
+        let mut monitor = self.0.monitor.borrow_mut();
+        monitor.follow(self.0.code.get());
+        monitor.voltage_v()
+    }
+}
+
+impl Dac for Part {
+    fn prepare(&mut self) -> Result<(), u32> {
+        self.0.say(Event::Prepared);
+        self.0.dac.get()
+    }
+
+    fn check(&mut self) -> Result<(), u32> {
+        self.0.say(Event::Checked);
+        self.0.dac.get()
+    }
+}
+
+impl Watchdog for Part {
+    fn feed(&mut self) {
+        self.0.say(Event::Fed);
+    }
+
+    fn let_debugger_stop_it(&mut self, may_stop: bool) {
+        self.0.say(Event::DebuggerMayStop(may_stop));
+    }
+}
+
+impl ErrorType for Part {
+    type Error = Infallible;
+}
+
+impl OutputPin for Part {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.light.set(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.light.set(true);
+        Ok(())
+    }
+}
+
+impl ErrorType for Input {
+    type Error = Infallible;
+}
+
+impl InputPin for Input {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(self.1(&self.0))
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        self.is_high().map(|is_high| !is_high)
+    }
+}
+
+impl embedded_io::ErrorType for Part {
+    type Error = Infallible;
+}
+
+impl ReadReady for Part {
+    fn read_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.0.received.borrow().is_empty())
+    }
+}
+
+impl Read for Part {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
+        let mut received = self.0.received.borrow_mut();
+        let len = received.len().min(bytes.len());
+        for (to, from) in bytes.iter_mut().zip(received.drain(..len)) {
+            *to = from;
+        }
+        Ok(len)
+    }
+}
+
+impl WriteReady for Part {
+    fn write_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(true)
+    }
+}
+
+impl Write for Part {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        self.0.transmitted.borrow_mut().extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}

@@ -1,0 +1,168 @@
+//! Instructions of the programmable I/O (PIO) of the RP2040 and the RP2350, as the words that its state machines execute
+//! (RP2040 data sheet, 3.4, "Instruction Set"). A board writes its programs with them.
+//!
+//! A state machine takes one cycle of its divided clock for an instruction, and as many more as [`Instruction::delay`]
+//! says. It shares the five bits of that number with the pins of [`Instruction::side`].
+
+/// An instruction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instruction(u16);
+
+/// When to jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// Always.
+    Always = 0,
+    /// Register X is not zero; it is decremented after the comparison, whatever it is.
+    XNotZeroDecrement = 2,
+    /// Register Y is zero.
+    YZero = 3,
+    /// Register Y is not zero; it is decremented after the comparison, whatever it is.
+    YNotZeroDecrement = 4,
+}
+
+/// What an instruction writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// The pins that the machine is configured for.
+    Pins = 0,
+    /// Register X.
+    X = 1,
+    /// Register Y.
+    Y = 2,
+    /// The directions of the pins, 1 for an output. Not a destination of [`copy`].
+    PinDirections = 4,
+}
+
+/// What [`copy`] reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The status that the machine is configured for: all ones while the transmit FIFO holds fewer words than it says.
+    Status = 5,
+    /// The output shift register.
+    OutputShift = 7,
+}
+
+impl Instruction {
+    /// Waits for so many cycles after the instruction.
+    ///
+    /// # Panics
+    /// If they need more than five bits. Use it in a constant, where that fails to compile.
+    #[must_use]
+    pub const fn delay(self, cycles: u16) -> Self {
+        assert!(cycles < 32, "a delay has five bits at most");
+        Self(self.0 | cycles << 8)
+    }
+
+    /// Sets the side-set pins, of which there are `count`, at the beginning of the instruction. The delay then has
+    /// `count` bits fewer.
+    ///
+    /// # Panics
+    /// If the levels or the delay do not fit. Use it in a constant, where that fails to compile.
+    #[must_use]
+    pub const fn side(self, levels: u16, count: u32) -> Self {
+        assert!(count <= 5 && levels < 1 << count, "there are at most five side-set pins");
+        assert!((self.0 >> 8) & 0x1f < 1 << (5 - count), "the side-set pins leave fewer bits to the delay");
+        Self(self.0 | levels << (13 - count))
+    }
+
+    /// The word for the instruction memory.
+    pub const fn word(self) -> u16 {
+        self.0
+    }
+}
+
+/// Jumps to an address.
+pub const fn jump(condition: Condition, address: u16) -> Instruction {
+    assert!(address < 32, "a program has 32 instructions at most");
+    Instruction((condition as u16) << 5 | address)
+}
+
+/// Waits until an interrupt flag is set, and clears it.
+pub const fn wait_flag(flag: u16) -> Instruction {
+    assert!(flag < 8, "there are eight flags");
+    Instruction(0x20c0 | flag)
+}
+
+/// Shifts bits from the input pins into the input shift register.
+pub const fn shift_in(bits: u16) -> Instruction {
+    assert!(bits >= 1 && bits < 32, "1 to 31 bits");
+    Instruction(0x4000 | bits)
+}
+
+/// Shifts bits out of the output shift register.
+pub const fn shift_out(to: Destination, bits: u16) -> Instruction {
+    assert!(bits >= 1 && bits < 32, "1 to 31 bits");
+    Instruction(0x6000 | (to as u16) << 5 | bits)
+}
+
+/// Moves the input shift register to the receive FIFO; drops it if the FIFO is full.
+pub const PUSH: Instruction = Instruction(0x8000);
+/// Takes a word from the transmit FIFO into the output shift register; takes register X if the FIFO is empty.
+pub const PULL: Instruction = Instruction(0x8080);
+/// Waits for a word in the transmit FIFO, and takes it into the output shift register.
+pub const PULL_BLOCKING: Instruction = Instruction(0x80a0);
+
+/// Copies a register.
+pub const fn copy(to: Destination, from: Source) -> Instruction {
+    assert!(!matches!(to, Destination::PinDirections), "not a destination of this instruction");
+    Instruction(0xa000 | (to as u16) << 5 | from as u16)
+}
+
+/// Sets an interrupt flag.
+pub const fn set_flag(flag: u16) -> Instruction {
+    assert!(flag < 8, "there are eight flags");
+    Instruction(0xc000 | flag)
+}
+
+/// Sets pins, directions or a register to a value.
+pub const fn set(to: Destination, value: u16) -> Instruction {
+    assert!(value < 32, "a value has five bits");
+    Instruction(0xe000 | (to as u16) << 5 | value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Instructions whose words others have published: the programs of the data sheet's examples, and the assembler's
+    /// output that stands beside them.
+    #[test]
+    fn words_are_those_of_the_assembler() {
+        for (instruction, word) in [
+            // `out x, 1 side 0 [2]`, `jmp bitloop side 1 [4]` at address 0 (3.6.2, "WS2812 LEDs").
+            (shift_out(Destination::X, 1).delay(2).side(0, 1), 0x6221),
+            (jump(Condition::Always, 0).delay(4).side(1, 1), 0x1400),
+            // `pull`, `set x, 31`, `set pins, 1`, `set pindirs, 1`, `jmp x-- 2`, `mov y, status`, `irq nowait 0`.
+            (PULL_BLOCKING, 0x80a0),
+            (PULL, 0x8080),
+            (PUSH, 0x8000),
+            (set(Destination::X, 31), 0xe03f),
+            (set(Destination::Pins, 1), 0xe001),
+            (set(Destination::PinDirections, 1), 0xe081),
+            (jump(Condition::XNotZeroDecrement, 2), 0x0042),
+            (jump(Condition::YZero, 5), 0x0065),
+            (jump(Condition::YNotZeroDecrement, 3), 0x0083),
+            (copy(Destination::Y, Source::Status), 0xa045),
+            (copy(Destination::X, Source::OutputShift), 0xa027),
+            (set_flag(0), 0xc000),
+            (wait_flag(4), 0x20c4),
+            (shift_in(1), 0x4001),
+            (shift_out(Destination::Pins, 1), 0x6001),
+        ] {
+            assert_eq!(instruction.word(), word, "{instruction:?}");
+        }
+    }
+
+    #[test]
+    fn side_set_pins_stand_above_the_delay() {
+        let instruction = set(Destination::Y, 0).delay(7).side(0b10, 2);
+        assert_eq!(instruction.word(), 0xe040 | 0b10 << 11 | 7 << 8);
+    }
+
+    #[test]
+    #[should_panic(expected = "fewer bits")]
+    fn a_delay_that_the_side_set_pins_leave_no_room_for_is_refused() {
+        let _ = set(Destination::Y, 0).delay(8).side(0, 2);
+    }
+}

@@ -1,0 +1,296 @@
+// One board from a start to the next: the emulated chip with what the rig adds to it.
+
+import { RP2040 } from "rp2040js";
+
+import { ENDLESS_LOOP_AT, FLASH_LEN, Flash } from "./flash.mjs";
+import { Pins } from "./pins.mjs";
+import { PioStepper } from "./pio.mjs";
+import { CAUSE, ENDED, EVENT } from "./protocol.mjs";
+import { UartLine } from "./uart.mjs";
+
+/** Cycles of the entry into an exception, and of the return (Cortex-M0+ technical reference manual, 3.6.1), which
+ *  rp2040js does not count. */
+const EXCEPTION_ENTRY_CYCLES = 15;
+const EXCEPTION_RETURN_CYCLES = 13;
+const NMI = 2;
+const HARD_FAULT = 3;
+/** Addresses of peripherals, as rp2040js keys them. */
+const WATCHDOG = 0x40058;
+const CHIP_RESET = 0x40064;
+const SSI = 0x18000;
+const PSM = 0x40010;
+/** Offset of SSIENR, and of CHIP_RESET. */
+const SSIENR = 0x08;
+const CHIP_RESET_AT = 0x08;
+const AIRCR = 0xd0c;
+const SYSRESETREQ = 1 << 2;
+/** CHIP_RESET: what was the last reset of the whole chip. */
+const HAD_POR = 1 << 8;
+const HAD_RUN = 1 << 16;
+
+/** What remains over a reset. @typedef {{ flash: Uint8Array, sram?: Uint8Array, scratch?: Uint32Array, reason: number,
+ *  chipReset: number }} Remains */
+
+export class Board {
+  #rp2040 = new RP2040();
+  #core = this.#rp2040.core;
+  #clock = this.#rp2040.clock;
+  #pio;
+  #flash;
+  #pins;
+  #uart;
+  #chipReset;
+  #isHung = false;
+  #hasFrame = false;
+  /** The run ends after this instruction. */
+  #hasStopped = false;
+  #begin = 0;
+  /** Why the board ends; `undefined` while it runs. @type {number | undefined} */
+  #endsWith;
+  #failure = "";
+  /** Events of the current run: kind, ns since its beginning, two values. @type {number[]} */
+  events = [];
+  instructions = 0;
+
+  /** @param {import("./loader.mjs").Image} image @param {Remains} remains @param {number} cause */
+  constructor(image, remains, cause) {
+    const rp2040 = this.#rp2040;
+    rp2040.logger = this.#logger();
+    rp2040.flash.set(remains.flash.subarray(0, FLASH_LEN));
+    if (remains.sram) {
+      rp2040.sram.set(remains.sram);
+    }
+    this.#chipReset = remains.chipReset;
+    this.#patchCore();
+    this.#patchResets(remains);
+    this.#pio = new PioStepper(rp2040);
+    this.#flash = new Flash(rp2040, this);
+    this.#pins = new Pins(rp2040, this);
+    this.#uart = new UartLine(rp2040);
+    rp2040.onBreak = (number) => {
+      if (!this.#flash.isCalled(number)) {
+        this.#core.PC -= this.#core.breakRewind;
+        this.#hardFault();
+      }
+    };
+    this.record(EVENT.START, cause);
+    this.#core.VTOR = image.vectors;
+    this.#core.reset();
+  }
+
+  #logger() {
+    const unmapped = /invalid memory|undefined address|not implemented yet|not 32 bit aligned/;
+    const hear = (_name, message) => {
+      if (unmapped.test(message)) {
+        this.#hardFault();
+      }
+    };
+    return { debug() {}, info() {}, warn: hear, error: hear };
+  }
+
+  /** Enters the hard fault handler before the next instruction, as the bus error that rp2040js only logs does. */
+  #hardFault() {
+    this.#core.pendingNMI = true;
+    this.#core.interruptsUpdated = true;
+  }
+
+  #patchCore() {
+    const core = this.#core;
+    for (const [name, cycles] of [
+      ["exceptionEntry", EXCEPTION_ENTRY_CYCLES],
+      ["exceptionReturn", EXCEPTION_RETURN_CYCLES],
+    ]) {
+      const original = core[name].bind(core);
+      core[name] = (argument) => {
+        // The firmware has no non-maskable interrupt: the exception with its number is a hard fault here.
+        original(argument === NMI ? HARD_FAULT : argument);
+        core.cycles += cycles;
+      };
+    }
+  }
+
+  /** Resets: by the watchdog, by software, and what a start reads of them. @param {Remains} remains */
+  #patchResets({ scratch, reason }) {
+    const rp2040 = this.#rp2040;
+    const watchdog = rp2040.peripherals[WATCHDOG];
+    watchdog.scratchData.set(scratch ?? []);
+    watchdog.reason = reason;
+    watchdog.onWatchdogTrigger = () => {
+      // rp2040js would trigger again at the same instant for ever.
+      watchdog.alarm.enable = false;
+      if (rp2040.peripherals[PSM].wdsel === 0) {
+        this.fail("the watchdog has fired, and PSM.WDSEL says that it resets nothing");
+      }
+      this.#end(CAUSE.WATCHDOG);
+    };
+    const vreg = rp2040.peripherals[CHIP_RESET];
+    vreg.readUint32 = (offset) => (offset === CHIP_RESET_AT ? this.#chipReset : 0);
+    vreg.writeUint32 = () => {};
+    const ppb = rp2040.ppb;
+    const write = ppb.writeUint32.bind(ppb);
+    ppb.writeUint32 = (offset, value) => {
+      if (offset === AIRCR && (value & SYSRESETREQ) !== 0) {
+        this.#end(CAUSE.SOFTWARE);
+      } else {
+        write(offset, value);
+      }
+    };
+    const ssi = rp2040.peripherals[SSI];
+    const configure = ssi.writeUint32.bind(ssi);
+    ssi.writeUint32 = (offset, value) => {
+      configure(offset, value);
+      if (offset === SSIENR && value !== 0) {
+        this.#flash.interfaceEnabled();
+      }
+    };
+  }
+
+  get nanos() {
+    return this.#clock.nanos;
+  }
+
+  /** Records an event of this run. */
+  record(kind, a, b = 0) {
+    this.events.push(kind, Math.round(this.nanos - this.#begin), a, b);
+  }
+
+  /** Something that a machine of PIO may wait for has changed. */
+  wake() {
+    this.#pio?.wake();
+  }
+
+  frameEnded() {
+    this.#hasFrame = true;
+    this.#hasStopped = true;
+  }
+
+  /** The power is cut now, by the flash. */
+  losePower() {
+    this.#end(CAUSE.POWER);
+  }
+
+  #end(cause) {
+    this.#endsWith ??= cause;
+    this.#hasStopped = true;
+  }
+
+  /** Ends the process: the firmware has done what no board allows. @param {string} what */
+  fail(what) {
+    this.#failure ||= `${what} (program counter 0x${this.#core.PC.toString(16)})`;
+    this.#hasStopped = true;
+  }
+
+  /**
+   * Runs for a time, or until a frame of the DAC has ended, the board resets itself, or so many instructions were carried
+   * out. @param {number} nanos @param {number} instructionsMax
+   */
+  run(nanos, instructionsMax) {
+    const core = this.#core;
+    const clock = this.#clock;
+    const pio = this.#pio;
+    this.#begin = clock.nanos;
+    this.#hasStopped = this.#endsWith !== undefined;
+    this.#hasFrame = false;
+    const end = this.#begin + nanos;
+    let left = instructionsMax;
+    while (clock.nanos < end && left > 0 && !this.#hasStopped) {
+      const cycleNanos = 1e9 / this.#rp2040.clkSys;
+      const before = core.cycles;
+      if (core.waiting || this.#isHung) {
+        core.cycles += this.#idleCycles(end, cycleNanos);
+      } else {
+        core.executeInstruction();
+        left -= 1;
+      }
+      clock.tick((core.cycles - before) * cycleNanos);
+      pio.advance(core.cycles);
+    }
+    this.instructions += instructionsMax - left;
+    if (this.#failure) {
+      throw new Error(this.#failure);
+    }
+    return this.#ended(left);
+  }
+
+  #ended(left) {
+    if (this.#endsWith !== undefined) {
+      return ENDED.RESET;
+    }
+    if (this.#hasFrame) {
+      return ENDED.FRAME;
+    }
+    return left > 0 ? ENDED.TIME : ENDED.INSTRUCTIONS;
+  }
+
+  #idleCycles(end, cycleNanos) {
+    const alarm = this.#clock.nextAlarm ? this.#clock.nanosToNextAlarm : Infinity;
+    const nanos = Math.min(end - this.nanos, alarm);
+    return Math.max(1, Math.ceil(Math.min(nanos / cycleNanos, this.#pio.next - this.#core.cycles)));
+  }
+
+  /** @param {{ ready: boolean, arm: boolean, monitorCode: number, shiftingOut: number, bytes: Iterable<number> }} inputs */
+  drive(inputs) {
+    this.#pins.drive(inputs);
+    this.#pins.shiftingOut = inputs.shiftingOut;
+    this.#uart.send(inputs.bytes);
+  }
+
+  takeReceived() {
+    return this.#uart.takeReceived();
+  }
+
+  hang() {
+    this.#isHung = true;
+  }
+
+  /** The main loop goes into an endless loop once it runs. */
+  hangMainLoop() {
+    const core = this.#core;
+    const execute = core.executeInstruction.bind(core);
+    core.executeInstruction = () => {
+      if (core.IPSR === 0) {
+        core.PC = ENDLESS_LOOP_AT;
+        delete core.executeInstruction;
+      }
+      return execute();
+    };
+  }
+
+  /** @param {number} address */
+  jump(address) {
+    this.#core.PC = address;
+    this.#core.waiting = false;
+  }
+
+  /** @param {number} operations @param {number} fraction */
+  cutAtFlashOperation(operations, fraction) {
+    this.#flash.cutAfter(operations, fraction);
+  }
+
+  /** What the next start finds. @param {number} cause @param {(sram: Uint8Array) => void} scramble */
+  remains(cause, scramble) {
+    const watchdog = this.#rp2040.peripherals[WATCHDOG];
+    const { flash, sram } = this.#rp2040;
+    if (cause === CAUSE.POWER) {
+      scramble(sram);
+      return { flash, sram, reason: 0, chipReset: HAD_POR };
+    }
+    if (cause === CAUSE.RUN_PIN) {
+      return { flash, sram, reason: 0, chipReset: HAD_RUN };
+    }
+    const { scratchData: scratch, reason } = watchdog;
+    return { flash, sram, scratch, reason, chipReset: this.#chipReset };
+  }
+
+  /** Why the board ended: a value of `CAUSE`. */
+  get cause() {
+    return this.#endsWith;
+  }
+}
+
+/** What a board finds that was never switched on. @param {import("./loader.mjs").Image} image @returns {Remains} */
+export function factoryNew(image) {
+  const flash = new Uint8Array(FLASH_LEN).fill(0xff);
+  image.loadInto(flash);
+  return { flash, reason: 0, chipReset: HAD_POR };
+}

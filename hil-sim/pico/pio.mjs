@@ -1,0 +1,126 @@
+// Runs the state machines of both PIO blocks in time with the core.
+//
+// rp2040js runs them from `setTimeout`, a thousand instructions at a time, without regard to the core's clock, to clock
+// dividers and to delays (https://github.com/wokwi/rp2040js/issues/106). Here each machine has the cycle of the core at
+// which its next instruction is due.
+
+/** Offsets of the registers SM0_INSTR to SM3_INSTR, and the distance between two machines (RP2040 datasheet, 3.7). */
+const SM0_INSTR = 0xd8;
+const SM_STRIDE = 0x18;
+/** Offsets of the first and the last receive FIFO. */
+const RXF0 = 0x20;
+const RXF3 = 0x2c;
+
+/** Core cycles of one cycle of a machine. */
+function divider(machine) {
+  return (machine.clockDivInt || 65_536) + machine.clockDivFrac / 256;
+}
+
+/** @typedef {{ machine: any, pio: any, isOn: boolean, isStalled: boolean, due: number }} Timed */
+
+export class PioStepper {
+  /** @type {Timed[]} */
+  #all;
+  /** @type {Timed[]} Machines that are enabled. */
+  #on = [];
+  /** Cycle of the core at which the next instruction of any machine is due. */
+  next = Infinity;
+  #now = 0;
+  #hasResumed = false;
+
+  /** @param {any} rp2040 */
+  constructor(rp2040) {
+    this.#all = rp2040.pio.flatMap((pio) =>
+      pio.machines.map((machine) => ({ machine, pio, isOn: false, isStalled: false, due: 0 })),
+    );
+    for (const pio of rp2040.pio) {
+      this.#patch(pio);
+    }
+  }
+
+  #patch(pio) {
+    pio.run = () => {};
+    for (const machine of pio.machines) {
+      // Restarting the divider changes the phase of a machine by less than one of its cycles.
+      machine.clkDivRestart = () => {};
+    }
+    const read = pio.readUint32.bind(pio);
+    pio.readUint32 = (offset) => {
+      // A machine may have waited for room in its receive FIFO.
+      this.#hasResumed ||= offset >= RXF0 && offset <= RXF3;
+      return read(offset);
+    };
+    const write = pio.writeUint32.bind(pio);
+    pio.writeUint32 = (offset, value) => {
+      const index = (offset - SM0_INSTR) / SM_STRIDE;
+      const forced = Number.isInteger(index) ? pio.machines[index] : undefined;
+      if (forced) {
+        // A forced instruction takes the place of a stalled one, which rp2040js would go on to wait for.
+        forced.waiting = false;
+      }
+      write(offset, value);
+      pio.checkChangedPins();
+      this.#refresh();
+    };
+  }
+
+  /** Looks which machines run, after a register was written. */
+  #refresh() {
+    for (const timed of this.#all) {
+      const { machine } = timed;
+      if (machine.enabled && !timed.isOn) {
+        timed.due = this.#now;
+        timed.isStalled = machine.waiting;
+      }
+      timed.isOn = machine.enabled;
+    }
+    this.#on = this.#all.filter((timed) => timed.isOn);
+    this.#hasResumed = true;
+    this.#plan();
+  }
+
+  #plan() {
+    let next = Infinity;
+    for (const { machine, due } of this.#on) {
+      if (!machine.waiting && due < next) {
+        next = due;
+      }
+    }
+    this.next = next;
+  }
+
+  /** Tells that something outside of the machines has changed that one may have waited for. */
+  wake() {
+    this.#hasResumed = true;
+  }
+
+  /** Runs all machines up to a cycle of the core. @param {number} now */
+  advance(now) {
+    this.#now = now;
+    if (now < this.next && !this.#hasResumed) {
+      return;
+    }
+    this.#hasResumed = false;
+    for (const timed of this.#on) {
+      this.#run(timed, now);
+    }
+    this.#plan();
+  }
+
+  /** @param {Timed} timed @param {number} now */
+  #run(timed, now) {
+    const { machine, pio } = timed;
+    if (timed.isStalled && !machine.waiting) {
+      // The stalled instruction ends in this cycle, and its delay follows.
+      timed.due = now + (1 + Math.max(0, machine.waitDelay)) * divider(machine);
+      timed.isStalled = false;
+    }
+    while (machine.enabled && !machine.waiting && timed.due <= now) {
+      const before = machine.cycles;
+      machine.step();
+      timed.due += Math.max(1, machine.cycles - before) * divider(machine);
+      pio.checkChangedPins();
+    }
+    timed.isStalled = machine.waiting;
+  }
+}

@@ -1,0 +1,59 @@
+// The words between this process and `frixel-hil-sim` (src/pico/protocol.rs): little-endian, 32 bits each, in messages
+// that begin with the number of words that follow.
+
+/** First word of a request. */
+export const REQUEST = {
+  /** Run for a time, with these inputs: ns, max instructions, inputs, monitor code, DAC's output bits, bytes... */
+  RUN: 1,
+  /** Cut the power and switch it on again: seed of what RAM holds then. */
+  POWER_CYCLE: 2,
+  /** Pull the RUN pin low and let it go: RAM stays. */
+  RUN_PIN: 3,
+  /** Stop the core for ever: its clock goes on, as in a loop without interrupts. */
+  HANG: 4,
+  /** Let the main loop hang, and interrupts go on. */
+  HANG_MAIN_LOOP: 5,
+  /** Jump to an address. */
+  JUMP: 6,
+  /** Cut the power at a flash operation: how many are still carried out, and the seed of how far the next one comes. */
+  CUT_AT_FLASH_OPERATION: 7,
+  /** The address of a function: bytes of its name. */
+  ADDRESS_OF: 8,
+};
+
+/** Bits of the inputs. */
+export const INPUT = { READY: 1, ARM: 2 };
+
+/** Why a run ended: first word of its answer. */
+export const ENDED = {
+  /** The time has passed. */
+  TIME: 0,
+  /** SYNC rose. */
+  FRAME: 1,
+  /** So many instructions were carried out. */
+  INSTRUCTIONS: 2,
+  /** The board has reset itself, or lost its power at a flash operation. */
+  RESET: 3,
+};
+
+/** Kinds of events; each has the time since the beginning of the run in ns, and two values. */
+export const EVENT = {
+  /** SYNC rose: the last 32 bits of the frame; number of clocks (upper 8 bits) and for how many ns SYNC was low. */
+  FRAME: 1,
+  /** The amplifier's enable: level. */
+  ENABLE: 2,
+  /** The DAC's CLEAR: level. */
+  CLEAR: 3,
+  /** The light: level. */
+  LED: 4,
+  /** The board starts: cause. */
+  START: 5,
+  /** A flash operation begins: address, and bytes that are erased (0) or programmed. */
+  FLASH: 6,
+};
+
+/** Why a board starts. */
+export const CAUSE = { POWER: 1, RUN_PIN: 2, WATCHDOG: 3, SOFTWARE: 4 };
+
+/** Bits a second on the line between host and board. */
+export const BAUD = 1_000_000;

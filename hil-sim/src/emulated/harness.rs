@@ -1,0 +1,50 @@
+//! The programs that run the Pico's image: those that come with this program, or those of the checkout.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+
+use super::EmulatorError;
+use super::image::{beside_program, source_folder};
+
+/// Their folder among the images that come with a program.
+const BESIDE: &str = "pico-rig";
+/// Their folder in a checkout.
+const SOURCES: &str = "hil-sim/pico";
+const MAIN: &str = "main.mjs";
+
+/// One installation at a time.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// The program that node runs. In a checkout, this first installs the emulator, unless it is there.
+pub(super) fn find() -> Result<PathBuf, EmulatorError> {
+    if let Some(folder) = beside_program(BESIDE) {
+        return Ok(folder.join(MAIN));
+    }
+    let folder = source_folder(SOURCES)?;
+    install(&folder)?;
+    Ok(folder.join(MAIN))
+}
+
+/// Installs the packages of the lock file, unless they are there.
+fn install(folder: &Path) -> Result<(), EmulatorError> {
+    let _turn = TURN.lock();
+    // npm writes this file last, so it is newer than the lock file that it was made from.
+    let modified = |name: &str| fs::metadata(folder.join(name)).and_then(|metadata| metadata.modified()).ok();
+    if modified("node_modules/.package-lock.json") >= modified("package-lock.json") {
+        return Ok(());
+    }
+    let ran =
+        Command::new("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(folder).stdin(Stdio::null()).output();
+    match ran {
+        Ok(output) if output.status.success() => Ok(()),
+        Ok(output) => Err(EmulatorError::NoPackages {
+            folder: folder.display().to_string(),
+            output: String::from_utf8_lossy(&output.stderr).into_owned(),
+        }),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(EmulatorError::NoNode),
+        Err(error) => Err(EmulatorError::system("starting npm")(error)),
+    }
+}

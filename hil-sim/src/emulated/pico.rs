@@ -1,0 +1,332 @@
+//! The image of the Pico board on an emulated RP2040, wired to its chips and its world.
+
+mod process;
+mod protocol;
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use embedded_hal::delay::DelayNs;
+use frixel_control::Drive;
+use frixel_session::Touch;
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::message::{Command, Request as HostRequest};
+use frixel_wire::payload;
+
+use super::{EmulatorError, Image, LinkRecord};
+use crate::World;
+use crate::chips::Ad5761rChip;
+use process::Process;
+use protocol::{ARM, Ended, READY, Ran, Request};
+pub use protocol::{Stamped, StartCause, WireEvent};
+
+/// Sequence number of the touch source's requests: no host waits for an answer to it.
+const TOUCH_SEQUENCE: u16 = 0;
+/// When the person presses the arm switch and holds it, after the board was switched on.
+const PRESSED_AT: Duration = Duration::from_millis(10);
+/// How far a frame may be from the boundary of a tick to mark it, as a fraction of the period. A frame that the driver
+/// sends between two ticks is none.
+const BOUNDARY_TOLERANCE: f64 = 0.2;
+/// Codes of the ADC a volt at the amplifier's output, and at 0 V: 1.5 V at the pin for 200 V, of 3.3 V in 4,096 codes,
+/// around the middle (`docs/hardware.md`).
+const MONITOR_CODES_PER_V: f64 = 1.5 / 200.0 / 3.3 * 4096.0;
+const MONITOR_ZERO_CODE: f64 = 2048.0;
+/// Codes of the DAC a volt: 10 V is full scale.
+const DAC_CODES_PER_V: f64 = 32_768.0 / 10.0;
+
+/// What a test has broken of the inputs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BrokenInputs {
+    /// The level of the amplifier's ready line, whatever the amplifier does.
+    pub ready: Option<bool>,
+    /// The level of the arm switch, whatever the person does.
+    pub arm_switch: Option<bool>,
+    /// Volts that the monitor shows, whatever the amplifier puts out.
+    pub monitor_v: Option<f64>,
+}
+
+/// A Pico with DAC, amplifier, screen, finger and touch source, and a host's end of its serial line.
+///
+/// Time is virtual: it passes in [`Self::step`] only, so it waits for a host however busy the machine is. The world
+/// advances by a tick with each frame that the board sends at its beat, and at the same rate without frames. The board
+/// takes touch reports from its host; here the touch source sends them over the same line, between the host's frames.
+#[derive(Debug)]
+pub struct PicoRig {
+    process: Process,
+    dac: Ad5761rChip,
+    world: World,
+    /// Inputs that do not follow the world.
+    pub broken: BrokenInputs,
+    tick_period: Duration,
+    now: Duration,
+    /// When the current tick ends.
+    tick_ends_at: Duration,
+    amplifier_enable: bool,
+    /// Since when the amplifier has been disabled and the DAC's output zero.
+    zero_since: Option<Duration>,
+    to_board: VecDeque<u8>,
+    at_host: Vec<u8>,
+    events: Option<Vec<Stamped>>,
+    starts: u32,
+    instructions: u64,
+}
+
+impl PicoRig {
+    /// Switches the board on in a world whose finger is up, and which has the board's tick rate.
+    pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
+        let tick_period = Duration::from_secs_f64(1.0 / f64::from(world.tick_hz()));
+        Ok(Self {
+            process: Process::start(image)?,
+            dac: Ad5761rChip::new(),
+            world,
+            broken: BrokenInputs::default(),
+            tick_period,
+            now: Duration::ZERO,
+            tick_ends_at: tick_period,
+            amplifier_enable: false,
+            zero_since: Some(Duration::ZERO),
+            to_board: VecDeque::new(),
+            at_host: Vec::new(),
+            events: None,
+            starts: 0,
+            instructions: 0,
+        })
+    }
+
+    /// Virtual time since the board was first switched on.
+    pub fn now(&self) -> Duration {
+        self.now
+    }
+
+    /// Time between two ticks.
+    pub fn tick_period(&self) -> Duration {
+        self.tick_period
+    }
+
+    /// Number of ticks of the world since the board was first switched on, modulo 2^32. The board's own count begins when
+    /// its beat does, anew at each start.
+    pub fn tick(&self) -> u32 {
+        self.world.tick() as u32
+    }
+
+    /// The world, to inject faults and to move the finger.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// The DAC, to break it.
+    pub fn dac(&self) -> &Ad5761rChip {
+        &self.dac
+    }
+
+    /// How often the firmware has started.
+    pub fn starts(&self) -> u32 {
+        self.starts
+    }
+
+    /// Number of instructions carried out since the board was first switched on.
+    pub fn instructions(&self) -> u64 {
+        self.instructions
+    }
+
+    /// The board's output now.
+    pub fn output(&self) -> Drive {
+        let code = (self.dac.output_v() * DAC_CODES_PER_V).round();
+        Drive { dac_code: DacCode::from_bits(code as i16), amplifier_enable: self.amplifier_enable }
+    }
+
+    /// Since when the amplifier has been disabled and the DAC's output zero; `None` while either is not.
+    pub fn zero_since(&self) -> Option<Duration> {
+        self.zero_since
+    }
+
+    /// Records from now on what happens on the wires.
+    pub fn record_events(&mut self) {
+        self.events = Some(Vec::new());
+    }
+
+    /// The events since the last call.
+    pub fn take_events(&mut self) -> Vec<Stamped> {
+        self.events.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Sends bytes from the host: whole frames, so that those of the touch source go between them.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.to_board.extend(bytes);
+    }
+
+    /// Appends the bytes that have arrived at the host to `bytes`.
+    pub fn receive(&mut self, bytes: &mut Vec<u8>) {
+        bytes.append(&mut self.at_host);
+    }
+
+    /// Whether any bytes have arrived at the host.
+    pub fn has_received(&self) -> bool {
+        !self.at_host.is_empty()
+    }
+
+    /// Advances one tick.
+    pub fn step(&mut self) -> Result<LinkRecord, EmulatorError> {
+        let tolerance = self.tick_period.mul_f64(BOUNDARY_TOLERANCE);
+        loop {
+            let ran = self.run((self.tick_ends_at + tolerance).saturating_sub(self.now), 0)?;
+            let (boundary, earlier) = match (ran.ended, ran.events.split_last()) {
+                (Ended::Frame, Some((frame, earlier))) if self.now + tolerance >= self.tick_ends_at => {
+                    (Some(*frame), earlier)
+                }
+                _ => (None, &ran.events[..]),
+            };
+            self.follow(earlier);
+            if let Some(frame) = boundary {
+                self.tick_ends_at = self.now + self.tick_period;
+                let record = self.advance_world();
+                self.follow(&[frame]);
+                return Ok(record);
+            }
+            if ran.ended == Ended::Time {
+                self.tick_ends_at += self.tick_period;
+                return Ok(self.advance_world());
+            }
+        }
+    }
+
+    /// Runs so many instructions, at most until the next frame ends. Returns whether all of them were carried out.
+    pub fn run_instructions(&mut self, count: u32) -> Result<bool, EmulatorError> {
+        let ran = self.run(self.tick_period, count)?;
+        self.follow(&ran.events);
+        Ok(ran.ended == Ended::Instructions)
+    }
+
+    /// Runs for a time, or until a frame ends.
+    fn run(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
+        let sense = self.world.sense();
+        let monitor_v = self.broken.monitor_v.unwrap_or_else(|| f64::from(sense.monitor_v));
+        let monitor_code = (MONITOR_ZERO_CODE + monitor_v * MONITOR_CODES_PER_V).round().clamp(0.0, 4095.0);
+        let is_held = self.broken.arm_switch.unwrap_or(sense.arm_switch && self.now >= PRESSED_AT);
+        let mut inputs = 0;
+        if self.broken.ready.unwrap_or(!sense.amplifier_fault) {
+            inputs |= READY;
+        }
+        if is_held {
+            inputs |= ARM;
+        }
+        let head = [time.as_nanos() as u32, instructions_max, inputs, monitor_code as u32, self.dac.shifting_out()];
+        let words: Vec<u32> = head.into_iter().chain(self.to_board.drain(..).map(u32::from)).collect();
+        let words = self.process.request(Request::Run, &words)?;
+        let mut ran = Ran::read(&words).ok_or_else(|| no_answer("to run"))?;
+        for stamped in &mut ran.events {
+            stamped.at += self.now;
+        }
+        self.now += ran.elapsed;
+        self.instructions += u64::from(ran.instructions);
+        self.at_host.append(&mut ran.received);
+        Ok(ran)
+    }
+
+    /// Advances the world by a tick in which the output was as it is now.
+    fn advance_world(&mut self) -> LinkRecord {
+        let drive = self.output();
+        let felt = self.world.apply(drive);
+        if let Some(touch) = self.world.touch() {
+            self.report(touch);
+        }
+        LinkRecord { tick: self.tick(), drive, felt }
+    }
+
+    /// Sends a touch report to the board.
+    fn report(&mut self, touch: Touch) {
+        let command = match touch {
+            Touch::Down { x_m, y_m, age_ticks } => Command::Touch { x_m, y_m, age_ticks: age_ticks as u16 },
+            Touch::Up => Command::Lift,
+        };
+        let mut buffer = [0; FRAME_MAX_LEN];
+        if let Ok(frame) = payload::request_frame(&HostRequest { sequence: TOUCH_SEQUENCE, command }, &mut buffer) {
+            self.to_board.extend(frame);
+        }
+    }
+
+    /// Lets events act on the chips.
+    fn follow(&mut self, events: &[Stamped]) {
+        for stamped in events {
+            let behind = stamped.at.saturating_sub(Duration::from_nanos(self.dac.now_ns()));
+            self.dac.delay().delay_ns(behind.as_nanos() as u32);
+            self.act(stamped.event);
+            let is_zero = !self.amplifier_enable && self.output().dac_code.bits() == 0;
+            self.zero_since = is_zero.then(|| self.zero_since.unwrap_or(stamped.at));
+            if let Some(events) = &mut self.events {
+                events.push(*stamped);
+            }
+        }
+    }
+
+    fn act(&mut self, event: WireEvent) {
+        match event {
+            WireEvent::Frame { bits, clocks, .. } => {
+                self.dac.set_sync(false);
+                for place in (0..clocks.min(32)).rev() {
+                    self.dac.clock(bits >> place & 1 != 0);
+                }
+                self.dac.set_sync(true);
+            }
+            WireEvent::Enable(high) => self.amplifier_enable = high,
+            WireEvent::Clear(high) => self.dac.set_clear(high),
+            WireEvent::Start(_) => {
+                // Resistors pull enable and CLEAR down.
+                self.amplifier_enable = false;
+                self.dac.set_clear(false);
+                self.starts += 1;
+            }
+            WireEvent::Light(_) | WireEvent::Flash { .. } => {}
+        }
+    }
+}
+
+/// What a test does to the board.
+impl PicoRig {
+    /// Cuts the power of the processor, and switches it on again. `seed` is that of what its RAM holds then. The DAC keeps
+    /// its own supply.
+    pub fn power_cycle(&mut self, seed: u32) -> Result<(), EmulatorError> {
+        self.process.request(Request::PowerCycle, &[seed]).map(drop)
+    }
+
+    /// Pulls the RUN pin low and lets it go.
+    pub fn pull_run_pin(&mut self) -> Result<(), EmulatorError> {
+        self.process.request(Request::RunPin, &[]).map(drop)
+    }
+
+    /// Stops the core for ever, as a loop without interrupts does.
+    pub fn hang(&mut self) -> Result<(), EmulatorError> {
+        self.process.request(Request::Hang, &[]).map(drop)
+    }
+
+    /// Lets the main loop hang, while interrupts go on.
+    pub fn hang_main_loop(&mut self) -> Result<(), EmulatorError> {
+        self.process.request(Request::HangMainLoop, &[]).map(drop)
+    }
+
+    /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction asked
+    /// for. `false` if there is no such function.
+    pub fn jump_to(&mut self, name: &str) -> Result<bool, EmulatorError> {
+        let bytes: Vec<u32> = name.bytes().map(u32::from).collect();
+        match self.process.request(Request::AddressOf, &bytes)?.first() {
+            Some(address) if *address != 0 => self.process.request(Request::Jump, &[*address]).map(|_| true),
+            _ => Ok(false),
+        }
+    }
+
+    /// Lets the core go on at an address.
+    pub fn jump(&mut self, address: u32) -> Result<(), EmulatorError> {
+        self.process.request(Request::Jump, &[address]).map(drop)
+    }
+
+    /// Cuts the power in the flash operation after `operations` more of them, when `fraction` of it is done, 0 to 1.
+    pub fn cut_at_flash_operation(&mut self, operations: u32, fraction: f64) -> Result<(), EmulatorError> {
+        let fraction = (fraction * f64::from(u32::MAX)) as u32;
+        self.process.request(Request::CutAtFlashOperation, &[operations, fraction]).map(drop)
+    }
+}
+
+fn no_answer(what: &str) -> EmulatorError {
+    EmulatorError::Ended { output: format!("it has answered in words that are none, to a request {what}") }
+}

@@ -1,0 +1,102 @@
+//! The emulator's process, and the messages to and from it.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Write};
+use std::os::fd::AsFd;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use tempfile::NamedTempFile;
+
+use super::protocol::Request;
+use crate::emulated::image::NODE;
+use crate::emulated::{EmulatorError, Image, harness};
+
+/// Wall time that an answer may take, on a machine that is busy with other things. A run takes milliseconds.
+const WALL_TIMEOUT: Duration = Duration::from_mins(2);
+/// A message of more words is none.
+const WORDS_MAX: u32 = 1 << 24;
+
+/// A running emulator. Dropping this ends it.
+#[derive(Debug)]
+pub(super) struct Process {
+    child: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+    /// What it says on standard error, in a file, so that it never waits for a reader.
+    errors: NamedTempFile,
+}
+
+impl Process {
+    /// Starts the image.
+    pub(super) fn start(image: &Image) -> Result<Self, EmulatorError> {
+        let main = harness::find()?;
+        let making = || EmulatorError::system("making a file for the emulator's output");
+        let errors = NamedTempFile::new().map_err(making())?;
+        let mut child = Command::new(NODE)
+            .arg(main)
+            .arg(image.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(errors.as_file().try_clone().map_err(making())?)
+            .spawn()
+            .map_err(EmulatorError::system("starting the emulator"))?;
+        let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err(EmulatorError::Ended { output: "it has no pipes".into() });
+        };
+        Ok(Self { child, to, from: BufReader::new(from), errors })
+    }
+
+    /// Sends a request, and waits for the answer to it.
+    pub(super) fn request(&mut self, request: Request, values: &[u32]) -> Result<Vec<u32>, EmulatorError> {
+        let head = [values.len() as u32 + 1, request as u32];
+        let bytes: Vec<u8> = head.iter().chain(values).flat_map(|word| word.to_le_bytes()).collect();
+        if self.to.write_all(&bytes).is_err() {
+            return Err(self.ended());
+        }
+        let count = self.words(1)?.first().copied().filter(|count| *count <= WORDS_MAX).ok_or_else(|| self.ended())?;
+        self.words(count as usize)
+    }
+
+    fn words(&mut self, count: usize) -> Result<Vec<u32>, EmulatorError> {
+        let mut bytes = vec![0; 4 * count];
+        if self.from.buffer().len() < bytes.len() {
+            self.wait()?;
+        }
+        if self.from.read_exact(&mut bytes).is_err() {
+            return Err(self.ended());
+        }
+        Ok(bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
+    }
+
+    /// Waits for the first bytes of an answer.
+    fn wait(&self) -> Result<(), EmulatorError> {
+        let timeout = Timespec { tv_sec: WALL_TIMEOUT.as_secs() as i64, tv_nsec: 0 };
+        let mut ready = [PollFd::from_borrowed_fd(self.from.get_ref().as_fd(), PollFlags::IN)];
+        match poll(&mut ready, Some(&timeout)) {
+            Ok(0) => Err(EmulatorError::Silent { what: "the answer to a request", seconds: WALL_TIMEOUT.as_secs() }),
+            Ok(_) => Ok(()),
+            Err(error) => Err(EmulatorError::system("waiting for the emulator")(error.into())),
+        }
+    }
+
+    /// The error with which the emulator has ended.
+    fn ended(&mut self) -> EmulatorError {
+        // It has closed its output, so it ends by itself, and then has said why.
+        let _ = self.child.wait();
+        let mut output = String::new();
+        match File::open(self.errors.path()).and_then(|mut file| file.read_to_string(&mut output)) {
+            Ok(_) => EmulatorError::Ended { output },
+            Err(error) => EmulatorError::system("reading what the emulator says")(error),
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

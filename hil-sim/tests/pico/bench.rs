@@ -1,0 +1,150 @@
+//! An emulated Pico under a finger that slides for ever, and a host on its serial line.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::time::Duration;
+
+use frixel_control::Board;
+use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
+use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
+use frixel_hil_sim::{Stroke, World, WorldConfig};
+use frixel_scene::{Program, Scene, compile};
+use frixel_session::Touch;
+
+pub(super) const BOARD: Board = Board::PICO;
+pub(super) const TICK: Duration = Duration::from_micros(100);
+/// Time until the switch counts as held, with a margin.
+const SWITCH_TIME: Duration = Duration::from_millis(50);
+
+/// The friction of a scene that most tests play.
+pub(super) const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n";
+/// Another one.
+pub(super) const WEAKER: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
+
+/// A host with nothing but a serial line.
+pub(super) type Host = Device<PollingLink<Cable>>;
+
+/// A scene, compiled for the board.
+pub(super) fn program(text: &str) -> Program {
+    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+    compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
+}
+
+/// The board, which tests and hosts share.
+#[derive(Clone)]
+pub(super) struct Bench {
+    rig: Rc<RefCell<PicoRig>>,
+    records: Rc<RefCell<Vec<LinkRecord>>>,
+    /// Touch reports, with the number of records before each.
+    reports: Rc<RefCell<Vec<(usize, Touch)>>>,
+}
+
+impl Bench {
+    /// Switches the board on, and waits until its arm switch counts as held.
+    pub(super) fn new(image: &Image) -> Self {
+        let bench = Self::just_on(image);
+        bench.pass(SWITCH_TIME);
+        bench
+    }
+
+    /// Switches the board on.
+    pub(super) fn just_on(image: &Image) -> Self {
+        let stroke = Stroke::sweep(0.12, 0.08, 600.0).unwrap();
+        let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
+        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+        let mut rig = PicoRig::start(image, world).unwrap();
+        rig.record_events();
+        Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default(), reports: Rc::default() }
+    }
+
+    /// Does something with the rig.
+    pub(super) fn with<R>(&self, work: impl FnOnce(&mut PicoRig) -> R) -> R {
+        work(&mut self.rig.borrow_mut())
+    }
+
+    pub(super) fn now(&self) -> Duration {
+        self.rig.borrow().now()
+    }
+
+    /// Lets one tick pass, without a host.
+    pub(super) fn step(&self) -> LinkRecord {
+        let record = self.with(|rig| rig.step().unwrap());
+        self.records.borrow_mut().push(record);
+        if let Some(touch) = self.with(|rig| rig.world_mut().touch()) {
+            self.reports.borrow_mut().push((self.records.borrow().len(), touch));
+        }
+        record
+    }
+
+    /// Lets time pass, without a host.
+    pub(super) fn pass(&self, time: Duration) {
+        let end = self.now() + time;
+        while self.now() < end {
+            self.step();
+        }
+    }
+
+    /// The touch reports since the last call, each with the number of ticks before it since then.
+    pub(super) fn take_reports(&self) -> Vec<(usize, Touch)> {
+        self.reports.take()
+    }
+
+    /// The ticks since the last call.
+    pub(super) fn take_records(&self) -> Vec<LinkRecord> {
+        self.records.take()
+    }
+
+    /// What happened on the wires since the last call.
+    pub(super) fn take_events(&self) -> Vec<Stamped> {
+        self.with(PicoRig::take_events)
+    }
+
+    /// Connects a host.
+    pub(super) fn connect(&self) -> Host {
+        Device::connect(PollingLink::new(Cable(self.clone()))).unwrap()
+    }
+
+    /// Connects a host, which plays a scene under the sliding finger, and waits until the board drives.
+    pub(super) fn play(&self, text: &str) -> Host {
+        let mut host = self.connect();
+        self.start(&mut host, text);
+        host
+    }
+
+    /// Plays a scene under the sliding finger, and waits until the board drives.
+    pub(super) fn start(&self, host: &mut Host, text: &str) {
+        frixel_play::start(host, &program(text), &mut |_| ControlFlow::Continue(())).unwrap();
+        self.with(|rig| rig.world_mut().start_stroke());
+        host.wait(Duration::from_millis(60), &mut |_| ()).unwrap();
+        assert_eq!(self.with(|rig| rig.zero_since()), None, "the board drives");
+    }
+}
+
+/// A host's end of the serial line.
+pub(super) struct Cable(Bench);
+
+impl ByteStream for Cable {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
+        self.0.with(|rig| rig.send(bytes));
+        Ok(())
+    }
+
+    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        let end = self.0.now() + wait;
+        while self.0.now() < end && !self.0.with(|rig| rig.has_received()) {
+            self.0.step();
+        }
+        self.0.with(|rig| rig.receive(buffer));
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+
+    fn name(&self) -> &'static str {
+        "pico"
+    }
+}

@@ -1,0 +1,104 @@
+//! Parts around the board that are broken, late or missing.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_driver::DeviceError;
+use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::message::Refusal;
+
+use super::bench::{Bench, CONSTANT, Host, program};
+use crate::emulator;
+
+/// From a broken part to zero: the 0.5 ms after which the monitor or the ready line counts as wrong, and what the tick, the
+/// DAC and the reading of the monitor take.
+const ZERO_WITHIN: Duration = Duration::from_millis(2);
+
+fn try_to_play(host: &mut Host) -> Result<(), DeviceError> {
+    frixel_play::start(host, &program(CONSTANT), &mut |_| ControlFlow::Continue(()))
+}
+
+/// Plays, breaks something, and expects that the board stops with a fault in time.
+fn breaks(broken: BrokenInputs, fault: Fault) {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    let host = bench.play(CONSTANT);
+    let begin = bench.now();
+    bench.with(|rig| rig.broken = broken);
+    bench.pass(Duration::from_millis(5));
+    let zero_since = bench.with(|rig| rig.zero_since()).unwrap_or_else(|| panic!("{fault:?}: the output is not zero"));
+    let late = zero_since.saturating_sub(begin);
+    assert!(late <= ZERO_WITHIN, "{fault:?}: the output was zero after {late:?}");
+    drop(host);
+    let hello = *bench.connect().hello();
+    assert_eq!((hello.state, hello.last_fault), (State::Faulted, Some(fault)));
+}
+
+#[test]
+fn a_ready_line_that_falls_stops_the_output() {
+    breaks(BrokenInputs { ready: Some(false), ..BrokenInputs::default() }, Fault::Amplifier);
+}
+
+#[test]
+fn a_monitor_that_shows_nothing_stops_the_output() {
+    breaks(BrokenInputs { monitor_v: Some(0.0), ..BrokenInputs::default() }, Fault::Monitor);
+}
+
+#[test]
+fn a_switch_that_is_let_go_stops_the_output() {
+    breaks(BrokenInputs { arm_switch: Some(false), ..BrokenInputs::default() }, Fault::ArmSwitch);
+}
+
+#[test]
+fn a_switch_that_is_welded_from_power_on_does_not_arm() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::just_on(&image);
+    bench.with(|rig| rig.broken.arm_switch = Some(true));
+    bench.pass(Duration::from_millis(60));
+    let refused = try_to_play(&mut bench.connect()).unwrap_err();
+    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::ArmSwitch, .. }), "{refused}");
+}
+
+/// A DAC that is not there when the board arms is a fault, and one that comes later plays.
+#[test]
+fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::just_on(&image);
+    bench.with(|rig| rig.dac().supply(false));
+    bench.pass(Duration::from_millis(60));
+    let mut host = bench.connect();
+    let _ = try_to_play(&mut host);
+    host.wait(Duration::from_millis(20), &mut |_| ()).ok();
+    drop(host);
+    let mut host = bench.connect();
+    assert_eq!((host.hello().state, host.hello().last_fault), (State::Faulted, Some(Fault::Dac)));
+    assert!(bench.with(|rig| rig.zero_since()).is_some());
+
+    bench.with(|rig| rig.dac().supply(true));
+    host.clear_fault().unwrap();
+    press_again(&bench);
+    bench.start(&mut host, CONSTANT);
+}
+
+/// A DAC whose answers never come, as with a broken wire.
+#[test]
+fn a_dac_that_does_not_answer_is_a_fault() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    bench.with(|rig: &mut PicoRig| rig.dac().connect_sdo(false));
+    let mut host = bench.connect();
+    let _ = try_to_play(&mut host);
+    drop(host);
+    let hello = *bench.connect().hello();
+    assert_eq!((hello.state, hello.last_fault), (State::Faulted, Some(Fault::Dac)));
+    assert!(bench.with(|rig| rig.zero_since()).is_some());
+}
+
+/// Lets the arm switch go, and presses it again.
+fn press_again(bench: &Bench) {
+    bench.with(|rig| rig.broken.arm_switch = Some(false));
+    bench.pass(Duration::from_millis(10));
+    bench.with(|rig| rig.broken.arm_switch = None);
+    bench.pass(Duration::from_millis(40));
+}

@@ -1,0 +1,159 @@
+//! A play that ends in any way at any instruction: the output is zero in time, and nothing drives after the next start.
+
+use std::time::Duration;
+
+use frixel_hil_sim::emulated::{Image, PicoRig};
+use frixel_testkit::Random;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::{Hello, ResetCause, notice};
+
+use super::bench::{Bench, CONSTANT, TICK};
+use crate::emulator;
+
+/// The one-shot ends within this time after the last kick, which was in the last tick.
+const ONE_SHOT_MAX: Duration = Duration::from_millis(1);
+/// From a panic to the pins.
+const PANIC_MAX: Duration = Duration::from_micros(100);
+/// The watchdog's time, and a start.
+const RESTART_MAX: Duration = Duration::from_millis(700);
+/// Instructions between a frame and the next, at least.
+const INSTRUCTIONS: u32 = 10_000;
+
+/// How a play ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    /// The firmware panics.
+    Panic,
+    /// The processor reads an instruction where there is no memory.
+    HardFault,
+    /// Nothing is carried out any more, interrupts included.
+    Hang,
+    /// The main loop does nothing any more.
+    HangingMainLoop,
+    /// A person presses the reset button.
+    RunPin,
+    /// The power is cut, and comes again.
+    PowerCut,
+}
+
+impl Ending {
+    const ALL: [Self; 6] =
+        [Self::Panic, Self::HardFault, Self::Hang, Self::HangingMainLoop, Self::RunPin, Self::PowerCut];
+
+    /// Lets it happen now.
+    fn happen(self, rig: &mut PicoRig, seed: u32) {
+        match self {
+            Self::Panic => assert!(rig.jump_to("fault5never").unwrap(), "the image has a function that panics"),
+            Self::HardFault => rig.jump(0x3000_0000).unwrap(),
+            Self::Hang => rig.hang().unwrap(),
+            Self::HangingMainLoop => rig.hang_main_loop().unwrap(),
+            Self::RunPin => rig.pull_run_pin().unwrap(),
+            Self::PowerCut => rig.power_cycle(seed).unwrap(),
+        }
+    }
+
+    /// Longest time until the output is zero.
+    fn zero_within(self) -> Duration {
+        match self {
+            Self::Panic | Self::HardFault => PANIC_MAX,
+            Self::Hang => ONE_SHOT_MAX,
+            // The tick goes on, and hears no host: its timeout, 250 ms, and 1 ms to act.
+            Self::HangingMainLoop => Duration::from_millis(251),
+            // As soon as the board runs again, for which the rig needs no time.
+            Self::RunPin | Self::PowerCut => TICK,
+        }
+    }
+
+    /// What the next hello says.
+    fn reported(self) -> (ResetCause, Option<Fault>) {
+        match self {
+            Self::Panic => (ResetCause::Software, Some(Fault::Panic)),
+            Self::HardFault => (ResetCause::Software, Some(Fault::HardFault)),
+            Self::Hang | Self::HangingMainLoop => (ResetCause::Watchdog, Some(Fault::Watchdog)),
+            Self::RunPin => (ResetCause::Pin, None),
+            Self::PowerCut => (ResetCause::PowerOn, None),
+        }
+    }
+}
+
+/// Plays, lets the play end so at a random instruction, and returns the hello of the next start.
+fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
+    let host = bench.play(CONSTANT);
+    for _ in 0..random.below(20) {
+        bench.step();
+    }
+    let starts = bench.with(|rig| {
+        rig.run_instructions(random.below(INSTRUCTIONS)).unwrap();
+        assert_eq!(rig.zero_since(), None, "the board drives");
+        rig.starts()
+    });
+    let begin = bench.now();
+    bench.with(|rig| ending.happen(rig, random.below(1 << 30)));
+    drop(host);
+    let zero_since = loop {
+        bench.step();
+        if let Some(since) = bench.with(|rig| rig.zero_since()) {
+            break since;
+        }
+        assert!(bench.now() - begin < RESTART_MAX, "{ending:?}: the output is not zero");
+    };
+    let late = zero_since.saturating_sub(begin);
+    assert!(late <= ending.zero_within(), "{ending:?}: the output was zero after {late:?}");
+    while bench.with(|rig| rig.starts()) == starts {
+        bench.step();
+        assert!(bench.now() - begin < RESTART_MAX, "{ending:?}: the board has not started again");
+    }
+    bench.pass(Duration::from_millis(100));
+    assert_eq!(bench.with(|rig| rig.zero_since()), Some(zero_since), "{ending:?}: nothing starts by itself");
+    *bench.connect().hello()
+}
+
+/// Lets plays end so, at random instructions, each on a board that was just switched on.
+fn suffer_often(image: &Image, ending: Ending, times: u64) {
+    for seed in 0..times {
+        let hello = suffer(&Bench::new(image), ending, &mut Random::new(1_000 * ending as u64 + seed));
+        let expected = (ending.reported().0, ending.reported().1, State::Disarmed);
+        assert_eq!((hello.reset_cause, hello.last_fault, hello.state), expected, "{ending:?}, seed {seed}");
+    }
+}
+
+#[test]
+fn whatever_ends_a_play_leaves_the_output_at_zero() {
+    let Some(image) = emulator::pico_image() else { return };
+    for ending in Ending::ALL {
+        suffer_often(&image, ending, 1);
+    }
+}
+
+#[test]
+#[ignore = "takes an hour: `cargo xtask soak pico`"]
+fn whatever_ends_a_play_at_any_of_a_hundred_instructions_leaves_the_output_at_zero() {
+    let Some(image) = emulator::pico_image() else { return };
+    for ending in [Ending::PowerCut, Ending::RunPin, Ending::Panic, Ending::HardFault, Ending::Hang] {
+        suffer_often(&image, ending, 100);
+    }
+    suffer_often(&image, Ending::HangingMainLoop, 20);
+}
+
+#[test]
+fn three_starts_that_end_in_a_fault_leave_the_stored_scene_alone() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    let mut random = Random::new(5);
+    let mut host = bench.play(CONSTANT);
+    host.disarm().unwrap();
+    drop(host);
+    // The scene is stored 2 s after the board was disarmed.
+    bench.pass(Duration::from_millis(2_600));
+    bench.with(|rig| rig.power_cycle(1).unwrap());
+    bench.pass(Duration::from_millis(50));
+    let scene_crc32 = bench.connect().hello().scene_crc32;
+    assert_ne!(scene_crc32, 0, "the scene was stored");
+    for fault in 1..=3 {
+        bench.with(|rig| Ending::Panic.happen(rig, 0));
+        bench.pass(Duration::from_millis(50 + u64::from(random.below(20))));
+        let hello = *bench.connect().hello();
+        let is_skipped = hello.notices & notice::STORED_SCENE_SKIPPED != 0;
+        assert_eq!((is_skipped, hello.scene_crc32 == 0), (fault == 3, fault == 3), "after {fault} faults");
+    }
+}

@@ -1,0 +1,10 @@
+//! The image of the Pico, unmodified, on an emulator that others wrote (`hil-sim/pico`).
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod bench;
+mod broken_parts;
+mod endings;
+mod parity;
+mod play;
+mod store;

@@ -1,0 +1,325 @@
+//! What holds in every tick of the in-process rig, whatever a host sends, a line damages and a world breaks: a million
+//! ticks each, and more in `cargo xtask soak faults`.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use crate::script::{HEADER, Script, constant, scene};
+use frixel_hil_sim::{BoardMemory, LineFault, Point, RigConfig, Stroke, TickRecord, TouchConfig, WorldFault};
+use frixel_layers::{Header, Waveform};
+use frixel_testkit::Random;
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::message::Command;
+
+const TICKS: u64 = 1_000_000;
+const SOAK_TICKS: u64 = 40_000_000;
+const TICK_HZ: f32 = 40_000.0;
+const PEAK_V: f32 = 120.0;
+const SLEW_V_PER_S: f32 = 2e5;
+const HOST_TIMEOUT_TICKS: u64 = 10_000;
+/// A millisecond to act.
+const TO_ACT_TICKS: u64 = 40;
+/// Half a period of the slowest carrier here, 500 Hz.
+const HALF_PERIOD_TICKS: i64 = 40;
+/// Most resets of one run: the memory of each is lost.
+const RESETS_MAX: u32 = 200;
+
+/// Scenes with the same limits.
+fn some_scene(random: &mut Random) -> Vec<u8> {
+    let waveform = random.pick([Waveform::Square, Waveform::Sine]);
+    scene_of(waveform, random)
+}
+
+fn scene_of(waveform: Waveform, random: &mut Random) -> Vec<u8> {
+    let carrier_hz = random.pick([500.0, 1_000.0, 4_000.0]);
+    let voltage_max_v_rms = if waveform == Waveform::Sine { PEAK_V * core::f32::consts::FRAC_1_SQRT_2 } else { PEAK_V };
+    let header = Header {
+        waveform,
+        carrier_hz,
+        voltage_max_v_rms: voltage_max_v_rms * 0.99,
+        voltage_max_v_peak: PEAK_V,
+        slew_v_per_s: SLEW_V_PER_S,
+        host_timeout_s: HOST_TIMEOUT_TICKS as f32 / TICK_HZ,
+        autonomous: false,
+        ..HEADER
+    };
+    scene(&header, &[constant(random.pick([0.002, 0.01, 0.03]))])
+}
+
+/// Compares each tick with what must hold.
+#[derive(Default)]
+struct Monitor {
+    ticks: u64,
+    driven_ticks: u64,
+    /// Ticks in each state.
+    states: [u64; 4],
+    last_v_rms: f32,
+    /// Sum of all codes that went out.
+    integral: i64,
+    arrived: u64,
+    silent_ticks: u64,
+}
+
+impl Monitor {
+    fn see(&mut self, record: &TickRecord, arrived: u64) {
+        let telemetry = &record.status.telemetry;
+        let code = record.drive.dac_code.bits();
+        let state = telemetry.state;
+        self.ticks += 1;
+        self.driven_ticks += u64::from(code != 0);
+        self.states[usize::from(state.number())] += 1;
+        let at = record.tick;
+        let is_off = code == 0 && !record.drive.amplifier_enable;
+        assert!(state == State::Active || is_off, "tick {at}: {state:?} with {:?}", record.drive);
+
+        let full_scale_v = RigConfig::default().board.limits.full_scale_v_peak;
+        let code_max = (f64::from(PEAK_V / full_scale_v) * 32_767.0).ceil() as i64;
+        assert!(i64::from(code).abs() <= code_max, "tick {at}: code {code} of {code_max}");
+        let rise_v = telemetry.voltage_v_rms - self.last_v_rms;
+        assert!(rise_v <= SLEW_V_PER_S / TICK_HZ + 1e-3, "tick {at}: the envelope rose by {rise_v} V");
+        self.last_v_rms = telemetry.voltage_v_rms;
+        self.integral += i64::from(code);
+        let most = HALF_PERIOD_TICKS * code_max;
+        assert!(self.integral.abs() <= most, "tick {at}: the integral is {} of {most}", self.integral);
+
+        self.silent_ticks = if arrived > self.arrived { 0 } else { self.silent_ticks + 1 };
+        self.arrived = arrived;
+        let is_in_time = self.silent_ticks <= HOST_TIMEOUT_TICKS + TO_ACT_TICKS;
+        assert!(is_in_time || is_off, "tick {at}: driven {} ticks after the last byte", self.silent_ticks);
+    }
+}
+
+fn watched(seed: u64) -> (Script, Rc<RefCell<Monitor>>) {
+    let mut config = RigConfig::default();
+    config.world.touch = TouchConfig::IDEAL;
+    let left = Point { x_m: 0.01, y_m: 0.04 };
+    let right = Point { x_m: 0.11, y_m: 0.04 };
+    let stroke = Stroke::constant_speed(left, right, 0.05).unwrap().looped(0.1).unwrap();
+    let mut script = Script::new(&config, stroke, seed);
+    let monitor = Rc::new(RefCell::new(Monitor::default()));
+    let watching = Rc::clone(&monitor);
+    script.watch = Some(Box::new(move |record, arrived| watching.borrow_mut().see(record, arrived)));
+    (script, monitor)
+}
+
+/// A fault of the world that lasts for a while.
+fn some_fault(random: &mut Random) -> WorldFault {
+    random.pick([
+        WorldFault::AmplifierNotReady,
+        WorldFault::AmplifierStuckOn,
+        WorldFault::AmplifierGain(0.5),
+        WorldFault::AmplifierSlowOff { delay_s: 2e-3 },
+        WorldFault::MonitorGain(0.0),
+        WorldFault::DacStuck(DacCode::from_bits(9_000)),
+        WorldFault::SwitchOpen,
+        WorldFault::TouchSilent,
+        WorldFault::TouchStuck,
+        WorldFault::TouchJumps { by_m: 0.03 },
+        WorldFault::FingerLifted,
+    ])
+}
+
+fn some_command(random: &mut Random) -> Command {
+    let gain = random.pick([0.0, 0.3, 1.0, 100.0, -5.0]);
+    random.pick([
+        Command::Ping,
+        Command::Ping,
+        Command::Arm,
+        Command::Play,
+        Command::Stop,
+        Command::Disarm,
+        Command::ClearFault,
+        Command::SetLayer { layer: 0, on: true, gain },
+        Command::Subscribe { period_ticks: 40 },
+        Command::UploadEnd,
+    ])
+}
+
+/// A host that does anything, on a line that does anything, in a world that breaks.
+fn anything(ticks: u64, seed: u64) -> Rc<RefCell<Monitor>> {
+    let mut random = Random::new(seed);
+    let (mut script, monitor) = watched(seed);
+    let mut resets = 0;
+    while script.rig.tick() < ticks {
+        match random.below(12) {
+            0..=3 => {
+                script.send(Command::ClearFault);
+                script.play(&some_scene(&mut random));
+            }
+            4 => {
+                // Another scene in place of the one that plays.
+                let commit = script.upload(&some_scene(&mut random));
+                script.command(commit);
+            }
+            5 => {
+                let noise: Vec<u8> = (0..random.below(60)).map(|_| random.byte()).collect();
+                script.rig.send(&noise);
+            }
+            6 => {
+                let line = script.rig.line_to_board_mut();
+                let byte = line.bytes().sent + u64::from(random.below(200));
+                let bits = random.byte();
+                line.schedule_fault(byte, random.pick([LineFault::Drop, LineFault::Flip(bits)]));
+            }
+            7 => {
+                let (now, lasts) = (script.rig.tick(), u64::from(random.below(3_000)));
+                script.rig.world_mut().schedule_fault(now..now + lasts, some_fault(&mut random)).unwrap();
+            }
+            8 if resets < RESETS_MAX && random.below(5) == 0 => {
+                resets += 1;
+                script.rig.reset(Box::leak(BoardMemory::new()));
+                // The board begins anew, and the electrode has discharged before it drives again.
+                monitor.borrow_mut().integral = 0;
+            }
+            9 => script.rig.raise(Fault::Deadline, 4_300),
+            _ => script.send(some_command(&mut random)),
+        }
+        // Often with pings, and now and then in silence.
+        let waits = random.pick([20, 400, 2_000, 4_000, 12_000]);
+        if random.below(4) > 0 { script.run(waits) } else { script.steps(waits) }
+    }
+    monitor
+}
+
+fn check_anything(ticks: u64, seed: u64) {
+    let monitor = anything(ticks, seed);
+    let monitor = monitor.borrow();
+    assert!(monitor.ticks >= ticks);
+    // Nothing would be shown by a board that is never active, or always.
+    assert!(monitor.states.iter().all(|ticks_in| ticks_in * 200 > ticks), "{:?}", monitor.states);
+    assert!(monitor.driven_ticks * 20 > ticks, "{} ticks were driven", monitor.driven_ticks);
+}
+
+#[test]
+fn the_output_is_zero_but_for_active_within_its_limits_and_without_direct_voltage_whatever_happens() {
+    check_anything(TICKS, 3);
+}
+
+#[test]
+#[ignore = "minutes: cargo xtask soak faults"]
+fn whatever_happens_for_longer() {
+    for seed in 0..4 {
+        check_anything(SOAK_TICKS / 4, seed);
+    }
+}
+
+/// How a hard fault is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FoundBy {
+    /// By a pin or a counter, in the tick in which it is read.
+    Pin,
+    /// By a monitor that is wrong in every tick.
+    Monitor,
+    /// By a monitor that is wrong in half of the ticks.
+    HalfOfTicks,
+}
+
+/// Ticks from a hard fault of one kind until the output is off, the most of many times.
+fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
+    let mut random = Random::new(seed);
+    let (mut script, monitor) = watched(seed);
+    let (mut most, mut faults) = (0, 0);
+    while script.rig.tick() < ticks {
+        script.send(Command::ClearFault);
+        script.play(&scene_of(Waveform::Square, &mut random));
+        script.run(1_000 + u64::from(random.below(400)));
+        // A voltage at which the monitor's tolerance of 4 % of full scale is exceeded.
+        let record = script.step();
+        let code = record.drive.dac_code;
+        if script.status().telemetry.voltage_v_rms < 30.0 || code.bits() == 0 {
+            continue;
+        }
+        let now = script.rig.tick();
+        let fault = match found_by {
+            FoundBy::Pin => random.pick([WorldFault::AmplifierNotReady, WorldFault::SwitchOpen]),
+            FoundBy::Monitor => random.pick([WorldFault::MonitorGain(0.0), WorldFault::AmplifierGain(0.3)]),
+            FoundBy::HalfOfTicks => WorldFault::DacStuck(code),
+        };
+        if found_by == FoundBy::Pin && random.below(3) == 0 {
+            script.rig.raise(Fault::Deadline, 4_300);
+        } else {
+            script.rig.world_mut().schedule_fault(now..now + 400, fault).unwrap();
+        }
+        faults += 1;
+        let off = (1..=400).find(|_| {
+            let record = script.step();
+            record.drive.dac_code.bits() == 0 && !record.drive.amplifier_enable
+        });
+        // The tick in which the fault is found is off.
+        most = most.max(off.unwrap_or(400) - 1);
+        script.run(500);
+    }
+    assert!(faults * 20_000 > ticks && monitor.borrow().ticks >= ticks, "{faults} faults");
+    most
+}
+
+fn check_time_to_off(ticks: u64, seed: u64) {
+    for (found_by, expected) in [(FoundBy::Pin, 0..=0), (FoundBy::Monitor, 18..=22), (FoundBy::HalfOfTicks, 40..=62)] {
+        let most = ticks_to_off(found_by, ticks, seed);
+        println!("at most {most} ticks of 25 us from a fault until the output is off: {found_by:?}");
+        assert!(expected.contains(&most), "{most} ticks: {found_by:?}");
+    }
+}
+
+#[test]
+fn the_output_is_off_within_half_a_millisecond_of_a_hard_fault() {
+    check_time_to_off(TICKS, 5);
+}
+
+#[test]
+#[ignore = "minutes: cargo xtask soak faults"]
+fn the_output_is_off_within_half_a_millisecond_of_many_hard_faults() {
+    check_time_to_off(SOAK_TICKS, 6);
+}
+
+/// All that a host can send, at random, for so many ticks. `may_send` says what it sends.
+fn host_at_random(ticks: u64, seed: u64, is_switch_welded: bool, may_send: fn(&Command) -> bool) {
+    let mut random = Random::new(seed);
+    let (mut script, monitor) = watched(seed);
+    if is_switch_welded {
+        script.rig.world_mut().schedule_fault(0..u64::MAX, WorldFault::SwitchWelded).unwrap();
+    }
+    script.rig.world_mut().start_stroke();
+    while script.rig.tick() < ticks {
+        match random.below(8) {
+            0 => {
+                let commit = script.upload(&some_scene(&mut random));
+                script.command(commit);
+            }
+            1 => {
+                let noise: Vec<u8> = (0..random.below(300)).map(|_| random.byte()).collect();
+                script.rig.send(&noise);
+            }
+            2 => script.hello(),
+            _ => {
+                let command = some_command(&mut random);
+                if may_send(&command) {
+                    script.send(command);
+                }
+            }
+        }
+        script.steps(random.below(300).into());
+    }
+    let monitor = monitor.borrow();
+    assert_eq!(monitor.states[usize::from(State::Active.number())], 0);
+    assert_eq!(monitor.driven_ticks, 0);
+}
+
+#[test]
+fn no_bytes_reach_active_without_an_edge_of_the_arm_switch() {
+    host_at_random(TICKS, 7, true, |_| true);
+}
+
+#[test]
+fn no_bytes_reach_active_without_the_command_to_arm() {
+    host_at_random(TICKS, 8, false, |command| *command != Command::Arm);
+}
+
+#[test]
+#[ignore = "minutes: cargo xtask soak faults"]
+fn no_bytes_reach_active_for_longer() {
+    host_at_random(SOAK_TICKS / 4, 9, true, |_| true);
+    host_at_random(SOAK_TICKS / 4, 10, false, |command| *command != Command::Arm);
+}

@@ -1,0 +1,102 @@
+//! `frixel sim --scenario`: runs a scenario on a rig, and says what was not as expected.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+#[cfg(unix)]
+use std::sync::mpsc;
+
+use clap::ValueEnum;
+use frixel_hil_sim::RigConfig;
+#[cfg(unix)]
+use frixel_hil_sim::World;
+#[cfg(unix)]
+use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard};
+use frixel_lab::scenario::{ScenarioOutcome, run_in_process};
+#[cfg(unix)]
+use frixel_lab::scenario::{programs, stroke_and_world};
+use frixel_scene::{Scenario, Scene};
+
+use crate::input;
+#[cfg(unix)]
+use crate::rigs::EmulatedRig;
+use crate::scene_file::{check_path, load};
+
+use super::error::CommandError;
+use super::terminal::{note, print_line};
+
+/// The rig that a scenario runs on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum RigKind {
+    /// The simulator in this process.
+    #[default]
+    Sim,
+    /// The firmware on an emulated board.
+    Qemu,
+}
+
+/// Runs a scenario, prints what happened, and fails if something was not as expected and `expect` is set.
+pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), CommandError> {
+    let scenario = read(file)?;
+    let scenes = scenes(&scenario, file)?;
+    let outcome = match rig {
+        RigKind::Sim => run_in_process(&scenario, &scenes, &RigConfig::default())?,
+        #[cfg(unix)]
+        RigKind::Qemu => run_emulated(&scenario, &scenes)?,
+        #[cfg(not(unix))]
+        RigKind::Qemu => return Err(CommandError::NoPseudoTerminal { what: "--rig qemu" }),
+    };
+    print(&outcome)?;
+    let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);
+    if expect && unmet > 0 {
+        return Err(CommandError::Unmet { file: file.to_owned(), unmet });
+    }
+    if unmet == 0 && expectations > 0 {
+        print_line(format_args!("all of {expectations} expectations were met"))?;
+    }
+    Ok(())
+}
+
+/// Runs a scenario on the firmware in an emulator.
+#[cfg(unix)]
+fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome, CommandError> {
+    let programs = programs(scenario, scenes, &BOARD)?;
+    let (stroke, config) = stroke_and_world(scenario, &programs, RigConfig::of(BOARD).world)?;
+    let mut world = World::new(config, stroke, scenario.seed)?;
+    if let Some(program) = programs.get(&scenario.scene) {
+        world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
+    }
+    let image = Image::find(EmulatedBoard::Mps2An386)?;
+    let (sender, records) = mpsc::channel();
+    let mut tick = 0_u32;
+    let mut board = LinkBoard::start(&image, world, move |record| {
+        tick = tick.wrapping_add(1);
+        // The receiver is gone once the scenario has ended.
+        let _ = sender.send((tick, *record));
+    })?;
+    let outcome = frixel_lab::scenario::run(scenario, &programs, &mut EmulatedRig::open(&board, records)?)?;
+    board.check()?;
+    Ok(outcome)
+}
+
+fn print(outcome: &ScenarioOutcome) -> Result<(), CommandError> {
+    outcome.timeline.iter().try_for_each(print_line)?;
+    outcome.unmet.iter().for_each(note);
+    Ok(())
+}
+
+fn read(file: &Path) -> Result<Scenario, CommandError> {
+    let bytes = input::read(file, input::TOML_MAX_BYTES).map_err(|source| CommandError::ScenarioUnreadable {
+        file: file.to_owned(),
+        source,
+        advice: check_path(file, "check the path").to_owned(),
+    })?;
+    let text = String::from_utf8_lossy(&bytes);
+    Ok(Scenario::parse(&text, &file.display().to_string())?)
+}
+
+/// The scenes of a scenario, whose files are named relative to its folder.
+fn scenes(scenario: &Scenario, file: &Path) -> Result<BTreeMap<String, Scene>, CommandError> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let scenes = scenario.scenes().map(|name| Ok((name.to_owned(), load(&folder.join(name))?)));
+    scenes.collect()
+}

@@ -1,0 +1,75 @@
+//! What real boards take of the gallery, as `docs/pico.md` says it.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use std::fmt::Write as _;
+use std::fs;
+
+use frixel::scene_file::SceneFolder;
+use frixel_hil_sim::{Board, RigConfig};
+use frixel_scene::{Scene, compile, compile_draft};
+use frixel_testkit::golden;
+use frixel_wire::hello::BoardLimits;
+
+use crate::processes::repository;
+
+/// Names of the gallery's scenes, sorted, and their text.
+fn gallery() -> Vec<(String, String)> {
+    let folder = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<_> = folder.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    paths.sort();
+    paths
+        .iter()
+        .map(|path| (path.file_stem().unwrap().to_string_lossy().into_owned(), fs::read_to_string(path).unwrap()))
+        .collect()
+}
+
+fn scene(text: &str) -> Scene {
+    Scene::parse(text, "scene.toml", &SceneFolder(repository().join("scenes"))).unwrap()
+}
+
+/// Estimated cycles of a scene's longest tick on a board.
+fn cycles(text: &str, board: &Board) -> u32 {
+    let program = compile_draft(&scene(text), &board.limits, board.tick_hz).unwrap();
+    program.worst_tick(board.limits.core).cycles(board.limits.core)
+}
+
+#[test]
+fn the_page_says_which_scenes_the_picos_take() {
+    let boards = [("Pico 2", Board::PICO_2), ("Pico", Board::PICO)];
+    let heads = boards.map(|(name, board)| format!("{name}, of {}", board.limits.tick_cycles_max));
+    let mut table = format!("| scene | {} |\n|---|---|---|\n", heads.join(" | "));
+    for (name, text) in gallery() {
+        let cells = boards.map(|(_, board)| {
+            let cycles = cycles(&text, &board);
+            if cycles <= board.limits.tick_cycles_max { cycles.to_string() } else { format!("{cycles}: refused") }
+        });
+        let _ = writeln!(table, "| {name} | {} |", cells.join(" | "));
+    }
+    let mut page = fs::read_to_string(repository().join("docs/pico.md")).unwrap();
+    let start = page.find("<!-- scenes -->\n").unwrap() + "<!-- scenes -->\n".len();
+    let end = start + page[start..].find("<!-- end -->").unwrap();
+    page.replace_range(start..end, &format!("\n{table}\n"));
+    golden::hold(&repository().join("docs/pico.md"), &page);
+}
+
+/// Limits with which nothing but the longest tick is refused.
+fn but_for_the_tick(board: &Board) -> BoardLimits {
+    let BoardLimits { tick_cycles_max, core, .. } = board.limits;
+    BoardLimits { tick_cycles_max, core, ..RigConfig::default().board.limits }
+}
+
+/// What the compiler estimates is what the board estimates, for a scene of one layer that a Pico takes, and for one that
+/// it does not.
+#[test]
+fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
+    let board = Board::PICO;
+    let with = |layer: &str| format!("version = 2\n[[layer]]\n{layer}");
+    let grating = with("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02\n");
+    let noise = with("kind = \"noise\"\nwavelength_min_mm = 1\nwavelength_max_mm = 4\nlow_n = 0\nhigh_n = 0.02\n");
+    let limits = but_for_the_tick(&board);
+    compile(&scene(&grating), &limits, board.tick_hz).unwrap();
+    let refusal = compile(&scene(&noise), &limits, board.tick_hz).unwrap_err().to_string();
+    let found = cycles(&noise, &board);
+    assert!(refusal.contains("noise") && refusal.contains(&format!("estimated at {found} cycles")), "{refusal}");
+    assert!(refusal.contains("has time for 15000"), "{refusal}");
+}

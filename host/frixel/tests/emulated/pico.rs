@@ -1,0 +1,39 @@
+//! `frixel play --port pico` as a person uses it.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+use crate::emulator;
+
+/// Stripes of 10 mm, which pass ten times a second under the stroke below.
+const STRIPES: &str = "version = 2\n[[layer]]\nname = \"stripes\"\nkind = \"grating\"\nwave = \"sine\"\nwavelength_mm = 10\n\
+                       low_fraction = 0.1\nhigh_fraction = 0.9\n";
+
+fn play(folder: &Path, more: &[&str]) -> Output {
+    fs::write(folder.join("stripes.toml"), STRIPES).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    command.args(["play", "stripes.toml", "--port", "pico", "--ideal", "--json"]).args(more).current_dir(folder);
+    command.output().unwrap()
+}
+
+/// README's goal for a finger at constant speed: within 5 % rms of what the drive can reach.
+#[test]
+fn stripes_are_felt_as_the_scene_asks_for_them() {
+    if emulator::pico_image().is_none() {
+        return;
+    }
+    let folder = TempDir::new().unwrap();
+    let output = play(folder.path(), &["--from", "4,30", "--to", "116,45", "--seconds", "0.5"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&json["rig"], &json["ticks"]), (&"pico".into(), &5_000.into()));
+    let error_n = json["friction_error_rms_n"].as_f64().unwrap();
+    let range_n = json["electric_friction_max_n"].as_f64().unwrap();
+    assert!(error_n < 0.05 * range_n && error_n > 1e-6, "{error_n} N rms of {range_n} N");
+    let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
+    assert_eq!(felt.lines().count(), 501);
+}

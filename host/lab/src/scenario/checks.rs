@@ -1,0 +1,247 @@
+//! The expectations of a scenario, compared with every tick.
+
+use frixel_hil_sim::RigTick;
+use frixel_scene::{Expectation, Scenario, Seen};
+
+use super::Unmet;
+use super::host::Failure;
+use super::told::Told;
+
+/// Longest time without a code other than zero of an output that is driven, s.
+const DRIVEN_WITHIN_S: f64 = 10e-3;
+
+/// All expectations.
+pub(super) struct Checks {
+    checks: Vec<Check>,
+    clock: Clock,
+    /// Name of the scenario's file.
+    file: String,
+}
+
+/// The ticks of a scenario.
+#[derive(Clone, Copy)]
+struct Clock {
+    tick_hz: u32,
+    first_tick: u64,
+    end_tick: u64,
+    lateness_ticks: u64,
+}
+
+impl Clock {
+    fn ms(self, tick: u64) -> f64 {
+        1e3 * tick.saturating_sub(self.first_tick) as f64 / f64::from(self.tick_hz)
+    }
+
+    fn ticks(self, ms: f64) -> u64 {
+        (1e-3 * ms * f64::from(self.tick_hz)).round() as u64
+    }
+}
+
+struct Check {
+    expectation: Expectation,
+    /// First and last tick; `None` before the event that it counts from.
+    span: Option<[u64; 2]>,
+    found: Found,
+}
+
+/// What was found of an expectation so far.
+#[derive(Clone, Debug, Default)]
+struct Found {
+    /// The first tick that is not as expected, with its DAC code, whether the amplifier was enabled, and the electrode's
+    /// voltage.
+    wrong: Option<(u64, i16, bool, f64)>,
+    /// Ticks that were looked at.
+    ticks: u64,
+    last_driven_tick: u64,
+    friction_sum_n: f64,
+    friction_ticks: u64,
+}
+
+impl Checks {
+    pub(super) fn new(scenario: &Scenario, tick_hz: u32, first_tick: u64, end_tick: u64, lateness_ticks: u64) -> Self {
+        let clock = Clock { tick_hz, first_tick, end_tick, lateness_ticks };
+        let checks = scenario.expectations.iter().map(|expectation| Check {
+            expectation: expectation.clone(),
+            span: None,
+            found: Found::default(),
+        });
+        let mut checks = Self { checks: checks.collect(), clock, file: scenario.file.clone() };
+        checks.begin_all(None, first_tick);
+        checks
+    }
+
+    /// The command or the fault of this name has ended, or begun.
+    pub(super) fn begin(&mut self, name: Option<&str>, tick: u64) {
+        if name.is_some() {
+            self.begin_all(name, tick);
+        }
+    }
+
+    fn begin_all(&mut self, name: Option<&str>, tick: u64) {
+        let clock = self.clock;
+        for check in self.checks.iter_mut().filter(|check| check.span.is_none()) {
+            if check.expectation.after.as_deref() == name {
+                let Expectation { from_ms, to_ms, .. } = check.expectation;
+                let end = to_ms.map_or(clock.end_tick, |ms| clock.end_tick.min(tick + clock.ticks(ms)));
+                check.set_span([tick + clock.ticks(from_ms), end], clock.lateness_ticks);
+            }
+        }
+    }
+
+    /// Compares a tick.
+    pub(super) fn see(&mut self, tick: &RigTick) {
+        let driven_within = self.clock.ticks(1e3 * DRIVEN_WITHIN_S);
+        for check in &mut self.checks {
+            let Some([start, end]) = check.span else { continue };
+            // A tick begins where the one before ends.
+            if tick.tick > start && tick.tick <= end {
+                check.see(tick, start, driven_within);
+            }
+        }
+    }
+
+    /// Each expectation that was not met, and each command that failed unexpectedly, by line.
+    pub(super) fn unmet(&self, told: &Told, mut failures: Vec<Failure>) -> Vec<Unmet> {
+        let Self { checks, clock, file } = self;
+        let mut unmet = Vec::new();
+        for (number, check) in checks.iter().enumerate() {
+            if let Some(sentence) = check.unmet(*clock, told, &mut failures) {
+                let line = check.expectation.line;
+                unmet.push(Unmet { file: file.clone(), line, expectation: Some(number), sentence });
+            }
+        }
+        let unexpected = failures.iter().filter(|failure| !failure.is_expected).map(|failure| {
+            let Failure { what, tick, sentence, line, .. } = failure;
+            let sentence = format!("expected {what} to succeed; at {:.3} ms it failed: {sentence}", clock.ms(*tick));
+            Unmet { file: file.clone(), line: *line, expectation: None, sentence }
+        });
+        unmet.extend(unexpected);
+        unmet.sort_by_key(|unmet| unmet.line);
+        unmet
+    }
+}
+
+impl Check {
+    /// Sets the span, without the time in which a rig that is late may still show what was before, or already what
+    /// comes. What is said may come later by that time.
+    fn set_span(&mut self, [start, end]: [u64; 2], lateness_ticks: u64) {
+        let is_said = matches!(self.expectation.seen, Seen::State(_) | Seen::Fault(_) | Seen::Error(_));
+        self.span = Some(if is_said {
+            [start, end.saturating_add(lateness_ticks)]
+        } else {
+            [start + lateness_ticks, end.saturating_sub(lateness_ticks)]
+        });
+    }
+
+    fn see(&mut self, tick: &RigTick, start: u64, driven_within: u64) {
+        let (code, enable) = (tick.drive.dac_code.bits(), tick.drive.amplifier_enable);
+        let found = &mut self.found;
+        found.ticks += 1;
+        let is_wrong = match self.expectation.seen {
+            Seen::OutputZero => code != 0,
+            Seen::OutputOff => code != 0 || enable,
+            Seen::OutputDriven => {
+                if code != 0 {
+                    found.last_driven_tick = tick.tick;
+                }
+                tick.tick - found.last_driven_tick.max(start) > driven_within
+            }
+            Seen::ElectrodeBelow(limit_v) => tick.felt.electrode_v.abs() >= limit_v,
+            Seen::Friction(_) => {
+                if tick.felt.finger.is_some() {
+                    found.friction_sum_n += tick.felt.friction_n;
+                    found.friction_ticks += 1;
+                }
+                false
+            }
+            Seen::State(_) | Seen::Fault(_) | Seen::Error(_) => false,
+        };
+        if is_wrong {
+            found.wrong.get_or_insert((tick.tick, code, enable, tick.felt.electrode_v));
+        }
+    }
+
+    /// The sentence, if the expectation was not met. Marks failures that were expected.
+    fn unmet(&self, clock: Clock, told: &Told, failures: &mut [Failure]) -> Option<String> {
+        let Some([start, end]) = self.span else {
+            let after = self.expectation.after.as_deref().unwrap_or_default();
+            return Some(format!("expected {}, and `{after}` never happened", self.expected()));
+        };
+        let span = format!("from {:.3} to {:.3} ms", clock.ms(start), clock.ms(end));
+        let expected = format!("expected {} {span}", self.expected());
+        let Found { wrong, ticks, friction_sum_n, friction_ticks, .. } = self.found;
+        let is_of_ticks = !matches!(self.expectation.seen, Seen::State(_) | Seen::Fault(_) | Seen::Error(_));
+        if is_of_ticks && ticks == 0 {
+            return Some(format!("{expected}, and there is no tick in it: let the scenario run for longer"));
+        }
+        match &self.expectation.seen {
+            Seen::Friction([least_n, largest_n]) => {
+                let mean_n = friction_sum_n / friction_ticks as f64;
+                if friction_ticks == 0 {
+                    Some(format!("{expected}; found no finger on the screen"))
+                } else if (*least_n..=*largest_n).contains(&mean_n) {
+                    None
+                } else {
+                    Some(format!("{expected}; found {mean_n:.4} N"))
+                }
+            }
+            Seen::State(state) => {
+                let found = told.by(end);
+                (found.map(|(_, found, _)| found) != Some(*state))
+                    .then(|| format!("{expected}; {}", said(clock, found)))
+            }
+            Seen::Fault(fault) => {
+                let found = told.by(end);
+                (found.and_then(|(.., found)| found) != Some(*fault))
+                    .then(|| format!("{expected}; {}", said(clock, found)))
+            }
+            Seen::Error(words) => {
+                let is_it = |failure: &&mut Failure| {
+                    (start..=end).contains(&failure.tick) && failure.sentence.contains(words.as_str())
+                };
+                let met = failures.iter_mut().filter(is_it).map(|failure| failure.is_expected = true).count();
+                (met == 0).then(|| format!("{expected}; {}", failed(clock, failures)))
+            }
+            Seen::OutputZero | Seen::OutputOff | Seen::OutputDriven | Seen::ElectrodeBelow(_) => {
+                let (tick, code, enable, electrode_v) = wrong?;
+                let enabled = if enable { "enabled" } else { "disabled" };
+                let at = clock.ms(tick);
+                Some(format!(
+                    "{expected}; found DAC code {code}, the amplifier {enabled} and {electrode_v:.2} V at {at:.3} ms"
+                ))
+            }
+        }
+    }
+
+    /// What is expected, in words.
+    fn expected(&self) -> String {
+        match &self.expectation.seen {
+            Seen::OutputZero => "an output of zero".to_owned(),
+            Seen::OutputOff => "an output that is off".to_owned(),
+            Seen::OutputDriven => "a driven output".to_owned(),
+            Seen::ElectrodeBelow(limit_v) => format!("an electrode below {limit_v} V"),
+            Seen::Friction([least_n, largest_n]) => format!("a friction of {least_n} to {largest_n} N"),
+            Seen::State(state) => format!("the state \"{state}\" to be said"),
+            Seen::Fault(fault) => format!("the fault \"{fault}\" to be said"),
+            Seen::Error(words) => format!("a failure with the words \"{words}\""),
+        }
+    }
+}
+
+/// What the board has said last, for a sentence.
+fn said(clock: Clock, found: Option<(u64, frixel_wire::fault::State, Option<frixel_wire::fault::Fault>)>) -> String {
+    match found {
+        None => "the board has said nothing".to_owned(),
+        Some((tick, state, None)) => format!("the board has said \"{state}\" at {:.3} ms", clock.ms(tick)),
+        Some((tick, state, Some(fault))) => {
+            format!("the board has said \"{state}\", \"{fault}\" at {:.3} ms", clock.ms(tick))
+        }
+    }
+}
+
+/// The failures, for a sentence.
+fn failed(clock: Clock, failures: &[Failure]) -> String {
+    let failures: Vec<String> =
+        failures.iter().map(|failure| format!("at {:.3} ms: {}", clock.ms(failure.tick), failure.sentence)).collect();
+    if failures.is_empty() { "nothing failed".to_owned() } else { format!("found {}", failures.join("; ")) }
+}

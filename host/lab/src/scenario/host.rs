@@ -1,0 +1,208 @@
+//! The host of a scenario: a player over the line, which does what the scenario says when it says so.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_driver::{Device, DeviceError, PollingLink};
+use frixel_play::{PlayError, Player, load};
+use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
+use frixel_wire::frame::FRAME_MAX_LEN;
+use frixel_wire::payload::hello_request_frame;
+
+use super::Programs;
+use super::line::ScenarioLine;
+
+/// A command that failed, or a connection that was lost.
+pub(super) struct Failure {
+    /// Line of the command; of the last one before a connection that was lost.
+    pub(super) line: usize,
+    pub(super) what: String,
+    /// Tick on the rig's clock.
+    pub(super) tick: u64,
+    pub(super) sentence: String,
+    /// An expectation has these words.
+    pub(super) is_expected: bool,
+}
+
+pub(super) struct Host<'s, 'r> {
+    scenario: &'s Scenario,
+    programs: &'s Programs,
+    line: ScenarioLine<'r>,
+    player: Option<Player<PollingLink<ScenarioLine<'r>>>>,
+    failures: Vec<Failure>,
+    /// Line of the last command.
+    last_line: usize,
+}
+
+/// Why a command is not carried out.
+enum CommandFailure {
+    Play(PlayError),
+    /// The connection was given up.
+    NotConnected,
+}
+
+impl From<PlayError> for CommandFailure {
+    fn from(error: PlayError) -> Self {
+        Self::Play(error)
+    }
+}
+
+impl From<DeviceError> for CommandFailure {
+    fn from(error: DeviceError) -> Self {
+        Self::Play(error.into())
+    }
+}
+
+impl<'s, 'r> Host<'s, 'r> {
+    pub(super) fn new(scenario: &'s Scenario, programs: &'s Programs, line: ScenarioLine<'r>) -> Self {
+        Self { scenario, programs, line, player: None, failures: Vec::new(), last_line: 1 }
+    }
+
+    /// Does what the scenario says, to its end.
+    pub(super) fn run(&mut self) {
+        let tick_hz = self.line.tick_hz();
+        let end = (self.scenario.seconds * f64::from(tick_hz)).round() as u64;
+        if let Err(failure) = self.connect() {
+            self.failed("the connection", failure);
+        }
+        let mut commands: Vec<&ScenarioCommand> = self.scenario.commands.iter().collect();
+        commands.sort_by_key(|command| command.at.tick(tick_hz));
+        for command in commands {
+            let at = command.at.tick(tick_hz);
+            if at > end || self.line.has_ended() {
+                break;
+            }
+            self.wait_until(at);
+            self.last_line = command.line;
+            let verb = verb(&command.action);
+            self.line.note(verb);
+            match self.perform(&command.action) {
+                Ok(()) => self.line.note(format!("{verb}: done")),
+                Err(failure) => self.failed(&format!("`{verb}`"), failure),
+            }
+            self.line.named_event(command.name.as_deref());
+        }
+        self.wait_until(end);
+    }
+
+    /// The failures, in the order of time.
+    pub(super) fn into_failures(self) -> Vec<Failure> {
+        self.failures
+    }
+
+    fn connect(&mut self) -> Result<(), CommandFailure> {
+        let link = PollingLink::new(self.line.clone());
+        self.player = Some(Player::new(Device::connect(link)?));
+        Ok(())
+    }
+
+    /// Lets time pass, in which the program goes on if it is connected.
+    fn wait_until(&mut self, ticks: u64) {
+        while self.line.ticks() < ticks && !self.line.has_ended() {
+            let left = Duration::from_secs(ticks - self.line.ticks()) / self.line.tick_hz();
+            match &mut self.player {
+                Some(player) => {
+                    if let Err(error) = player.wait(left) {
+                        self.failed("the connection", error.into());
+                    }
+                }
+                None => self.line.pass_to(ticks),
+            }
+        }
+    }
+
+    fn perform(&mut self, action: &Action) -> Result<(), CommandFailure> {
+        match action {
+            Action::Connect => {
+                self.player = None;
+                return self.connect();
+            }
+            Action::Hang { ms } => {
+                self.line.pass_to(self.line.ticks() + (1e-3 * ms * f64::from(self.line.tick_hz())).round() as u64);
+                return Ok(());
+            }
+            Action::Die => {
+                self.line.set_dead(true);
+                self.player = None;
+                self.line.set_dead(false);
+                return Ok(());
+            }
+            Action::OtherClient => {
+                let mut frame = [0; FRAME_MAX_LEN];
+                self.line.inject(hello_request_frame(&mut frame).map_err(DeviceError::from)?);
+                return Ok(());
+            }
+            _ => {}
+        }
+        let program = |scene: &str| self.programs.get(scene).cloned();
+        let Some(player) = &mut self.player else { return Err(CommandFailure::NotConnected) };
+        perform_with(player, action, &self.scenario.scene, &program)
+    }
+
+    /// A program that cannot go on ends: it lets go of its connection.
+    fn failed(&mut self, what: &str, failure: CommandFailure) {
+        let (sentence, goes_on) = match failure {
+            CommandFailure::Play(error) => (error.to_string(), error.is_refusal()),
+            CommandFailure::NotConnected => {
+                ("the connection was given up: write a command `connect` before".to_owned(), true)
+            }
+        };
+        if !goes_on {
+            self.player = None;
+        }
+        self.line.note(format!("{what} failed: {sentence}"));
+        let tick = self.line.rig_tick();
+        self.failures.push(Failure { line: self.last_line, what: what.to_owned(), tick, sentence, is_expected: false });
+    }
+}
+
+/// What a connected host does.
+fn perform_with(
+    player: &mut Player<PollingLink<ScenarioLine<'_>>>,
+    action: &Action,
+    scene: &str,
+    program: &dyn Fn(&str) -> Option<Program>,
+) -> Result<(), CommandFailure> {
+    let goes_on = &mut |_| ControlFlow::Continue(());
+    match action {
+        Action::Play => {
+            let Some(program) = program(scene) else { return Ok(()) };
+            player.start(program, 0, goes_on)?;
+        }
+        Action::Upload => {
+            let Some(program) = program(scene) else { return Ok(()) };
+            load(player.device_mut(), &program, goes_on)?;
+        }
+        Action::Stop => player.stop()?,
+        Action::ClearFault => player.clear_fault()?,
+        Action::Replace { scene } => {
+            let Some(program) = program(scene) else { return Ok(()) };
+            player.replace(program)?;
+        }
+        Action::Trigger { layer, duration_s } => {
+            player.trigger(layer, *duration_s)?;
+        }
+        Action::SetLayer { layer, gain } => {
+            player.change_layer(layer, None, gain.map(|gain| gain as f32))?;
+        }
+        Action::Connect | Action::Hang { .. } | Action::Die | Action::OtherClient => {}
+    }
+    Ok(())
+}
+
+/// The action as the file calls it.
+fn verb(action: &Action) -> &'static str {
+    match action {
+        Action::Connect => "connect",
+        Action::Play => "play",
+        Action::Upload => "upload",
+        Action::Stop => "stop",
+        Action::ClearFault => "clear-fault",
+        Action::Replace { .. } => "replace",
+        Action::Trigger { .. } => "trigger",
+        Action::SetLayer { .. } => "layer",
+        Action::Hang { .. } => "hang",
+        Action::Die => "die",
+        Action::OtherClient => "other-client",
+    }
+}

@@ -1,0 +1,167 @@
+//! Runs a scenario on a rig: the host's commands and the faults at their times, and what has to be seen meanwhile.
+//!
+//! [`run_in_process`] runs one on the in-process rig, and [`run`] on any [`BoardRig`]. Host and board are the real ones:
+//! a [`Player`](frixel_play::Player) over a [`Device`](frixel_driver::Device), and the firmware of the rig. Faults of the
+//! line are made at the host's end of it; everything else is the rig's.
+
+mod checks;
+mod direction;
+mod host;
+mod line;
+mod told;
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+
+use frixel_hil_sim::{
+    BoardMemory, BoardRig, InProcessError, InProcessRig, Point, RigConfig, RigError, Stroke, StrokeError, WorldConfig,
+};
+use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
+use thiserror::Error;
+
+use crate::default_stroke::REPEAT_PAUSE_S;
+
+use host::Host;
+use line::ScenarioLine;
+
+/// Duration of the sweep of a scenario without a stroke, s.
+const SWEEP_S: f64 = 3.0;
+
+/// What a scenario has shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioOutcome {
+    /// What happened, in the order of time.
+    pub timeline: Vec<TimelineEntry>,
+    /// Number of expectations.
+    pub expectations: usize,
+    /// What was not as expected, in the order of the file: expectations, and commands that failed.
+    pub unmet: Vec<Unmet>,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimelineEntry {
+    /// Time since the start, ms.
+    pub t_ms: f64,
+    /// What happened.
+    pub what: String,
+}
+
+impl Display for TimelineEntry {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:>12.3} ms  {}", self.t_ms, printable(&self.what))
+    }
+}
+
+/// An expectation that was not met, or a command that failed and was not expected to. Its text is one sentence: what was expected, what was found, and when.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{file}:{line}: {sentence}")]
+pub struct Unmet {
+    /// The scenario's file.
+    pub file: String,
+    /// Line of the expectation, or of the command that failed.
+    pub line: usize,
+    /// Number of the expectation in [`Scenario::expectations`]; `None` for a command.
+    pub expectation: Option<usize>,
+    /// The sentence.
+    pub sentence: String,
+}
+
+/// Why a scenario does not run.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// A scene cannot be compiled for the rig's board.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// The stroke is none.
+    #[error("{file}: no finger can go along this stroke: {source}")]
+    Stroke {
+        /// The scenario's file.
+        file: String,
+        /// The reason.
+        source: StrokeError,
+    },
+    /// The rig cannot be made.
+    #[error(transparent)]
+    InProcess(#[from] InProcessError),
+    /// The rig has ended, or cannot cause a fault.
+    #[error("{file}: {source}")]
+    Rig {
+        /// The scenario's file, and the line of a fault.
+        file: String,
+        /// The reason.
+        source: RigError,
+    },
+    /// A scene was not given.
+    #[error("{file} plays {scene}, and this scene was not given")]
+    NoScene {
+        /// The scenario's file.
+        file: String,
+        /// The scene's file.
+        scene: String,
+    },
+}
+
+/// The scenes of a scenario, compiled for a board, by their files' names.
+pub type Programs = BTreeMap<String, Program>;
+
+/// Compiles the scenes of a scenario for the board of `config`. `scenes` has them by their files' names.
+pub fn programs(
+    scenario: &Scenario,
+    scenes: &BTreeMap<String, Scene>,
+    board: &frixel_hil_sim::Board,
+) -> Result<Programs, ScenarioError> {
+    let compiled = scenario.scenes().map(|name| {
+        let none = || ScenarioError::NoScene { file: scenario.file.clone(), scene: name.to_owned() };
+        let program = compile(scenes.get(name).ok_or_else(none)?, &board.limits, board.tick_hz)?;
+        Ok((name.to_owned(), program))
+    });
+    compiled.collect()
+}
+
+/// The stroke of a scenario, and its world; `config` has the rates of the board.
+pub fn stroke_and_world(
+    scenario: &Scenario,
+    programs: &Programs,
+    config: WorldConfig,
+) -> Result<(Stroke, WorldConfig), ScenarioError> {
+    let world = if scenario.is_realistic { config.realistic() } else { config };
+    let stroke = match &scenario.stroke {
+        Some(stroke) => {
+            let [from, to] = [stroke.from_mm, stroke.to_mm].map(|[x, y]| Point { x_m: 1e-3 * x, y_m: 1e-3 * y });
+            Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s)
+        }
+        None => {
+            let header = programs.get(&scenario.scene).map(|program| program.header);
+            let [width_m, height_m] =
+                header.map_or([0.1; 2], |header| [header.screen_width_m, header.screen_height_m].map(f64::from));
+            Stroke::sweep(width_m, height_m, SWEEP_S)
+        }
+    };
+    let looped = stroke.and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
+    let stroke = looped.map_err(|source| ScenarioError::Stroke { file: scenario.file.clone(), source })?;
+    Ok((stroke, world))
+}
+
+/// Runs a scenario on the in-process rig of `config`'s board. `scenes` has its scenes by their files' names.
+pub fn run_in_process(
+    scenario: &Scenario,
+    scenes: &BTreeMap<String, Scene>,
+    config: &RigConfig,
+) -> Result<ScenarioOutcome, ScenarioError> {
+    let programs = programs(scenario, scenes, &config.board)?;
+    let (stroke, world) = stroke_and_world(scenario, &programs, config.world)?;
+    let mut memories: Vec<_> = (0..=scenario.resets()).map(|_| BoardMemory::new()).collect();
+    let config = RigConfig { world, ..*config };
+    let mut rig = InProcessRig::new(&mut memories, &config, stroke, scenario.seed)?;
+    run(scenario, &programs, &mut rig)
+}
+
+/// Runs a scenario on a rig, whose world has the finger of [`stroke_and_world`].
+pub fn run(scenario: &Scenario, programs: &Programs, rig: &mut dyn BoardRig) -> Result<ScenarioOutcome, ScenarioError> {
+    let line = ScenarioLine::new(scenario, rig);
+    let mut host = Host::new(scenario, programs, line.clone());
+    host.run();
+    let failures = host.into_failures();
+    line.outcome(scenario, failures)
+}

@@ -1,0 +1,171 @@
+//! The scenarios that come with the simulator: what they expect is seen, and none of it would be seen on a broken rig.
+#![allow(clippy::disallowed_methods, reason = "the tests read the scenarios' files")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use frixel_hil_sim::{
+    Board, BoardMemory, BoardRig, Felt, InProcessRig, NoiseConfig, RigConfig, RigError, RigFault, RigTick,
+};
+use frixel_lab::scenario::{ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
+use frixel_scene::{Action, Cause, LineDamage, Scenario, Scene};
+use frixel_wire::dac_code::DacCode;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil-sim/scenarios")
+}
+
+/// Every scenario, with its scenes.
+fn scenarios() -> Vec<(Scenario, BTreeMap<String, Scene>)> {
+    let mut files: Vec<_> = fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let texts = files.iter().map(|file| {
+        let name = file.file_name().unwrap().to_str().unwrap().to_owned();
+        (name, fs::read_to_string(file).unwrap())
+    });
+    let scenarios: Vec<_> = texts
+        .filter(|(_, text)| text.starts_with("scenario"))
+        .map(|(name, text)| {
+            let scenario = Scenario::parse(&text, &name).unwrap();
+            let scenes = scenario.scenes().map(|scene| (scene.to_owned(), scene_of(scene))).collect();
+            (scenario, scenes)
+        })
+        .collect();
+    assert!(scenarios.len() >= 20, "{}", scenarios.len());
+    scenarios
+}
+
+fn scene_of(name: &str) -> Scene {
+    let text = fs::read_to_string(folder().join(name)).unwrap();
+    Scene::parse(&text, name, &BTreeMap::<String, Vec<u8>>::new()).unwrap()
+}
+
+#[test]
+fn every_scenario_shows_what_it_expects() {
+    let mut unmet: Vec<String> = Vec::new();
+    for (scenario, scenes) in scenarios() {
+        assert!(!scenario.about.is_empty() && !scenario.expectations.is_empty(), "{}", scenario.file);
+        let outcome = run_in_process(&scenario, &scenes, &RigConfig::default()).unwrap();
+        unmet.extend(outcome.unmet.iter().map(ToString::to_string));
+    }
+    assert!(unmet.is_empty(), "{}", unmet.join("\n"));
+}
+
+#[test]
+fn a_scenario_runs_the_same_every_time() {
+    let named = |(scenario, _): &(Scenario, _)| scenario.file == "bits-flipped.toml";
+    let (mut scenario, scenes) = scenarios().into_iter().find(named).unwrap();
+    let noise = NoiseConfig { bit_error_rate: 2e-3, ..NoiseConfig::default() };
+    scenario.faults[0].cause = Cause::Line { directions: [true, true], damage: LineDamage::Noise(noise) };
+    let run = |seed| run_in_process(&Scenario { seed, ..scenario.clone() }, &scenes, &RigConfig::default()).unwrap();
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1), run(2));
+}
+
+/// How a rig is broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Break {
+    /// The output is driven in every tick.
+    Driven,
+    /// The output is zero in every tick, and no friction is felt.
+    Dead,
+    /// Nothing arrives at the host.
+    Mute,
+    /// What the scenario causes does not happen, nor does the host do anything after its first command.
+    Harmless,
+}
+
+const BREAKS: [Break; 4] = [Break::Driven, Break::Dead, Break::Mute, Break::Harmless];
+
+struct Broken<'a> {
+    rig: InProcessRig<'a>,
+    how: Break,
+}
+
+impl BoardRig for Broken<'_> {
+    fn name(&self) -> &'static str {
+        "broken"
+    }
+
+    fn board(&self) -> &Board {
+        self.rig.board()
+    }
+
+    fn tick(&self) -> u64 {
+        self.rig.tick()
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
+        self.rig.send(bytes)
+    }
+
+    fn run(
+        &mut self,
+        until_tick: u64,
+        received: &mut Vec<u8>,
+        watch: &mut dyn FnMut(&RigTick),
+    ) -> Result<(), RigError> {
+        let how = self.how;
+        self.rig.run(until_tick, received, &mut |tick| {
+            let mut tick = *tick;
+            match how {
+                Break::Driven => {
+                    tick.drive.dac_code = DacCode::from_bits(20_000);
+                    tick.drive.amplifier_enable = true;
+                    tick.felt = Felt { electrode_v: 152.0, ..tick.felt };
+                }
+                Break::Dead => {
+                    tick.drive.dac_code = DacCode::ZERO;
+                    tick.felt = Felt { friction_n: 0.0, ..tick.felt };
+                }
+                Break::Mute | Break::Harmless => {}
+            }
+            watch(&tick);
+        })?;
+        if how == Break::Mute {
+            received.clear();
+        }
+        Ok(())
+    }
+
+    fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
+        self.rig.cause(fault, ticks)
+    }
+
+    fn start_stroke(&mut self) {
+        self.rig.start_stroke();
+    }
+}
+
+fn run_broken(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, how: Break) -> ScenarioOutcome {
+    let mut scenario = scenario.clone();
+    if how == Break::Harmless {
+        // Names stay, so that times count from something.
+        for fault in &mut scenario.faults {
+            fault.cause = Cause::Line { directions: [false, false], damage: LineDamage::Cut };
+        }
+        for command in scenario.commands.iter_mut().filter(|command| command.action != Action::Play) {
+            command.action = Action::Hang { ms: 0.0 };
+        }
+    }
+    let config = RigConfig::default();
+    let programs = programs(&scenario, scenes, &config.board).unwrap();
+    let (stroke, world) = stroke_and_world(&scenario, &programs, config.world).unwrap();
+    let mut memories: Vec<_> = (0..=scenario.resets()).map(|_| BoardMemory::new()).collect();
+    let rig = InProcessRig::new(&mut memories, &RigConfig { world, ..config }, stroke, scenario.seed).unwrap();
+    run(&scenario, &programs, &mut Broken { rig, how }).unwrap()
+}
+
+/// An expectation that no broken rig leaves unmet would be met by anything.
+#[test]
+fn every_expectation_is_unmet_on_a_broken_rig() {
+    for (scenario, scenes) in scenarios() {
+        let outcomes = BREAKS.map(|how| run_broken(&scenario, &scenes, how));
+        for (number, expectation) in scenario.expectations.iter().enumerate() {
+            let is_unmet =
+                outcomes.iter().any(|outcome| outcome.unmet.iter().any(|unmet| unmet.expectation == Some(number)));
+            assert!(is_unmet, "{}:{}: {:?}", scenario.file, expectation.line, expectation.seen);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+"""How faithfully simulated fingers feel a scene, and what they notice of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from . import _frixel, _tables
+from .errors import ParameterError, number, whole
+from .profiles import Finger, Screen, TouchSource
+from .scene import Scene
+from .stroke import Stroke
+
+__all__ = ["Score", "score"]
+
+COUNT_MAX = 1000
+"""Most people, strokes, repetitions and threads."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """A verdict on simulated fingers; people were not asked."""
+
+    summary: dict[str, Any]
+    """All that `frixel score --json` prints."""
+    words: str
+    """The table that `frixel score` prints; `print` shows it."""
+    files: dict[str, str]
+    """The tables `score.csv`, a row for each play, and `score-layers.csv`, a row for each layer, by these names."""
+
+    @property
+    def verdict(self) -> str:
+        """Which layers the simulated fingers notice, and which levels they tell apart: a sentence."""
+        return str(self.summary["verdict"])
+
+    @property
+    def layers(self) -> list[dict[str, Any]]:
+        """A row for each layer, as in `score-layers.csv`: `pandas.DataFrame(score.layers)` is a table of them."""
+        return _tables.rows(self.files["score-layers.csv"])
+
+    @property
+    def plays(self) -> list[dict[str, Any]]:
+        """A row for each play, as in `score.csv`."""
+        return _tables.rows(self.files["score.csv"])
+
+    @property
+    def numbers(self) -> dict[str, dict[str, Any]]:
+        """Each number over all plays, by its name: `mean`, `interval` of 95 % or `None`, `unit`, `title`, `goal`.
+
+        One that exists in no play, such as the correlation of flat friction, is not there.
+        """
+        return {row["key"]: row for row in self.summary["metrics"]}
+
+    def __str__(self) -> str:
+        return self.words
+
+    def __repr__(self) -> str:
+        return f"<frixel.Score: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.words)}</pre>"
+
+
+@dataclass(frozen=True)
+class _Settings:
+    stroke: Stroke | str
+    people: int | None
+    strokes: int
+    seeds: int
+    seconds: float
+    median_speed_mm_per_s: float | None
+    touch: TouchSource | None
+    ideal: bool
+    jobs: int
+
+
+def score(
+    scene: Scene | Mapping[str, Any],
+    *,
+    finger: Finger | str | Mapping[str, Any] | None = None,
+    screen: Screen | str | Mapping[str, Any] | None = None,
+    people: int | None = None,
+    stroke: Stroke | str = "human",
+    strokes: int = 4,
+    seeds: int = 2,
+    seconds: float = 3.0,
+    median_speed_mm_per_s: float | None = None,
+    touch: TouchSource | str | Mapping[str, Any] | None = None,
+    ideal: bool = False,
+    jobs: int | None = None,
+) -> Score:
+    """Play a scene under simulated fingers, and say how faithfully they feel it, as `frixel score` does.
+
+    Parameters
+    ----------
+    scene
+        A scene, or the tables of its file.
+    finger, screen
+        Those that the scene is compiled for, in place of its own.
+    people
+        Number of simulated people, from 1 to 1000, drawn from an assumed population, whom the board does not know; each
+        makes strokes of their own. Without it, the finger is the scene's.
+    stroke
+        `human`, `human-rough` (with the accelerations of recorded strokes before smoothing), `sweep`, or one stroke for
+        all.
+    strokes
+        Number of human strokes, of each person.
+    seeds
+        Repetitions of each stroke, with other loads, noise and lost reports.
+    seconds
+        Duration of a stroke that is generated, s, at most a day.
+    median_speed_mm_per_s
+        Median speed of human strokes, from 1 to 1000 mm/s; without it, each person has their own.
+    touch
+        The touch source; without it, 100 reports a second, 10 ms late.
+    ideal
+        A world without noise, load changes, losses and offsets.
+    jobs
+        Plays side by side; without it, as many as there are processors. The result is the same for any number.
+
+    Raises
+    ------
+    SceneError
+        The scene has mistakes, or a board refuses it.
+    ParameterError
+        A value is not taken.
+    KeyboardInterrupt
+        Ctrl-C, at once.
+
+    >>> plate = {"kind": "constant", "friction_fraction": 0.5}
+    >>> score({"layer": [plate]}, strokes=1, seeds=1, seconds=0.5).verdict
+    'there is no layer that the simulated finger surely notices: not layer 1 (constant)'
+    """
+    scene = Scene.of(scene)
+    if screen is not None:
+        scene = scene.with_screen(screen)
+    if finger is not None:
+        scene = scene.with_finger(finger)
+    if not isinstance(stroke, (Stroke, str)):
+        raise ParameterError(f'a stroke is "human", "human-rough", "sweep" or a Stroke, found {stroke!r}')
+    speed = median_speed_mm_per_s
+    settings = _Settings(
+        stroke,
+        None if people is None else whole("people", people, 1, COUNT_MAX),
+        whole("strokes", strokes, 1, COUNT_MAX),
+        whole("seeds", seeds, 1, COUNT_MAX),
+        number("seconds", seconds, 1e-3, 86_400.0),
+        None if speed is None else number("median_speed_mm_per_s", speed, 1.0, 1000.0),
+        None if touch is None else TouchSource.of(touch),
+        bool(ideal),
+        0 if jobs is None else whole("jobs", jobs, 1, COUNT_MAX),
+    )
+    summary, words, plays, layers = _frixel.score_scene(scene.compiled, settings)
+    return Score(json.loads(summary), words, {"score.csv": plays, "score-layers.csv": layers})

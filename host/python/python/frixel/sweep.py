@@ -1,0 +1,138 @@
+"""Studies of many simulated fingers, in pieces that processes and clusters can share.
+
+`cells` makes the pieces of a plan, `play` plays one of them, and a `Study` puts the results together. `play` is a pure
+function of a text, so that `map(sweep.play, cells)` works with processes, Dask and Slurm (`docs/scale.md`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from . import _frixel, _tables, _toml
+from .errors import FrixelError, ParameterError
+from .scene import Scene
+
+__all__ = ["Study", "cells", "play"]
+
+
+def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
+    """The cells of a plan, one for each simulated finger and combination, people last.
+
+    Parameters
+    ----------
+    plan
+        The path of a plan's file (`docs/scale.md`), or its fields; then `scenes` may be a dictionary of scenes by the
+        names that results have, and the names of other files are those of the current folder.
+
+    Returns
+    -------
+    list of str
+        Texts that hold all that the plays need. Their order is that of the plan.
+
+    Raises
+    ------
+    ParameterError
+        The plan has a mistake, or names a file that is not there.
+    SceneError
+        A scene has mistakes, or a board refuses it with some of the values.
+
+    >>> plate = Scene.from_dict({"layer": [{"kind": "constant", "friction_fraction": 0.5}]})
+    >>> len(cells({"scenes": {"plate": plate}, "people": 2, "parameters": {"layer.1.friction_fraction": [0.1, 0.5]}}))
+    4
+    """
+    if isinstance(plan, Mapping):
+        scenes = plan.get("scenes", [])
+        if not isinstance(scenes, (Mapping, list, tuple)):
+            raise ParameterError(
+                f"`scenes` is a list of files, or a dictionary of scenes by their names, found {scenes!r}"
+            )
+        named = {name: Scene.of(scene) for name, scene in scenes.items()} if isinstance(scenes, Mapping) else {}
+        text = _toml.dumps({**plan, "scenes": list(scenes)})
+        sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
+        return _frixel.sweep_cells(text, "<plan>", "", sources)
+    path = Path(plan)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ParameterError(f"{path}: this plan cannot be read ({error}): check the path") from error
+    return _frixel.sweep_cells(text, str(path), str(path.parent), {})
+
+
+def play(cell: str) -> str:
+    """Play one cell: what its finger noticed, as a text. The same cell gives the same text on every machine.
+
+    Raises
+    ------
+    ParameterError
+        It is no cell, or one of another version.
+    """
+    if not isinstance(cell, str):
+        raise ParameterError(f"a cell is a text that `sweep.cells` has made, found {cell!r}")
+    return _frixel.play_cell(cell)
+
+
+class Study:
+    """The results of the cells of a plan together, in the order of the plan.
+
+    Intervals are computed from the results of single fingers. A notebook shows the picture: which share of the
+    simulated fingers notices what.
+
+    Raises
+    ------
+    ParameterError
+        A text is no result.
+    """
+
+    def __init__(self, results: Iterable[str]) -> None:
+        texts = list(results)
+        if not texts or not all(isinstance(text, str) for text in texts):
+            raise ParameterError("a study is of one result or more, texts that `sweep.play` has made")
+        lines, self.files = _frixel.study_files(texts)
+        self.words = "\n".join(lines)
+
+    files: dict[str, bytes]
+    """The files that `frixel sweep` writes, byte for byte: `layers.csv`, `sweep.svg` and others, by their names."""
+    words: str
+    """The share of the fingers that notice each layer; `print` shows it."""
+
+    @property
+    def layers(self) -> list[dict[str, Any]]:
+        """A row for each combination and layer: the share of the fingers that notice it, with its interval."""
+        return self._rows("layers.csv")
+
+    @property
+    def fingers(self) -> list[dict[str, Any]]:
+        """A row for each finger and layer."""
+        return self._rows("fingers.csv")
+
+    @property
+    def numbers(self) -> list[dict[str, Any]]:
+        """A row for each combination and number of a score: its mean over the fingers, with its interval."""
+        return self._rows("numbers.csv")
+
+    def write(self, folder: str | PathLike[str]) -> None:
+        """Write the files into a folder, which is made if it is not there.
+
+        Raises
+        ------
+        FrixelError
+            A file cannot be written.
+        """
+        try:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            for name, content in self.files.items():
+                (Path(folder) / name).write_bytes(content)
+        except OSError as error:
+            raise FrixelError(f"{folder}: this study cannot be written ({error.strerror})") from error
+
+    def _rows(self, name: str) -> list[dict[str, Any]]:
+        return _tables.rows(self.files[name].decode())
+
+    def __str__(self) -> str:
+        return self.words
+
+    def _repr_svg_(self) -> str:
+        return self.files["sweep.svg"].decode()

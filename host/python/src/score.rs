@@ -1,0 +1,92 @@
+//! Scores: how faithfully simulated fingers feel a scene.
+
+use frixel_hil_sim::{RigConfig, TouchConfig, WorldConfig};
+use frixel_lab::score::{Score, TrialPlan, TrialsError, Way};
+use frixel_scene::compile;
+use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
+
+use super::error::{parameter_error, raised, scene_error};
+use super::profile::ProfileText;
+use super::scene::Scene;
+use super::signals::interruptible;
+use super::simulator::Stroke;
+
+/// Where the fingers go.
+#[derive(FromPyObject)]
+pub(crate) enum ScoreStroke<'py> {
+    /// `human`, `human-rough` or `sweep`.
+    Generated(String),
+    /// The same stroke for every finger.
+    Own(Stroke<'py>),
+}
+
+/// How to score, an object of `python/frixel/scoring.py`.
+#[derive(FromPyObject)]
+pub(crate) struct ScoreSettings<'py> {
+    stroke: ScoreStroke<'py>,
+    people: Option<u64>,
+    strokes: u64,
+    seeds: u64,
+    seconds: f64,
+    median_speed_mm_per_s: Option<f64>,
+    touch: Option<ProfileText>,
+    ideal: bool,
+    jobs: usize,
+}
+
+impl ScoreSettings<'_> {
+    fn rig(&self, py: Python<'_>) -> PyResult<RigConfig> {
+        let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
+        let mut rig = RigConfig::default();
+        rig.world = if self.ideal { rig.world } else { rig.world.realistic() };
+        let touch = if self.ideal { touch.map(TouchConfig::without_losses) } else { touch };
+        rig.world = WorldConfig { touch: touch.unwrap_or(rig.world.touch), ..rig.world };
+        Ok(rig)
+    }
+
+    fn way(&self, py: Python<'_>, program: &frixel_scene::Program) -> PyResult<Way> {
+        let own = match &self.stroke {
+            ScoreStroke::Generated(name) => match name.as_str() {
+                "human" => return Ok(Way::Human),
+                "human-rough" => return Ok(Way::HumanRough),
+                "sweep" => return Ok(Way::Sweep),
+                _ => None,
+            },
+            ScoreStroke::Own(stroke) => stroke.on_screen(py, program)?,
+        };
+        let unknown = || parameter_error(py, "a stroke is \"human\", \"human-rough\", \"sweep\" or a Stroke");
+        own.map(Way::Stroke).ok_or_else(unknown)
+    }
+}
+
+/// Scores a scene. Returns what `frixel score --json` prints, the table in words, and the texts of `score.csv` and
+/// `score-layers.csv`.
+#[pyfunction]
+pub(crate) fn score_scene(
+    py: Python<'_>,
+    scene: &Scene,
+    settings: ScoreSettings<'_>,
+) -> PyResult<(String, String, String, String)> {
+    let rig = settings.rig(py)?;
+    let program = py.detach(|| compile(scene.parsed(), &rig.board.limits, rig.board.tick_hz));
+    let program = program.map_err(|error| scene_error(py, &error))?;
+    let plan = TrialPlan {
+        way: settings.way(py, &program)?,
+        strokes: settings.strokes,
+        seeds: settings.seeds,
+        seconds: settings.seconds,
+        median_speed_m_per_s: settings.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
+    };
+    let trials = plan.of_people(settings.people, scene.parsed(), &program, settings.ideal);
+    let trials = trials.map_err(|error| match error {
+        TrialsError::Screen(error) => scene_error(py, &error),
+        error => parameter_error(py, error),
+    })?;
+    let failed = |sentence: String| raised(py, "PlayError", (sentence,));
+    let pool = ThreadPoolBuilder::new().num_threads(settings.jobs).build();
+    let pool = pool.map_err(|error| failed(format!("the threads of `jobs` cannot start ({error}): give fewer")))?;
+    let scored = interruptible(py, |goes_on| pool.install(|| Score::of_while(&program, &rig, &trials, goes_on)))?;
+    let score = scored.map_err(|error| failed(error.to_string()))?;
+    Ok((score.to_json(), score.summary(), score.to_csv(), score.layers_csv()))
+}

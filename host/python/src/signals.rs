@@ -1,0 +1,48 @@
+//! Long work, without Python's lock, that Ctrl-C ends.
+
+use std::ops::ControlFlow;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::prelude::*;
+
+/// Time between two looks at Python's signals.
+pub(crate) const SIGNALS_PERIOD: Duration = Duration::from_millis(50);
+
+/// The exception of a signal that has come, such as that of Ctrl-C.
+pub(crate) fn raised_by_signal() -> Option<PyErr> {
+    #[allow(clippy::redundant_closure_for_method_calls, reason = "the method is of one lifetime only")]
+    let looked = Python::attach(|py| py.check_signals());
+    looked.err()
+}
+
+/// Does `work` in another thread, while this one looks at Python's signals. After a signal the function that `work` is
+/// given breaks, and the result is the exception of the signal.
+pub(crate) fn interruptible<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&(dyn Fn() -> ControlFlow<()> + Sync)) -> T + Send,
+) -> PyResult<T> {
+    let is_interrupted = AtomicBool::new(false);
+    let goes_on =
+        || if is_interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    py.detach(|| {
+        thread::scope(|scope| {
+            let (done, ended) = channel();
+            let working = scope.spawn(move || {
+                let result = work(&goes_on);
+                drop(done);
+                result
+            });
+            let mut signal = None;
+            while signal.is_none() && ended.recv_timeout(SIGNALS_PERIOD) == Err::<(), _>(RecvTimeoutError::Timeout) {
+                signal = raised_by_signal();
+            }
+            is_interrupted.store(signal.is_some(), Ordering::Relaxed);
+            let result = working.join().unwrap_or_else(|panic| resume_unwind(panic));
+            signal.map_or(Ok(result), Err)
+        })
+    })
+}

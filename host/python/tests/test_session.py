@@ -1,0 +1,245 @@
+"""Sessions: answers, recordings, and how they go on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as parquet
+import pytest
+from frixel import Device, ParameterError, PlayError, Scene, Stroke
+from frixel.experiment import (
+    TWO_ALTERNATIVES,
+    Answers,
+    ConstantStimuli,
+    ExperimentError,
+    Grid,
+    Observer,
+    QuestPlus,
+    Session,
+    Trial,
+)
+from frixel.experiment.coverage import LEVELS
+
+TEXTS = {"bars.toml": "version = 2\n"}
+
+
+class Person:
+    """Answers by a simulated observer, and counts what was presented."""
+
+    def __init__(self, fails_at: int | None = None) -> None:
+        self.presented: list[Trial] = []
+        self._fails_at = fails_at
+
+    def play(self, trial: Trial) -> None:
+        if trial.number == self._fails_at:
+            raise KeyboardInterrupt
+        self.presented.append(trial)
+
+    def answer(self, trial: Trial) -> int:
+        observer = Observer(0.12, seed=trial.number)
+        return trial.target if observer.answers(trial.level, TWO_ALTERNATIVES) else 1 - trial.target
+
+
+def opened(folder: Path, **changed: Any) -> Session:
+    settings: dict[str, Any] = {"participant": "p01", "task": TWO_ALTERNATIVES, "seed": 7, "played": TEXTS, **changed}
+    return Session(folder, **settings)
+
+
+def run(session: Session, person: Person) -> Answers:
+    method = QuestPlus(LEVELS, TWO_ALTERNATIVES, trials=12, grid=Grid(np.geomspace(0.01, 1.0, 15)))
+    return session.run(method, person.play, person.answer, practice=[1.0, 1.0], catch_every=5)
+
+
+def what_happened(row: dict[str, Any]) -> dict[str, Any]:
+    """A row without what differs from run to run."""
+    return {key: value for key, value in row.items() if not key.endswith("_s") and key != "run"}
+
+
+def test_a_session_that_was_cut_off_goes_on_without_repeating_an_answer(tmp_path: Path) -> None:
+    with opened(tmp_path / "whole") as session:
+        whole, person = run(session, Person()), Person()
+        rows = session.rows
+    with opened(tmp_path / "cut") as session:
+        with pytest.raises(KeyboardInterrupt):
+            run(session, Person(fails_at=6))
+        with pytest.raises(ExperimentError, match="open the session again"):
+            run(session, Person())
+    # As a crash in the middle of a write leaves it.
+    with (tmp_path / "cut" / "trials.jsonl").open("ab") as file:
+        file.write(b'{"number": 6, "bl')
+    with opened(tmp_path / "cut") as session:
+        assert len(session.rows) == 6
+        assert run(session, person).table == whole.table
+        without_times = [what_happened(row) for row in session.rows]
+    assert [trial.number for trial in person.presented] == list(range(6, 16))
+    assert without_times == [what_happened(row) for row in rows]
+    assert [row["run"] for row in session.rows] == [0] * 6 + [1] * 10
+    assert sum(row["is_practice"] for row in rows) == 2
+    assert [row["level"] for row in rows if row["is_catch"]] == [0.0, 0.0]
+
+
+def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) -> None:
+    opened(tmp_path).close()
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    assert manifest["played"] == {"bars.toml": "436f6de28726501973ddd9fb91fa92c6ec6225e5c28d8fbdb698dc1720e43714"}
+    assert str(tmp_path) not in (tmp_path / "manifest.json").read_text()
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"participant": "p02"}, "participant is 'p01' there, and 'p02' here"),
+        ({"seed": 8}, "seed is 7 there"),
+        ({"played": {"bars.toml": "version = 1\n"}}, "played is"),
+        ({"participant": "Jane Doe"}, "give a code"),
+        ({"participant": 7}, "give a code"),
+        ({"task": "2afc"}, "a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found '2afc'"),
+    ]
+    for changed, said in wrong:
+        with pytest.raises(ExperimentError, match=said):
+            opened(tmp_path, **changed)
+    with pytest.raises(ParameterError, match="seed is a whole number from 0"):
+        opened(tmp_path, seed="7")
+    with pytest.raises(ExperimentError, match=r"cannot be made \(File exists\): give another one"):
+        opened(tmp_path / "manifest.json")
+
+
+def test_a_session_has_one_writer(tmp_path: Path) -> None:
+    with opened(tmp_path), pytest.raises(ExperimentError, match="another process writes"):
+        opened(tmp_path)
+    session = opened(tmp_path)
+    session.close()
+    with pytest.raises(ExperimentError, match="this session is closed: open it again"):
+        session.play(plates(0.1), stroke=STROKE)
+
+
+def test_another_method_is_not_gone_on_with(tmp_path: Path) -> None:
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1, 0.2], 2), lambda trial: None, lambda trial: 0)
+    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="trial 0 had level"):
+        session.run(ConstantStimuli([0.3, 0.4], 2), lambda trial: None, lambda trial: 0)
+
+
+def test_an_answer_that_is_none_is_refused(tmp_path: Path) -> None:
+    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="an answer is 0 or 1, and this one is 2"):
+        session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 2)
+    assert not (tmp_path / "trials.jsonl").exists()
+
+
+def test_breaks_come_between_trials_and_not_while_answers_are_read_again(tmp_path: Path) -> None:
+    breaks: list[int] = []
+    settings: dict[str, Any] = {"break_every": 2, "on_break": breaks.append}
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
+    assert breaks == [2, 4]
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
+    assert breaks == [2, 4, 4]
+
+
+STROKE = Stroke.straight((20, 40), (40, 40), speed_mm_s=100)
+
+
+def plates(level: float) -> Scene:
+    """A plate whose friction is higher by this part."""
+    return Scene.from_dict({"layer": [{"kind": "constant", "above": "zero", "friction_n": 0.28 * (1 + level)}]})
+
+
+def played(folder: Path, levels: list[float], **settings: Any) -> list[dict[str, Any]]:
+    """The rows of a session that plays two plates in each trial on the simulator."""
+    with opened(folder, played=None, **settings) as session:
+
+        def play(trial: Trial) -> None:
+            for number in range(2):
+                level = trial.level if number == trial.target else 0.0
+                session.play(plates(level), stroke=STROKE, ideal=True)
+
+        session.run(ConstantStimuli(levels, 2), play, lambda trial: trial.target)
+        return session.rows
+
+
+def test_every_play_is_recorded_and_a_trial_is_replayed_bit_for_bit(tmp_path: Path) -> None:
+    rows = played(tmp_path, [0.1, 0.2])
+    assert [len(row["plays"]) for row in rows] == [2] * 4
+    files = {play["recording"] for row in rows for play in row["plays"]}
+    assert len(files) == 3, "equal plays have one file: two levels and the standard"
+    with opened(tmp_path, played=None) as session:
+        assert session.replay(2) == 2
+        with pytest.raises(ExperimentError, match="trial 4 is not answered: there are 4"):
+            session.replay(4)
+        with pytest.raises(ParameterError, match="number is a whole number from 0"):
+            session.replay(-1)
+    recording = tmp_path / rows[0]["plays"][0]["recording"]
+    command = subprocess.run([os.environ["FRIXEL"], "replay", recording], capture_output=True, text=True, check=True)
+    assert command.stdout.endswith("the same bits, 200 rows of 12 columns\n")
+
+
+def test_the_manifest_has_the_hash_of_all_that_was_played_by_itself(tmp_path: Path) -> None:
+    rows = played(tmp_path, [0.1, 0.2])
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    plays = {play["recording"]: {"scene": play["scene"]} for row in rows for play in row["plays"]}
+    assert manifest["recordings"] == plays
+    for name in manifest["recordings"]:
+        content = (tmp_path / name).read_bytes()
+        assert Path(name).stem == hashlib.sha256(content).hexdigest()
+    texts = {hashlib.sha256(plates(level).text.encode()).hexdigest() for level in (0.0, 0.1, 0.2)}
+    assert {play["scene"] for play in plays.values()} == texts
+    metadata = parquet.read_metadata(tmp_path / next(iter(plays))).metadata
+    assert json.loads(metadata[b"frixel.recording"])["participant"] == "p01"
+
+
+def test_a_recording_that_was_changed_is_not_replayed(tmp_path: Path) -> None:
+    rows = played(tmp_path, [0.1])
+    path = tmp_path / rows[0]["plays"][0]["recording"]
+    path.write_bytes(path.read_bytes() + b" ")
+    with opened(tmp_path, played=None) as session, pytest.raises(ExperimentError, match="was changed: its SHA-256 is"):
+        session.replay(0)
+    path.unlink()
+    with opened(tmp_path, played=None) as session, pytest.raises(ExperimentError, match="take it from a copy"):
+        session.replay(0)
+
+
+def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
+    with opened(tmp_path) as session, Device.open("sim") as device:
+        with pytest.raises(ParameterError, match=r"a board, of Device\.open, found 'sim'"):
+            session.play(plates(0.1), on="sim", seconds=1)  # type: ignore[arg-type]
+        with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
+            session.play(plates(0.1), on=device)
+        with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
+            session.play(plates(0.1), on=device, seconds=0.1, seed=3)
+        session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 0)
+        with pytest.raises(ExperimentError, match="played nothing through its session"):
+            session.replay(0)
+
+
+def test_a_session_plays_on_a_board_and_has_its_clock(tmp_path: Path) -> None:
+    with opened(tmp_path) as session, Device.open("sim") as device:
+
+        def play(trial: Trial) -> None:
+            recording = session.play(plates(trial.level), on=device, seconds=0.5)
+            assert recording["asked_n"].max() > 0.01
+            assert np.isnan(recording["felt_n"]).all()
+
+        session.run(ConstantStimuli([0.1], 2), play, lambda trial: 0)
+        first, second = (row["plays"][0] for row in session.rows)
+        assert second["board_s"] - first["board_s"] >= 0.49
+        table = parquet.read_table(tmp_path / first["recording"])
+        assert table["t_s"][0].as_py() == 0
+        assert table["t_s"][-1].as_py() == pytest.approx(0.49, abs=0.02)
+        assert json.loads(parquet.read_metadata(tmp_path / first["recording"]).metadata[b"frixel.recording"])["tick_hz"]
+        with pytest.raises(PlayError, match="cannot be played again: it is of a virtual board"):
+            session.replay(0)
+
+
+def test_markers_come_at_their_moments(tmp_path: Path) -> None:
+    markers: list[tuple[str, int]] = []
+    rows = played(tmp_path, [0.1], on_marker=lambda marker, trial: markers.append((marker, trial.number)))
+    names = ["began", "play", "play", "presented", "answered"]
+    assert markers == [(name, number) for number in range(2) for name in names]
+    for row in rows:
+        first, second = row["plays"]
+        times = [row["played_s"], first["began_s"], first["ended_s"], second["began_s"], second["ended_s"]]
+        times += [row["presented_s"], row["answered_s"]]
+        assert times == sorted(times)

@@ -1,0 +1,250 @@
+//! Reads a scenario's file.
+
+use frixel_hil_sim::{NoiseConfig, RigFault, WorldFault};
+use frixel_wire::dac_code::DacCode;
+use frixel_wire::fault::{Fault, State};
+
+use super::tables::{command, expect, fault, file, stroke, when};
+use super::{
+    Action, At, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke,
+};
+use crate::fields::Fields;
+use crate::grammar::FieldSpec;
+use crate::log::Log;
+use crate::mistake::{FieldMistake, Mistake};
+use crate::nearest::Nearest;
+
+pub(super) const STATES: [(&str, State); 4] =
+    [("disarmed", State::Disarmed), ("armed", State::Armed), ("active", State::Active), ("faulted", State::Faulted)];
+pub(super) const FAULTS: [(&str, Fault); 10] = [
+    ("amplifier", Fault::Amplifier),
+    ("monitor", Fault::Monitor),
+    ("deadline", Fault::Deadline),
+    ("panic", Fault::Panic),
+    ("hard-fault", Fault::HardFault),
+    ("stack-overflow", Fault::StackOverflow),
+    ("watchdog", Fault::Watchdog),
+    ("arm-switch", Fault::ArmSwitch),
+    ("dac", Fault::Dac),
+    ("contact-welded", Fault::ContactWelded),
+];
+
+pub(super) fn scenario(mut fields: Fields, name: &str, log: &mut Log) -> Option<Scenario> {
+    let _ = fields.number(log, &file::SCENARIO);
+    let about = fields.free_text(log, &file::ABOUT).unwrap_or_default();
+    let scene = fields.text(log, &file::SCENE);
+    let seconds = fields.number(log, &file::SECONDS);
+    let seed = fields.number_or_default(log, &file::SEED) as u64;
+    let worlds = [("ideal", false), ("realistic", true)];
+    let is_realistic = fields.choice(log, &file::WORLD, &worlds).unwrap_or_default();
+    let stroke = fields.table(log, &file::STROKE).map(|table| straight_stroke(table, log));
+    let commands = fields.tables(log, &file::COMMAND).unwrap_or_default();
+    let faults = fields.tables(log, &file::FAULT).unwrap_or_default();
+    let expectations = fields.tables(log, &file::EXPECT).unwrap_or_default();
+    fields.close(log);
+    let commands: Vec<_> = commands.into_iter().filter_map(|table| scenario_command(table, log)).collect();
+    let faults: Vec<_> = faults.into_iter().filter_map(|table| scenario_fault(table, log)).collect();
+    let names = commands.iter().map(|command| &command.name).chain(faults.iter().map(|fault| &fault.name));
+    let names: Vec<&str> = names.flatten().map(String::as_str).collect();
+    let expectations = expectations.into_iter().flat_map(|table| expected(table, &names, log)).collect();
+    let stroke = match stroke {
+        Some(stroke) => Some(stroke?),
+        None => None,
+    };
+    let (file, scene, seconds) = (name.to_owned(), scene?, seconds?);
+    Some(Scenario { file, about, scene, seconds, seed, is_realistic, stroke, commands, faults, expectations })
+}
+
+fn straight_stroke(mut fields: Fields, log: &mut Log) -> Option<StraightStroke> {
+    let from_mm = place(&mut fields, log, &stroke::FROM_MM);
+    let to_mm = place(&mut fields, log, &stroke::TO_MM);
+    let speed_mm_per_s = fields.number_or_default(log, &stroke::SPEED_MM_PER_S);
+    fields.close(log);
+    Some(StraightStroke { from_mm: from_mm?, to_mm: to_mm?, speed_mm_per_s })
+}
+
+fn place(fields: &mut Fields, log: &mut Log, field: &FieldSpec) -> Option<[f64; 2]> {
+    let place = fields.place(field.name);
+    let numbers = fields.numbers(log, field)?;
+    let found = numbers.len();
+    let pair = numbers.try_into().ok();
+    if pair.is_none() {
+        log.add(place, FieldMistake::Count { field: field.name, found, min: 2, max: 2 });
+    }
+    pair
+}
+
+fn line_of(fields: &Fields, log: &Log) -> usize {
+    log.source().line_and_column(fields.table_place()).0
+}
+
+/// The time of a command or a fault.
+fn at(fields: &mut Fields, log: &mut Log) -> Option<At> {
+    let [ms, tick] = fields.in_either_unit(log, &when::AT_MS, &when::AT_TICK);
+    let at_ms = fields.number(log, &ms).map(At::Ms);
+    let at_tick = fields.number(log, &tick).map(|tick| At::Tick(tick as u64));
+    at_ms.or(at_tick)
+}
+
+/// What a command does, before its fields are read.
+#[derive(Clone, Copy)]
+pub(super) enum Verb {
+    Plain(fn() -> Action),
+    Replace,
+    Trigger,
+    SetLayer,
+    Hang,
+}
+
+pub(super) const VERBS: [(&str, Verb); 11] = [
+    ("connect", Verb::Plain(|| Action::Connect)),
+    ("play", Verb::Plain(|| Action::Play)),
+    ("upload", Verb::Plain(|| Action::Upload)),
+    ("stop", Verb::Plain(|| Action::Stop)),
+    ("clear-fault", Verb::Plain(|| Action::ClearFault)),
+    ("replace", Verb::Replace),
+    ("trigger", Verb::Trigger),
+    ("layer", Verb::SetLayer),
+    ("hang", Verb::Hang),
+    ("die", Verb::Plain(|| Action::Die)),
+    ("other-client", Verb::Plain(|| Action::OtherClient)),
+];
+
+fn scenario_command(mut fields: Fields, log: &mut Log) -> Option<ScenarioCommand> {
+    let line = line_of(&fields, log);
+    let at = at(&mut fields, log);
+    let name = fields.text(log, &when::NAME);
+    let action = match fields.choice_or_nearest(log, &command::DO, &VERBS) {
+        Some(Verb::Plain(action)) => Some(action()),
+        Some(Verb::Replace) => fields.text(log, &command::SCENE).map(|scene| Action::Replace { scene }),
+        Some(Verb::Trigger) => {
+            let duration_s = fields.number(log, &when::FOR_MS).map(|ms| 1e-3 * ms);
+            fields.text(log, &command::LAYER).map(|layer| Action::Trigger { layer, duration_s })
+        }
+        Some(Verb::SetLayer) => {
+            let gain = fields.number(log, &command::GAIN);
+            fields.text(log, &command::LAYER).map(|layer| Action::SetLayer { layer, gain })
+        }
+        Some(Verb::Hang) => {
+            fields.require(&when::FOR_MS);
+            fields.number(log, &when::FOR_MS).map(|ms| Action::Hang { ms })
+        }
+        None => {
+            fields.give_up_without(log, command::DO.name);
+            return None;
+        }
+    };
+    fields.close(log);
+    Some(ScenarioCommand { at: at?, name, line, action: action? })
+}
+
+/// What goes wrong, before its fields are read.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    Cut,
+    Noise(fn(f64) -> NoiseConfig),
+    Late,
+    World(WorldFault),
+    Gain(fn(f64) -> WorldFault),
+    SlowOff,
+    DacStuck,
+    TouchJumps,
+    Rig(RigFault),
+    WrapSoon,
+}
+
+pub(super) const KINDS: [(&str, Kind); 20] = [
+    ("cable-cut", Kind::Cut),
+    ("bytes-lost", Kind::Noise(|share| NoiseConfig { lost_share: share, ..NO_NOISE })),
+    ("bytes-doubled", Kind::Noise(|share| NoiseConfig { doubled_share: share, ..NO_NOISE })),
+    ("bits-flipped", Kind::Noise(|share| NoiseConfig { bit_error_rate: share, ..NO_NOISE })),
+    ("bytes-late", Kind::Late),
+    ("touch-silent", Kind::World(WorldFault::TouchSilent)),
+    ("touch-stuck", Kind::World(WorldFault::TouchStuck)),
+    ("touch-jumps", Kind::TouchJumps),
+    ("finger-lifted", Kind::World(WorldFault::FingerLifted)),
+    ("dac-stuck", Kind::DacStuck),
+    ("amplifier-not-ready", Kind::World(WorldFault::AmplifierNotReady)),
+    ("amplifier-stuck-on", Kind::World(WorldFault::AmplifierStuckOn)),
+    ("amplifier-sags", Kind::Gain(WorldFault::AmplifierGain)),
+    ("amplifier-slow-off", Kind::SlowOff),
+    ("monitor-wrong", Kind::Gain(WorldFault::MonitorGain)),
+    ("switch-open", Kind::World(WorldFault::SwitchOpen)),
+    ("switch-welded", Kind::World(WorldFault::SwitchWelded)),
+    ("reset", Kind::Rig(RigFault::Reset)),
+    ("late-tick", Kind::Rig(RigFault::LateTick)),
+    ("tick-count-wraps", Kind::WrapSoon),
+];
+const NO_NOISE: NoiseConfig = NoiseConfig { bit_error_rate: 0.0, lost_share: 0.0, doubled_share: 0.0 };
+
+fn scenario_fault(mut fields: Fields, log: &mut Log) -> Option<ScenarioFault> {
+    let line = line_of(&fields, log);
+    let at = at(&mut fields, log);
+    let name = fields.text(log, &when::NAME);
+    let Some(kind) = fields.choice_or_nearest(log, &fault::CAUSE, &KINDS) else {
+        fields.give_up_without(log, fault::CAUSE.name);
+        return None;
+    };
+    let cause = cause(kind, &mut fields, log);
+    let happens_once = matches!(kind, Kind::Rig(_) | Kind::WrapSoon);
+    let for_ms = if happens_once { None } else { fields.number(log, &when::FOR_MS) };
+    fields.close(log);
+    Some(ScenarioFault { at: at?, for_ms, name, line, cause: cause? })
+}
+
+fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
+    let world = |fault| Cause::Rig(RigFault::World(fault));
+    let mut number = |field: &FieldSpec| fields.number(log, field);
+    let damage = match kind {
+        Kind::World(fault) => return Some(world(fault)),
+        Kind::Gain(fault) => return number(&fault::GAIN).map(|gain| world(fault(gain))),
+        Kind::SlowOff => {
+            return number(&fault::BY_MS).map(|ms| world(WorldFault::AmplifierSlowOff { delay_s: 1e-3 * ms }));
+        }
+        Kind::DacStuck => {
+            return number(&fault::CODE).map(|code| world(WorldFault::DacStuck(DacCode::from_bits(code as i16))));
+        }
+        Kind::TouchJumps => return number(&fault::BY_MM).map(|mm| world(WorldFault::TouchJumps { by_m: 1e-3 * mm })),
+        Kind::Rig(fault) => return Some(Cause::Rig(fault)),
+        Kind::WrapSoon => {
+            return number(&fault::TICKS_LEFT).map(|ticks| Cause::Rig(RigFault::WrapSoon { ticks: ticks as u32 }));
+        }
+        Kind::Cut => Some(LineDamage::Cut),
+        Kind::Noise(noise) => number(&fault::SHARE_OF).map(|share| LineDamage::Noise(noise(share))),
+        Kind::Late => number(&fault::BY_MS).map(|ms| LineDamage::Late { ms }),
+    };
+    let lines = [("both", [true, true]), ("to-board", [true, false]), ("to-host", [false, true])];
+    let directions = fields.choice(log, &fault::LINE, &lines).unwrap_or([true, true]);
+    Some(Cause::Line { directions, damage: damage? })
+}
+
+/// The expectations of one table, which share their span of time.
+fn expected(mut fields: Fields, names: &[&str], log: &mut Log) -> Vec<Expectation> {
+    const OUTPUTS: [(&str, fn() -> Seen); 3] =
+        [("zero", || Seen::OutputZero), ("off", || Seen::OutputOff), ("driven", || Seen::OutputDriven)];
+    let line = line_of(&fields, log);
+    let after_place = fields.place(expect::AFTER.name);
+    let after = fields.text(log, &expect::AFTER);
+    if let Some(found) = after.clone().filter(|after| !names.contains(&after.as_str())) {
+        let nearest = Nearest::new(&found, names.iter().copied());
+        log.add(after_place, FieldMistake::UnknownChoice { field: expect::AFTER.name, found, nearest });
+    }
+    let from_ms = fields.number_or_default(log, &expect::FROM_MS);
+    let to_ms = fields.number(log, &expect::TO_MS);
+    let output = fields.choice(log, &expect::OUTPUT, &OUTPUTS);
+    let seen = [
+        output.map(|seen| seen()),
+        fields.number(log, &expect::ELECTRODE_BELOW_V).map(Seen::ElectrodeBelow),
+        fields.interval(log, &expect::FRICTION_N).map(Seen::Friction),
+        fields.choice(log, &expect::STATE, &STATES).map(Seen::State),
+        fields.choice(log, &expect::FAULT, &FAULTS).map(Seen::Fault),
+        fields.text(log, &expect::ERROR).map(Seen::Error),
+    ];
+    let (place, before) = (fields.table_place(), log.mistakes());
+    fields.close(log);
+    let seen: Vec<Seen> = seen.into_iter().flatten().collect();
+    if seen.is_empty() && log.mistakes() == before {
+        log.add(place, Mistake::NothingExpected);
+    }
+    seen.into_iter().map(|seen| Expectation { line, after: after.clone(), from_ms, to_ms, seen }).collect()
+}

@@ -1,0 +1,153 @@
+//! The tables of a scenario file. The parser checks the fields, and `docs/scenarios.md` shows them.
+
+use crate::grammar::Absence::{Means, Mistake, Number};
+use crate::grammar::{FieldSpec, Holds, Range};
+use crate::tables::{number, word};
+
+/// Longest scenario, and longest time in one: an hour.
+const SECONDS_MAX: f64 = 3_600.0;
+const TIME_MS: Range = Range::new(0.0, 1e3 * SECONDS_MAX, " ms");
+const TICKS: Range = Range::new(0.0, 1e9, " ticks");
+const SHARE: Range = Range::new(0.0, 1.0, "");
+
+const fn text(name: &'static str, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Text, Means(""), meaning)
+}
+
+const fn whole(name: &'static str, range: Range, meaning: &'static str) -> FieldSpec {
+    FieldSpec::new(name, Holds::Whole(range), Mistake, meaning)
+}
+
+/// The file itself.
+pub(super) mod file {
+    use super::*;
+
+    pub(crate) const SCENARIO: FieldSpec =
+        number("scenario", Range::new(1.0, 1.0, ""), Mistake, "version of the file format");
+    pub(crate) const ABOUT: FieldSpec = text("about", "what the scenario shows, for its readers");
+    pub(crate) const SCENE: FieldSpec =
+        FieldSpec::new("scene", Holds::Text, Mistake, "the scene's file, relative to this file's folder");
+    pub(crate) const SECONDS: FieldSpec =
+        number("seconds", Range::new(0.001, SECONDS_MAX, " s"), Mistake, "how long it runs");
+    pub(crate) const SEED: FieldSpec =
+        FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 1e15, "")), Number(1.0), "seed of all that is random");
+    pub(crate) const WORLD: FieldSpec = word(
+        "world",
+        Means("`\"ideal\"`"),
+        "`\"realistic\"` for every effect of amplifier, finger and touch source that `frixel play` has",
+    );
+    pub(crate) const STROKE: FieldSpec = FieldSpec::new(
+        "stroke",
+        Holds::Table,
+        Means("a sweep over the screen in 3 s, again and again"),
+        "where the finger goes from the first `play` on",
+    );
+    pub(crate) const COMMAND: FieldSpec =
+        FieldSpec::new("command", Holds::Tables, Means("none"), "what the host does, in the order of time");
+    pub(crate) const FAULT: FieldSpec = FieldSpec::new("fault", Holds::Tables, Means("none"), "what goes wrong");
+    pub(crate) const EXPECT: FieldSpec = FieldSpec::new("expect", Holds::Tables, Means("none"), "what has to be seen");
+    #[cfg(test)]
+    pub(crate) const ALL: &[FieldSpec] =
+        &[SCENARIO, ABOUT, SCENE, SECONDS, SEED, WORLD, STROKE, COMMAND, FAULT, EXPECT];
+}
+
+/// `[stroke]`.
+pub(super) mod stroke {
+    use super::*;
+
+    const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
+    pub(crate) const FROM_MM: FieldSpec =
+        FieldSpec::new("from_mm", Holds::Numbers(PLACE_MM), Mistake, "where it begins, `[x, y]`");
+    pub(crate) const TO_MM: FieldSpec =
+        FieldSpec::new("to_mm", Holds::Numbers(PLACE_MM), Mistake, "where it ends; 0.2 s later it begins again");
+    pub(crate) const SPEED_MM_PER_S: FieldSpec =
+        number("speed_mm_per_s", Range::new(0.1, 10_000.0, " mm/s"), Number(100.0), "how fast the finger goes");
+    #[cfg(test)]
+    pub(crate) const ALL: &[FieldSpec] = &[FROM_MM, TO_MM, SPEED_MM_PER_S];
+}
+
+/// What commands, faults and expectations share.
+pub(super) mod when {
+    use super::*;
+
+    pub(crate) const AT_MS: FieldSpec = number("at_ms", TIME_MS, Mistake, "when, in ms since the start");
+    pub(crate) const AT_TICK: FieldSpec =
+        number("at_tick", TICKS, Mistake, "when, in ticks of the board since the start");
+    pub(crate) const NAME: FieldSpec = text("name", "a name, for `after` of an expectation");
+    pub(crate) const FOR_MS: FieldSpec = number("for_ms", TIME_MS, Means("until the end"), "how long");
+    #[cfg(test)]
+    pub(crate) const ALL: &[FieldSpec] = &[AT_MS, AT_TICK, NAME, FOR_MS];
+}
+
+/// `[[command]]`.
+pub(super) mod command {
+    use super::*;
+
+    pub(crate) const DO: FieldSpec = word("do", Mistake, "what the host does");
+    pub(crate) const LAYER: FieldSpec =
+        FieldSpec::new("layer", Holds::Text, Mistake, "the layer's name, or its number as a text");
+    pub(crate) const GAIN: FieldSpec =
+        number("gain", Range::new(-100.0, 100.0, ""), Means("as it is"), "the layer's gain");
+    pub(crate) const SCENE: FieldSpec =
+        FieldSpec::new("scene", Holds::Text, Mistake, "the file of the scene that comes");
+    #[cfg(test)]
+    pub(crate) const ALL: &[FieldSpec] = &[DO, LAYER, GAIN, SCENE];
+}
+
+/// `[[fault]]`.
+pub(super) mod fault {
+    use super::*;
+
+    pub(crate) const CAUSE: FieldSpec = word("cause", Mistake, "what goes wrong");
+    pub(crate) const LINE: FieldSpec = word("line", Means("`\"both\"`"), "`\"to-board\"`, `\"to-host\"` or `\"both\"`");
+    pub(crate) const SHARE_OF: FieldSpec = number("share", SHARE, Mistake, "part of the bytes, or of the bits");
+    pub(crate) const BY_MS: FieldSpec = number("by_ms", Range::new(0.0, 10_000.0, " ms"), Mistake, "how late");
+    pub(crate) const BY_MM: FieldSpec =
+        number("by_mm", Range::new(-2_000.0, 2_000.0, " mm"), Mistake, "how far every second report is off in x");
+    pub(crate) const GAIN: FieldSpec =
+        number("gain", Range::new(-10.0, 10.0, ""), Mistake, "what is left of the voltage");
+    pub(crate) const CODE: FieldSpec =
+        whole("code", Range::new(-32_768.0, 32_767.0, ""), "the code that the DAC holds; 32767 is full scale");
+    pub(crate) const TICKS_LEFT: FieldSpec =
+        whole("ticks", Range::new(0.0, 4_294_967_295.0, ""), "ticks before the wrap from which the board counts on");
+    #[cfg(test)]
+    pub(crate) const ALL: &[FieldSpec] = &[CAUSE, LINE, SHARE_OF, BY_MS, BY_MM, GAIN, CODE, TICKS_LEFT];
+}
+
+/// `[[expect]]`.
+pub(super) mod expect {
+    use super::*;
+
+    pub(crate) const AFTER: FieldSpec =
+        text("after", "name of a command or fault: times count from its end or its start");
+    pub(crate) const FROM_MS: FieldSpec =
+        number("from_ms", TIME_MS, Number(0.0), "first time at which it has to be so");
+    pub(crate) const TO_MS: FieldSpec = number("to_ms", TIME_MS, Means("the end"), "last time");
+    pub(crate) const OUTPUT: FieldSpec = word(
+        "output",
+        Means(""),
+        "`\"zero\"`: DAC code zero in every tick; `\"off\"`: and the amplifier disabled; `\"driven\"`: a code other than \
+         zero at least once in every 10 ms",
+    );
+    pub(crate) const ELECTRODE_BELOW_V: FieldSpec = number(
+        "electrode_below_v",
+        Range::new(0.0, 10_000.0, " V"),
+        Means(""),
+        "the electrode's voltage either way, in every tick",
+    );
+    pub(crate) const FRICTION_N: FieldSpec = FieldSpec::new(
+        "friction_n",
+        Holds::Interval(Range::new(-100.0, 100.0, " N")),
+        Means(""),
+        "`[least, largest]`: the mean of the friction felt while the finger is down",
+    );
+    pub(crate) const STATE: FieldSpec =
+        word("state", Means(""), "what the board has said of its state, by the last time");
+    pub(crate) const FAULT: FieldSpec =
+        word("fault", Means(""), "what the board has said of its fault, by the last time");
+    pub(crate) const ERROR: FieldSpec =
+        text("error", "words of a sentence with which a command or the connection fails in that time");
+    #[cfg(test)]
+    pub(crate) const ALL: &[FieldSpec] =
+        &[AFTER, FROM_MS, TO_MS, OUTPUT, ELECTRODE_BELOW_V, FRICTION_N, STATE, FAULT, ERROR];
+}

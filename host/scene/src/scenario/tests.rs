@@ -1,0 +1,75 @@
+use frixel_hil_sim::{NoiseConfig, RigFault, WorldFault};
+
+use super::*;
+
+const HEAD: &str = "scenario = 1\nscene = \"plate.toml\"\nseconds = 2\n";
+
+fn parsed(tables: &str) -> Result<Scenario, String> {
+    Scenario::parse(&format!("{HEAD}{tables}"), "test.toml").map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_scenario_is_read_in_its_units() {
+    let scenario = parsed(
+        "seed = 7\nworld = \"realistic\"\nstroke = { from_mm = [10, 40], to_mm = [110, 40], speed_mm_per_s = 50 }\n\
+         [[command]]\nat_ms = 0\ndo = \"play\"\n[[command]]\nat_tick = 400\ndo = \"trigger\"\nlayer = \"OK\"\nfor_ms = 50\n\
+         [[fault]]\nname = \"noise\"\nat_ms = 300\nfor_ms = 20\ncause = \"bits-flipped\"\nshare = 1e-3\nline = \"to-board\"\n\
+         [[fault]]\nat_ms = 400\ncause = \"reset\"\n[[fault]]\nat_ms = 500\ncause = \"amplifier-sags\"\ngain = 0.5\n\
+         [[expect]]\nafter = \"noise\"\nfrom_ms = 1\nto_ms = 9\noutput = \"driven\"\nstate = \"active\"\n",
+    )
+    .unwrap();
+    assert_eq!((scenario.seed, scenario.is_realistic, scenario.resets()), (7, true, 1));
+    assert_eq!(scenario.stroke.map(|stroke| stroke.speed_mm_per_s), Some(50.0));
+    let trigger = Action::Trigger { layer: "OK".into(), duration_s: Some(0.05) };
+    assert_eq!(scenario.commands[1].action, trigger);
+    assert_eq!(scenario.commands[1].at.tick(40_000), 400);
+    assert_eq!(scenario.faults[0].at.tick(40_000), 12_000);
+    let damage = LineDamage::Noise(NoiseConfig { bit_error_rate: 1e-3, ..NoiseConfig::default() });
+    assert_eq!(scenario.faults[0].cause, Cause::Line { directions: [true, false], damage });
+    assert_eq!(scenario.faults[2].cause, Cause::Rig(RigFault::World(WorldFault::AmplifierGain(0.5))));
+    let seen: Vec<&Seen> = scenario.expectations.iter().map(|expectation| &expectation.seen).collect();
+    assert_eq!(seen, [&Seen::OutputDriven, &Seen::State(State::Active)]);
+    assert_eq!((scenario.expectations[0].from_ms, scenario.expectations[0].to_ms), (1.0, Some(9.0)));
+}
+
+#[test]
+fn a_mistake_is_a_sentence_with_line_and_column() {
+    for (tables, expected) in [
+        (
+            "[[command]]\nat_ms = 0\ndo = \"pley\"\n",
+            "test.toml:6:6: `do = \"pley\"` is not known; did you mean `play`?",
+        ),
+        ("[[command]]\ndo = \"play\"\n", "test.toml:4:1: [[command]] has no `at_ms` or `at_tick`: add one of them"),
+        ("[[command]]\nat_ms = 0\n", "test.toml:4:1: [[command]] has no `do`: add it"),
+        ("[[command]]\nat_ms = 0\ndo = \"hang\"\n", "test.toml:4:1: [[command]] has no `for_ms`: add it"),
+        (
+            "[[fault]]\nat_ms = -1\ncause = \"reset\"\n",
+            "test.toml:5:9: `at_ms = -1` is out of range: expected 0 to 3600000 ms",
+        ),
+        ("[[fault]]\nat_ms = 1\ncause = \"reset\"\nfor_ms = 4\n", "test.toml:7:1: unknown field `for_ms` in [[fault]]"),
+        ("[[fault]]\nat_ms = 1\ncause = \"bytes-lost\"\n", "test.toml:4:1: [[fault]] has no `share`: add it"),
+        ("[[expect]]\nafter = \"cut\"\noutput = \"zero\"\n", "test.toml:5:9: `after = \"cut\"` is not known"),
+        ("[[expect]]\nfrom_ms = 4\n", "test.toml:4:1: this [[expect]] expects nothing: add `output`"),
+        ("stroke = { from_mm = [1], to_mm = [1, 2] }\n", "test.toml:4:22: `from_mm`"),
+        ("colour = 1\n", "test.toml:4:1: unknown field `colour` in this scenario"),
+    ] {
+        let error = parsed(tables).unwrap_err();
+        assert!(error.starts_with(expected), "{tables}{error}");
+    }
+}
+
+/// Every word that a scenario may have stands in its documentation.
+#[test]
+#[allow(clippy::disallowed_methods, reason = "the test reads the documentation")]
+fn the_documentation_has_every_word() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios.md");
+    let docs = std::fs::read_to_string(file).unwrap();
+    let fields = [tables::file::ALL, tables::stroke::ALL, tables::when::ALL, tables::command::ALL, tables::fault::ALL];
+    let fields = fields.concat().into_iter().chain(tables::expect::ALL.iter().copied()).map(|field| field.name);
+    for word in fields.chain(read::VERBS.map(|(word, _)| word)).chain(read::KINDS.map(|(word, _)| word)) {
+        assert!(docs.contains(&format!("`{word}`")) || docs.contains(&format!("`[[{word}]]`")), "{word}");
+    }
+    for word in read::STATES.map(|(word, _)| word).into_iter().chain(read::FAULTS.map(|(word, _)| word)) {
+        assert!(docs.contains(&format!("`\"{word}\"`")), "{word}");
+    }
+}
