@@ -126,17 +126,14 @@ pub fn stroke_and_world(
     config: WorldConfig,
 ) -> Result<(Stroke, WorldConfig), ScenarioError> {
     let world = if scenario.is_realistic { config.realistic() } else { config };
-    let stroke = match &scenario.stroke {
-        Some(stroke) => {
-            let [from, to] = [stroke.from_mm, stroke.to_mm].map(|[x, y]| Point { x_m: 1e-3 * x, y_m: 1e-3 * y });
-            Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s)
-        }
-        None => {
-            let header = programs.get(&scenario.scene).map(|program| program.header);
-            let [width_m, height_m] =
-                header.map_or([0.1; 2], |header| [header.screen_width_m, header.screen_height_m].map(f64::from));
-            Stroke::sweep(width_m, height_m, SWEEP_S)
-        }
+    let stroke = if let Some(stroke) = &scenario.stroke {
+        let [from, to] = [stroke.from_mm, stroke.to_mm].map(|[x, y]| Point { x_m: 1e-3 * x, y_m: 1e-3 * y });
+        Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s)
+    } else {
+        let header = programs.get(&scenario.scene).map(|program| program.header);
+        let [width_m, height_m] =
+            header.map_or([0.1; 2], |header| [header.screen_width_m, header.screen_height_m].map(f64::from));
+        Stroke::sweep(width_m, height_m, SWEEP_S)
     };
     let looped = stroke.and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
     let stroke = looped.map_err(|source| ScenarioError::Stroke { file: scenario.file.clone(), source })?;

@@ -220,7 +220,8 @@ fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
 
 /// The expectations of one table, which share their span of time.
 fn expected(mut fields: Fields, names: &[&str], log: &mut Log) -> Vec<Expectation> {
-    const OUTPUTS: [(&str, fn() -> Seen); 3] =
+    type Output = (&'static str, fn() -> Seen);
+    const OUTPUTS: [Output; 3] =
         [("zero", || Seen::OutputZero), ("off", || Seen::OutputOff), ("driven", || Seen::OutputDriven)];
     let line = line_of(&fields, log);
     let after_place = fields.place(expect::AFTER.name);
