@@ -20,7 +20,7 @@ use leakage::Leakage;
 use load::LoadWander;
 use noise::FrictionNoise;
 use sliding::Sliding;
-pub use sliding::SlipStep;
+pub use sliding::{SlipStep, one_minus_exp};
 
 /// The least voltage at which electric friction under two loads is compared, in V rms.
 const COMPARED_V_RMS: f64 = 1.0;

@@ -42,7 +42,7 @@ mod world;
 pub use amplifier::{AmplifierConfig, Decay};
 pub use board_rig::{BoardRig, RigError, RigFault, RigTick};
 pub use error::{OutOfRange, WorldError};
-pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger};
+pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger, one_minus_exp};
 pub use frixel_control::{Board, Drive};
 pub use frixel_session::TableRows;
 pub use in_process::{InProcessError, InProcessRig};

@@ -9,6 +9,8 @@
 //! | `frixel-studio.html` | the page |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
 //! | `SHA256SUMS` | for `sha256sum --check` |
+//!
+//! No file says where it was built: [`machine_paths`] takes care of that, and looks.
 
 use std::fmt::Write;
 use std::fs;
@@ -20,6 +22,7 @@ use sha2::{Digest, Sha256};
 use crate::check::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
 use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, root, run, target_folder};
 use crate::licences::{self, Program};
+use crate::machine_paths;
 use crate::needs::{self, Need};
 use crate::{pico_rig, studio};
 
@@ -72,8 +75,10 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     command(&folder)?;
     for (program, file, Program { folder: sources, target, features, .. }) in IMAGES {
         let target = target.unwrap_or_default();
-        let build = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
-        run(file, cargo_in(sources).args(build).args(["--target", target]).args(features))?;
+        let build_args = ["build", "--release", "--locked", "--target-dir", IMAGES_TARGET_FOLDER, "--bin", program];
+        let mut build = cargo_in(sources);
+        build.args(build_args).args(["--target", target]).args(features);
+        run(file, machine_paths::left_out(&mut build)?)?;
         let built = root().join(sources).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(program);
         copy(&built, &images.join(file))?;
     }
@@ -84,6 +89,9 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
     let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
     write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs, emulator)?)?;
+    for file in files_below(&folder)? {
+        machine_paths::check(&file)?;
+    }
     write(&folder.join("SHA256SUMS"), &checksums(&folder)?)?;
     println!("{}", folder.display());
     Ok(())
@@ -92,7 +100,7 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
 /// The command, without anything that a system has to bring.
 fn command(folder: &Path) -> Result<(), String> {
     let build = ["build", "--locked", "--profile", PROFILE, "--target", MUSL, "--package", "frixel", "--bin", "frixel"];
-    run("command", cargo_in(".").args(build))?;
+    run("command", machine_paths::left_out(cargo_in(".").args(build))?)?;
     copy(&target_folder().join(MUSL).join(PROFILE).join("frixel"), &folder.join("frixel"))
 }
 
@@ -110,9 +118,24 @@ fn wheel(folder: &Path) -> Result<(), String> {
     write(&licences, &licences::of_wheel(&MODULE)?)?;
     let mut build = Command::new(environment.join("bin/maturin"));
     build.current_dir(root().join(PYTHON)).env("CARGO_TARGET_DIR", target_folder().join("python"));
-    let built = run("wheel", build.args(["build", "--quiet", "--locked", "--profile", PROFILE, "--out"]).arg(folder));
+    build.args(["build", "--quiet", "--locked", "--profile", PROFILE, "--out"]).arg(folder);
+    let built = machine_paths::left_out(&mut build).and_then(|build| run("wheel", build));
     fs::remove_file(&licences).map_err(|error| format!("{}: {error}", licences.display()))?;
-    built
+    built?;
+    let mut files = files_below(folder)?.into_iter();
+    let wheel = files.find(|file| file.extension().is_some_and(|kind| kind == "whl")).ok_or("no wheel was built")?;
+    check_unpacked(&environment, &wheel)
+}
+
+/// Looks into a wheel, whose files are compressed.
+fn check_unpacked(environment: &Path, wheel: &Path) -> Result<(), String> {
+    let unpacked = environment.join("unpacked");
+    if unpacked.exists() {
+        fs::remove_dir_all(&unpacked).map_err(|error| format!("{}: {error}", unpacked.display()))?;
+    }
+    let mut python = Command::new(environment.join("bin/python"));
+    run("wheel's files", python.args(["-m", "zipfile", "--extract"]).arg(wheel).arg(&unpacked))?;
+    files_below(&unpacked)?.iter().try_for_each(|file| machine_paths::check(file))
 }
 
 /// The lines of `sha256sum` for every file of a folder.

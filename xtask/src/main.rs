@@ -11,6 +11,7 @@ mod fuzz;
 mod hardware;
 mod inputs;
 mod licences;
+mod machine_paths;
 mod needs;
 mod outcome;
 mod packages;

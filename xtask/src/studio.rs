@@ -16,7 +16,7 @@ use flate2::write::GzEncoder;
 use sha2::{Digest, Sha256};
 
 use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
-use crate::licences;
+use crate::{licences, machine_paths};
 
 /// Cargo profile of the module: small, fast, and without debug information.
 pub(crate) const PROFILE: &str = "studio";
@@ -77,8 +77,10 @@ fn about() -> String {
 /// Compiles the WebAssembly module and reads it.
 fn module() -> Result<Vec<u8>, String> {
     let build = ["build", "--locked", "--package", "frixel-studio", "--lib", "--profile", PROFILE, "--target", WASM];
-    run("studio for WebAssembly", cargo_in(".").args(build))?;
-    bytes(&target_folder().join(WASM).join(PROFILE).join("frixel_studio.wasm"))
+    run("studio for WebAssembly", machine_paths::left_out(cargo_in(".").args(build))?)?;
+    let module = target_folder().join(WASM).join(PROFILE).join("frixel_studio.wasm");
+    machine_paths::check(&module)?;
+    bytes(&module)
 }
 
 /// Adds the files of a folder with this ending, and of the folders below if `is_deep`.

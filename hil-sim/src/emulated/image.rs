@@ -137,13 +137,17 @@ fn no_compiler_or(action: &'static str, error: io::Error) -> EmulatorError {
     if error.kind() == ErrorKind::NotFound { EmulatorError::NoCompiler } else { EmulatorError::system(action)(error) }
 }
 
+/// A folder in the checkout of a build for development, whose tests run elsewhere. What is handed on names no folder of
+/// the machine that built it.
+const BUILT_IN: Option<&str> = if cfg!(debug_assertions) { Some(env!("CARGO_MANIFEST_DIR")) } else { None };
+
 /// A folder of the sources.
 pub(super) fn source_folder(name: &str) -> Result<PathBuf, EmulatorError> {
     let here = env::current_dir().unwrap_or_default();
     let checkouts: Vec<PathBuf> = if let Some(checkout) = env::var_os(CHECKOUT) {
         vec![checkout.into()]
     } else {
-        let built_in = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
+        let built_in = BUILT_IN.and_then(|folder| Path::new(folder).parent());
         here.ancestors().chain(built_in).map(Path::to_path_buf).collect()
     };
     let mut folders = checkouts.into_iter().map(|checkout| checkout.join(name));

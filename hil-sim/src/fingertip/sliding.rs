@@ -100,8 +100,8 @@ impl Sliding {
     }
 }
 
-/// `1 - e^-a` for `a >= 0`.
-fn one_minus_exp(a: f64) -> f64 {
+/// `1 - e^-a` for `a >= 0`: the part of a way that is behind after `a` relaxation lengths. Its error is at most 5e-12.
+pub fn one_minus_exp(a: f64) -> f64 {
     if a < PADE_UP_TO {
         // Padé approximant [4/4] of e^-a.
         let square = a * a;

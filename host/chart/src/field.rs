@@ -136,8 +136,16 @@ impl Raster {
         let fine = scale.px(1) as usize;
         let mut bytes = Vec::with_capacity(3 * self.pixels.len() * fine * fine);
         for row in self.pixels.chunks(self.width.max(1)) {
-            let line: Vec<u8> = row.iter().flat_map(|RGBColor(r, g, b)| [*r, *g, *b].repeat(fine)).collect();
-            bytes.extend(line.repeat(fine));
+            let begin = bytes.len();
+            for RGBColor(red, green, blue) in row {
+                for _ in 0..fine {
+                    bytes.extend([*red, *green, *blue]);
+                }
+            }
+            let line = begin..bytes.len();
+            for _ in 1..fine {
+                bytes.extend_from_within(line.clone());
+            }
         }
         let size = ((self.width * fine) as u32, (self.height * fine) as u32);
         let picture = BitMapElement::with_owned_buffer((0, 0), size, bytes);

@@ -1,9 +1,13 @@
 //! PNG files, drawn at a higher resolution and then reduced.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use plotters::prelude::{BitMapBackend, IntoDrawingArea};
-use plotters_backend::{BackendColor, BackendCoord, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontTransform};
+use plotters_backend::{
+    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontTransform,
+    rasterizer,
+};
 
 use super::style::{Scale, load_font};
 use super::{Area, DrawError, Drawn};
@@ -36,22 +40,22 @@ pub(super) fn encoded(
 fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
     let side = SCALE.px(1) as usize;
     let fine_row = 3 * width * side;
-    let rows = fine.chunks_exact(fine_row * side);
-    rows.flat_map(|rows| {
-        (0..width).map(move |column| {
-            let mut sums = [0_u32; 3];
-            for row in rows.chunks_exact(fine_row) {
-                for unit in row[3 * column * side..3 * (column + 1) * side].chunks_exact(3) {
+    let count = (side * side) as u32;
+    let mut pixels = Vec::with_capacity(fine.len() / (3 * side * side));
+    for rows in fine.chunks_exact(fine_row * side) {
+        let mut sums = vec![[0_u32; 3]; width];
+        for row in rows.chunks_exact(fine_row) {
+            for (sums, units) in sums.iter_mut().zip(row.chunks_exact(3 * side)) {
+                for unit in units.chunks_exact(3) {
                     for (sum, value) in sums.iter_mut().zip(unit) {
                         *sum += u32::from(*value);
                     }
                 }
             }
-            let count = (side * side) as u32;
-            few_greys(sums.map(|sum| ((sum + count / 2) / count) as u8))
-        })
-    })
-    .collect()
+        }
+        pixels.extend(sums.iter().map(|sums| few_greys(sums.map(|sum| ((sum + count / 2) / count) as u8))));
+    }
+    pixels
 }
 
 /// Rounds a grey to one of the [`GREYS`] levels.
@@ -87,24 +91,54 @@ fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, pn
 
 /// The palette in order of first appearance, and the palette index of each pixel; `None` for more than 256 colours.
 fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
-    let mut palette = Vec::new();
-    let mut numbers = HashMap::new();
+    let mut palette: Vec<[u8; 3]> = Vec::new();
+    let mut numbers: HashMap<u32, u8, BuildHasherDefault<ColourHasher>> = HashMap::default();
     let mut indices = Vec::with_capacity(pixels.len());
+    let mut last = None;
     for pixel in pixels {
-        let index = if let Some(index) = numbers.get(pixel) {
-            *index
-        } else {
-            let index = u8::try_from(palette.len()).ok()?;
-            palette.push(*pixel);
-            numbers.insert(*pixel, index);
-            index
+        let index = match last {
+            Some((before, index)) if before == pixel => index,
+            _ => {
+                let [red, green, blue] = *pixel;
+                *numbers.entry(u32::from_be_bytes([0, red, green, blue])).or_insert_with(|| {
+                    palette.push(*pixel);
+                    // Of the 257th colour, it is wrong, and the palette is given up.
+                    (palette.len() - 1) as u8
+                })
+            }
         };
+        if palette.len() > 256 {
+            return None;
+        }
+        last = Some((pixel, index));
         indices.push(index);
     }
     Some((palette, indices))
 }
 
-/// The bitmap backend of plotters, corrected to place letters at the same height as an SVG viewer.
+/// A hasher of colours, of which a picture has many and no attacker chooses any: by a multiplication.
+#[derive(Default)]
+struct ColourHasher(u64);
+
+impl Hasher for ColourHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u32(u32::from(*byte));
+        }
+    }
+
+    fn write_u32(&mut self, colour: u32) {
+        // The odd number nearest to 2^64 over the golden ratio: it spreads what differs in a few bits over all of them.
+        self.0 = (self.0 ^ u64::from(colour)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
+
+/// The bitmap backend of plotters, corrected to place letters at the same height as an SVG viewer. Its own rectangles
+/// lack the right and the lower edge.
 pub(super) struct Bitmap<'b>(BitMapBackend<'b>);
 
 impl<'b> DrawingBackend for Bitmap<'b> {
@@ -128,6 +162,19 @@ impl<'b> DrawingBackend for Bitmap<'b> {
         colour: BackendColor,
     ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
         self.0.draw_pixel(place, colour)
+    }
+
+    /// Draws a horizontal line without a pixel at a time: backgrounds and rectangles are made of them.
+    fn draw_line<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
+        if from.1 == to.1 && style.stroke_width() == 1 && style.color().alpha >= 1.0 {
+            return self.0.draw_line((from.0.min(to.0), from.1), (from.0.max(to.0), to.1), style);
+        }
+        rasterizer::draw_line(self, from, to, style)
     }
 
     fn draw_text<S: BackendTextStyle>(

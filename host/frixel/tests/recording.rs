@@ -113,18 +113,33 @@ fn a_recording_has_the_rows_of_felt_csv_and_what_made_them() {
     assert!(!bytes.contains(&*folder.path().to_string_lossy()) && !bytes.contains("stroke.csv"));
 }
 
+/// Runs a line with something on its standard input.
+fn fed(folder: &Path, line: &str, input: &[u8]) {
+    let mut command = frixel();
+    command.args(line.split(' ')).current_dir(folder);
+    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut process = command.spawn().unwrap();
+    // A play that ends before its input closes the pipe.
+    let _ = process.stdin.take().unwrap().write_all(input);
+    let ended = process.wait_with_output().unwrap();
+    assert!(ended.status.success(), "{line}: {}", String::from_utf8_lossy(&ended.stderr));
+}
+
+/// Asserts that the recording `a.parquet` of a folder is played again from this file alone.
+fn assert_played_again(folder: &Path, what: &str) {
+    let elsewhere = TempDir::new().unwrap();
+    fs::copy(folder.join("a.parquet"), elsewhere.path().join("a.parquet")).unwrap();
+    let output = run(elsewhere.path(), &["replay", "a.parquet"]);
+    let said = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap()).concat();
+    assert!(said.contains("a.parquet: the same bits, "), "{what}: {said}");
+}
+
 #[test]
-fn what_changes_a_play_is_marked_and_cannot_be_played_again() {
+fn what_changes_a_play_is_marked_and_changes_it_again() {
     let folder = folder();
     fs::write(folder.path().join("other.toml"), PART).unwrap();
-    let mut command = frixel();
-    command.args(["play", "scene.toml", "--control", "--seconds", "0.4", "--record", "a.parquet"]);
-    command.current_dir(folder.path()).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-    let mut play = command.spawn().unwrap();
     let lines = "wait 0.1\ntrigger button 20\nwait 0.1\nlayer wall gain 0.5\nwait 0.05\nreplace other.toml\n";
-    play.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
-    let ended = play.wait_with_output().unwrap();
-    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    fed(folder.path(), "play scene.toml --control --seconds 0.4 --record a.parquet", lines.as_bytes());
 
     let recording = read(folder.path(), "a.parquet");
     let markers = &recording.metadata.markers;
@@ -146,12 +161,108 @@ fn what_changes_a_play_is_marked_and_cannot_be_played_again() {
     assert!(markers.iter().any(|marker| marker.event == MarkedEvent::SceneReplaced && marker.t_s > 0.2));
     assert!(markers.iter().all(|marker| (marker.ticks as f64 / 40_000.0 - marker.t_s).abs() < 1e-9));
     assert_eq!(recording.metadata.later_scenes[0].scene, PART);
-    let said = refused(folder.path(), "a.parquet");
+    assert_played_again(folder.path(), "control");
+
+    // What was carried out is what is compared: another line gives other bits.
+    let mut other = recording.clone();
+    other.metadata.play["lines"][3] = "layer wall gain 0.6".into();
+    write(folder.path(), "other.parquet", &other);
+    assert!(refused(folder.path(), "other.parquet").contains("other.parquet plays other bits: row 2"));
+    let mut without = recording.clone();
+    without.metadata.play.as_object_mut().unwrap().remove("lines");
+    write(folder.path(), "without.parquet", &without);
     assert_eq!(
-        said,
-        "frixel: a.parquet cannot be played again: lines on standard input changed it (--control), which the recording \
-         does not have"
+        refused(folder.path(), "without.parquet"),
+        "frixel: without.parquet cannot be played again: lines on standard input changed it (--control), which the \
+         recording does not have"
     );
+}
+
+/// Lines that do nothing, scenes that cannot be played or have files of their own, and an end before the time.
+#[test]
+fn every_line_of_a_play_is_carried_out_again() {
+    let plays = [
+        "layer wall off\nwait 0.03\nlayer wall on\nnonsense\nlayer nobody off\n\n# a word\nlayer wall gain 77\n",
+        "wait 0.05\nreplace nowhere.toml\nreplace broken.toml\nlayer button on\nwait 0.05\nreplace wall.toml\n\
+         wait 0.05\nreplace scene.toml\ntrigger button 30\n",
+        "wait 0.1234567\ntrigger button\nwait 0.01\nquit\nlayer wall off\n",
+        "trigger button 1000\nwait 0.1\nreplace scene.toml\nreplace scene.toml\nwait 0.0000125\nlayer button off\n",
+    ];
+    for lines in plays {
+        for rate in ["--csv-hz 40000", "--csv-hz 1000 --finger moist"] {
+            let folder = folder();
+            fs::write(folder.path().join("broken.toml"), "version = 2\n[[layer]]\nkind = \"constnat\"\n").unwrap();
+            fs::write(folder.path().join("wall.toml"), SCENE.replace("0.6", "0.4")).unwrap();
+            let line = format!("play scene.toml --control --seconds 0.3 {rate} --record a.parquet");
+            fed(folder.path(), &line, lines.as_bytes());
+            let bytes = String::from_utf8_lossy(&fs::read(folder.path().join("a.parquet")).unwrap()).into_owned();
+            assert!(!bytes.contains("wall.toml") && !bytes.contains("nowhere"), "no name of a file is in it");
+            assert_played_again(folder.path(), &format!("{rate}: {lines}"));
+        }
+    }
+}
+
+/// A scene with a stream layer.
+const STREAMED: &str = "version = 2\n[[layer]]\nname = \"voice\"\nkind = \"stream\"\nlow_n = 0.01\nhigh_n = 0.09\n\
+                        live = true\n";
+
+/// Two bytes for each sample, little-endian: a rough texture.
+fn samples(count: u32) -> Vec<u8> {
+    (0..count).flat_map(|sample| ((sample.wrapping_mul(2_654_435_761) >> 16) as u16).to_le_bytes()).collect()
+}
+
+#[test]
+fn what_is_streamed_is_in_the_recording_and_streamed_again() {
+    // The pipe ends in the middle, long after the play, or has nothing; its last byte is half a sample.
+    for (count, rest) in [(900, 1), (40_000, 0), (0, 0)] {
+        let folder = folder();
+        fs::write(folder.path().join("stream.toml"), STREAMED).unwrap();
+        let input = [samples(count), vec![7; rest]].concat();
+        let line = "play stream.toml --stream - --stream-hz 8000 --seconds 0.3 --csv-hz 40000 --record a.parquet";
+        fed(folder.path(), line, &input);
+        assert_played_again(folder.path(), &format!("{count} samples"));
+        let recording = read(folder.path(), "a.parquet");
+        let kept = recording.metadata.files["stream"].bytes().unwrap();
+        assert!(input.starts_with(&kept) && (count == 0 || kept.len() > 1000), "{} bytes", kept.len());
+        if count > 0 {
+            let mut other = recording;
+            let mut bytes = kept;
+            bytes[100] ^= 0x80;
+            other.metadata.files = SourceFile::all([("stream".to_owned(), bytes.as_slice())]);
+            write(folder.path(), "other.parquet", &other);
+            assert!(refused(folder.path(), "other.parquet").contains("other.parquet plays other bits: row "));
+            // Beyond 4 MiB.
+            let hash = SourceFile::Hash { sha256: "00".to_owned(), bytes: 9_000_000 };
+            other.metadata.files.insert("stream".to_owned(), hash);
+            write(folder.path(), "other.parquet", &other);
+            assert!(refused(folder.path(), "other.parquet").contains("only the hash of the file stream"));
+        }
+    }
+}
+
+/// The duration of a file of samples is that of the play, in which the finger repeats its stroke.
+#[test]
+fn a_wav_file_is_in_the_recording_and_streamed_again() {
+    let folder = folder();
+    fs::write(folder.path().join("stream.toml"), STREAMED).unwrap();
+    let spec =
+        hound::WavSpec { channels: 1, sample_rate: 8000, bits_per_sample: 16, sample_format: hound::SampleFormat::Int };
+    let mut wav = hound::WavWriter::create(folder.path().join("a.wav"), spec).unwrap();
+    for pair in samples(4_000).chunks_exact(2) {
+        wav.write_sample(i16::from_le_bytes([pair[0], pair[1]])).unwrap();
+    }
+    wav.finalize().unwrap();
+    for (what, input) in [
+        ("", ""),
+        ("--seconds 0.2", ""),
+        ("--from 10,20 --to 30,20", ""),
+        ("--control", "wait 0.1\nlayer voice gain 0.5\nwait 0.1\nlayer voice off\nwait 0.02\nlayer voice on\n"),
+        ("--control --seconds 0.3", "wait 0.1\nreplace scene.toml\nwait 0.05\nquit\n"),
+    ] {
+        let line = format!("play stream.toml --stream a.wav --record a.parquet {what}");
+        fed(folder.path(), line.trim_end(), input.as_bytes());
+        assert_played_again(folder.path(), what);
+    }
 }
 
 #[test]
@@ -216,21 +327,26 @@ fn a_calibration_is_parquet_by_its_name_and_fits_the_same() {
     assert_eq!(fit("data.csv"), fit("data.parquet"));
 }
 
-/// Ctrl-C leaves a whole recording, and what it has is played again.
+/// Ctrl-C leaves a whole recording, and what it has is played again, with the ticks in which the output is switched off.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_recording_is_whole_and_plays_again() {
-    let folder = folder();
-    let mut command = frixel();
-    command.args(["play", "scene.toml", "--seconds", "86400", "--record", "a.parquet", "--seed", "3"]);
-    command.current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::piped());
-    let process = command.spawn().unwrap();
-    let rows = folder.path().join("frixel-out/.felt.csv.frixel-tmp");
-    while fs::metadata(&rows).map_or(0, |file| file.len()) < 100_000 {
-        std::thread::sleep(std::time::Duration::from_millis(5));
+    let lines = "wait 0.05\nlayer wall gain 0.5\n";
+    for (what, input) in [("", ""), ("--csv-hz 40000", ""), ("--csv-hz 40000 --control", lines)] {
+        let folder = folder();
+        let line = format!("play scene.toml --seconds 86400 --record a.parquet --seed 3 {what}");
+        let mut command = frixel();
+        command.args(line.trim_end().split(' ')).current_dir(folder.path());
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut process = command.spawn().unwrap();
+        process.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+        let rows = folder.path().join("frixel-out/.felt.csv.frixel-tmp");
+        while fs::metadata(&rows).map_or(0, |file| file.len()) < 100_000 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
+        rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+        assert!(process.wait_with_output().unwrap().status.success());
+        assert_played_again(folder.path(), what);
     }
-    let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
-    rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
-    assert!(process.wait_with_output().unwrap().status.success());
-    assert!(succeed(folder.path(), &["replay", "a.parquet"]).contains("the same bits"));
 }

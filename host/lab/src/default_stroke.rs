@@ -6,6 +6,8 @@ use frixel_hil_sim::{Point, Stroke, StrokeError};
 use frixel_layers::{Direction, DriftingGrating, Grating, Layer};
 use frixel_scene::{LayerMiddle, Program, TouchedLayers};
 
+/// Time for which the finger is lifted before it repeats a stroke, s.
+pub const REPEAT_PAUSE_S: f64 = 0.2;
 /// Duration of the sweep over the screen unless another is given, s.
 const SWEEP_S: f64 = 3.0;
 /// Time between two places of a sampled motion, s.

@@ -3,11 +3,12 @@
 #![allow(clippy::disallowed_methods, reason = "the tests read the documentation")]
 
 use std::collections::{BTreeMap, HashSet};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, ByteStream, Device, LinkClosed, PollingLink, StreamSettings, Upload};
+use frixel_driver::{Bitmap, ByteStream, Device, LinkClosed, PollingLink, StreamSettings, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, LineNoise, NoiseConfig, Rig, RigConfig, Stroke};
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::frame::Decoder;
@@ -141,7 +142,7 @@ fn measured(bit_error_rate: f64, stream_s: f64) -> Row {
     let uploaded = failed.map_or(Ok(upload.total_bytes() as f64 / took_s), |sentence| Err((sentence, took_s)));
 
     let wanted = (stream_s * f64::from(SAMPLE_HZ)) as u64;
-    let (mut sent, mut status) = (0, Default::default());
+    let (mut sent, mut status) = (0, StreamStatus::default());
     let alone = Upload { scene: &scene, bitmaps: Vec::new() };
     let (failed, took_s) = on_line(&mut |device| {
         let mut play = || {
@@ -207,7 +208,8 @@ fn table(rows: &[Row]) -> String {
             Ok((sent, underruns, gaps)) => format!("{sent} samples, {underruns} underruns, {gaps} gaps"),
             Err((sentence, took_s)) => format!("ends after {took_s:.1} s: {sentence}"),
         };
-        table += &format!("| {} | {upload} | {stream} | {} | {} |\n", row.bit_error_rate, row.accepted, row.wrong);
+        let Row { bit_error_rate, accepted, wrong, .. } = row;
+        writeln!(table, "| {bit_error_rate} | {upload} | {stream} | {accepted} | {wrong} |").unwrap();
     }
     table
 }

@@ -5,6 +5,7 @@
 //! [`PlayListener`](frixel_felt::recorder::PlayListener) of that link, which records what is felt.
 //!
 //! - [`Player`]: plays a program, replaces it by another one, changes its layers, ends triggers, and streams samples.
+//! - [`Control`]: carries out lines of text that change its layers and the program.
 //! - [`LiveLayers`]: the settings of the layers while they play.
 //! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
 //! - [`Recorded`]: a link with a record of what the board plays.
@@ -13,6 +14,7 @@
 //! `wasm32-unknown-unknown`.
 #![forbid(unsafe_code)]
 
+mod control;
 mod error;
 mod feed;
 mod live_layers;
@@ -21,6 +23,7 @@ mod recorded;
 mod trigger;
 mod upload;
 
+pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};

@@ -161,6 +161,8 @@ impl Settings<'_> {
             stroke: self.stroke.as_ref().map(Stroke::options).unwrap_or_default(),
             control: false,
             stream: false,
+            lines: None,
+            stream_s: None,
             interrupted: false,
         }
     }

@@ -13,6 +13,8 @@ pub(super) struct Inversion {
     waveform: Waveform,
     codes_per_v_rms: f64,
     electric_friction_max_n: f64,
+    /// The last amplitude, as a DAC code, and its friction, N: it is the same for many ticks.
+    last: (f64, f64),
 }
 
 impl Inversion {
@@ -26,6 +28,7 @@ impl Inversion {
             waveform: header.waveform,
             codes_per_v_rms: peak_per_rms * codes_per_v_peak,
             electric_friction_max_n: program.reach.electric_friction_max_n,
+            last: (f64::NAN, f64::NAN),
         })
     }
 
@@ -33,12 +36,15 @@ impl Inversion {
     ///
     /// The code of a square wave is its amplitude. The code of a sine wave is only one of many samples, so its
     /// amplitude is rounded as the DAC would round it.
-    pub(super) fn electric_friction_n(&self, voltage_v_rms: f32, dac_code: i16) -> f64 {
+    pub(super) fn electric_friction_n(&mut self, voltage_v_rms: f32, dac_code: i16) -> f64 {
         let amplitude_code = match self.waveform {
             Waveform::Square => f64::from(dac_code).abs(),
             Waveform::Sine => (f64::from(voltage_v_rms) * self.codes_per_v_rms).round(),
         };
-        self.law.electric_friction_n(amplitude_code / self.codes_per_v_rms)
+        if amplitude_code.to_bits() != self.last.0.to_bits() {
+            self.last = (amplitude_code, self.law.electric_friction_n(amplitude_code / self.codes_per_v_rms));
+        }
+        self.last.1
     }
 
     /// Whether the drive can add so much friction.

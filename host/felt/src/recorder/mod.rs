@@ -42,6 +42,8 @@ pub struct Recorder {
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
     markers: Markers,
+    /// The samples that were sent since they were last taken; `None` if they are not kept.
+    sent_samples: Option<Vec<u16>>,
     tick_hz: u32,
     tick_period_s: f64,
     ticks_max: u64,
@@ -85,6 +87,7 @@ impl Recorder {
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
             markers: Markers::default(),
+            sent_samples: None,
             tick_hz,
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_max: u64::MAX,
@@ -98,6 +101,12 @@ impl Recorder {
     #[must_use]
     pub fn through_finger(self) -> Self {
         Self { finger: Some(ReferenceFriction::default()), ..self }
+    }
+
+    /// Keeps the samples of streams, for [`Self::take_samples`].
+    #[must_use]
+    pub fn keeping_samples(self) -> Self {
+        Self { sent_samples: Some(Vec::new()), ..self }
     }
 
     /// Makes `tick` time zero: the record begins with the tick after it, and earlier observations are ignored.
@@ -159,6 +168,11 @@ impl Recorder {
     /// Removes the rows so far and returns them.
     pub fn take_rows(&mut self) -> Vec<FeltRow> {
         std::mem::take(&mut self.rows)
+    }
+
+    /// Removes the samples of streams that were sent so far and returns them; none without [`Self::keeping_samples`].
+    pub fn take_samples(&mut self) -> Vec<u16> {
+        self.sent_samples.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// What has happened so far, in its order. A marker has the time of the last observation before it.
@@ -239,6 +253,9 @@ impl PlayListener for Recorder {
     }
 
     fn samples_sent(&mut self, samples: &[u16]) {
+        if let Some(sent) = &mut self.sent_samples {
+            sent.extend_from_slice(samples);
+        }
         self.with_stream(|stream| stream.append(samples));
     }
 

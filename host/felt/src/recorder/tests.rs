@@ -244,7 +244,7 @@ fn a_recorder_that_is_told_of_a_program_later_compares_from_then_on() {
 
 #[test]
 fn a_code_of_zero_is_no_friction_whatever_voltage_was_commanded() {
-    let inversion = Inversion::new(&program(CONSTANT), &LIMITS, TICK_HZ).unwrap();
+    let mut inversion = Inversion::new(&program(CONSTANT), &LIMITS, TICK_HZ).unwrap();
     assert_eq!(inversion.electric_friction_n(100.0, 0).to_bits(), 0);
     let expected_n = inversion.without_steps_n(100.0);
     let with_steps_n = inversion.electric_friction_n(100.0, -inversion.code_of(100.0));

@@ -1,7 +1,6 @@
 //! Which way a finger slides, and where it lands or turns.
 
-use frixel_hil_sim::{FingerState, RELAXATION_LENGTH_M};
-use frixel_scene::reference::direction_of;
+use frixel_hil_sim::{FingerState, RELAXATION_LENGTH_M, one_minus_exp};
 
 /// The part of its full pull against the motion from which the skin counts as turned.
 const TURNED: f64 = 0.95;
@@ -30,8 +29,9 @@ impl Turning {
         if step_m <= 0.0 {
             return libm::hypot(self.pull[0], self.pull[1]) < TURNED;
         }
-        self.direction = direction_of(step);
-        let share = -libm::expm1(-step_m / RELAXATION_LENGTH_M);
+        // As `direction_of` in `frixel_scene::reference`, whose length is known here.
+        self.direction = step.map(|part_m| part_m / step_m);
+        let share = one_minus_exp(step_m / RELAXATION_LENGTH_M);
         for (pull, direction) in self.pull.iter_mut().zip(self.direction) {
             *pull += share * (direction - *pull);
         }

@@ -16,6 +16,7 @@ mod recorded;
 pub(super) mod replay;
 mod rigs;
 mod simulated_world;
+mod stream_args;
 mod target;
 mod watch;
 mod with_log;
@@ -34,6 +35,7 @@ use super::terminal::{self, note, note_refusals, print_line};
 use super::{argument, waiting};
 use live_scene::LiveScene;
 use outputs::PlayFiles;
+use stream_args::StreamArgs;
 use target::Target;
 
 #[derive(Debug, Args)]
@@ -105,13 +107,8 @@ pub(super) struct PlayArgs {
     /// it, a play to the port of that board writes felt.svg, and `felt_n` into felt.csv.
     #[arg(long, value_name = "FILE.csv")]
     with_log: Option<PathBuf>,
-    /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
-    /// little-endian.
-    #[arg(long, value_name = "FILE.wav")]
-    stream: Option<PathBuf>,
-    /// Sample rate of standard input, in Hz.
-    #[arg(long, value_name = "HZ")]
-    stream_hz: Option<u32>,
+    #[command(flatten)]
+    stream: StreamArgs,
 }
 
 impl PlayArgs {
@@ -138,8 +135,7 @@ impl PlayArgs {
             watch: false,
             with_log: None,
             control: false,
-            stream: None,
-            stream_hz: None,
+            stream: StreamArgs::default(),
         }
     }
 

@@ -7,6 +7,7 @@ use crate::output_file::Inputs;
 use crate::rigs::{Dropped, Server};
 use crate::scene_file::ProfileNames;
 use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke};
+use frixel_lab::default_stroke::REPEAT_PAUSE_S;
 use frixel_model::FrictionLaw;
 use frixel_scene::{Scene, compile};
 
@@ -21,8 +22,6 @@ const SCREEN_WIDTH_M: f64 = 0.12;
 const SCREEN_HEIGHT_M: f64 = 0.11;
 /// Duration of the generated stroke, s.
 const STROKE_S: f64 = 3.0;
-/// Time for which the finger is lifted before it repeats its stroke.
-const PAUSE_S: f64 = 0.2;
 /// Rows per second in felt.csv.
 const ROWS_HZ: u32 = 1000;
 /// A scene without friction of its own, from which the contact of a profile is computed.
@@ -34,7 +33,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
         Some(stroke) => stroke,
         None => Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::GeneratedStroke)?,
     };
-    let stroke = stroke.looped(PAUSE_S).map_err(CommandError::GeneratedStroke)?;
+    let stroke = stroke.looped(REPEAT_PAUSE_S).map_err(CommandError::GeneratedStroke)?;
     let mut config = RigConfig::default();
     let own_finger = own_finger(args, &mut config)?;
     config.world = args.touch.applied_to(config.world, args.ideal)?;

@@ -7,6 +7,7 @@ use std::marker::PhantomData;
 
 use frixel_felt::recorder::{FeltRow, FlagNames};
 
+use super::decimals::Decimals;
 use crate::output_file::{FileWriter, OutputFileError};
 use crate::rigs::BoardEvent;
 use frixel_lab::calibration::ForceRow;
@@ -90,7 +91,7 @@ impl CsvRow for FeltRow {
 
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let cell =
-            |value: Option<f64>, decimals: usize| Cell { value: value.filter(|value| value.is_finite()), decimals };
+            |value: Option<f64>, decimals: u32| Cell { value: value.filter(|value| value.is_finite()), decimals };
         write!(
             formatter,
             "{},{},{},{},{},{},{},{},",
@@ -147,7 +148,7 @@ impl<R: CsvRow> Display for Cells<'_, R> {
 /// Displays a number with a fixed number of decimals and zero without a minus sign, or an empty cell.
 struct Cell {
     value: Option<f64>,
-    decimals: usize,
+    decimals: u32,
 }
 
 impl Display for Cell {
@@ -155,6 +156,6 @@ impl Display for Cell {
         let Some(value) = self.value else { return Ok(()) };
         let half_step = 0.5 / 10f64.powi(self.decimals as i32);
         let value = if value.abs() < half_step { 0.0 } else { value };
-        write!(formatter, "{value:.*}", self.decimals)
+        Decimals { value, decimals: self.decimals }.fmt(formatter)
     }
 }

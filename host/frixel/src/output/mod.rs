@@ -14,6 +14,7 @@
 //! Equal inputs give byte-identical files.
 
 mod csv;
+mod decimals;
 mod felt_log;
 mod felt_svg;
 mod fit_svg;

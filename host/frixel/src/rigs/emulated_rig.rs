@@ -45,7 +45,7 @@ impl<'b> EmulatedRig<'b> {
 
     /// Takes over the board's count of ticks.
     fn follow(&mut self) -> Result<(), RigError> {
-        let ticks = self.board.ticks().map_err(ended)?;
+        let ticks = self.board.ticks().map_err(|error| ended(&error))?;
         self.tick += u64::from(ticks.wrapping_sub(self.tick as u32));
         Ok(())
     }
@@ -62,7 +62,7 @@ impl<'b> EmulatedRig<'b> {
     fn end_amplifier_fault(&mut self) -> Result<(), RigError> {
         if self.amplifier_fault_until.is_some_and(|until| until <= self.tick) {
             self.amplifier_fault_until = None;
-            self.board.set_amplifier_fault(false).map_err(ended)?;
+            self.board.set_amplifier_fault(false).map_err(|error| ended(&error))?;
         }
         Ok(())
     }
@@ -86,7 +86,7 @@ impl BoardRig for EmulatedRig<'_> {
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
-        self.stream.write(bytes).map_err(closed)
+        self.stream.write(bytes).map_err(|error| closed(&error))
     }
 
     fn run(
@@ -104,7 +104,7 @@ impl BoardRig for EmulatedRig<'_> {
                 return Ok(());
             }
             let left = Duration::from_secs(left) / BOARD.tick_hz;
-            self.stream.read(received, left.min(READ_MAX)).map_err(closed)?;
+            self.stream.read(received, left.min(READ_MAX)).map_err(|error| closed(&error))?;
         }
     }
 
@@ -112,9 +112,9 @@ impl BoardRig for EmulatedRig<'_> {
         let reason = match fault {
             RigFault::World(WorldFault::AmplifierNotReady) => {
                 self.amplifier_fault_until = Some(self.tick.saturating_add(ticks));
-                return self.board.set_amplifier_fault(true).map_err(ended);
+                return self.board.set_amplifier_fault(true).map_err(|error| ended(&error));
             }
-            RigFault::LateTick => return self.board.inject(InjectedFault::Overrun).map_err(ended),
+            RigFault::LateTick => return self.board.inject(InjectedFault::Overrun).map_err(|error| ended(&error)),
             RigFault::World(fault) if self.board.cause(fault, ticks) => return Ok(()),
             RigFault::World(_) => "amplifier, monitor, DAC and arm switch are simulated on the board itself",
             RigFault::Reset | RigFault::WrapSoon { .. } => "its emulator has no input for it",
@@ -131,10 +131,10 @@ impl BoardRig for EmulatedRig<'_> {
     }
 }
 
-fn ended(error: EmulatorError) -> RigError {
+fn ended(error: &EmulatorError) -> RigError {
     RigError::Ended { rig: NAME, reason: error.to_string() }
 }
 
-fn closed(closed: LinkClosed) -> RigError {
+fn closed(closed: &LinkClosed) -> RigError {
     RigError::Ended { rig: NAME, reason: closed.to_string() }
 }

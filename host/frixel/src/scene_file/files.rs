@@ -8,6 +8,7 @@ use super::saved_file::SavedFile;
 
 /// The files that a scene was read from, each as it was just before it was read: the scene's own file, and those that
 /// it names, whether they could be read or not.
+#[derive(Clone)]
 pub(crate) struct SceneFiles {
     scene: SavedFile,
     named: Vec<SavedFile>,

@@ -13,6 +13,7 @@ const CHECK_PERIOD: Duration = Duration::from_millis(100);
 const CHECKS_GONE: u32 = 5;
 
 /// Detects when a file was saved, in place or by an editor that replaces it by another file.
+#[derive(Clone)]
 pub(super) struct SavedFile {
     path: PathBuf,
     checked_at: Instant,

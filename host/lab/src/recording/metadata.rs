@@ -6,9 +6,10 @@ use frixel_felt::recorder::Marker;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 
 /// Bytes of all files of a recording that are kept as they are; of further ones, only the hash is.
-const EMBEDDED_MAX_BYTES: usize = 4 << 20;
+pub(super) const EMBEDDED_MAX_BYTES: usize = 4 << 20;
 
 /// The commit, if whoever builds says it.
 const REVISION: Option<&str> = option_env!("FRIXEL_REVISION");
@@ -39,11 +40,11 @@ pub struct Metadata {
     /// Text of the scene's file.
     #[serde(skip)]
     pub scene: String,
-    /// The other files, by what they are (`stroke`, `finger`, `screen`, `touch`) or, after `scene/`, the name by which the
-    /// scene names them.
+    /// The other files, by what they are (`stroke`, `finger`, `screen`, `touch`, `stream`) or, after `scene/`, the name by
+    /// which the scene names them.
     #[serde(skip)]
     pub files: BTreeMap<String, SourceFile>,
-    /// Scenes that replaced the first one, in their order.
+    /// Scenes that replaced the first one, or that the board refused, in their order.
     #[serde(skip)]
     pub later_scenes: Vec<LaterScene>,
     /// What happened, in its order.
@@ -68,6 +69,29 @@ impl Metadata {
             participant: participant.map(str::to_owned),
             ..Self::default()
         }
+    }
+
+    /// Adds a scene that was put on the board, with the files that it names.
+    pub fn add_scene<'a>(
+        &mut self,
+        (t_s, scene, is_refused): (f64, String, bool),
+        files: impl IntoIterator<Item = (String, &'a [u8])>,
+    ) {
+        let files = SourceFile::within(self.room_bytes(), files);
+        self.later_scenes.push(LaterScene { t_s, scene, is_refused, files });
+    }
+
+    /// Adds a file that has come while the play went on.
+    pub fn add_grown(&mut self, name: &str, file: GrowingFile) {
+        let file = file.end(self.room_bytes());
+        self.files.insert(name.to_owned(), file);
+    }
+
+    /// Bytes of further files that are kept as they are.
+    fn room_bytes(&self) -> usize {
+        let later = self.later_scenes.iter().flat_map(|later| later.files.values());
+        let kept: usize = self.files.values().chain(later).map(SourceFile::kept_bytes).sum();
+        EMBEDDED_MAX_BYTES.saturating_sub(kept)
     }
 }
 
@@ -96,13 +120,19 @@ impl From<&Hello> for BoardIdentity {
     }
 }
 
-/// A scene that replaced another one.
+/// A scene that was put on the board in place of another one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LaterScene {
     /// Time from which on it played, s.
     pub t_s: f64,
     /// Text of its file.
     pub scene: String,
+    /// Whether the board refused it, so that the scene before played on.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_refused: bool,
+    /// The files that it names, by the names that it gives them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: BTreeMap<String, SourceFile>,
 }
 
 /// A file that a play was made from.
@@ -125,13 +155,17 @@ pub enum SourceFile {
 impl SourceFile {
     /// Files by their names, as long as all of them have few bytes enough; larger ones by their hash.
     pub fn all<'a>(files: impl IntoIterator<Item = (String, &'a [u8])>) -> BTreeMap<String, Self> {
-        let mut left = EMBEDDED_MAX_BYTES;
+        Self::within(EMBEDDED_MAX_BYTES, files)
+    }
+
+    /// Files by their names, as long as all of them fit into so many bytes; larger ones by their hash.
+    fn within<'a>(mut left: usize, files: impl IntoIterator<Item = (String, &'a [u8])>) -> BTreeMap<String, Self> {
         let mut file = |bytes: &[u8]| match left.checked_sub(bytes.len()) {
             Some(rest) => {
                 left = rest;
                 std::str::from_utf8(bytes).map_or_else(|_| Self::Hex(hex(bytes)), |text| Self::Text(text.to_owned()))
             }
-            None => Self::Hash { sha256: hex(&sha256(bytes)), bytes: bytes.len() },
+            None => Self::Hash { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() },
         };
         files.into_iter().map(|(name, bytes)| (name, file(bytes))).collect()
     }
@@ -142,6 +176,43 @@ impl SourceFile {
             Self::Text(text) => Some(text.clone().into_bytes()),
             Self::Hex(digits) => from_hex(digits),
             Self::Hash { .. } => None,
+        }
+    }
+
+    /// How many of its bytes are kept.
+    fn kept_bytes(&self) -> usize {
+        match self {
+            Self::Text(text) => text.len(),
+            Self::Hex(digits) => digits.len() / 2,
+            Self::Hash { .. } => 0,
+        }
+    }
+}
+
+/// A file whose bytes come while a play goes on.
+#[derive(Clone, Debug, Default)]
+pub struct GrowingFile {
+    /// The first of its bytes, as many as a recording may keep.
+    kept: Vec<u8>,
+    bytes: usize,
+    hash: Sha256,
+}
+
+impl GrowingFile {
+    /// Adds bytes at the end.
+    pub fn extend(&mut self, bytes: &[u8]) {
+        self.hash.update(bytes);
+        self.bytes += bytes.len();
+        let room = EMBEDDED_MAX_BYTES - self.kept.len();
+        self.kept.extend_from_slice(bytes.get(..room).unwrap_or(bytes));
+    }
+
+    /// The file as it is kept where there is room for so many bytes.
+    fn end(self, room_bytes: usize) -> SourceFile {
+        if self.bytes <= room_bytes {
+            SourceFile::Hex(hex(&self.kept))
+        } else {
+            SourceFile::Hash { sha256: hex(&self.hash.finalize()), bytes: self.bytes }
         }
     }
 }
@@ -157,11 +228,6 @@ fn from_hex(digits: &str) -> Option<Vec<u8>> {
     digits.as_bytes().chunks(2).map(pair).collect()
 }
 
-fn sha256(bytes: &[u8]) -> Vec<u8> {
-    use sha2::Digest;
-    sha2::Sha256::digest(bytes).to_vec()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +241,25 @@ mod tests {
         assert_eq!((&files["b"], files["b"].bytes()), (&SourceFile::Hex("ff00".to_owned()), Some(vec![0xff, 0x00])));
         assert_eq!(files["c"].bytes(), None);
         // The example of FIPS 180-4.
-        assert!(hex(&sha256(b"abc")).starts_with("ba7816bf8f01cfea414140de5dae2223"));
+        assert!(hex(&Sha256::digest(b"abc")).starts_with("ba7816bf8f01cfea414140de5dae2223"));
+    }
+
+    #[test]
+    fn a_file_that_grows_and_later_scenes_share_the_room_with_the_others() {
+        let half = vec![7; EMBEDDED_MAX_BYTES / 2];
+        let mut grown = GrowingFile::default();
+        half.chunks(1000).for_each(|piece| grown.extend(piece));
+        let mut metadata = Metadata::default();
+        metadata.add_scene((0.5, "version = 2\n".to_owned(), false), [("a.png".to_owned(), half.as_slice())]);
+        metadata.add_grown("stream", grown.clone());
+        assert_eq!(metadata.later_scenes[0].files["a.png"].bytes().as_ref(), Some(&half));
+        assert_eq!(metadata.files["stream"].bytes().as_ref(), Some(&half));
+        grown.extend(&half);
+        grown.extend(b"abc");
+        let all = [half.as_slice(), &half, b"abc"].concat();
+        let mut metadata = Metadata::default();
+        metadata.add_grown("stream", grown);
+        let expected = SourceFile::Hash { sha256: hex(&Sha256::digest(&all)), bytes: all.len() };
+        assert_eq!(metadata.files["stream"], expected);
     }
 }

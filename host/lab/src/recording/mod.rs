@@ -14,6 +14,7 @@ mod parquet_writer;
 mod play_options;
 mod prepared_play;
 mod replay;
+mod replayed_changes;
 
 use std::fmt::{self, Display};
 
@@ -21,7 +22,7 @@ use frixel_felt::recorder::FeltRow;
 
 pub use error::RecordingError;
 pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
-pub use metadata::{BoardIdentity, LaterScene, Metadata, SourceFile};
+pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile};
 pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::{ParquetWriter, table_parquet};

@@ -39,10 +39,19 @@ pub struct PlayOptions {
     pub touch: Option<String>,
     /// Where the finger goes.
     pub stroke: StrokeOptions,
-    /// Whether the scene was changed while it played, which the recording does not have.
+    /// Whether the scene was changed while it played, by [`Self::lines`].
     pub control: bool,
-    /// Whether samples were streamed, which the recording does not have.
+    /// Whether samples were streamed: those of the file [`Self::STREAM`].
     pub stream: bool,
+    /// The lines that changed it, in their order. A `replace` has the number of the scene among the later ones of the
+    /// recording, from 1, and is left out if that scene could not be compiled. `None` on a board at a port, where a line
+    /// is carried out when it comes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lines: Option<Vec<String>>,
+    /// Duration of the streamed file, s, which is that of the play without [`Self::seconds`]; `None` for samples on
+    /// standard input.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stream_s: Option<f64>,
     /// Whether the play ended before its time.
     pub interrupted: bool,
 }
@@ -58,6 +67,8 @@ impl PlayOptions {
     pub const SCREEN: &'static str = "screen";
     /// Name of the touch source among them.
     pub const TOUCH: &'static str = "touch";
+    /// Name of the samples that were streamed among them: two bytes each, little-endian.
+    pub const STREAM: &'static str = "stream";
     /// Stands among them before the name of a file that the scene names.
     pub const OF_SCENE: &'static str = "scene/";
 }

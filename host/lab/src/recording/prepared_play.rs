@@ -4,12 +4,13 @@ use std::ops::ControlFlow;
 
 use frixel_hil_sim::{Person, RigConfig, Stroke, StrokeError, TouchConfig, WorldConfig};
 use frixel_model::{FrictionLaw, ParameterError};
+use frixel_play::Feed;
 use frixel_scene::{CompileError, Program, Scene};
 use thiserror::Error;
 
 use super::play_options::{PlayOptions, StrokeOptionsError};
-use crate::default_stroke::default_stroke;
-use crate::simulation::{Simulated, Simulation, SimulationError, simulate_while};
+use crate::default_stroke::{REPEAT_PAUSE_S, default_stroke};
+use crate::simulation::{Play, Simulated, Simulation, SimulationError, play_while, simulate_by};
 
 /// Why options describe no play.
 #[derive(Debug, Error)]
@@ -25,7 +26,7 @@ pub enum PreparedPlayError {
     /// The options describe no stroke.
     #[error(transparent)]
     Stroke(#[from] StrokeOptionsError),
-    /// The scene's screen has no default stroke.
+    /// The scene's screen has no default stroke, or it cannot be repeated.
     #[error("no stroke can be generated for this scene's screen: {0}")]
     DefaultStroke(#[from] StrokeError),
     /// The scene's screen is not known without its own finger.
@@ -64,11 +65,15 @@ impl PreparedPlay {
         }
         let header = &program.header;
         let screen_m = [header.screen_width_m.into(), header.screen_height_m.into()];
+        let seconds = options.seconds.or(options.stream_s);
         let stroke = match stroke {
             Some(stroke) => Some(stroke),
-            None => options.stroke.generated(screen_m, options.seconds, options.seed)?,
+            None => options.stroke.generated(screen_m, seconds, options.seed)?,
         };
-        let stroke = stroke.map_or_else(|| default_stroke(program, options.seconds), Ok)?;
+        let stroke = stroke.map_or_else(|| default_stroke(program, seconds), Ok)?;
+        let seconds = seconds.unwrap_or(stroke.duration_s());
+        let is_repeated = options.seconds.is_none() && stroke.duration_s() < seconds;
+        let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
         let drawn = |seed| {
             let person = Person::drawn(seed);
             let contact = person.contact(1e-6 * scene.screen_without_skin()?.coating_gap_um())?;
@@ -79,7 +84,6 @@ impl PreparedPlay {
         // A draft may take longer than a board has time for.
         rig.board.limits.tick_cycles_max = u32::MAX;
         let through_finger = !options.ideal || person.is_some() || stroke.has_loads();
-        let seconds = options.seconds.unwrap_or(stroke.duration_s());
         let ticks_per_row = tick_hz / options.rows_hz;
         let simulation = Simulation { rig, stroke, seconds, seed: options.seed, ticks_per_row };
         Ok(Self { simulation, own_finger: person.map(|(_, contact)| contact.into()), through_finger })
@@ -91,7 +95,17 @@ impl PreparedPlay {
         program: &Program,
         goes_on: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Simulated, SimulationError> {
-        simulate_while(program, &self.simulation, self.own_finger, self.through_finger, goes_on)
+        self.run_by(program, None, &mut |player| play_while(player, goes_on))
+    }
+
+    /// Plays it with samples for its stream layers, if there are any, while `play` lets the time pass.
+    pub(crate) fn run_by(
+        &self,
+        program: &Program,
+        feed: Option<Feed>,
+        play: &mut Play<'_>,
+    ) -> Result<Simulated, SimulationError> {
+        simulate_by(program, &self.simulation, (self.own_finger, self.through_finger), feed, play)
     }
 }
 

@@ -3,17 +3,23 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use frixel_felt::recorder::MarkedEvent;
 use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
-use frixel_scene::{CompileError, FingerProfile, Scene, Screen, compile_draft, parse_touch_source};
+use frixel_play::Feed;
+use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile_draft, parse_touch_source};
 use thiserror::Error;
 
 use super::prepared_play::{PreparedPlay, PreparedPlayError};
-use super::{Metadata, PlayOptions, Recording};
+use super::replayed_changes::ReplayedChanges;
+use super::{Metadata, PlayOptions, Recording, SourceFile};
 use crate::simulation::SimulationError;
 use crate::stroke_file::{StrokeFile, StrokeFileError};
 
 /// What messages call the scene.
 const SCENE: &str = "the recorded scene";
+
+/// Bytes of files by their names.
+type FileBytes = BTreeMap<String, Vec<u8>>;
 
 /// Why a recording cannot be played again.
 #[derive(Debug, Error)]
@@ -36,10 +42,10 @@ pub enum ReplayError {
     /// It has no options of a play.
     #[error("it does not say how it was played")]
     NoOptions,
-    /// Layers were changed while it played.
+    /// Lines changed it that it does not have.
     #[error("lines on standard input changed it (--control), which the recording does not have")]
     Controlled,
-    /// Samples were streamed.
+    /// Samples were streamed that it does not have.
     #[error("samples were streamed into it (--stream), which the recording does not have")]
     Streamed,
     /// A file of it is too large to be kept.
@@ -71,22 +77,28 @@ pub enum ReplayError {
 }
 
 impl Recording {
-    /// Plays a simulated recording of this version again: as many rows as it has, if it was interrupted or is cut off.
-    /// `goes_on` is asked many times a second of the play; when it breaks, the result ends there.
+    /// Plays a simulated recording of this version again, with the lines, scenes and samples that it has: until the tick
+    /// at which it was interrupted, or as many rows as it has, if it is cut off. `goes_on` is asked many times a second of
+    /// the play; when it breaks, the result ends there.
     pub fn replay(&self, goes_on: &mut dyn FnMut() -> ControlFlow<()>) -> Result<Self, ReplayError> {
         let options = options(&self.metadata)?;
-        let files = files(&self.metadata)?;
-        let scene = scene(&self.metadata, &options, &files)?;
-        let board = RigConfig::default().board;
-        let program = compile_draft(&scene, &board.limits, board.tick_hz)?;
+        let files = files(&self.metadata.files)?;
+        let scene = scene(&self.metadata.scene, &of_scene(&files), &options, &files)?;
+        let program = compile(&scene)?;
         let stroke = stroke(&options, &files)?;
+        let feed = feed(&self.metadata, &options, &files)?;
         let mut play = PreparedPlay::new(&options, &scene, &program, stroke, touch(&options, &files)?)?;
-        if options.interrupted || self.is_cut_off {
-            let rows_s = self.rows() as f64 * f64::from(play.simulation.ticks_per_row) / f64::from(board.tick_hz);
+        let is_short = options.interrupted || self.is_cut_off;
+        let stopped_at_tick = stopped_at_tick(&self.metadata).filter(|_| is_short);
+        let tick_hz = play.simulation.rig.board.tick_hz;
+        if is_short && stopped_at_tick.is_none() {
+            let rows_s = self.rows() as f64 * f64::from(play.simulation.ticks_per_row) / f64::from(tick_hz);
             play.simulation.seconds = play.simulation.seconds.min(rows_s);
         }
-        let mut recorder = play.run(&program, goes_on)?.recorder;
-        Ok(Self::of_rows(self.metadata.clone(), &recorder.take_rows()))
+        let later = later_programs(&self.metadata, &options, &files)?;
+        let mut changes = ReplayedChanges::new(options.lines, later, stopped_at_tick, tick_hz);
+        let played = play.run_by(&program, feed, &mut |player| changes.play(player, goes_on));
+        Ok(Self::of_rows(self.metadata.clone(), &played?.recorder.take_rows()))
     }
 }
 
@@ -104,28 +116,76 @@ fn options(metadata: &Metadata) -> Result<PlayOptions, ReplayError> {
     }
     match serde_json::from_value::<PlayOptions>(play.clone()) {
         Err(_) => Err(ReplayError::NoOptions),
-        Ok(PlayOptions { control: true, .. }) => Err(ReplayError::Controlled),
-        Ok(PlayOptions { stream: true, .. }) => Err(ReplayError::Streamed),
+        Ok(PlayOptions { control: true, lines: None, .. }) => Err(ReplayError::Controlled),
         Ok(options) => Ok(options),
     }
 }
 
-/// The files of the recording.
-fn files(metadata: &Metadata) -> Result<BTreeMap<String, Vec<u8>>, ReplayError> {
-    let bytes = |(name, file): (&String, &super::SourceFile)| match file.bytes() {
+/// The tick of the record at which the host switched the output off.
+fn stopped_at_tick(metadata: &Metadata) -> Option<u64> {
+    let stopped = metadata.markers.iter().rfind(|marker| marker.event == MarkedEvent::Stopped);
+    stopped.map(|stopped| stopped.ticks)
+}
+
+/// The bytes of files that are kept in the recording.
+fn files(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes, ReplayError> {
+    let bytes = |(name, file): (&String, &SourceFile)| match file.bytes() {
         Some(bytes) => Ok((name.clone(), bytes)),
         None => Err(ReplayError::OnlyHash { name: name.clone() }),
     };
-    metadata.files.iter().map(bytes).collect()
+    files.iter().map(bytes).collect()
 }
 
-/// The scene, with the finger and the screen that replaced its own.
-fn scene(metadata: &Metadata, options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result<Scene, ReplayError> {
+/// Those of them that the first scene names, by the names that it gives them.
+fn of_scene(files: &FileBytes) -> FileBytes {
     let of_scene = |(name, bytes): (&String, &Vec<u8>)| {
         Some((name.strip_prefix(PlayOptions::OF_SCENE)?.to_owned(), bytes.clone()))
     };
-    let named: BTreeMap<String, Vec<u8>> = files.iter().filter_map(of_scene).collect();
-    let mut scene = Scene::parse(&metadata.scene, SCENE, &named)?;
+    files.iter().filter_map(of_scene).collect()
+}
+
+/// The scenes that were put on the board after the first.
+fn later_programs(
+    metadata: &Metadata,
+    options: &PlayOptions,
+    of_play: &FileBytes,
+) -> Result<Vec<Program>, ReplayError> {
+    let later = metadata.later_scenes.iter();
+    later.map(|later| compile(&scene(&later.scene, &files(&later.files)?, options, of_play)?)).collect()
+}
+
+fn compile(scene: &Scene) -> Result<Program, ReplayError> {
+    let board = RigConfig::default().board;
+    Ok(compile_draft(scene, &board.limits, board.tick_hz)?)
+}
+
+/// The samples that were streamed, if any were, as fast as the board takes them. Behind the last one comes the end of the
+/// stream, or, if the play ended before it, nothing.
+fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result<Option<Feed>, ReplayError> {
+    if !options.stream {
+        return Ok(None);
+    }
+    let mut events = metadata.markers.iter().map(|marker| &marker.event);
+    let sample_hz = events.find_map(|event| match event {
+        MarkedEvent::StreamStarted { sample_hz } => Some(*sample_hz),
+        _ => None,
+    });
+    let is_ended = events.any(|event| *event == MarkedEvent::StreamEnded);
+    let (Some(sample_hz), Some(bytes)) = (sample_hz, files.get(PlayOptions::STREAM)) else {
+        return Err(ReplayError::Streamed);
+    };
+    let sample = |pair: &[u8]| Some(u16::from_le_bytes(pair.try_into().ok()?));
+    let samples: Vec<u16> = bytes.chunks_exact(2).filter_map(sample).collect();
+    let mut samples = samples.into_iter();
+    Ok(Some(Feed::fetched(sample_hz, move |pending, len| {
+        pending.extend(samples.by_ref().take(len.saturating_sub(pending.len())));
+        Ok(!is_ended || samples.len() > 0)
+    })))
+}
+
+/// A scene of the recording, which names the files `named`, with the finger and the screen that replaced its own.
+fn scene(text: &str, named: &FileBytes, options: &PlayOptions, files: &FileBytes) -> Result<Scene, ReplayError> {
+    let mut scene = Scene::parse(text, SCENE, named)?;
     if let Some(name) = &options.screen {
         let screen = match files.get(PlayOptions::SCREEN) {
             Some(bytes) => Screen::parse(&String::from_utf8_lossy(bytes), PlayOptions::SCREEN)?,
@@ -144,12 +204,12 @@ fn scene(metadata: &Metadata, options: &PlayOptions, files: &BTreeMap<String, Ve
 }
 
 /// The stroke of a file.
-fn stroke(options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result<Option<Stroke>, ReplayError> {
+fn stroke(options: &PlayOptions, files: &FileBytes) -> Result<Option<Stroke>, ReplayError> {
     let bytes = files.get(PlayOptions::STROKE).filter(|_| options.stroke.is_from_file());
     Ok(bytes.map(|bytes| StrokeFile::read(bytes.as_slice())).transpose()?.map(|file| file.stroke))
 }
 
-fn touch(options: &PlayOptions, files: &BTreeMap<String, Vec<u8>>) -> Result<Option<TouchConfig>, ReplayError> {
+fn touch(options: &PlayOptions, files: &FileBytes) -> Result<Option<TouchConfig>, ReplayError> {
     Ok(match (&options.touch, files.get(PlayOptions::TOUCH)) {
         (None, _) => None,
         (Some(_), Some(bytes)) => Some(parse_touch_source(&String::from_utf8_lossy(bytes), PlayOptions::TOUCH)?),

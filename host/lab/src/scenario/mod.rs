@@ -19,13 +19,13 @@ use frixel_hil_sim::{
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
+use crate::default_stroke::REPEAT_PAUSE_S;
+
 use host::Host;
 use line::ScenarioLine;
 
 /// Duration of the sweep of a scenario without a stroke, s.
 const SWEEP_S: f64 = 3.0;
-/// Time for which the finger is lifted before it repeats its stroke, s.
-const PAUSE_S: f64 = 0.2;
 
 /// What a scenario has shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +135,7 @@ pub fn stroke_and_world(
             header.map_or([0.1; 2], |header| [header.screen_width_m, header.screen_height_m].map(f64::from));
         Stroke::sweep(width_m, height_m, SWEEP_S)
     };
-    let looped = stroke.and_then(|stroke| stroke.looped(PAUSE_S));
+    let looped = stroke.and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
     let stroke = looped.map_err(|source| ScenarioError::Stroke { file: scenario.file.clone(), source })?;
     Ok((stroke, world))
 }

@@ -50,6 +50,11 @@ pub struct Simulation {
     pub ticks_per_row: u32,
 }
 
+/// A simulated board on which a program plays.
+pub(crate) type SimPlayer<'a> = Player<PollingLink<SimStream<'a>>>;
+/// Lets the time of a play pass, and changes what plays.
+pub(crate) type Play<'p> = dyn FnMut(&mut SimPlayer<'_>) -> Result<(), PlayError> + 'p;
+
 /// Results of a simulation.
 pub struct Simulated {
     /// Recorder with the felt friction and its reference.
@@ -66,7 +71,7 @@ pub struct Simulated {
 ///
 /// The program must have been compiled for the limits and the tick rate of the simulation's board.
 pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) -> Result<Simulated, SimulationError> {
-    run(program, simulation, recorder(program, simulation)?, None, feed, &mut || ControlFlow::Continue(()))
+    run(program, simulation, recorder(program, simulation)?, None, feed, &mut play_to_end)
 }
 
 /// As [`simulate`], under a finger that is not the program's if there is one, and with a reference that goes through the
@@ -77,7 +82,7 @@ pub fn simulate_through_finger(
     own_finger: Option<FrictionLaw>,
 ) -> Result<Simulated, SimulationError> {
     let recorder = recorder(program, simulation)?.through_finger();
-    run(program, simulation, recorder, own_finger, None, &mut || ControlFlow::Continue(()))
+    run(program, simulation, recorder, own_finger, None, &mut play_to_end)
 }
 
 /// As [`simulate`], or as [`simulate_through_finger`] with `through_finger`. `goes_on` is asked many times a second of the
@@ -89,9 +94,35 @@ pub fn simulate_while(
     through_finger: bool,
     goes_on: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> Result<Simulated, SimulationError> {
+    simulate_by(program, simulation, (own_finger, through_finger), None, &mut |player| play_while(player, goes_on))
+}
+
+/// As [`simulate_while`], with a feed for stream layers, and with `play` in place of [`play_while`].
+pub(crate) fn simulate_by(
+    program: &Program,
+    simulation: &Simulation,
+    (own_finger, through_finger): (Option<FrictionLaw>, bool),
+    feed: Option<Feed>,
+    play: &mut Play<'_>,
+) -> Result<Simulated, SimulationError> {
     let recorder = recorder(program, simulation)?;
     let recorder = if through_finger { recorder.through_finger() } else { recorder };
-    run(program, simulation, recorder, own_finger, None, goes_on)
+    run(program, simulation, recorder, own_finger, feed, play)
+}
+
+/// Plays until the record is full, or `goes_on` breaks.
+pub(crate) fn play_while(
+    player: &mut SimPlayer<'_>,
+    goes_on: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<(), PlayError> {
+    while player.recorder_mut().ticks_left() > 0 && goes_on().is_continue() {
+        player.step(Duration::MAX)?;
+    }
+    Ok(())
+}
+
+fn play_to_end(player: &mut SimPlayer<'_>) -> Result<(), PlayError> {
+    play_while(player, &mut || ControlFlow::Continue(()))
 }
 
 fn recorder(program: &Program, simulation: &Simulation) -> Result<Recorder, PlayError> {
@@ -106,7 +137,7 @@ fn run(
     recorder: Recorder,
     own_finger: Option<FrictionLaw>,
     feed: Option<Feed>,
-    goes_on: &mut dyn FnMut() -> ControlFlow<()>,
+    play: &mut Play<'_>,
 ) -> Result<Simulated, SimulationError> {
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &simulation.rig, simulation.stroke.clone(), simulation.seed)?;
@@ -119,9 +150,7 @@ fn run(
     if let Some(feed) = feed {
         player.stream(feed)?;
     }
-    while player.recorder_mut().ticks_left() > 0 && goes_on().is_continue() {
-        player.step(Duration::MAX)?;
-    }
+    play(&mut player)?;
     player.stop()?;
     let device = player.device();
     let (board, counters, stream) = (*device.hello(), device.counters(), device.stream_status());

@@ -9,6 +9,7 @@ use std::time::Duration;
 use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::default_stroke::REPEAT_PAUSE_S;
 use frixel_lab::simulation::SimStream;
 use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
 use frixel_scene::Program;
@@ -25,8 +26,6 @@ const SCREEN_WIDTH_M: f64 = 0.12;
 const SCREEN_HEIGHT_M: f64 = 0.11;
 /// Duration of its stroke, s.
 const STROKE_S: f64 = 3.0;
-/// Time for which it is lifted before it repeats its stroke, s.
-const PAUSE_S: f64 = 0.2;
 /// Seed of the simulated world.
 const SEED: u64 = 1;
 /// Time for an orderly end of a wait that a signal interrupts.
@@ -161,7 +160,8 @@ fn simulated(
     ends: Ends<'_>,
     interrupted: &Interrupted,
 ) -> Result<(), Trouble> {
-    let stroke = Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).and_then(|stroke| stroke.looped(PAUSE_S));
+    let stroke =
+        Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
     let mut config = RigConfig::default();
     config.world = config.world.realistic();
     // A draft may take longer than a board has time for.

@@ -21,7 +21,7 @@ const fn whole(name: &'static str, range: Range, meaning: &'static str) -> Field
 
 /// The file itself.
 pub(super) mod file {
-    use super::*;
+    use super::{FieldSpec, Holds, Means, Mistake, Number, Range, SECONDS_MAX, number, text, word};
 
     pub(crate) const SCENARIO: FieldSpec =
         number("scenario", Range::new(1.0, 1.0, ""), Mistake, "version of the file format");
@@ -54,7 +54,7 @@ pub(super) mod file {
 
 /// `[stroke]`.
 pub(super) mod stroke {
-    use super::*;
+    use super::{FieldSpec, Holds, Mistake, Number, Range, number};
 
     const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
     pub(crate) const FROM_MM: FieldSpec =
@@ -69,7 +69,7 @@ pub(super) mod stroke {
 
 /// What commands, faults and expectations share.
 pub(super) mod when {
-    use super::*;
+    use super::{FieldSpec, Means, Mistake, TICKS, TIME_MS, number, text};
 
     pub(crate) const AT_MS: FieldSpec = number("at_ms", TIME_MS, Mistake, "when, in ms since the start");
     pub(crate) const AT_TICK: FieldSpec =
@@ -82,7 +82,7 @@ pub(super) mod when {
 
 /// `[[command]]`.
 pub(super) mod command {
-    use super::*;
+    use super::{FieldSpec, Holds, Means, Mistake, Range, number, word};
 
     pub(crate) const DO: FieldSpec = word("do", Mistake, "what the host does");
     pub(crate) const LAYER: FieldSpec =
@@ -97,7 +97,7 @@ pub(super) mod command {
 
 /// `[[fault]]`.
 pub(super) mod fault {
-    use super::*;
+    use super::{FieldSpec, Means, Mistake, Range, SHARE, number, whole, word};
 
     pub(crate) const CAUSE: FieldSpec = word("cause", Mistake, "what goes wrong");
     pub(crate) const LINE: FieldSpec = word("line", Means("`\"both\"`"), "`\"to-board\"`, `\"to-host\"` or `\"both\"`");
@@ -117,7 +117,7 @@ pub(super) mod fault {
 
 /// `[[expect]]`.
 pub(super) mod expect {
-    use super::*;
+    use super::{FieldSpec, Holds, Means, Number, Range, TIME_MS, number, text, word};
 
     pub(crate) const AFTER: FieldSpec =
         text("after", "name of a command or fault: times count from its end or its start");

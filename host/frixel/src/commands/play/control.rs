@@ -1,22 +1,18 @@
 //! `--control`: lines on standard input that change the scene while it plays.
 
 use std::io::stdin;
-use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
 use crate::input;
 use crate::rigs::RecordedLink;
-use frixel_driver::ControlLine;
-use frixel_play::{PlayError, Player};
+use frixel_play::{Next, PlayError, Player};
 
 use super::{CommandError, Interrupt};
 
 /// Longest time between two looks at standard input.
 const LOOK_PERIOD: Duration = Duration::from_millis(5);
-/// Shortest step, less than a tick: without it, a time that is rounded down would never be reached.
-const STEP_MIN: Duration = Duration::from_micros(10);
 /// Longest time between two looks for Ctrl-C while the play waits for a line.
 const INTERRUPT_PERIOD: Duration = Duration::from_millis(50);
 /// Lines that are read ahead of the play.
@@ -24,20 +20,16 @@ const LINES_AHEAD: usize = 64;
 
 /// Carries out the lines on standard input.
 pub(super) struct Control {
+    input: Input,
+    lines: frixel_play::Control,
+}
+
+/// The lines on standard input.
+struct Input {
     lines: Receiver<String>,
     /// Whether the play waits for a line, because time is virtual.
     waits: bool,
     interrupt: Interrupt,
-    lines_read: u32,
-    /// Time of the play before which no line is carried out, s.
-    resume_at_s: f64,
-}
-
-/// What the play does next.
-pub(super) enum Next {
-    GoOn,
-    Replace(PathBuf),
-    Quit,
 }
 
 impl Control {
@@ -54,14 +46,25 @@ impl Control {
         };
         let thread = thread::Builder::new().name("frixel-control".into()).spawn(read);
         thread.map_err(CommandError::reading("standard input".as_ref()))?;
-        Ok(Self { lines, waits, interrupt: interrupt.clone(), lines_read: 0, resume_at_s: 0.0 })
+        let input = Input { lines, waits, interrupt: interrupt.clone() };
+        let lines = if waits { frixel_play::Control::keeping_lines() } else { frixel_play::Control::default() };
+        Ok(Self { input, lines })
+    }
+
+    /// The lines so far, as a recording has them; `None` where time does not wait for them.
+    pub(super) fn kept(&self) -> Option<&[String]> {
+        self.lines.kept()
+    }
+
+    /// Keeps a line that has put a scene on the board: that of this number among the later ones of the recording.
+    pub(super) fn keep_replace(&mut self, number: usize) {
+        self.lines.keep_replace(number);
     }
 
     /// Longest time that the play may go on at time `t_s` without a look at the lines.
     pub(super) fn time_max(&self, t_s: f64) -> Duration {
-        let until_next_s = if self.resume_at_s > t_s { self.resume_at_s - t_s } else { f64::INFINITY };
-        let until_next = Duration::try_from_secs_f64(until_next_s).unwrap_or(Duration::MAX).max(STEP_MIN);
-        if self.waits { until_next } else { until_next.min(LOOK_PERIOD) }
+        let until_next = self.lines.time_max(t_s);
+        if self.input.waits { until_next } else { until_next.min(LOOK_PERIOD) }
     }
 
     /// Carries out the lines that have arrived at time `t_s` of the play. Calls `say` with what is refused or clamped,
@@ -72,34 +75,12 @@ impl Control {
         t_s: f64,
         say: &mut dyn FnMut(String),
     ) -> Result<Next, PlayError> {
-        while t_s >= self.resume_at_s {
-            let Some(line) = self.next_line() else { return Ok(Next::GoOn) };
-            self.lines_read += 1;
-            let origin = format!("line {} of standard input", self.lines_read);
-            let changed = match ControlLine::parse(&line) {
-                Ok(None) => continue,
-                Ok(Some(ControlLine::Quit)) => return Ok(Next::Quit),
-                Ok(Some(ControlLine::Replace { file })) => return Ok(Next::Replace(file.into())),
-                Ok(Some(ControlLine::Wait { duration_s })) => {
-                    self.resume_at_s = t_s + duration_s;
-                    continue;
-                }
-                Ok(Some(ControlLine::Layer { layer, on, gain })) => player.change_layer(&layer, on, gain),
-                Ok(Some(ControlLine::Trigger { layer, duration_s })) => player.trigger(&layer, duration_s),
-                Err(error) => {
-                    say(format!("{origin}: {error}"));
-                    continue;
-                }
-            };
-            match changed {
-                Ok(change) => change.notice().into_iter().for_each(|notice| say(format!("{origin}: {notice}"))),
-                Err(error) if error.is_refusal() => say(format!("{origin}: {error}")),
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(Next::GoOn)
+        let Self { input, lines } = self;
+        lines.step(player, t_s, &mut || input.next_line(), say)
     }
+}
 
+impl Input {
     fn next_line(&self) -> Option<String> {
         while self.waits && !self.interrupt.is_requested() {
             match self.lines.recv_timeout(INTERRUPT_PERIOD) {

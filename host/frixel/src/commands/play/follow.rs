@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use crate::output::Report;
 use crate::rigs::RecordedLink;
 use frixel_driver::Device;
-use frixel_play::{LiveLayers, PlayError, Player};
+use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
 
-use super::control::{Control, Next};
-use super::live_scene::LiveScene;
+use super::control::Control;
+use super::live_scene::{Fate, LiveScene};
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
@@ -30,11 +30,14 @@ pub(super) fn follow<L: RecordedLink>(
     check_log(args, is_simulated)?;
     let metadata = files.sources().map(|sources| metadata(args, sources, &plan, &device, is_simulated));
     let outputs = Outputs::create(args, files, is_simulated, &plan.program, metadata)?;
-    let player = Player::recording(waiting::watch(device, interrupt), plan.recorder()?);
+    let recorder = plan.recorder()?;
+    let recorder = if args.record.is_some() { recorder.keeping_samples() } else { recorder };
+    let player = Player::recording(waiting::watch(device, interrupt), recorder);
     let waits = plan.target == Target::Simulator;
     let control = args.control.then(|| Control::start(waits, interrupt)).transpose()?;
     let (bars, writing, refusals) = (Bars::default(), Duration::ZERO, sentences(&plan.program));
-    let mut play = Play { args, plan, player, outputs, live_scene, control, interrupt, bars, writing, refusals };
+    let mut play =
+        Play { args, plan, player, outputs, live_scene, control, interrupt, bars, writing, refusals, scenes_put: 0 };
     play.start()?;
     let begin = Instant::now();
     let ended = play.until_over();
@@ -53,16 +56,6 @@ fn sentences(program: &Program) -> Vec<String> {
     program.refusals().map(ToString::to_string).collect()
 }
 
-/// Ends triggers, and says what the board refuses of it.
-fn end_triggers<L: RecordedLink>(player: &mut Player<L>, say: &mut dyn FnMut(String)) -> Result<(), PlayError> {
-    loop {
-        match player.end_triggers() {
-            Err(refused @ PlayError::TriggerEnd { .. }) => say(refused.to_string()),
-            ended => return ended,
-        }
-    }
-}
-
 /// A play in progress.
 struct Play<'a, L: RecordedLink> {
     args: &'a PlayArgs,
@@ -77,6 +70,8 @@ struct Play<'a, L: RecordedLink> {
     writing: Duration,
     /// Why a board refuses the scenes that were played.
     refusals: Vec<String>,
+    /// Number of scenes that were put on the board after the first.
+    scenes_put: usize,
 }
 
 impl<L: RecordedLink> Play<'_, L> {
@@ -115,6 +110,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let begin = Instant::now();
         let recorder = self.player.recorder_mut();
         let rows = recorder.take_rows();
+        self.outputs.keep_samples(&recorder.take_samples());
         let written = self.outputs.write(&rows, recorder.markers());
         self.writing += begin.elapsed();
         written
@@ -129,16 +125,15 @@ impl<L: RecordedLink> Play<'_, L> {
             return Ok(Some(Duration::MAX));
         };
         let say = &mut |sentence| note(format_args!("frixel: {sentence}"));
-        let ended = end_triggers(&mut self.player, say);
-        let next = ended.and_then(|()| control.step(&mut self.player, t_s, say));
+        let next = control.step(&mut self.player, t_s, say);
         let step_max = control.time_max(t_s);
         self.outputs.switch(t_s, self.player.playing().map_or(Vec::new(), LiveLayers::off));
         match next.map_err(|error| self.error(error))? {
             Next::GoOn => {}
             Next::Quit => return Ok(None),
-            Next::Replace(path) => {
+            Next::Replace(file) => {
                 if let Some(live_scene) = &mut self.live_scene {
-                    live_scene.load(&path, &self.player);
+                    live_scene.load(file.as_ref(), &self.player);
                     self.refresh_scene()?;
                     return Ok(Some(Duration::ZERO));
                 }
@@ -151,11 +146,14 @@ impl<L: RecordedLink> Play<'_, L> {
     fn refresh_scene(&mut self) -> Result<(), CommandError> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
         let refreshed = live_scene.refresh(&mut self.player);
-        let text = live_scene.text();
-        let replaced = refreshed.map_err(|error| self.error(error))?;
+        let Some((files, fate)) = refreshed.map_err(|error| self.error(error))? else { return Ok(()) };
         let t_s = self.player.recorder_mut().t_s();
-        if let Some(playing) = self.player.playing().filter(|_| replaced) {
-            self.outputs.keep_scene(t_s, text);
+        self.outputs.keep_scene(t_s, &files, fate == Fate::Refused);
+        self.scenes_put += 1;
+        if let Some(control) = &mut self.control {
+            control.keep_replace(self.scenes_put);
+        }
+        if let Some(playing) = self.player.playing().filter(|_| fate == Fate::Plays) {
             self.outputs.replace(t_s, playing.program());
             self.refusals.extend(sentences(playing.program()));
             self.plan.program = playing.program().clone();
@@ -183,6 +181,10 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_stream(stream)
             .with_refusals(self.refusals);
         let rows = recorder.take_rows();
+        self.outputs.keep_samples(&recorder.take_samples());
+        if let Some(lines) = self.control.as_ref().and_then(Control::kept) {
+            self.outputs.keep_lines(lines);
+        }
         let written = self.outputs.write(&rows, recorder.markers());
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
         let marked = (recorder.markers(), is_requested || ended.is_err());

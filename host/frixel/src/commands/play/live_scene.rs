@@ -42,6 +42,14 @@ enum Origin {
     Other,
 }
 
+/// What became of a scene that was put on the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fate {
+    Plays,
+    /// The board refused it, and the scene before plays on.
+    Refused,
+}
+
 /// A compiled scene, and the files that it was read from.
 struct Compiled {
     program: Result<Program, CommandError>,
@@ -74,19 +82,17 @@ impl LiveScene {
         Self { loader, files, watches: args.watch, next: None }
     }
 
-    /// Text of the scene that plays.
-    pub(super) fn text(&self) -> String {
-        self.files.scene_text()
-    }
-
     /// Plays another scene next, and watches its files once it plays.
     pub(super) fn load<L: RecordedLink>(&mut self, path: &Path, player: &Player<L>) {
         self.compile(path.to_owned(), Origin::Other, player);
     }
 
     /// Plays the next scene once it is compiled. Without one, compiles the scene that plays anew if one of its files
-    /// was saved. Returns whether a new program plays.
-    pub(super) fn refresh<L: RecordedLink>(&mut self, player: &mut Player<L>) -> Result<bool, PlayError> {
+    /// was saved. Returns the files of a scene that was put on the board, and what became of it.
+    pub(super) fn refresh<L: RecordedLink>(
+        &mut self,
+        player: &mut Player<L>,
+    ) -> Result<Option<(SceneFiles, Fate)>, PlayError> {
         // In virtual time, the play waits for the compiler.
         let waits = self.loader.target == Target::Simulator;
         if let Some(next) = self.next.take_if(|next| waits || next.compiling.is_finished()) {
@@ -96,7 +102,7 @@ impl LiveScene {
         if self.watches && self.next.is_none() {
             self.check_files(player);
         }
-        Ok(false)
+        Ok(None)
     }
 
     /// Plays a compiled scene. The files of another scene that cannot be played are not watched.
@@ -105,13 +111,13 @@ impl LiveScene {
         origin: Origin,
         Compiled { program, files }: Compiled,
         player: &mut Player<L>,
-    ) -> Result<bool, PlayError> {
+    ) -> Result<Option<(SceneFiles, Fate)>, PlayError> {
         let how = if origin == Origin::Saved { " as it was saved" } else { "" };
-        let replaced = replace(files.path(), how, program, player)?;
-        if origin == Origin::Saved || replaced {
-            self.files = files;
+        let fate = replace(files.path(), how, program, player)?;
+        if origin == Origin::Saved || fate == Some(Fate::Plays) {
+            self.files = files.clone();
         }
-        Ok(replaced)
+        Ok(fate.map(|fate| (files, fate)))
     }
 
     fn check_files<L: RecordedLink>(&mut self, player: &Player<L>) {
@@ -136,13 +142,13 @@ impl LiveScene {
 }
 
 /// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints why,
-/// and keeps the earlier scene playing. Returns whether it plays.
+/// and keeps the earlier scene playing. Returns what became of it on the board; `None` if it was not put there.
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
     compiled: Result<Program, CommandError>,
     player: &mut Player<L>,
-) -> Result<bool, PlayError> {
+) -> Result<Option<Fate>, PlayError> {
     let board = player.device().hello().board;
     let checked = compiled.and_then(|program| check_measured(&program, board).map(|()| program));
     let program = match checked {
@@ -150,7 +156,7 @@ fn replace<L: RecordedLink>(
         Err(error) => {
             note(error);
             note(format_args!("frixel: {} is not played: the previous scene keeps playing", path.display()));
-            return Ok(false);
+            return Ok(None);
         }
     };
     let (meanwhile, dropped_gains) = match player.replace(program) {
@@ -161,7 +167,7 @@ fn replace<L: RecordedLink>(
         ),
         Err(refused) if refused.is_refusal() => {
             note(format_args!("frixel: {refused}: the previous scene keeps playing"));
-            return Ok(false);
+            return Ok(Some(Fate::Refused));
         }
         Err(error) => return Err(error),
     };
@@ -173,7 +179,7 @@ fn replace<L: RecordedLink>(
     if let Some(clamped) = dropped_gains {
         note(format_args!("frixel: its gains are those of the file: with those that were set, {clamped}"));
     }
-    Ok(true)
+    Ok(Some(Fate::Plays))
 }
 
 #[cfg(test)]

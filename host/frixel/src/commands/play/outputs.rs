@@ -43,7 +43,7 @@ impl PlayFiles {
         // Without a finger that is simulated beside the board, what was felt is unknown.
         let is_felt = target.is_virtual_time() || args.with_log.is_some();
         let (svg, other_svg) = if is_felt { ("felt.svg", "commanded.svg") } else { ("commanded.svg", "felt.svg") };
-        let others = [args.stroke.file(), args.stream.as_deref(), args.with_log.as_deref(), args.touch.file()];
+        let others = [args.stroke.file(), args.stream.file(), args.with_log.as_deref(), args.touch.file()];
         let inputs = Inputs::new(scene.paths().chain(others.into_iter().flatten()));
         let file = |name: &str| OutputFile::new(&args.out.join(name), OPTION, &inputs);
         let files = Self {
@@ -207,10 +207,24 @@ impl Outputs {
         self.off.clear();
     }
 
-    /// Keeps the text of the scene that [`Self::replace`] is told of.
-    pub(super) fn keep_scene(&mut self, t_s: f64, scene: String) {
+    /// Keeps a scene that was put on the board at a time, and maybe refused by it, for the file of `--record`.
+    pub(super) fn keep_scene(&mut self, t_s: f64, scene: &SceneFiles, is_refused: bool) {
         if let Some(record) = &mut self.record {
-            record.replace(t_s, scene);
+            record.add_scene(t_s, scene, is_refused);
+        }
+    }
+
+    /// Keeps the lines of `--control` for that file.
+    pub(super) fn keep_lines(&mut self, lines: &[String]) {
+        if let Some(record) = &mut self.record {
+            record.set_lines(lines);
+        }
+    }
+
+    /// Keeps samples that were streamed for that file.
+    pub(super) fn keep_samples(&mut self, samples: &[u16]) {
+        if let Some(record) = &mut self.record {
+            record.add_samples(samples);
         }
     }
 

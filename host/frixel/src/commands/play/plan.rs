@@ -1,14 +1,11 @@
 //! The plan of a play, which is checked as a whole before any file is written.
 
-use std::io::stdin;
-use std::path::Path;
 use std::time::Duration;
 
 use crate::output::{Effects, WorldReport};
-use crate::stream;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
-use frixel_lab::default_stroke::default_stroke;
+use frixel_lab::default_stroke::{REPEAT_PAUSE_S, default_stroke};
 use frixel_play::Feed;
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
@@ -17,8 +14,6 @@ use super::super::stroke::check_on_screen;
 use super::target::Target;
 use super::{CommandError, PlayArgs, note, note_refusals};
 
-/// Time for which the finger is lifted before it repeats a stroke that is shorter than the stream, s.
-const PAUSE_S: f64 = 0.2;
 /// Highest rate of telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
 const TELEMETRY_MAX_HZ: u32 = 1000;
 /// Highest rate of telemetry that the emulated serial port can transfer, in messages a second.
@@ -29,6 +24,8 @@ pub(super) struct Plan {
     pub(super) target: Target,
     pub(super) program: Program,
     pub(super) feed: Option<Feed>,
+    /// Duration of the streamed file, s; `None` without one.
+    pub(super) stream_s: Option<f64>,
     /// The world that is simulated beside the board; `None` for a board at a port.
     pub(super) world: Option<WorldReport>,
     /// Whether the reference goes through the simulated finger.
@@ -45,18 +42,18 @@ pub(super) struct Plan {
 /// Rejects options that the board named by `--port` does not support.
 pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), CommandError> {
     let port = || args.port.clone();
-    if args.control && args.stream.as_deref() == Some(Path::new("-")) {
+    if args.control && args.stream.is_standard_input() {
         return Err(CommandError::ControlAndStream);
     }
     match target {
         Target::Emulator | Target::Pico if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
-        Target::Simulator if args.watch && (args.control || args.stream.as_deref() == Some(Path::new("-"))) => {
+        Target::Simulator if args.watch && (args.control || args.stream.is_standard_input()) => {
             Err(CommandError::WatchReadsInputOnce)
         }
         Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => {
             Err(CommandError::LogInVirtualTime { port: port() })
         }
-        Target::Emulator | Target::Pico if args.stream.is_some() => Err(CommandError::StreamOnEmulated),
+        Target::Emulator | Target::Pico if args.stream.is_given() => Err(CommandError::StreamOnEmulated),
         Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
         Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => {
             Err(CommandError::WorldOnBoard { port: port() })
@@ -64,7 +61,7 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), Comma
         Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
             Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
         }
-        Target::Port if args.watch && args.stream.is_some() => Err(CommandError::WatchWithStream),
+        Target::Port if args.watch && args.stream.is_given() => Err(CommandError::WatchWithStream),
         _ => Ok(()),
     }
 }
@@ -87,7 +84,7 @@ impl Plan {
             Target::Emulator | Target::Pico => tick_hz / EMULATED_TELEMETRY_HZ,
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
-        let feed = open_feed(args, tick_hz, target)?;
+        let feed = args.stream.open(tick_hz, target)?;
         if feed.is_some() && !program.records.iter().any(|record| record.layer.is_streamed()) {
             return Err(CommandError::NoStreamLayer { scene: args.scene.display().to_string() });
         }
@@ -96,6 +93,7 @@ impl Plan {
         Ok(Self {
             target,
             program,
+            stream_s: feed.as_ref().and_then(Feed::duration_s),
             feed,
             world: None,
             has_own_reference: false,
@@ -112,20 +110,20 @@ impl Plan {
     pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
-        let stream_s = self.feed.as_ref().and_then(Feed::duration_s);
-        let given = args.stroke.stroke([width_m, height_m], args.seconds.or(stream_s), args.seed)?;
+        let seconds = args.seconds.or(self.stream_s);
+        let given = args.stroke.stroke([width_m, height_m], seconds, args.seed)?;
         let stroke = match &given {
             Some(stroke) => stroke.clone(),
-            None => default_stroke(&self.program, args.seconds.or(stream_s)).map_err(CommandError::GeneratedStroke)?,
+            None => default_stroke(&self.program, seconds).map_err(CommandError::GeneratedStroke)?,
         };
-        let seconds = args.seconds.or(stream_s).unwrap_or(stroke.duration_s());
+        let seconds = seconds.unwrap_or(stroke.duration_s());
         check_seconds(seconds, self.tick_hz)?;
         if given.is_some() {
             check_on_screen(&args.stroke.name(), &stroke, width_m, height_m, seconds)?;
         }
         self.seconds = Some(seconds);
         if args.seconds.is_none() && stroke.duration_s() < seconds {
-            return stroke.looped(PAUSE_S).map_err(CommandError::GeneratedStroke);
+            return stroke.looped(REPEAT_PAUSE_S).map_err(CommandError::GeneratedStroke);
         }
         Ok(stroke)
     }
@@ -215,21 +213,6 @@ fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -
 fn check_seconds(seconds: f64, tick_hz: u32) -> Result<(), CommandError> {
     let tick_s = 1.0 / f64::from(tick_hz);
     if seconds < tick_s { Err(CommandError::TooShort { seconds, tick_s }) } else { Ok(()) }
-}
-
-/// Opens the source that `--stream` names. The simulator waits when a pipe is empty; other boards run out of samples.
-fn open_feed(args: &PlayArgs, tick_hz: u32, target: Target) -> Result<Option<Feed>, CommandError> {
-    let waits = target == Target::Simulator;
-    match (args.stream.as_deref(), args.stream_hz) {
-        (None, None) => Ok(None),
-        (None, Some(_)) => Err(CommandError::StreamRateAlone),
-        (Some(path), Some(sample_hz)) if path == Path::new("-") => {
-            Ok(Some(stream::raw(stdin(), sample_hz, tick_hz, waits)?))
-        }
-        (Some(path), None) if path == Path::new("-") => Err(CommandError::StreamRateMissing),
-        (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.to_owned() }),
-        (Some(path), None) => Ok(Some(stream::wav(path, tick_hz)?)),
-    }
 }
 
 #[cfg(test)]

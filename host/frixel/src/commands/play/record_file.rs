@@ -4,9 +4,12 @@ use std::io::Write;
 use std::path::Path;
 
 use frixel_felt::recorder::{FeltRow, Marker};
-use frixel_lab::recording::{LaterScene, Metadata, ParquetWriter, ROWS_PER_GROUP, play_fields, play_values};
+use frixel_lab::recording::{
+    GrowingFile, Metadata, ParquetWriter, PlayOptions, ROWS_PER_GROUP, play_fields, play_values,
+};
 
 use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, Recording};
+use crate::scene_file::SceneFiles;
 
 use super::super::parquet;
 use super::{CommandError, PlayArgs};
@@ -35,6 +38,8 @@ pub(super) struct RecordFile {
     file: FileWriter,
     parquet: ParquetWriter<Vec<u8>>,
     metadata: Metadata,
+    /// The samples that were streamed so far; `None` without a stream.
+    samples: Option<GrowingFile>,
     /// Rows of the next row group.
     rows: Vec<FeltRow>,
     rows_per_group: usize,
@@ -55,7 +60,8 @@ impl RecordFile {
         };
         let path = output.path();
         let parquet = ParquetWriter::new(Vec::new(), play_fields()).map_err(CommandError::recording(path))?;
-        Ok(Self { file, parquet, metadata, rows: Vec::new(), rows_per_group })
+        let samples = (metadata.play["stream"] == true).then(GrowingFile::default);
+        Ok(Self { file, parquet, metadata, samples, rows: Vec::new(), rows_per_group })
     }
 
     /// Adds rows. `markers` are all so far.
@@ -69,14 +75,31 @@ impl RecordFile {
         Ok(())
     }
 
-    /// Another scene plays from a time on.
-    pub(super) fn replace(&mut self, t_s: f64, scene: String) {
-        self.metadata.later_scenes.push(LaterScene { t_s, scene });
+    /// Another scene was put on the board at a time.
+    pub(super) fn add_scene(&mut self, t_s: f64, scene: &SceneFiles, is_refused: bool) {
+        let files = scene.named_bytes().iter().map(|(name, bytes)| (name.clone(), bytes.as_slice()));
+        self.metadata.add_scene((t_s, scene.scene_text(), is_refused), files);
+    }
+
+    /// These lines of `--control` were carried out, in all.
+    pub(super) fn set_lines(&mut self, lines: &[String]) {
+        self.metadata.play["lines"] = lines.into();
+    }
+
+    /// These samples were streamed next.
+    pub(super) fn add_samples(&mut self, samples: &[u16]) {
+        if let Some(streamed) = &mut self.samples {
+            let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+            streamed.extend(&bytes);
+        }
     }
 
     /// Writes what is left. The caller commits the file.
     pub(super) fn finish(mut self, markers: &[Marker], interrupted: bool) -> Result<FileWriter, CommandError> {
         self.metadata.play["interrupted"] = interrupted.into();
+        if let Some(samples) = self.samples.take() {
+            self.metadata.add_grown(PlayOptions::STREAM, samples);
+        }
         self.write_group(markers, true)?;
         Ok(self.file)
     }

@@ -53,7 +53,7 @@ impl Sources {
         })
     }
 
-    fn options(&self, args: &PlayArgs) -> PlayOptions {
+    fn options(&self, args: &PlayArgs, stream_s: Option<f64>) -> PlayOptions {
         let touch = args.touch.bundled_name().or(args.touch.file().map(|_| PlayOptions::FILE));
         PlayOptions {
             seconds: args.seconds,
@@ -67,7 +67,9 @@ impl Sources {
             touch: touch.map(str::to_owned),
             stroke: args.stroke.options(),
             control: args.control,
-            stream: args.stream.is_some(),
+            stream: args.stream.is_given(),
+            lines: None,
+            stream_s,
             interrupted: false,
         }
     }
@@ -83,7 +85,7 @@ pub(super) fn metadata<L: Link>(
 ) -> Metadata {
     Metadata {
         ticks_per_row: plan.ticks_per_row(),
-        play: serde_json::to_value(sources.options(args)).unwrap_or_default(),
+        play: serde_json::to_value(sources.options(args, plan.stream_s)).unwrap_or_default(),
         scene: sources.scene.clone(),
         files: sources.files.clone(),
         ..Metadata::new(plan.target.name(), Some(device.hello()), is_simulated, args.participant.as_deref())

@@ -1,0 +1,56 @@
+//! `--stream`: where samples for stream layers come from.
+
+use std::io::stdin;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use frixel_play::Feed;
+
+use crate::stream;
+
+use super::CommandError;
+use super::target::Target;
+
+/// The name of standard input.
+const STANDARD_INPUT: &str = "-";
+
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct StreamArgs {
+    /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
+    /// little-endian.
+    #[arg(long, value_name = "FILE.wav")]
+    stream: Option<PathBuf>,
+    /// Sample rate of standard input, in Hz.
+    #[arg(long, value_name = "HZ")]
+    stream_hz: Option<u32>,
+}
+
+impl StreamArgs {
+    pub(super) fn is_given(&self) -> bool {
+        self.stream.is_some()
+    }
+
+    pub(super) fn is_standard_input(&self) -> bool {
+        self.stream.as_deref() == Some(Path::new(STANDARD_INPUT))
+    }
+
+    /// The file of the samples, or the name of standard input.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.stream.as_deref()
+    }
+
+    /// Opens the source of the samples. The simulator waits when a pipe is empty; other boards run out of samples.
+    pub(super) fn open(&self, tick_hz: u32, target: Target) -> Result<Option<Feed>, CommandError> {
+        let waits = target == Target::Simulator;
+        match (&self.stream, self.stream_hz) {
+            (None, None) => Ok(None),
+            (None, Some(_)) => Err(CommandError::StreamRateAlone),
+            (Some(_), Some(sample_hz)) if self.is_standard_input() => {
+                Ok(Some(stream::raw(stdin(), sample_hz, tick_hz, waits)?))
+            }
+            (Some(_), None) if self.is_standard_input() => Err(CommandError::StreamRateMissing),
+            (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.clone() }),
+            (Some(path), None) => Ok(Some(stream::wav(path, tick_hz)?)),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Lines that change a scene while it plays.
+
+use std::time::Duration;
+
+use frixel_driver::{ControlLine, Link};
+
+use crate::error::PlayError;
+use crate::player::Player;
+use crate::recorded::Recorded;
+
+/// Shortest step, less than a tick: without it, a time that is rounded down would never be reached.
+const STEP_MIN: Duration = Duration::from_micros(10);
+
+/// Carries out lines of [`ControlLine`] in their order, each at its time of the play.
+#[derive(Clone, Debug, Default)]
+pub struct Control {
+    lines_read: u32,
+    /// Time of the play before which no line is carried out, s.
+    resume_at_s: f64,
+    kept: Option<Vec<String>>,
+}
+
+/// What the play does next.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// It goes on.
+    GoOn,
+    /// It puts another scene on the board: that of this file.
+    Replace(String),
+    /// It ends.
+    Quit,
+}
+
+impl Control {
+    /// Keeps the lines that are carried out, for [`Self::kept`]. On a board that does not wait for them, they do not
+    /// make the same play again.
+    pub fn keeping_lines() -> Self {
+        Self { kept: Some(Vec::new()), ..Self::default() }
+    }
+
+    /// The lines so far, without those that `replace` a scene and those that cannot be read; `None` if they are not kept.
+    pub fn kept(&self) -> Option<&[String]> {
+        self.kept.as_deref()
+    }
+
+    /// Keeps a line that replaces the scene by the one of this number.
+    pub fn keep_replace(&mut self, number: usize) {
+        if let Some(kept) = &mut self.kept {
+            kept.push(format!("replace {number}"));
+        }
+    }
+
+    /// Longest time that the play may go on at time `t_s` without [`Self::step`], unless a line comes meanwhile.
+    pub fn time_max(&self, t_s: f64) -> Duration {
+        let until_next_s = if self.resume_at_s > t_s { self.resume_at_s - t_s } else { f64::INFINITY };
+        Duration::try_from_secs_f64(until_next_s).unwrap_or(Duration::MAX).max(STEP_MIN)
+    }
+
+    /// Ends triggers, and carries out the lines of `next_line` until there is none, or one has to wait, at time `t_s` of
+    /// the play. Calls `say` with what is refused or clamped, a sentence each.
+    ///
+    /// # Errors
+    ///
+    /// The connection is lost, or the board stopped. What is refused is said instead, and the play goes on.
+    pub fn step<L: Link + Recorded>(
+        &mut self,
+        player: &mut Player<L>,
+        t_s: f64,
+        next_line: &mut dyn FnMut() -> Option<String>,
+        say: &mut dyn FnMut(String),
+    ) -> Result<Next, PlayError> {
+        end_triggers(player, say)?;
+        while t_s >= self.resume_at_s {
+            let Some(line) = next_line() else { break };
+            self.lines_read += 1;
+            let origin = format!("line {} of standard input", self.lines_read);
+            let parsed = ControlLine::parse(&line);
+            self.keep(line, parsed.as_ref().ok().and_then(Option::as_ref));
+            let changed = match parsed {
+                Ok(None) => continue,
+                Ok(Some(ControlLine::Quit)) => return Ok(Next::Quit),
+                Ok(Some(ControlLine::Replace { file })) => return Ok(Next::Replace(file)),
+                Ok(Some(ControlLine::Wait { duration_s })) => {
+                    self.resume_at_s = t_s + duration_s;
+                    continue;
+                }
+                Ok(Some(ControlLine::Layer { layer, on, gain })) => player.change_layer(&layer, on, gain),
+                Ok(Some(ControlLine::Trigger { layer, duration_s })) => player.trigger(&layer, duration_s),
+                Err(error) => {
+                    say(format!("{origin}: {error}"));
+                    continue;
+                }
+            };
+            match changed {
+                Ok(change) => change.notice().into_iter().for_each(|notice| say(format!("{origin}: {notice}"))),
+                Err(error) if error.is_refusal() => say(format!("{origin}: {error}")),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(Next::GoOn)
+    }
+
+    fn keep(&mut self, line: String, parsed: Option<&ControlLine>) {
+        let is_kept = parsed.is_some_and(|parsed| !matches!(parsed, ControlLine::Replace { .. }));
+        if let Some(kept) = self.kept.as_mut().filter(|_| is_kept) {
+            kept.push(line);
+        }
+    }
+}
+
+/// Ends triggers, and says what the board refuses of it.
+fn end_triggers<L: Link + Recorded>(player: &mut Player<L>, say: &mut dyn FnMut(String)) -> Result<(), PlayError> {
+    loop {
+        match player.end_triggers() {
+            Err(refused @ PlayError::TriggerEnd { .. }) => say(refused.to_string()),
+            ended => return ended,
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Folders of the machine that builds, which nothing that is handed on may name.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::command::{root, text_of};
+
+/// Divides the flags in the variable below, so that they may have spaces.
+const BETWEEN_FLAGS: char = '\x1f';
+/// Flags of the compiler, for all that cargo compiles for the target.
+const FLAGS: &str = "CARGO_ENCODED_RUSTFLAGS";
+/// Flags that cargo would ignore in favour of those above.
+const OTHER_FLAGS: &str = "RUSTFLAGS";
+
+/// A folder, and the name that programs have in its place.
+struct MachinePath {
+    path: PathBuf,
+    name: &'static str,
+}
+
+/// The folders that a compiler writes into programs: that of the compiler with the standard library, that of the
+/// crates, and the checkout. One that is in another comes behind it.
+fn machine_paths() -> Result<Vec<MachinePath>, String> {
+    let sysroot = text_of(Command::new("rustc").current_dir(root()).args(["--print", "sysroot"]))?;
+    let cargo_home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(env::home_dir()?.join(".cargo")));
+    let checkout = root().canonicalize().map_err(|error| format!("{}: {error}", root().display()))?;
+    let mut paths = vec![
+        MachinePath { path: sysroot.trim().into(), name: "rust" },
+        MachinePath { path: cargo_home.ok_or("neither CARGO_HOME nor a home folder is known")?, name: "cargo" },
+        MachinePath { path: checkout, name: "frixel" },
+    ];
+    paths.sort_by_key(|machine| machine.path.as_os_str().len());
+    Ok(paths)
+}
+
+/// Lets a build by cargo, or by a program that calls it, write other names in place of the machine's paths.
+pub(crate) fn left_out(build: &mut Command) -> Result<&mut Command, String> {
+    // The compiler takes the last one that fits.
+    let of = |MachinePath { path, name }: &MachinePath| format!("--remap-path-prefix={}={name}", path.display());
+    let flags: Vec<String> = machine_paths()?.iter().map(of).collect();
+    Ok(build.env(FLAGS, flags.join(&BETWEEN_FLAGS.to_string())).env_remove(OTHER_FLAGS))
+}
+
+/// Fails if a file names one of the machine's paths.
+pub(crate) fn check(file: &Path) -> Result<(), String> {
+    let bytes = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let paths: Vec<PathBuf> = machine_paths()?.into_iter().map(|machine| machine.path).collect();
+    match first_of(&paths, &bytes) {
+        Some(found) => Err(format!("{} names a path of this machine: {found}", file.display())),
+        None => Ok(()),
+    }
+}
+
+/// The first of these paths in some bytes, with what follows it.
+fn first_of(paths: &[PathBuf], bytes: &[u8]) -> Option<String> {
+    let begins = |path: &PathBuf| {
+        let path = path.as_os_str().as_encoded_bytes();
+        bytes.windows(path.len().max(1)).position(|window| window == path)
+    };
+    let at = paths.iter().filter_map(begins).min()?;
+    let text: Vec<u8> = bytes.get(at..)?.iter().copied().take_while(u8::is_ascii_graphic).take(200).collect();
+    Some(String::from_utf8_lossy(&text).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_of_the_machine_is_found_within_bytes() {
+        let paths = ["/home/ada/frixel", "/home/ada/.cargo"].map(PathBuf::from);
+        let bytes = b"\x00\x7fELF/home/ada/.cargo/registry/src/clap/lib.rs\x00/home/ada/frixel/a.rs";
+        assert_eq!(first_of(&paths, bytes).as_deref(), Some("/home/ada/.cargo/registry/src/clap/lib.rs"));
+        assert_eq!(first_of(&paths, b"cargo/registry/src/clap/lib.rs /home/ada"), None);
+    }
+
+    #[test]
+    fn the_checkout_and_the_crates_are_paths_of_the_machine() {
+        let text_of = |paths: Vec<MachinePath>| paths.iter().map(|found| found.name).collect::<Vec<_>>();
+        let mut names = text_of(machine_paths().unwrap());
+        names.sort_unstable();
+        assert_eq!(names, ["cargo", "frixel", "rust"]);
+        assert!(check(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml").as_path()).is_ok());
+    }
+}
