@@ -23,11 +23,13 @@ const PING_TICKS: u64 = 2_000;
 /// Most ticks that a commit takes.
 const COMMIT_TICKS_MAX: u32 = 128;
 
+/// Is called with every tick, and with the number of bytes that have arrived at the board.
+pub type Watch = Box<dyn FnMut(&TickRecord, u64)>;
+
 /// A host that says what it wants and trusts the board.
 pub struct Script {
     pub rig: Rig<'static>,
-    /// Is called with every tick, and with the number of bytes that have arrived at the board.
-    pub watch: Option<Box<dyn FnMut(&TickRecord, u64)>>,
+    pub watch: Option<Watch>,
     sequence: u16,
     status: Option<Status>,
 }

@@ -21,7 +21,7 @@ const ASK_AGAIN_AFTER: Duration = Duration::from_secs(2);
 /// How long a read waits.
 const READ_WAIT: Duration = Duration::from_millis(2);
 /// Silence after the last block, by which the board's side of the test is over.
-const LINE_SILENCE: Duration = Duration::from_millis(1_000);
+const LINE_SILENCE: Duration = Duration::from_secs(1);
 /// Bytes a second at 8 data bits, a start bit and a stop bit.
 const LINE_BYTES_PER_S: f64 = DEFAULT_BAUD as f64 / 10.0;
 /// In front of a word that the board waits for.
