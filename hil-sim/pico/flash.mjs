@@ -33,8 +33,6 @@ const ROM_VERSION = 3;
 
 /** @typedef {{ address: number, len: number, isErase: boolean, endsAt: number, data: Uint8Array }} Operation */
 
-function rp2040_wipe(flash) { flash.fill(0, 0x100000, 0x140000); }
-
 export class Flash {
   #rp2040;
   #board;
@@ -165,7 +163,7 @@ export class Flash {
     if (this.#cut.after < 0) {
       // What is interrupted leaves a part of the bytes as they should be, and one that is half done.
       this.#write(this.#operation, Math.floor(this.#cut.fraction * len));
-      rp2040_wipe(this.#rp2040.flash); this.#board.losePower();
+      this.#board.losePower();
     }
   }
 

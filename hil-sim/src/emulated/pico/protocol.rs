@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn an_answer_has_events_and_bytes() {
-        let words = [1, 99_000, 7, 2, 5, 0, 3, 0, 1, 98_000, 0x3_8000, 24 << 24 | 4_000, 104, 105];
+        let words = [1, 99_000, 7, 2, 5, 0, 3, 0, 1, 98_000, 0x3_8000, 0x1800_0fa0, 104, 105];
         let ran = Ran::read(&words).unwrap();
         assert_eq!((ran.ended, ran.elapsed, ran.instructions), (Ended::Frame, Duration::from_micros(99), 7));
         assert_eq!(ran.received, b"hi");
