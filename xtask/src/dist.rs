@@ -5,7 +5,7 @@
 //! | `frixel` | the command for Linux, static |
 //! | `images/*.elf` | the firmware of each board; those of the emulated ones are what `frixel play --port qemu` and `--port pico` run |
 //! | `images/pico-rig` | the emulator of the Pico, with the programs that `frixel play --port pico` runs by node |
-//! | `frixel-*.whl` | the Python module |
+//! | `frixel-*.whl` | the Python module, with its widget |
 //! | `frixel-studio.html` | the page |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
 //! | `SHA256SUMS` | for `sha256sum --check` |
@@ -54,6 +54,8 @@ const PICO: &str = "firmware/board-pico";
 /// Folder of the emulator of the Pico among the images.
 const PICO_RIG: &str = "pico-rig";
 const COMMAND: Program = Program { folder: ".", package: Some("frixel"), target: Some(MUSL), features: &[] };
+/// The Python module, and the page's module in its widget.
+const WHEEL: [Program; 2] = [MODULE, licences::PAGE];
 const MODULE: Program = Program { folder: ".", package: Some("frixel-python"), target: None, features: &[] };
 
 /// The programs of a board's folder.
@@ -83,10 +85,11 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
         copy(&built, &images.join(file))?;
     }
     pico_rig::copy_to(&images.join(PICO_RIG))?;
-    wheel(&folder)?;
+    // The page's build also makes the widget in the wheel.
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
+    wheel(&folder)?;
     let boards = IMAGES.map(|(_, _, program)| program);
-    let programs = [[COMMAND, MODULE, licences::PAGE].as_slice(), &boards].concat();
+    let programs = [[COMMAND].as_slice(), &WHEEL, &boards].concat();
     let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
     write(&folder.join("LICENCES.txt"), &licences::of_dist(&programs, emulator)?)?;
     for file in files_below(&folder)? {
@@ -104,7 +107,7 @@ fn command(folder: &Path) -> Result<(), String> {
     copy(&target_folder().join(MUSL).join(PROFILE).join("frixel"), &folder.join("frixel"))
 }
 
-/// The Python module, with the licences of what is compiled into it.
+/// The Python module, with the licences of what is in it.
 fn wheel(folder: &Path) -> Result<(), String> {
     let environment = target_folder().join("dist-environment");
     let requirements = root().join(PYTHON).join("requirements.txt");
@@ -115,7 +118,7 @@ fn wheel(folder: &Path) -> Result<(), String> {
     let installed = ["install", "--quiet", "--disable-pip-version-check", maturin];
     run("maturin", Command::new(environment.join("bin/pip")).args(installed))?;
     let licences = root().join(PYTHON).join(WHEEL_LICENCES);
-    write(&licences, &licences::of_wheel(&MODULE)?)?;
+    write(&licences, &licences::of_wheel(&WHEEL)?)?;
     let mut build = Command::new(environment.join("bin/maturin"));
     build.current_dir(root().join(PYTHON)).env("CARGO_TARGET_DIR", target_folder().join("python"));
     build.args(["build", "--quiet", "--locked", "--profile", PROFILE, "--out"]).arg(folder);
@@ -221,7 +224,8 @@ mod tests {
         {
             assert!(text.contains(expected), "{expected}");
         }
-        let wheel = licences::of_wheel(&MODULE).unwrap();
+        let wheel = licences::of_wheel(&WHEEL).unwrap();
         assert!(wheel.contains("pyo3 0") && !wheel.contains("clap 4") && !wheel.contains("musl, the C library"));
+        assert!(wheel.contains("uplot "), "the scripts of the widget");
     }
 }

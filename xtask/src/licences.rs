@@ -47,9 +47,9 @@ pub(crate) fn of_dist(programs: &[Program], emulator: String) -> Result<String, 
     Ok(joined(&[own()?, scripts()?, emulator, MUSL_LICENCE.to_owned(), crates("CRATES IN THE PROGRAMS", programs)?]))
 }
 
-/// All licences of the Python module.
-pub(crate) fn of_wheel(module: &Program) -> Result<String, String> {
-    Ok(joined(&[own()?, crates("CRATES IN THE MODULE", &[*module])?]))
+/// All licences of the Python module, which is made of these programs and of the page's scripts.
+pub(crate) fn of_wheel(programs: &[Program]) -> Result<String, String> {
+    Ok(joined(&[own()?, scripts()?, crates("CRATES IN THE MODULE", programs)?]))
 }
 
 fn joined(parts: &[String]) -> String {

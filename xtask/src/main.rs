@@ -44,11 +44,13 @@ cargo xtask bench    instructions and estimated cycles on emulated processors, a
 cargo xtask budgets  the same, held against budgets.toml, and random scenes against the loader's estimate for them
 cargo xtask portability
                      the crates of a page for WebAssembly; the command for Windows and macOS
-cargo xtask studio   the studio as one HTML file; its path is the last line
+cargo xtask studio   the studio as one HTML file, <frixel-scene> beside it, the widget of the Python module; the page's
+                     path is the last line
 cargo xtask studio-test
                      types and lints of the studio's scripts, and the studio in a browser: needs node,
                      npm and Chromium
-cargo xtask python   the Python module in a fresh virtual environment: wheel, types, lints, tests, examples
+cargo xtask python   the Python module in a fresh virtual environment: wheel, types, lints, tests, examples; its
+                     widget in Chromium
 cargo xtask dist FOLDER
                      what is handed on to those who have no checkout: command, images, wheel, page, licences, checksums
 cargo xtask hardware docs/wiring.md, from hardware/carrier.toml

@@ -1,28 +1,28 @@
 //! The checks of the Python module: its wheel, built and installed into a fresh virtual environment, with types, lints,
-//! tests and examples.
+//! tests and examples. The tests of its widget run in the studio's Chromium.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{cargo_in, root, run, target_folder};
+use crate::command::{WASM, cargo_in, root, run, target_folder};
 use crate::inputs::{self, Package};
 use crate::needs::Need;
-use crate::results;
+use crate::{results, studio, studio_tests};
 
 /// The package of its compiled part.
 const MODULE: &str = "frixel-python";
 /// The folder of the module.
 const FOLDER: &str = "host/python";
-/// What the checks need.
-pub(crate) const NEEDS: [Need; 2] = [Need::Python, Need::Git];
+/// What the checks need: that of the studio's tests, and Python.
+pub(crate) const NEEDS: [Need; 6] =
+    [Need::Python, Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium, Need::Git];
 
-/// What the checks read: the module, the crates that it is made of, the command that it is compared with, and the
-/// documents whose examples are run.
+/// What the checks read: the module, the crates that it is made of, the command that it is compared with, the
+/// documents whose examples are run, and what the widget is made of.
 pub(crate) fn inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
-    let more = ["docs", "scenes", "xtask"].map(str::to_owned);
-    inputs::of_libraries(&["frixel", MODULE], packages).into_iter().chain(more).collect()
+    studio_tests::command_inputs(packages).into_iter().chain(inputs::of_libraries(&[MODULE], packages)).collect()
 }
 
 /// Builds the wheel, installs it into a fresh virtual environment, and checks it there.
@@ -46,6 +46,7 @@ pub(crate) fn check() -> Result<(), String> {
     run("packages", in_environment("pip").args(install).args(["--requirement", "requirements.txt"]))?;
     run("format of Python", in_environment("ruff").args(["format", "--check", "."]))?;
     run("lints of Python", in_environment("ruff").args(["check", "."]))?;
+    let page = studio::build()?;
     let build = ["build", "--quiet", "--locked", "--profile", "wheel", "--out"];
     run("wheel", in_environment("maturin").args(build).arg(&wheels))?;
     let wheel = only_file(&wheels)?;
@@ -55,7 +56,9 @@ pub(crate) fn check() -> Result<(), String> {
     // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
     run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--workspace", "--bin", "frixel"]))?;
     let frixel = absolute(&target_folder().join("debug/frixel"))?;
-    results::run("tests of the Python module", in_environment("pytest").arg("--quiet").env("FRIXEL", frixel))
+    studio_tests::install(&studio_tests::folder())?;
+    let mut tests = in_environment("pytest");
+    results::run("tests of the Python module", tests.arg("--quiet").env("FRIXEL", frixel).env("STUDIO_PAGE", page))
 }
 
 /// The one file in a folder.

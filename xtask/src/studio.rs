@@ -1,6 +1,7 @@
-//! `cargo xtask studio`: the studio as one HTML file that opens from a disk, and `<frixel-scene>` as one script.
+//! `cargo xtask studio`: the studio as one HTML file that opens from a disk, and `<frixel-scene>` as one script, for
+//! documents and for the widget of the Python module.
 //!
-//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in both, each compressed
+//! The WebAssembly module, the page's modules, the vendored bundle and the bundled scenes are in each, compressed
 //! and as text. `host/studio/web/boot.js` unpacks them in the browser.
 
 use std::collections::BTreeMap;
@@ -38,10 +39,15 @@ pub(crate) const CARRIED: [(&str, &str, &str); 9] = [
 const BOOT: &str = "boot.js";
 /// Module of the element.
 const ELEMENT: &str = "element/frixel_scene.js";
+/// What makes a widget of the element.
+const WIDGET: &str = "host/studio/web/element/widget.js";
+/// The module of the widget, in the Python package.
+const WIDGET_MODULE: &str = "host/python/python/frixel/widget.js";
 /// Folders and files that are no part of the page.
-const IGNORED: [&str; 2] = ["node_modules", "entry.js"];
+const IGNORED: [&str; 3] = ["node_modules", "entry.js", "widget.js"];
 
-/// Builds the page and, beside it, the script of `<frixel-scene>`; returns the page's path.
+/// Builds the page and, beside it, the script of `<frixel-scene>`, and the module of the widget into the Python package;
+/// returns the page's path.
 pub(crate) fn build() -> Result<PathBuf, String> {
     let mut files = BTreeMap::from([("engine.wasm".to_owned(), module()?)]);
     for (folder, ending, prefix) in CARRIED {
@@ -58,8 +64,10 @@ pub(crate) fn build() -> Result<PathBuf, String> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let element = element(&files)?;
-    for (path, content) in [(&path, &page), (&folder.join("frixel-scene.js"), &element)] {
-        fs::write(path, content).map_err(|error| format!("{}: {error}", path.display()))?;
+    let widget = format!("{element}{}", text(&root().join(WIDGET))?);
+    let written = [(&path, page), (&folder.join("frixel-scene.js"), element), (&root().join(WIDGET_MODULE), widget)];
+    for (path, content) in written {
+        fs::write(path, &content).map_err(|error| format!("{}: {error}", path.display()))?;
         eprintln!("{}: {} bytes", path.display(), content.len());
     }
     path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
@@ -125,10 +133,12 @@ fn page(index: &str, web: &Path, files: &BTreeMap<String, Vec<u8>>) -> Result<St
     Ok(format!("{before}<head>\n    {policy}{behind}"))
 }
 
-/// The script of `<frixel-scene>`, which any document can load.
+/// The script of `<frixel-scene>`, which any document can load. A document that has it already, as one with two widgets,
+/// keeps the first.
 fn element(files: &BTreeMap<String, Vec<u8>>) -> Result<String, String> {
     let boot = boot(files, &all_packed(files)?.to_string(), ELEMENT)?;
-    Ok(format!("// <frixel-scene> of frixel: docs/studio.md says how to use it.\n(() => {{\n{boot}}})();\n"))
+    let title = "// <frixel-scene> of frixel: docs/studio.md says how to use it.";
+    Ok(format!("{title}\nif (!globalThis.studio) (() => {{\n{boot}}})();\n"))
 }
 
 /// The script that unpacks the files, which a JavaScript expression gives, and starts a module.

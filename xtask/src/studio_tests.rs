@@ -33,7 +33,7 @@ pub(crate) fn check_scripts() -> Result<(), String> {
         install(&folder)?;
         run(name, Command::new("npm").current_dir(&folder).args(["run", "--silent", "check"]))?;
     }
-    pico_rig::check_scripts(&test_folder())
+    pico_rig::check_scripts(&folder())
 }
 
 /// What the tests of the page read: the crates and files that the page is made of, and how it is built.
@@ -70,7 +70,7 @@ fn runner(programs: &[&str]) -> Result<Command, String> {
     // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
     let native = ["build", "--locked", "--workspace", "--example", REAL_BOARD];
     run("programs", cargo_in(".").args(native).args(programs))?;
-    let folder = test_folder();
+    let folder = folder();
     install(&folder)?;
     let mut node = Command::new("node");
     node.current_dir(&folder).arg("--test").arg(format!("--test-concurrency={FILES_AT_ONCE}"));
@@ -79,7 +79,8 @@ fn runner(programs: &[&str]) -> Result<Command, String> {
     Ok(node)
 }
 
-fn test_folder() -> PathBuf {
+/// The folder of the tests.
+pub(crate) fn folder() -> PathBuf {
     root().join("host/studio/test")
 }
 
@@ -95,7 +96,7 @@ pub(crate) fn install(folder: &Path) -> Result<(), String> {
 
 /// The names of the test files, sorted.
 fn tests() -> Result<Vec<String>, String> {
-    let folder = test_folder();
+    let folder = folder();
     let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> = names.filter(|name| name.ends_with(".test.mjs")).collect();

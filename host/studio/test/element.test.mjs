@@ -7,11 +7,10 @@ import os from "node:os";
 import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { assertFelt, lineOf, slideOver } from "./element.mjs";
 import { cleanUp, endLeftovers, openPage, required } from "./harness.mjs";
 
 const SCRIPT = path.join(path.dirname(required("STUDIO_PAGE")), "frixel-scene.js");
-/** Duration of a stroke, ms. */
-const STROKE_MS = 1000;
 const GRATING = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
 
 afterEach(endLeftovers);
@@ -27,61 +26,6 @@ function documentOf(body, files = {}) {
     fs.writeFileSync(path.join(folder, name), content);
   }
   return folder;
-}
-
-/** Waits until the element shows a map, and returns the line under it. */
-async function lineOf(page, selector) {
-  await page.locator(selector).scrollIntoViewIfNeeded();
-  const line = page.locator(`${selector} .line`);
-  await page.waitForFunction(
-    (selector) => document.querySelector(selector).shadowRoot?.querySelector(".line")?.textContent,
-    selector,
-  );
-  return line.textContent();
-}
-
-/** Slides over an element; returns felt friction and voltage at each sample. */
-async function slideOver(page, selector) {
-  await page.locator(`${selector} #map-finger`).scrollIntoViewIfNeeded();
-  return page.evaluate(slideOn, [selector, [0.2, 0.8], STROKE_MS]);
-}
-
-/** Runs in the page. */
-async function slideOn([selector, [from, to], durationMs]) {
-  const element = document.querySelector(selector);
-  const canvas = element.shadowRoot.querySelector("#map-finger");
-  const send = (type, part) => {
-    const { left, top, width, height } = canvas.getBoundingClientRect();
-    const place = { clientX: left + part * width, clientY: top + 0.5 * height };
-    canvas.dispatchEvent(new PointerEvent(type, { ...place, pointerId: 1, button: 0, bubbles: true }));
-  };
-  const samples = { feltN: [], voltageV: [] };
-  let isPlaying = false;
-  const feel = ({ detail }) => {
-    isPlaying ||= detail.state === "active" && detail.feltN.length > 0;
-    for (const name of ["feltN", "voltageV"]) samples[name].push(...detail[name]);
-  };
-  element.addEventListener("feel", feel);
-  // The scene under the pointer is the one that plays.
-  send("pointerenter", from);
-  while (!isPlaying) await wait(8);
-  send("pointerdown", from);
-  for (let ms = 8; ms <= durationMs; ms += 8) {
-    await wait(8);
-    send("pointermove", from + ((to - from) * ms) / durationMs);
-  }
-  // What is felt comes 40 ms later.
-  await wait(100);
-  send("pointerup", to);
-  element.removeEventListener("feel", feel);
-  return samples;
-}
-
-function assertFelt({ feltN, voltageV }) {
-  const touched = feltN.filter((felt) => felt > 0.05);
-  assert.ok(touched.length > 200, `${touched.length} samples under the finger`);
-  assert.ok(Math.max(...touched) - Math.min(...touched) > 0.02, "the friction changes");
-  assert.ok(Math.max(...voltageV) > 50, "there is a drive");
 }
 
 test("from a file, bundled scenes and scenes inside of the element play", async () => {

@@ -53,6 +53,11 @@ class FrixelScene extends HTMLElement {
   static observedAttributes = ["scene", "src", "finger", "screen", "touch"];
 
   /**
+   * The pictures and profiles that the scene inside of the element names.
+   * @type {Files}
+   */
+  files = {};
+  /**
    * What shows the scene, once it is near the window.
    * @type {Parts | undefined}
    */
@@ -163,7 +168,7 @@ class FrixelScene extends HTMLElement {
       throw new Error(`scene="${name}": no bundled scene has this name`);
     }
     if (src !== null) return this.#fetched(engine, new URL(src, document.baseURI), carried);
-    if (text !== "") return { files: { ...carried, "scene.toml": text }, entry: "scene.toml" };
+    if (text !== "") return { files: { ...carried, ...this.files, "scene.toml": text }, entry: "scene.toml" };
     throw new Error('<frixel-scene> has no scene: give it scene="brick", src="my.toml", or a scene\'s text inside');
   }
 
