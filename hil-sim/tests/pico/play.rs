@@ -12,8 +12,9 @@ use crate::emulator;
 
 /// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.
 const FRAME_MAX: Duration = Duration::from_micros(5);
-/// How far the distance of two frames may be from a tick: ten cycles of the core.
-const JITTER_MAX: Duration = Duration::from_nanos(50);
+/// How far the distance of two frames may be from a tick: the emulator sees edges between instructions only, and the longest,
+/// the entry of an exception, takes 16 cycles of the core.
+const JITTER_MAX: Duration = Duration::from_nanos(80);
 
 /// The ends of the frames among events. Each has 24 clocks.
 fn frames(events: &[Stamped]) -> Vec<Duration> {
