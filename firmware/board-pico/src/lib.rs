@@ -2,7 +2,7 @@
 //! pins and the parts. Numbers and headings behind "RP2040" and "RP2350" refer to the data sheets of the two chips; where
 //! only one is cited, the other says the same.
 //!
-//! The Pico 2 is the board. The RP2040 has no floating-point unit, so that the Pico manages a quarter of the tick rate;
+//! The Pico 2 is the board. The RP2040 has no floating-point unit, so that the Pico manages a fifth of the tick rate;
 //! it is there because an emulator runs its image in this repository's CI. One source serves both. The differences are
 //! in [`chip`], [`clock`], [`rom`] and [`boot`].
 //!

@@ -133,13 +133,14 @@ impl Board {
     };
 
     /// The Raspberry Pi Pico with the same parts. It computes in software what the others' floating-point unit does, so
-    /// it has a quarter of their ticks, and takes little more than one layer.
+    /// it has a fifth of their ticks, and takes little more than one layer.
     pub const PICO: Self = Self {
         kind: BoardKind::Pico,
-        tick_hz: 10_000,
+        tick_hz: 8_000,
         limits: BoardLimits {
-            // 75 % of the 20,000 cycles that the RP2040 at 200 MHz has between two ticks; the frame for the DAC begins
-            // after 94 %. The tick runs from RAM, and nothing delays it.
+            // 60 % of the 25,000 cycles that the RP2040 at 200 MHz has between two ticks. What the interrupt does beside
+            // the tick that is estimated, and the monitor of a real amplifier, took 7,500 more for an estimate of 13,100
+            // (its emulator, one grating).
             tick_cycles_max: 15_000,
             core: Core::CortexM0Plus,
             ..Self::NUCLEO_G474RE.limits

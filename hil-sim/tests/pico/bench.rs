@@ -13,7 +13,7 @@ use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
 
 pub(super) const BOARD: Board = Board::PICO;
-pub(super) const TICK: Duration = Duration::from_micros(100);
+pub(super) const TICK: Duration = Duration::from_micros(1_000_000 / BOARD.tick_hz as u64);
 /// Time until the switch counts as held, with a margin.
 const SWITCH_TIME: Duration = Duration::from_millis(50);
 

@@ -14,7 +14,7 @@ use crate::emulator;
 use crate::script::Script;
 
 /// Ticks that are compared, from the first code on that is not zero.
-const TICKS: usize = 3_000;
+const TICKS: usize = 2_400;
 /// Ticks by which the finger comes later after the command to play: more than a period of the carrier, whose phase begins
 /// there.
 const PHASES: u64 = 24;
