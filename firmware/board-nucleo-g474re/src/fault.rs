@@ -65,7 +65,7 @@ unsafe fn DefaultHandler(number: i16) {
 unsafe fn NonMaskableInt() {
     if !flash::take_unreadable() {
         ENDING.end(Fault::HardFault, 0, &mut |text| {
-            text.text("a non-maskable interrupt: flash, RAM or clock failed");
+            text.text("NMI: flash, RAM or clock failed");
         })
     }
 }

@@ -1,8 +1,8 @@
 //! The main loop of [`frixel_board::main_loop`], with the optical frame if the image has it.
 //!
-//! It is in the library, beside the tick, so that both share the code of their queues: otherwise the compiler inlines a
-//! part of it into the tick, with a panic for a queue of length zero that nobody can rule out by its name
-//! (`cargo xtask bench` looks).
+//! The compiler takes it into the program, where [`tick_interrupt`](crate::tick_interrupt) declares the tick, so that both
+//! share the code of their queues. Otherwise it inlines a part of that into the tick, with a panic for a queue of length
+//! zero, which no queue has (`cargo xtask bench` looks for panics of the tick).
 
 #[cfg(feature = "optical-frame")]
 use core::pin::pin;
@@ -16,6 +16,7 @@ use crate::board::Nucleo;
 use crate::optical_frame;
 
 /// Runs the main loop for ever.
+#[inline]
 pub fn run(mut main_loop: MainLoop<Nucleo>) -> ! {
     #[cfg(feature = "optical-frame")]
     let reports = Reports::new(None);
