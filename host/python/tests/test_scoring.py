@@ -77,6 +77,8 @@ def test_a_score_is_data_that_can_be_sent_elsewhere() -> None:
         ({"jobs": 0}, "jobs is a whole number from 1 to 1000, found 0"),
         ({"stroke": "natural"}, 'a stroke is "human", "human-rough", "sweep" or a Stroke'),
         ({"stroke": 3}, 'a stroke is "human", "human-rough", "sweep" or a Stroke, found 3'),
+        ({"people": 1000, "seeds": 1000}, "are 4000000 plays, and at most 100000 are scored: give fewer, or share"),
+        ({"people": 1000, "seconds": 600}, "are 2.4e\\+06 s of strokes, and 36000 s fit into memory: give fewer or"),
         ({"touch": "50"}, "no bundled touch source is called `50`"),
     ],
 )
@@ -97,6 +99,8 @@ def test_a_scene_that_is_none_or_refused_is_said() -> None:
     "work",
     [
         "frixel.score(scene, strokes=1, seconds=60, seeds=100)",
+        # Many strokes are made before the first one is played.
+        "frixel.score(scene, people=60, strokes=1, seconds=600, seeds=1)",
         "frixel.sweep.play(cells[0])",
     ],
 )
@@ -112,7 +116,12 @@ def test_an_interrupt_ends_long_work(work: str) -> None:
     assert child.stdout.readline() == "begun\n"
     time.sleep(0.5)
     child.send_signal(signal.SIGINT)
-    assert child.communicate()[0] == "interrupted\n"
+    try:
+        # The work takes minutes.
+        assert child.communicate(timeout=20)[0] == "interrupted\n"
+    finally:
+        child.kill()
+        child.wait()
 
 
 def test_other_threads_run_while_a_score_is_computed() -> None:
