@@ -101,7 +101,13 @@ def test_a_full_disk_loses_the_trial_that_ran(tmp_path: Path, what: str) -> None
     assert child.answer_until("presented")
     written = [path.stat().st_size for path in (tmp_path / "recordings").iterdir()]
     # The limit of the process stands for the disk: a write beyond it fails in the middle.
-    room = min(written) // 2 if what == "a recording" else (tmp_path / "trials.jsonl").stat().st_size + 20
+    trials = tmp_path / "trials.jsonl"
+    if what == "a recording":
+        room = min(written) // 2
+    else:
+        # Spaces at the end of the last line: recordings fit below the limit, and the next line does not.
+        trials.write_text(trials.read_text()[:-1] + " " * (2 * max(written)) + "\n")
+        room = trials.stat().st_size + 20
     resource.prlimit(child.process.pid, resource.RLIMIT_FSIZE, (room, room))
     child.answer()
     said = child.ended()

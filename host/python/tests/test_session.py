@@ -104,11 +104,12 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
     for changed, said in wrong:
         with pytest.raises(ExperimentError, match=said):
             opened(tmp_path, **changed)
-    for changed, said in [
+    values: list[tuple[dict[str, Any], str]] = [
         ({"seed": "7"}, "seed is a whole number from 0"),
         ({"participant": "Jane Doe"}, r"give a code of 1 to 32 letters, digits, -, _ and \., and no name"),
         ({"participant": 7}, "participant 7: give a code"),
-    ]:
+    ]
+    for changed, said in values:
         with pytest.raises(ParameterError, match=said):
             opened(tmp_path, **changed)
     with pytest.raises(ExperimentError, match=r"cannot be made \(File exists\): give another one"):
@@ -386,9 +387,12 @@ def test_a_play_on_a_board_begins_when_the_board_plays(tmp_path: Path) -> None:
 def test_what_is_kept_for_the_same_play_has_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     runs: list[Simulator] = []
     run_it = Simulator.run
-    monkeypatch.setattr(
-        Simulator, "run", lambda simulator, seconds: runs.append(simulator) or run_it(simulator, seconds)
-    )
+
+    def counted(simulator: Simulator, seconds: float | None = None) -> Recording:
+        runs.append(simulator)
+        return run_it(simulator, seconds)
+
+    monkeypatch.setattr(Simulator, "run", counted)
     played(tmp_path / "all", [0.1, 0.2])
     assert len(runs) == 3, "two levels and the standard"
     runs.clear()
