@@ -14,14 +14,13 @@ from typing import Any
 
 import pytest
 
+from .interrupted_session import INTERRUPTED
 from .test_device import VirtualBoard
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals, limits and pseudo-terminals are those of Unix")
 
 PROGRAM = Path(__file__).with_name("interrupted_session.py")
 TRIALS = 6
-INTERRUPTED = 2
-"""Number of the trial in which something goes wrong."""
 
 
 class Child:

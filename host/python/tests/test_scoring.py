@@ -121,7 +121,7 @@ def test_an_interrupt_ends_long_work(work: str) -> None:
         assert child.communicate(timeout=20)[0] == "interrupted\n"
     finally:
         child.kill()
-        child.wait()
+        child.communicate()
 
 
 def test_other_threads_run_while_a_score_is_computed() -> None:
