@@ -29,7 +29,8 @@ impl From<PlanError> for Raised {
 }
 
 /// The cells of a plan, which messages call `name`. `scenes` has the texts and files of scenes that are not files in
-/// `folder`. An interrupt ends it before the next scene, combination or text.
+/// `folder`. An interrupt ends it before the next combination is compiled, once
+/// all of them are made.
 #[pyfunction]
 pub(crate) fn sweep_cells(
     py: Python<'_>,

@@ -102,12 +102,16 @@ def test_a_scene_that_is_none_or_refused_is_said() -> None:
         # Many strokes are made before the first one is played.
         "frixel.score(scene, people=60, strokes=1, seconds=600, seeds=1)",
         "frixel.sweep.play(cells[0])",
+        # 250,000 combinations are compiled.
+        "frixel.sweep.cells({**plan, 'parameters': values})",
     ],
 )
 def test_an_interrupt_ends_long_work(work: str) -> None:
     program = (
         "import frixel\nscene = {'layer': [{'kind': 'constant', 'friction_fraction': 0.5}]}\n"
         "plan = {'scenes': {'plate': scene}, 'people': 1, 'strokes': 1, 'seconds': 60, 'seeds': 100}\n"
+        "values = {'layer.1.friction_fraction': {'from': 0.2, 'to': 0.3, 'count': 1000}}\n"
+        "values['drive.voltage_max_v_rms'] = {'from': 40, 'to': 50, 'count': 250}\n"
         "cells = frixel.sweep.cells(plan)\n"
         f"print('begun', flush=True)\ntry:\n    {work}\nexcept KeyboardInterrupt:\n    print('interrupted')\n"
     )
@@ -117,7 +121,7 @@ def test_an_interrupt_ends_long_work(work: str) -> None:
     time.sleep(0.5)
     child.send_signal(signal.SIGINT)
     try:
-        # The work takes minutes.
+        # Without the interrupt, the work takes longer.
         assert child.communicate(timeout=20)[0] == "interrupted\n"
     finally:
         child.kill()
