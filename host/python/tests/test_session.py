@@ -302,6 +302,31 @@ def test_the_manifest_has_the_hash_of_all_that_was_played_by_itself(tmp_path: Pa
     assert json.loads(metadata[b"frixel.recording"])["participant"] == "p01"
 
 
+@pytest.mark.skipif(os.name != "posix", reason="folders are synchronised as on Unix")
+def test_a_new_name_is_on_the_disk_before_the_next_trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fsync = os.fsync
+    named: set[Path] = set()
+
+    def watched(file: int) -> None:
+        fsync(file)
+        for folder in [path for path in [tmp_path, *tmp_path.rglob("*")] if path.is_dir()]:
+            if os.path.samestat(os.fstat(file), folder.stat()):
+                named.update(folder.iterdir())
+
+    monkeypatch.setattr(os, "fsync", watched)
+    folder = tmp_path / "session"
+    with opened(folder, played=None) as session:
+
+        def play(trial: Trial) -> None:
+            session.play(plates(trial.level), stroke=STROKE, ideal=True)
+            if trial.number == 1:
+                first = json.loads((folder / "trials.jsonl").read_text())["plays"][0]["recording"]
+                names = ["", "manifest.json", "trials.jsonl", "recordings", first]
+                assert {folder / name for name in names} <= named
+
+        session.run(ConstantStimuli([0.1], 2), play, lambda trial: 0)
+
+
 def test_a_recording_that_was_changed_is_not_replayed(tmp_path: Path) -> None:
     rows = played(tmp_path, [0.1])
     path = tmp_path / rows[0]["plays"][0]["recording"]
@@ -327,6 +352,22 @@ def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
         assert session.rows[0]["plays"] == []
         with pytest.raises(ExperimentError, match="played nothing through its session"):
             session.replay(0)
+
+
+def test_a_play_for_less_than_no_time_is_refused_before_it_begins(tmp_path: Path) -> None:
+    markers: list[str] = []
+    with (
+        opened(tmp_path, on_marker=lambda marker, trial: markers.append(marker)) as session,
+        Device.open("sim") as device,
+    ):
+        with pytest.raises(ParameterError, match=r"seconds is a number from 0\.001"):
+            session.run(
+                ConstantStimuli([0.1], 1),
+                lambda trial: session.play(plates(0.1), on=device, seconds=-1),
+                lambda trial: 0,
+            )
+        assert device.state == "disarmed"
+    assert markers == ["began"]
 
 
 def test_a_session_plays_on_a_board_and_has_its_clock(tmp_path: Path) -> None:
