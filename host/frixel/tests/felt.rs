@@ -115,7 +115,7 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
 
 fn record(rig: &RigConfig, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
     let stroke = hand(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
-    let trial = Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None };
+    let trial = Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None };
     trial.play(program, rig).unwrap()
 }
 

@@ -25,7 +25,7 @@ fn mean(program: &Program, key: &str) -> f64 {
     let trials: Vec<Trial> = (1..=2)
         .map(|seed| {
             let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), seed).unwrap();
-            Trial { stroke_name: format!("human {seed}"), stroke, seed, finger: None }
+            Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None }
         })
         .collect();
     let score = Score::of(program, &RigConfig::default(), &trials).unwrap();
@@ -49,7 +49,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let rig = RigConfig::default();
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
-    let trial = Trial { stroke_name: "human 1".to_owned(), stroke, seed: 1, finger: None };
+    let trial = Trial { stroke_name: "human 1".to_owned(), stroke: stroke.into(), seed: 1, finger: None };
     let rig = RigConfig { world: rig.world.realistic(), ..rig };
     let score = Score::of(&program, &rig, &[trial]).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;

@@ -8,6 +8,7 @@
 mod device;
 mod error;
 mod fit;
+mod input;
 mod model;
 mod profile;
 mod recording;
@@ -26,6 +27,8 @@ mod _frixel {
     use super::device::Device;
     #[pymodule_export]
     use super::fit::fit_finger;
+    #[pymodule_export]
+    use super::input::read_file;
     #[pymodule_export]
     use super::model::{contact_scales, eval_contact, invert_contact};
     #[pymodule_export]

@@ -1,7 +1,7 @@
 //! Recordings: columns as arrays, and as Parquet.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
@@ -98,19 +98,20 @@ pub(crate) fn write_parquet(
     written.map_err(|error| failed(&error))
 }
 
-/// Plays a recording again, and compares it. Returns the number of its rows.
+/// Plays a recording, the bytes of its file, again, and compares it. Messages call the file `name`. Returns the number
+/// of its rows.
 #[pyfunction]
-pub(crate) fn replay(py: Python<'_>, path: PathBuf) -> PyResult<usize> {
-    let failed = |sentence: &str| raised(py, "PlayError", (format!("{}{sentence}", path.display()),));
-    let bytes =
-        fs::read(&path).map_err(|error| failed(&format!(": this file cannot be read ({error}): check the path")))?;
-    let recorded = Recording::read_parquet(bytes).map_err(|error| failed(&format!(": {error}")))?;
-    let played = interruptible(py, |goes_on| recorded.replay(&mut || goes_on()))?;
-    let played = played.map_err(|error| failed(&format!(" cannot be played again: {error}")))?;
-    match recorded.first_difference(&played) {
-        None => Ok(recorded.rows()),
-        Some(difference) => Err(failed(&format!(
-            " plays other bits: {difference}; the file was changed, or this machine computes differently"
-        ))),
-    }
+pub(crate) fn replay(py: Python<'_>, recording: Vec<u8>, name: &str) -> PyResult<usize> {
+    let replayed = interruptible(py, |goes_on| {
+        let recorded = Recording::read_parquet(recording).map_err(|error| format!(": {error}"))?;
+        let played = recorded.replay(&mut || goes_on());
+        let played = played.map_err(|error| format!(" cannot be played again: {error}"))?;
+        match recorded.first_difference(&played) {
+            None => Ok(recorded.rows()),
+            Some(difference) => Err(format!(
+                " plays other bits: {difference}; the file was changed, or this machine computes differently"
+            )),
+        }
+    })?;
+    replayed.map_err(|sentence| raised(py, "PlayError", (format!("{name}{sentence}"),)))
 }

@@ -14,6 +14,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use super::error::{raised, scene_error};
+use super::input;
 use super::profile::ProfileText;
 
 /// Pictures and profiles by the names that a scene has for them.
@@ -187,7 +188,7 @@ impl Files for ReadFiles {
 fn read_in(folder: &Path, name: &str) -> Result<Vec<u8>, FileUnavailable> {
     let path = folder.join(name);
     if path.exists() {
-        return fs::read(path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
+        return input::read(&path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
     }
     let searched = path.parent().unwrap_or(folder);
     let entries = fs::read_dir(searched).into_iter().flatten();

@@ -78,15 +78,17 @@ pub(crate) fn score_scene(
         seconds: settings.seconds,
         median_speed_m_per_s: settings.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
     };
-    let trials = plan.of_people(settings.people, scene.parsed(), &program, settings.ideal);
-    let trials = trials.map_err(|error| match error {
-        TrialsError::Screen(error) => scene_error(py, &error),
-        error => parameter_error(py, error),
-    })?;
     let failed = |sentence: String| raised(py, "PlayError", (sentence,));
     let pool = ThreadPoolBuilder::new().num_threads(settings.jobs).build();
     let pool = pool.map_err(|error| failed(format!("the threads of `jobs` cannot start ({error}): give fewer")))?;
-    let scored = interruptible(py, |goes_on| pool.install(|| Score::of_while(&program, &rig, &trials, goes_on)))?;
+    let scored = interruptible(py, |goes_on| {
+        let trials = plan.of_people_while(settings.people, scene.parsed(), &program, settings.ideal, goes_on)?;
+        Ok(pool.install(|| Score::of_while(&program, &rig, &trials, goes_on)))
+    })?;
+    let scored = scored.map_err(|error| match error {
+        TrialsError::Screen(error) => scene_error(py, &error),
+        error => parameter_error(py, error),
+    })?;
     let score = scored.map_err(|error| failed(error.to_string()))?;
     Ok((score.to_json(), score.summary(), score.to_csv(), score.layers_csv()))
 }

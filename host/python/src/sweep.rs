@@ -1,7 +1,8 @@
 //! Studies of many simulated fingers. Cells and results cross as the JSON that `frixel sweep` keeps.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fmt::Display;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel_lab::sweep::{Cell, CellError, CellResult, Plan, PlanError, Source, Study, json};
@@ -9,9 +10,9 @@ use frixel_scene::Scene as ParsedScene;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::ThreadPoolBuilder;
-use serde::de::DeserializeOwned;
 
 use super::error::{parameter_error, raised, scene_error};
+use super::input;
 use super::scene::{NamedFiles, ReadFiles};
 use super::signals::interruptible;
 
@@ -28,7 +29,8 @@ impl From<PlanError> for Raised {
 }
 
 /// The cells of a plan, which messages call `name`. `scenes` has the texts and files of scenes that are not files in
-/// `folder`.
+/// `folder`. An interrupt ends it before the next combination is compiled, once
+/// all of them are made.
 #[pyfunction]
 pub(crate) fn sweep_cells(
     py: Python<'_>,
@@ -37,40 +39,54 @@ pub(crate) fn sweep_cells(
     folder: PathBuf,
     scenes: BTreeMap<String, (String, NamedFiles)>,
 ) -> PyResult<Vec<String>> {
-    let plan = Plan::parse(plan, name).map_err(|error| parameter_error(py, error))?;
-    let source = |name: &str| match scenes.get(name) {
-        Some((text, files)) => Ok(Source { name: name.to_owned(), text: text.clone(), files: files.clone() }),
-        None => source_in(py, &folder, name).map_err(Raised),
-    };
-    let text = |what, name: &str| {
-        let path = folder.join(name);
-        let advice = "give its file, from the plan's folder, or a bundled one";
-        let unreadable = |error| Raised(parameter_error(py, format!("{what} {}: {error}; {advice}", path.display())));
-        fs::read_to_string(&path).map_err(unreadable)
-    };
-    let cells = plan.cells(source, text).map_err(|Raised(error)| error)?;
-    for cell in cells.iter().filter(|cell| cell.person == 1) {
-        py.detach(|| cell.check()).map_err(|error| exception(py, cell, error))?;
-    }
-    Ok(cells.iter().map(json).collect())
+    let cells = interruptible(py, |goes_on| {
+        let plan = Plan::parse(plan, name)?;
+        let source = |name: &str| match scenes.get(name) {
+            Some((text, files)) => Ok(Source { name: name.to_owned(), text: text.clone(), files: files.clone() }),
+            None => source_in(&folder, name),
+        };
+        let cells = plan.cells(source, |what, name| text_in(&folder, what, name))?;
+        for cell in cells.iter().filter(|cell| cell.person == 1).take_while(|_| goes_on().is_continue()) {
+            cell.check().map_err(|error| Raised(Python::attach(|py| exception(py, cell, error))))?;
+        }
+        Ok(cells.iter().take_while(|_| goes_on().is_continue()).map(json).collect())
+    })?;
+    cells.map_err(|Raised(error)| error)
 }
 
 /// A scene file with the files that it names.
-fn source_in(py: Python<'_>, folder: &Path, name: &str) -> PyResult<Source> {
+fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
     let path = folder.join(name);
-    let unreadable =
-        |error| parameter_error(py, format!("the scene {} cannot be read ({error}): check the path", path.display()));
-    let bytes = fs::read(&path).map_err(unreadable)?;
+    let bytes = input::read(&path).map_err(|error| {
+        unreadable(format_args!("the scene {} cannot be read ({error}): check the path", path.display()))
+    })?;
     let files = ReadFiles::new(path.parent().map(Path::to_owned), NamedFiles::new());
-    ParsedScene::parse_bytes(&bytes, name, &files).map_err(|error| scene_error(py, &error))?;
+    let mistakes = |error| Raised(Python::attach(|py| scene_error(py, &error)));
+    ParsedScene::parse_bytes(&bytes, name, &files).map_err(mistakes)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     Ok(Source { name: name.to_owned(), text, files: files.into_read() })
+}
+
+/// The text of the file of a screen or a touch source.
+fn text_in(folder: &Path, what: &str, name: &str) -> Result<String, Raised> {
+    let path = folder.join(name);
+    let advice = "give its file, from the plan's folder, or a bundled one";
+    input::read(&path)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other))
+        .map_err(|error| unreadable(format_args!("{what} {}: {error}; {advice}", path.display())))
+}
+
+fn unreadable(sentence: impl Display) -> Raised {
+    Raised(Python::attach(|py| parameter_error(py, sentence)))
 }
 
 /// Plays a cell. Returns its result.
 #[pyfunction]
 pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
-    let cell: Cell = read(py, cell, "a cell is a text that `sweep.cells` has made")?;
+    let no_cell = |error: serde_json::Error| {
+        parameter_error(py, format!("a cell is a text that `sweep.cells` has made, and this one is not: {error}"))
+    };
+    let cell: Cell = serde_json::from_str(cell).map_err(no_cell)?;
     // Cells are played side by side, and each on one thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|error| raised(py, "PlayError", (format!("no thread could be started: {error}"),)))?;
@@ -78,22 +94,20 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     played.map(|result| json(&result)).map_err(|error| exception(py, &cell, error))
 }
 
-/// Puts results together. Returns lines for a person, and the files that `frixel sweep` writes.
+/// Puts results together, without a look at signals. Returns lines for a person, and the files that `frixel sweep` writes.
 #[pyfunction]
 pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec<String>, NamedBytes<'_>)> {
-    let expected = "a result is a text that `sweep.play` has made";
-    let results =
-        results.iter().map(|result| read::<CellResult>(py, result, expected)).collect::<PyResult<Vec<_>>>()?;
-    let (summary, files) = py.detach(|| {
-        let study = Study::new(results);
-        (study.summary(), study.files())
+    let study = py.detach(|| {
+        let results = results.iter().map(|result| serde_json::from_str::<CellResult>(result));
+        let study = Study::new(results.collect::<Result<Vec<_>, _>>()?);
+        Ok((study.summary(), study.files()))
     });
+    let no_result = |error: serde_json::Error| {
+        parameter_error(py, format!("a result is a text that `sweep.play` has made, and this one is not: {error}"))
+    };
+    let (summary, files) = study.map_err(no_result)?;
     let files = files.map_err(|error| raised(py, "FrixelError", (error.to_string(),)))?;
     Ok((summary, files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect()))
-}
-
-fn read<T: DeserializeOwned>(py: Python<'_>, text: &str, expected: &str) -> PyResult<T> {
-    serde_json::from_str(text).map_err(|error| parameter_error(py, format!("{expected}, and this one is not: {error}")))
 }
 
 fn exception(py: Python<'_>, cell: &Cell, error: CellError) -> PyErr {

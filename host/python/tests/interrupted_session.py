@@ -10,6 +10,8 @@ import time
 from frixel import Device, Stroke
 from frixel.experiment import TWO_ALTERNATIVES, ConstantStimuli, Session, Trial
 
+INTERRUPTED = 2
+"""Number of the trial in which something goes wrong."""
 STROKE = Stroke.straight((20, 40), (40, 40), speed_mm_s=100)
 
 
@@ -36,7 +38,8 @@ def main(folder: str, port: str) -> None:
                 session.play(scene, stroke=STROKE, ideal=True)
             else:
                 threading.Thread(target=watch, args=(device, trial), daemon=True).start()
-                session.play(scene, on=device, seconds=1.0)
+                # The play that is interrupted has not ended before, on a busy machine either.
+                session.play(scene, on=device, seconds=1.0 if trial.number < INTERRUPTED else 10.0)
 
         session.run(ConstantStimuli([0.1, 0.2, 0.3], 2, seed=3), play, lambda trial: int(sys.stdin.readline()))
     if device is not None:

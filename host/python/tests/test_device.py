@@ -12,6 +12,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -228,6 +229,34 @@ def virtual_board(tmp_path: Path) -> Iterator[VirtualBoard]:
     board.server.wait()
     if board.server.stdout is not None:
         board.server.stdout.close()
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"seconds": -1}, "seconds is a number from 0.001 to 86400, found -1"),
+        ({"seconds": 1, "messages_per_s": 0}, "messages_per_s is a whole number from 1 to 1000, found 0"),
+    ],
+)
+def test_a_record_with_a_wrong_value_plays_nothing(settings: dict[str, Any], sentence: str) -> None:
+    with Device.open("sim") as device:
+        with pytest.raises(ParameterError, match=sentence):
+            device.record(SCENE, **settings)
+        assert device.state == "disarmed"
+
+
+def test_a_record_that_is_left_in_the_middle_disarms() -> None:
+    with Device.open("sim") as device:
+        with pytest.raises(ZeroDivisionError):
+            device.record(SCENE, 1, on_active=lambda: 1 // 0)
+        assert device.state == "disarmed"
+
+
+def test_a_record_says_once_when_the_board_plays() -> None:
+    with Device.open("sim") as device:
+        states: list[str] = []
+        device.record(SCENE, 0.2, on_active=lambda: states.append(device._state))
+        assert states == ["active"]
 
 
 def test_a_board_at_a_port_plays_and_is_disarmed(virtual_board: VirtualBoard) -> None:

@@ -14,6 +14,7 @@ import matplotlib as mpl
 import nbformat
 import numpy as np
 import pytest
+from frixel.experiment import TWO_ALTERNATIVES, Observer
 from nbclient import NotebookClient
 
 from .conftest import REPOSITORY
@@ -73,7 +74,10 @@ def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
     else:
         lines = [line for line in text.splitlines() if line.startswith("observer ")]
         assert len(lines) == 10
-        assert all("threshold 0.0" in line or "threshold 0.1" in line for line in lines)
+        intervals = [re.search(r"threshold \S+, (\S+) to (\S+) ", line) for line in lines]
+        truth = Observer(0.06).threshold(TWO_ALTERNATIVES)
+        # Of ten intervals of 95 %, fewer than seven contain the truth once in 1,000 runs.
+        assert sum(float(found[1]) < truth < float(found[2]) for found in intervals if found) >= 7
         assert "2 plays with the same bits" in text
         assert "40 cells" in text
         assert {"image/png", "image/svg+xml"} <= pictures

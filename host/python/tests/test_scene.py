@@ -43,6 +43,12 @@ def test_all_mistakes_are_told_with_their_places() -> None:
 def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"nothing\.toml: this scene file cannot be read \(.+\): check the path"):
         Scene.load(tmp_path / "nothing.toml")
+    with (tmp_path / "large.toml").open("wb") as large:
+        large.truncate((512 << 20) + 1)
+    with pytest.raises(SceneError, match="it has more than 536870912 bytes, the most that are read"):
+        Scene.load(tmp_path / "large.toml")
+    with pytest.raises(SceneError, match="a regular file is expected"):
+        Scene.load("/dev/zero")
     with pytest.raises(SceneError, match="this scene file cannot be read"):
         Scene.load(tmp_path)
     (tmp_path / "picture.toml").write_text('version = 2\n[[layer]]\nkind = "picture"\nfile = "brik.png"\n')

@@ -77,6 +77,8 @@ def test_a_score_is_data_that_can_be_sent_elsewhere() -> None:
         ({"jobs": 0}, "jobs is a whole number from 1 to 1000, found 0"),
         ({"stroke": "natural"}, 'a stroke is "human", "human-rough", "sweep" or a Stroke'),
         ({"stroke": 3}, 'a stroke is "human", "human-rough", "sweep" or a Stroke, found 3'),
+        ({"people": 1000, "seeds": 1000}, "are 4000000 plays, and at most 100000 are scored: give fewer, or share"),
+        ({"people": 1000, "seconds": 600}, "are 2.4e\\+06 s of strokes, and 36000 s fit into memory: give fewer or"),
         ({"touch": "50"}, "no bundled touch source is called `50`"),
     ],
 )
@@ -97,13 +99,19 @@ def test_a_scene_that_is_none_or_refused_is_said() -> None:
     "work",
     [
         "frixel.score(scene, strokes=1, seconds=60, seeds=100)",
+        # Many strokes are made before the first one is played.
+        "frixel.score(scene, people=60, strokes=1, seconds=600, seeds=1)",
         "frixel.sweep.play(cells[0])",
+        # 250,000 combinations are compiled.
+        "frixel.sweep.cells({**plan, 'parameters': values})",
     ],
 )
 def test_an_interrupt_ends_long_work(work: str) -> None:
     program = (
         "import frixel\nscene = {'layer': [{'kind': 'constant', 'friction_fraction': 0.5}]}\n"
         "plan = {'scenes': {'plate': scene}, 'people': 1, 'strokes': 1, 'seconds': 60, 'seeds': 100}\n"
+        "values = {'layer.1.friction_fraction': {'from': 0.2, 'to': 0.3, 'count': 1000}}\n"
+        "values['drive.voltage_max_v_rms'] = {'from': 40, 'to': 50, 'count': 250}\n"
         "cells = frixel.sweep.cells(plan)\n"
         f"print('begun', flush=True)\ntry:\n    {work}\nexcept KeyboardInterrupt:\n    print('interrupted')\n"
     )
@@ -112,7 +120,12 @@ def test_an_interrupt_ends_long_work(work: str) -> None:
     assert child.stdout.readline() == "begun\n"
     time.sleep(0.5)
     child.send_signal(signal.SIGINT)
-    assert child.communicate()[0] == "interrupted\n"
+    try:
+        # Without the interrupt, the work takes longer.
+        assert child.communicate(timeout=20)[0] == "interrupted\n"
+    finally:
+        child.kill()
+        child.communicate()
 
 
 def test_other_threads_run_while_a_score_is_computed() -> None:

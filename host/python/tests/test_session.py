@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
+import itertools
 import json
 import os
+import re
 import subprocess
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pyarrow.parquet as parquet
 import pytest
-from frixel import Device, ParameterError, PlayError, Scene, Stroke
+from frixel import Device, ParameterError, PlayError, Recording, Scene, Simulator, Stroke
 from frixel.experiment import (
     TWO_ALTERNATIVES,
     Answers,
@@ -23,6 +28,7 @@ from frixel.experiment import (
     QuestPlus,
     Session,
     Trial,
+    _session,
 )
 from frixel.experiment.coverage import LEVELS
 
@@ -93,15 +99,19 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
         ({"participant": "p02"}, "participant is 'p01' there, and 'p02' here"),
         ({"seed": 8}, "seed is 7 there"),
         ({"played": {"bars.toml": "version = 1\n"}}, "played is"),
-        ({"participant": "Jane Doe"}, "give a code"),
-        ({"participant": 7}, "give a code"),
         ({"task": "2afc"}, "a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found '2afc'"),
     ]
     for changed, said in wrong:
         with pytest.raises(ExperimentError, match=said):
             opened(tmp_path, **changed)
-    with pytest.raises(ParameterError, match="seed is a whole number from 0"):
-        opened(tmp_path, seed="7")
+    values: list[tuple[dict[str, Any], str]] = [
+        ({"seed": "7"}, "seed is a whole number from 0"),
+        ({"participant": "Jane Doe"}, r"give a code of 1 to 32 letters, digits, -, _ and \., and no name"),
+        ({"participant": 7}, "participant 7: give a code"),
+    ]
+    for changed, said in values:
+        with pytest.raises(ParameterError, match=said):
+            opened(tmp_path, **changed)
     with pytest.raises(ExperimentError, match=r"cannot be made \(File exists\): give another one"):
         opened(tmp_path / "manifest.json")
 
@@ -137,6 +147,108 @@ def test_breaks_come_between_trials_and_not_while_answers_are_read_again(tmp_pat
     with opened(tmp_path) as session:
         session.run(ConstantStimuli([0.1], 4), lambda trial: None, lambda trial: 0, **settings)
     assert breaks == [2, 4, 4]
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda row: {}, "number is None"),
+        (lambda row: [row], "it is no object"),
+        (lambda row: {**row, "number": 0}, "number is 0, and 1 comes here"),
+        (lambda row: {**row, "run": None}, "run is None"),
+        (lambda row: {**row, "correct": 1}, "correct is 1"),
+        (lambda row: {**row, "plays": [{"recording": "../../secret.parquet"}]}, "the recording of a play is '../../"),
+    ],
+)
+def test_a_line_that_is_no_trial_is_said_and_the_rest_is_kept(
+    tmp_path: Path, change: Callable[[dict[str, Any]], object], reason: str
+) -> None:
+    with opened(tmp_path) as session:
+        session.run(ConstantStimuli([0.1], 3), lambda trial: None, lambda trial: 0)
+    path = tmp_path / "trials.jsonl"
+    lines = path.read_text().splitlines()
+    lines[1] = json.dumps(change(json.loads(lines[1])))
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(ExperimentError, match=re.escape(f"line 2 of trials.jsonl is no trial ({reason}")) as raised:
+        opened(tmp_path)
+    assert "take the file from a copy, or cut it before this line" in str(raised.value)
+    path.write_text(lines[0] + "\n")
+    with opened(tmp_path) as session:
+        assert len(session.rows) == 1, "the folder is not locked, and what was said helps"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="locks are those of Unix")
+def test_a_folder_that_cannot_be_locked_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import fcntl
+
+    def no_locks(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(fcntl, "flock", no_locks)
+        with pytest.raises(ExperimentError, match=r"cannot be locked \(No locks available\)"):
+            opened(tmp_path)
+    (tmp_path / ".lock").unlink()
+    (tmp_path / ".lock").mkdir()
+    with pytest.raises(ExperimentError, match=r"cannot be locked \(Is a directory\)"):
+        opened(tmp_path)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="processes fork as on Unix")
+def test_a_closed_session_is_free_although_a_fork_lives_on(tmp_path: Path) -> None:
+    session = opened(tmp_path)
+    # As a forked worker has it: the same open file.
+    copy = os.dup(session._folder._lock.fileno())
+    session.close()
+    opened(tmp_path).close()
+    os.close(copy)
+
+
+def test_an_interrupt_after_the_answer_is_on_the_disk_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    fsync = os.fsync
+    with opened(tmp_path) as session:
+
+        def interrupted(file: int) -> None:
+            fsync(file)
+            raise KeyboardInterrupt
+
+        def answer(trial: Trial) -> int:
+            monkeypatch.setattr(os, "fsync", interrupted)
+            return 0
+
+        with pytest.raises(KeyboardInterrupt):
+            session.run(ConstantStimuli([0.1], 2), lambda trial: None, answer)
+        monkeypatch.undo()
+        assert len(session.rows) == 1
+    assert "is lost" not in caplog.text
+    with opened(tmp_path) as session:
+        assert len(session.rows) == 1
+
+
+def test_answered_is_marked_when_the_disk_has_the_answer(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    path = tmp_path / "trials.jsonl"
+    lines: list[int] = []
+
+    def on_marker(marker: str, trial: Trial) -> None:
+        if marker == "answered":
+            lines.append(path.read_bytes().count(b"\n"))
+            raise KeyboardInterrupt
+
+    with opened(tmp_path, on_marker=on_marker) as session, pytest.raises(KeyboardInterrupt):
+        session.run(ConstantStimuli([0.1], 2), lambda trial: None, lambda trial: 0)
+    assert lines == [1]
+    assert "is lost" not in caplog.text
+
+
+def test_a_closed_session_begins_no_trial(tmp_path: Path) -> None:
+    markers: list[str] = []
+    session = opened(tmp_path, on_marker=lambda marker, trial: markers.append(marker))
+    session.close()
+    with pytest.raises(ExperimentError, match="this session is closed: open it again"):
+        session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 0)
+    assert markers == []
 
 
 STROKE = Stroke.straight((20, 40), (40, 40), speed_mm_s=100)
@@ -190,6 +302,31 @@ def test_the_manifest_has_the_hash_of_all_that_was_played_by_itself(tmp_path: Pa
     assert json.loads(metadata[b"frixel.recording"])["participant"] == "p01"
 
 
+@pytest.mark.skipif(os.name != "posix", reason="folders are synchronised as on Unix")
+def test_a_new_name_is_on_the_disk_before_the_next_trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fsync = os.fsync
+    named: set[Path] = set()
+
+    def watched(file: int) -> None:
+        fsync(file)
+        for folder in [path for path in [tmp_path, *tmp_path.rglob("*")] if path.is_dir()]:
+            if os.path.samestat(os.fstat(file), folder.stat()):
+                named.update(folder.iterdir())
+
+    monkeypatch.setattr(os, "fsync", watched)
+    folder = tmp_path / "session"
+    with opened(folder, played=None) as session:
+
+        def play(trial: Trial) -> None:
+            session.play(plates(trial.level), stroke=STROKE, ideal=True)
+            if trial.number == 1:
+                first = json.loads((folder / "trials.jsonl").read_text())["plays"][0]["recording"]
+                names = ["", "manifest.json", "trials.jsonl", "recordings", first]
+                assert {folder / name for name in names} <= named
+
+        session.run(ConstantStimuli([0.1], 2), play, lambda trial: 0)
+
+
 def test_a_recording_that_was_changed_is_not_replayed(tmp_path: Path) -> None:
     rows = played(tmp_path, [0.1])
     path = tmp_path / rows[0]["plays"][0]["recording"]
@@ -210,8 +347,27 @@ def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
             session.play(plates(0.1), on=device, seconds=0.1, seed=3)
         session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 0)
+        with pytest.raises(ExperimentError, match="no trial runs, with which this play could be kept"):
+            session.play(plates(0.1), stroke=STROKE)
+        assert session.rows[0]["plays"] == []
         with pytest.raises(ExperimentError, match="played nothing through its session"):
             session.replay(0)
+
+
+def test_a_play_for_less_than_no_time_is_refused_before_it_begins(tmp_path: Path) -> None:
+    markers: list[str] = []
+    with (
+        opened(tmp_path, on_marker=lambda marker, trial: markers.append(marker)) as session,
+        Device.open("sim") as device,
+    ):
+        with pytest.raises(ParameterError, match=r"seconds is a number from 0\.001"):
+            session.run(
+                ConstantStimuli([0.1], 1),
+                lambda trial: session.play(plates(0.1), on=device, seconds=-1),
+                lambda trial: 0,
+            )
+        assert device.state == "disarmed"
+    assert markers == ["began"]
 
 
 def test_a_session_plays_on_a_board_and_has_its_clock(tmp_path: Path) -> None:
@@ -231,6 +387,59 @@ def test_a_session_plays_on_a_board_and_has_its_clock(tmp_path: Path) -> None:
         assert json.loads(parquet.read_metadata(tmp_path / first["recording"]).metadata[b"frixel.recording"])["tick_hz"]
         with pytest.raises(PlayError, match="cannot be played again: it is of a virtual board"):
             session.replay(0)
+
+
+def test_times_have_nothing_of_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Each look at the clock is a second, and each write a thousand.
+    now_s = itertools.count(1.0)
+    writes: list[float] = []
+    keep = Recording.to_parquet
+
+    def slow(recording: Recording, *given: Any, **named: Any) -> None:
+        writes.extend(next(now_s) for _ in range(1000))
+        keep(recording, *given, **named)
+
+    monkeypatch.setattr(time, "monotonic", lambda: next(now_s))
+    monkeypatch.setattr(Recording, "to_parquet", slow)
+    for row in played(tmp_path, [0.1]):
+        times = [row["played_s"], *(play[name] for play in row["plays"] for name in ("began_s", "ended_s"))]
+        times += [row["presented_s"], row["answered_s"]]
+        assert times == sorted(times)
+        assert times[-1] - times[0] < 20
+    assert len(writes) == 2000, "each of the two plays was written once"
+
+
+def test_a_play_on_a_board_begins_when_the_board_plays(tmp_path: Path) -> None:
+    states: list[str] = []
+
+    def on_marker(marker: str, trial: Trial) -> None:
+        if marker == "play":
+            states.append(device._state)
+
+    with opened(tmp_path, on_marker=on_marker) as session, Device.open("sim") as device:
+        session.run(
+            ConstantStimuli([0.1], 2),
+            lambda trial: session.play(plates(trial.level), on=device, seconds=0.2),
+            lambda trial: 0,
+        )
+    assert states == ["active", "active"]
+
+
+def test_what_is_kept_for_the_same_play_has_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: list[Simulator] = []
+    run_it = Simulator.run
+
+    def counted(simulator: Simulator, seconds: float | None = None) -> Recording:
+        runs.append(simulator)
+        return run_it(simulator, seconds)
+
+    monkeypatch.setattr(Simulator, "run", counted)
+    played(tmp_path / "all", [0.1, 0.2])
+    assert len(runs) == 3, "two levels and the standard"
+    runs.clear()
+    monkeypatch.setattr(_session, "KEPT_MAX_BYTES", 1)
+    played(tmp_path / "none", [0.1, 0.2])
+    assert len(runs) == 8
 
 
 def test_markers_come_at_their_moments(tmp_path: Path) -> None:

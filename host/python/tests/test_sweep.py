@@ -29,12 +29,12 @@ low_n = 0.0
 high_n = 0.1
 """
 PLAN = """scenes = ["grating.toml"]
-people = 20
+people = 40
 strokes = 1
 seeds = 1
 seconds = 0.5
 [parameters]
-"layer.1.high_n" = [0.005, 0.02]
+"layer.1.high_n" = [0.02]
 """
 FINGERS = 40
 
@@ -86,7 +86,7 @@ def test_two_dask_workers_of_which_one_is_killed_give_the_bytes_of_one_process(p
 
 
 def test_the_program_of_the_document_gives_the_bytes_of_the_command(plan: Path) -> None:
-    plan.write_text(PLAN.replace("people = 20", "people = 2"))
+    plan.write_text(PLAN.replace("people = 40", "people = 2").replace("[0.02]", "[0.005, 0.02]"))
     text = (REPOSITORY / "docs/scale.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     program = plan.parent / "program.py"
@@ -127,6 +127,34 @@ def test_a_study_is_rows_a_picture_and_files(tmp_path: Path) -> None:
         study.write("/dev/null/study")
 
 
+def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fields: dict[str, Any] = {"scenes": {"grating": Scene.parse(GRATING)}, "strokes": 1, "seeds": 1, "seconds": 0.5}
+    one, two = (sweep.Study(map(sweep.play, sweep.cells({**fields, "people": people}))) for people in (1, 2))
+    one.write(tmp_path)
+    one.write(tmp_path)
+
+    def written() -> dict[str, bytes]:
+        return {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    with pytest.raises(FrixelError, match="is of another study: give another folder, or `overwrite=True`"):
+        two.write(tmp_path)
+    assert written() == one.files
+    write_bytes = Path.write_bytes
+
+    def full(path: Path, content: bytes) -> int:
+        if "sweep.svg" in path.name:
+            raise OSError(28, "No space left on device")
+        return write_bytes(path, content)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "write_bytes", full)
+        with pytest.raises(FrixelError, match=r"cannot be written \(No space left on device\)"):
+            two.write(tmp_path, overwrite=True)
+    assert written() == one.files, "a half-written study is not there"
+    two.write(tmp_path, overwrite=True)
+    assert written() == two.files
+
+
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
@@ -135,6 +163,14 @@ def test_a_study_is_rows_a_picture_and_files(tmp_path: Path) -> None:
         ({"scenes": ["nowhere.toml"]}, "the scene nowhere.toml cannot be read"),
         ({"scenes": {}}, "give the name of one scene file or more"),
         ({"scenes": "grating.toml"}, "a list of files, or a dictionary of scenes by their names, found 'grating.toml'"),
+        (
+            {"scenes": {"a": Scene.parse(GRATING).with_finger("dry")}},
+            "the scene a is for another finger or screen .* and a screen by `screens`",
+        ),
+        (
+            {"scenes": {"a": Scene.parse(GRATING).with_screen("example")}},
+            "the scene a is for another finger or screen",
+        ),
         ({"scenes": {"a": "grating.toml"}}, r"Scene\.load reads a file, found 'grating.toml'"),
         ({"touch": ["50"]}, "give its file, from the plan's folder, or a bundled one"),
         ({"parameters": {"layer.2.high_n": [1]}}, "layer.2"),

@@ -11,6 +11,7 @@ mod text;
 mod trials;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
 use frixel_felt::noticed::Noticing;
@@ -41,8 +42,8 @@ type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 pub struct Trial {
     /// Name of the stroke.
     pub stroke_name: String,
-    /// Path of the finger.
-    pub stroke: Stroke,
+    /// Path of the finger, which trials with other seeds share.
+    pub stroke: Arc<Stroke>,
     /// Seed of all that is random in the world.
     pub seed: u64,
     /// The finger, if it is not the one that the scene is meant for.
@@ -76,7 +77,7 @@ impl Trial {
         let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
         let simulation = Simulation {
             rig: RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig },
-            stroke: self.stroke.clone(),
+            stroke: Stroke::clone(&self.stroke),
             seconds: self.stroke.duration_s(),
             seed: self.seed,
             ticks_per_row: (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32,

@@ -1,11 +1,14 @@
 //! The trials of one finger: its strokes, each as often as it is repeated.
 
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
 use frixel_hil_sim::{Person, Stroke, StrokeError};
 use frixel_model::ParameterError;
 use frixel_scene::{CompileError, Program, Scene};
 use thiserror::Error;
 
-use super::{Trial, TrialFinger};
+use super::{GoesOn, Trial, TrialFinger};
 
 /// Makes the stroke of a person, as [`Stroke::human`] does.
 type Generator = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
@@ -62,34 +65,58 @@ impl TrialPlan {
         program: &Program,
         is_ideal: bool,
     ) -> Result<Vec<Trial>, TrialsError> {
-        let Some(people) = people else { return Ok(self.trials(program, None)?) };
+        self.of_people_while(people, scene, program, is_ideal, &|| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::of_people`]. `goes_on` is asked before each stroke; when it breaks, the result is what was made so far.
+    pub fn of_people_while(
+        &self,
+        people: Option<u64>,
+        scene: &Scene,
+        program: &Program,
+        is_ideal: bool,
+        goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Vec<Trial>, TrialsError> {
+        let Some(people) = people else { return Ok(self.trials_while(program, None, goes_on)?) };
         // A scene of version 1 has no screen without its own finger's skin.
         let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
         let of_person = |person| {
             let finger = TrialFinger::of_person(person, coating_gap_um, is_ideal)?;
-            Ok(self.trials(program, Some(finger))?)
+            Ok(self.trials_while(program, Some(finger), goes_on)?)
         };
-        Ok((1..=people).map(of_person).collect::<Result<Vec<_>, TrialsError>>()?.concat())
+        let trials = (1..=people).take_while(|_| goes_on().is_continue()).map(of_person);
+        Ok(trials.collect::<Result<Vec<_>, TrialsError>>()?.into_iter().flatten().collect())
     }
 
     /// The trials of a finger: without one, of that which the scene is meant for. Each person makes strokes of their
     /// own, and each play has a world seed of its own.
     pub fn trials(&self, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, StrokeError> {
+        self.trials_while(program, finger, &|| ControlFlow::Continue(()))
+    }
+
+    /// As [`Self::trials`]. `goes_on` is asked before each stroke; when it breaks, the result is what was made so far.
+    pub fn trials_while(
+        &self,
+        program: &Program,
+        finger: Option<TrialFinger>,
+        goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Vec<Trial>, StrokeError> {
         let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * self.strokes);
         let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
         let strokes = match &self.way {
-            Way::Human => self.human_strokes("human", Stroke::human, (width_m, height_m), first_stroke)?,
+            Way::Human => self.human_strokes("human", Stroke::human, (width_m, height_m), first_stroke, goes_on)?,
             Way::HumanRough => {
-                self.human_strokes("human-rough", Stroke::human_rough, (width_m, height_m), first_stroke)?
+                self.human_strokes("human-rough", Stroke::human_rough, (width_m, height_m), first_stroke, goes_on)?
             }
             Way::Sweep => vec![("sweep".to_owned(), Stroke::sweep(width_m, height_m, self.seconds)?)],
             Way::Stroke(stroke) => vec![("file".to_owned(), stroke.clone())],
         };
         let trials = (first_stroke..).zip(strokes).flat_map(|(number, (stroke_name, stroke))| {
             let first_seed = 1 + (number - 1) * self.seeds;
+            let stroke = Arc::new(stroke);
             (first_seed..first_seed + self.seeds).map(move |seed| Trial {
                 stroke_name: stroke_name.clone(),
-                stroke: stroke.clone(),
+                stroke: Arc::clone(&stroke),
                 seed,
                 finger,
             })
@@ -103,12 +130,13 @@ impl TrialPlan {
         hand: Generator,
         (width_m, height_m): (f64, f64),
         first: u64,
+        goes_on: GoesOn<'_>,
     ) -> Result<Vec<(String, Stroke)>, StrokeError> {
         let stroke = |seed| {
             let stroke = hand(width_m, height_m, self.seconds, self.median_speed_m_per_s, seed)?;
             Ok((format!("{name} {seed}"), stroke))
         };
-        (first..first + self.strokes).map(stroke).collect()
+        (first..first + self.strokes).take_while(|_| goes_on().is_continue()).map(stroke).collect()
     }
 }
 

@@ -191,7 +191,8 @@ impl Cell {
             seconds: self.seconds,
             median_speed_m_per_s: self.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
         };
-        let score = Score::of_while(&program, &rig, &trials.trials(&program, Some(finger))?, goes_on)?;
+        let trials = trials.trials_while(&program, Some(finger), goes_on)?;
+        let score = Score::of_while(&program, &rig, &trials, goes_on)?;
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from types import TracebackType
@@ -288,7 +288,14 @@ class Device:
             if not self._device.is_closed:
                 self._take(self._device.subscribe(0))
 
-    def record(self, scene: Scene | Mapping[str, Any], seconds: float, *, messages_per_s: int = 100) -> Recording:
+    def record(
+        self,
+        scene: Scene | Mapping[str, Any],
+        seconds: float,
+        *,
+        messages_per_s: int = 100,
+        on_active: Callable[[], object] | None = None,
+    ) -> Recording:
         """Play a scene from its beginning, record what the board says of itself meanwhile, and stop.
 
         Parameters
@@ -299,6 +306,8 @@ class Device:
             How long.
         messages_per_s
             Rows a second, at most 1000.
+        on_active
+            Called once, as soon as the board says that it plays.
 
         Returns
         -------
@@ -308,12 +317,28 @@ class Device:
 
         Raises
         ------
+        ParameterError
+            A value is not taken. Nothing is played.
         SceneError, PlayError, KeyboardInterrupt
-            As `play` and `telemetry`.
+            As `play` and `telemetry`. The board is disarmed.
         """
         scene = Scene.of(scene)
-        self.play(scene)
-        messages = list(self.telemetry(number("seconds", seconds, 1e-3, 86_400.0), messages_per_s=messages_per_s))
+        seconds = number("seconds", seconds, 1e-3, 86_400.0)
+        messages_per_s = whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX)
+        messages: list[Telemetry] = []
+        try:
+            self.play(scene)
+            is_said = on_active is None
+            for message in self.telemetry(seconds, messages_per_s=messages_per_s):
+                if on_active is not None and not is_said and message.state == "active":
+                    on_active()
+                    is_said = True
+                messages.append(message)
+        except BaseException:
+            # Of a board that is gone, the output goes to zero by itself.
+            with suppress(FrixelError):
+                self.stop()
+            raise
         self.stop()
         columns: dict[str, NDArray[Any]] = {name: np.full(len(messages), np.nan) for name in COLUMNS}
         for name in ("t_s", "x_mm", "y_mm", "speed_mm_s", "asked_n", "voltage_v_rms"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import index
@@ -39,6 +40,13 @@ def number(name: str, value: object, least: float, most: float) -> float:
         limits = f"from {least:g} to {most:g}" if math.isfinite(most) else f"of at least {least:g}"
         raise ParameterError(f"{name} is a number {limits}, found {value!r}")
     return found
+
+
+def participant_code(value: object) -> str:
+    """The code of a participant, by the rule of `frixel play --participant`."""
+    if not (isinstance(value, str) and re.fullmatch(r"[A-Za-z0-9_.-]{1,32}", value)):
+        raise ParameterError(f"participant {value!r}: give a code of 1 to 32 letters, digits, -, _ and ., and no name")
+    return value
 
 
 class FitError(FrixelError, ValueError):

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from . import _frixel, _toml
+from ._files import read_bytes
 from .errors import ParameterError, SceneError
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class _Profile:
         SceneError
             The file cannot be read, or has mistakes.
         """
-        return cls(read_bytes(path, f"this {cls.kind}").decode(errors="replace"), str(path))
+        return cls(read_bytes(path, f"this {cls.kind}", SceneError).decode(errors="replace"), str(path))
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -115,11 +115,3 @@ class TouchSource(_Profile):
     """How often, how late and how reliably a touchscreen reports the finger (`docs/touch.md`)."""
 
     kind = "touch source"
-
-
-def read_bytes(path: str | PathLike[str], what: str) -> bytes:
-    """The bytes of a file that messages call `what`."""
-    try:
-        return Path(path).read_bytes()
-    except OSError as error:
-        raise SceneError(f"{path}: {what} cannot be read ({error.strerror}): check the path") from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -13,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel
-from .errors import ParameterError
+from ._files import read_bytes
+from .errors import PlayError, participant_code
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -23,8 +23,6 @@ __all__ = ["COLUMNS", "Recording", "replay"]
 
 COLUMNS: Mapping[str, tuple[str, str]] = {name: (unit, meaning) for name, unit, meaning in _frixel.play_fields()}
 """Unit and meaning of each column."""
-
-_CODE = re.compile(r"[A-Za-z0-9_.-]{1,32}")
 
 TICKS_PER_S = 40_000
 """Ticks of the simulated board a second."""
@@ -91,10 +89,7 @@ class Recording(Mapping[str, NDArray[Any]]):
         ParameterError
             The participant is no code.
         """
-        if participant is not None and not _CODE.fullmatch(participant):
-            raise ParameterError(
-                f"participant {participant!r}: give a code of 1 to 32 letters, digits, -, _ and ., and no name"
-            )
+        participant = None if participant is None else participant_code(participant)
         columns = {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.items()}
         _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made, participant)
 
@@ -123,4 +118,4 @@ def replay(path: str | PathLike[str]) -> int:
     PlayError
         The bits differ, and where; or why it cannot be played again: it is of a board at a port, or of another version.
     """
-    return _frixel.replay(path)
+    return _frixel.replay(read_bytes(path, "this recording", PlayError), str(path))

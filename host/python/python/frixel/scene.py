@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel, _toml
-from .errors import ParameterError, whole
-from .profiles import Finger, Screen, TouchSource, read_bytes
+from ._files import read_bytes
+from .errors import ParameterError, SceneError, whole
+from .profiles import Finger, Screen, TouchSource
 
 __all__ = ["Scene"]
 
@@ -50,7 +51,7 @@ class Scene:
         SceneError
             The file cannot be read, or it has mistakes: all of them, each with line and column.
         """
-        return cls(read_bytes(path, "this scene file"), str(path), folder=str(Path(path).parent))
+        return cls(read_bytes(path, "this scene file", SceneError), str(path), folder=str(Path(path).parent))
 
     @classmethod
     def parse(cls, text: str, *, files: Mapping[str, bytes] | None = None) -> Scene:
@@ -97,6 +98,11 @@ class Scene:
 
     def _for(self, finger: Finger | None, screen: Screen | None) -> Scene:
         return Scene(self._text, self.name, files=self.compiled.files, finger=finger, screen=screen)
+
+    @property
+    def is_for_another(self) -> bool:
+        """Whether its finger or screen is another than the text's, by `with_finger` or `with_screen`."""
+        return self._finger is not None or self._screen is not None
 
     @property
     def text(self) -> str:

@@ -19,6 +19,12 @@ __all__ = ["Score", "score"]
 COUNT_MAX = 1000
 """Most people, strokes, repetitions and threads."""
 
+PLAYS_MAX = 100_000
+"""Most plays of a score."""
+
+STROKES_MAX_S = 36_000.0
+"""Longest time of all human strokes of a score together, s: they are in memory at the same time, 40 kB a second."""
+
 
 @dataclass(frozen=True)
 class Score:
@@ -111,7 +117,7 @@ def score(
     seeds
         Repetitions of each stroke, with other loads, noise and lost reports.
     seconds
-        Duration of a stroke that is generated, s, at most a day.
+        Duration of a stroke that is generated, s: at most 600 s of a human stroke, and a day of `sweep`.
     median_speed_mm_per_s
         Median speed of human strokes, from 1 to 1000 mm/s; without it, each person has their own.
     touch
@@ -153,5 +159,22 @@ def score(
         bool(ideal),
         0 if jobs is None else whole("jobs", jobs, 1, COUNT_MAX),
     )
+    _check_size(settings)
     summary, words, plays, layers = _frixel.score_scene(scene.compiled, settings)
     return Score(json.loads(summary), words, {"score.csv": plays, "score-layers.csv": layers})
+
+
+def _check_size(settings: _Settings) -> None:
+    """Refuse more plays than end, and longer strokes than fit into memory."""
+    is_human = settings.stroke in ("human", "human-rough")
+    strokes = (settings.people or 1) * (settings.strokes if is_human else 1)
+    if strokes * settings.seeds > PLAYS_MAX:
+        raise ParameterError(
+            f"people x strokes x seeds are {strokes * settings.seeds} plays, and at most {PLAYS_MAX} are scored: give "
+            "fewer, or share the work by frixel.sweep"
+        )
+    if is_human and strokes * settings.seconds > STROKES_MAX_S:
+        raise ParameterError(
+            f"people x strokes x seconds are {strokes * settings.seconds:g} s of strokes, and {STROKES_MAX_S:g} s "
+            "fit into memory: give fewer or shorter ones, or share the work by frixel.sweep"
+        )

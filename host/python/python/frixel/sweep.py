@@ -7,11 +7,13 @@ function of a text, so that `map(sweep.play, cells)` works with processes, Dask 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from . import _frixel, _tables, _toml
+from ._files import read_bytes
 from .errors import FrixelError, ParameterError
 from .scene import Scene
 
@@ -35,7 +37,7 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
     Raises
     ------
     ParameterError
-        The plan has a mistake, or names a file that is not there.
+        The plan has a mistake, or names a file that is not there, or a scene is for another finger or screen.
     SceneError
         A scene has mistakes, or a board refuses it with some of the values.
 
@@ -51,13 +53,19 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
             )
         named = {name: Scene.of(scene) for name, scene in scenes.items()} if isinstance(scenes, Mapping) else {}
         text = _toml.dumps({**plan, "scenes": list(scenes)})
+        for name, scene in named.items():
+            if scene.is_for_another:
+                raise ParameterError(
+                    f"the scene {name} is for another finger or screen (with_finger, with_screen), and people have "
+                    "their own fingers: give the scene as it is, and a screen by `screens`"
+                )
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
         return _frixel.sweep_cells(text, "<plan>", "", sources)
     path = Path(plan)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path}: this plan cannot be read ({error}): check the path") from error
+        text = read_bytes(path, "this plan", ParameterError).decode()
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path}: this plan cannot be read ({error}): give a text in UTF-8") from error
     return _frixel.sweep_cells(text, str(path), str(path.parent), {})
 
 
@@ -113,19 +121,38 @@ class Study:
         """A row for each combination and number of a score: its mean over the fingers, with its interval."""
         return self._rows("numbers.csv")
 
-    def write(self, folder: str | PathLike[str]) -> None:
+    def write(self, folder: str | PathLike[str], *, overwrite: bool = False) -> None:
         """Write the files into a folder, which is made if it is not there.
+
+        Parameters
+        ----------
+        folder
+            Where to write. If it has another study, nothing is written.
+        overwrite
+            Replace another study that is there.
 
         Raises
         ------
         FrixelError
-            A file cannot be written.
+            A file cannot be written, and those of before are as they were; or the folder has another study.
         """
+        folder = Path(folder)
+        partials = {folder / name: folder / f".{name}.partial" for name in self.files}
         try:
-            Path(folder).mkdir(parents=True, exist_ok=True)
-            for name, content in self.files.items():
-                (Path(folder) / name).write_bytes(content)
+            folder.mkdir(parents=True, exist_ok=True)
+            for path in [] if overwrite else partials:
+                if path.exists() and path.read_bytes() != self.files[path.name]:
+                    raise FrixelError(
+                        f"{path} is of another study: give another folder, or `overwrite=True` to replace that study"
+                    )
+            for path, partial in partials.items():
+                partial.write_bytes(self.files[path.name])
+            for path, partial in partials.items():
+                partial.replace(path)
         except OSError as error:
+            for partial in partials.values():
+                with suppress(OSError):
+                    partial.unlink()
             raise FrixelError(f"{folder}: this study cannot be written ({error.strerror})") from error
 
     def _rows(self, name: str) -> list[dict[str, Any]]:

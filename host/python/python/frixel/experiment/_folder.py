@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
+import re
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from .._files import read_bytes
 from ..errors import FrixelError
 from ..recording import Recording
 
 RECORDINGS = "recordings"
 """The folder of the recordings, and their key in the manifest."""
+
+_RECORDING = re.compile(RECORDINGS + r"/[0-9a-f]{64}\.parquet")
 
 
 class ExperimentError(FrixelError):
@@ -29,7 +36,9 @@ class Folder:
     def __init__(self, path: Path, manifest: dict[str, Any]) -> None:
         self._path = path
         try:
-            path.mkdir(parents=True, exist_ok=True)
+            if not path.is_dir():
+                path.mkdir(parents=True, exist_ok=True)
+                _sync_folder(path.parent)
         except OSError as error:
             raise ExperimentError(f"the folder {path} cannot be made ({error.strerror}): give another one") from error
         self._lock = _locked(path / ".lock")
@@ -42,57 +51,83 @@ class Folder:
 
     def close(self) -> None:
         """Lets another process write into the folder."""
-        self._lock.close()
+        if not self._lock.closed:
+            _unlock(self._lock)
+            self._lock.close()
 
-    def keep(self, recording: Recording, participant: str) -> str:
-        """Writes a recording under the SHA-256 of its bytes, and into the manifest. Returns its path in the folder."""
-        self._check_open()
+    def keep(self, recordings: Sequence[Recording], participant: str) -> list[str]:
+        """Writes recordings, each under the SHA-256 of its bytes, and then their names into the manifest.
+
+        Returns their paths in the folder.
+        """
+        self.check_open()
+        names = [self._kept(recording, participant) for recording in recordings]
+        scenes = {
+            name: {"scene": sha256(recording.scene.text.encode())}
+            for name, recording in zip(names, recordings, strict=True)
+        }
+        if not scenes.keys() <= self._manifest[RECORDINGS].keys():
+            every = {**self._manifest[RECORDINGS], **scenes}
+            self._write_manifest({**self._manifest, RECORDINGS: dict(sorted(every.items()))})
+        return names
+
+    def _kept(self, recording: Recording, participant: str) -> str:
         folder = self._path / RECORDINGS
         partial = folder / ".partial"
         try:
-            folder.mkdir(exist_ok=True)
+            if not folder.is_dir():
+                folder.mkdir()
+                _sync_folder(self._path)
             recording.to_parquet(partial, participant=participant)
             name = f"{RECORDINGS}/{sha256(partial.read_bytes())}.parquet"
             _commit(partial, self._path / name)
         except (OSError, FrixelError) as error:
             partial.unlink(missing_ok=True)
             raise _unwritable("a recording", error, "check the free space, and run the session again") from error
-        if name not in self._manifest[RECORDINGS]:
-            scene = {"scene": sha256(recording.scene.text.encode())}
-            recordings = {**self._manifest[RECORDINGS], name: scene}
-            self._write_manifest({**self._manifest, RECORDINGS: dict(sorted(recordings.items()))})
         return name
 
-    def recording(self, name: str) -> Path:
-        """The path of a recording, whose bytes are those that were written."""
-        path = self._path / name
+    def recording(self, name: str) -> bytes:
+        """The bytes of a recording, which are those that were written."""
         try:
-            found = sha256(path.read_bytes())
-        except OSError as error:
-            raise ExperimentError(f"{name} cannot be read ({error.strerror}): take it from a copy") from error
-        if found != path.stem:
+            content = read_bytes(self._path / name, "this recording", ExperimentError)
+        except ExperimentError as error:
+            raise ExperimentError(f"{error}, or take it from a copy") from error
+        found = sha256(content)
+        if found != Path(name).stem:
             raise ExperimentError(f"{name} was changed: its SHA-256 is {found}; take it from a copy")
-        return path
+        return content
 
     def append(self, row: dict[str, Any]) -> None:
-        """Adds a line, and waits until the disk has it. A line that does not fit is cut off again."""
-        self._check_open()
+        """Adds a line, and waits until the disk has it. A line that does not fit is cut off again.
+
+        If an interrupt comes when the line is written, it is a row like the others.
+        """
+        self.check_open()
         path = self._path / "trials.jsonl"
         line = (json.dumps(row) + "\n").encode()
-        before = path.stat().st_size if path.exists() else 0
+        before = path.stat().st_size if path.exists() else None
+        whole = (before or 0) + len(line)
         try:
             with path.open("ab") as file:
                 file.write(line)
                 file.flush()
                 os.fsync(file.fileno())
+            if before is None:
+                _sync_folder(self._path)
         except OSError as error:
-            if path.exists():
-                os.truncate(path, before)
+            # What cannot be cut off now is cut off when the folder is opened.
+            with suppress(OSError):
+                os.truncate(path, before or 0)
             answer = f"the answer of trial {row['number']}"
             raise _unwritable(answer, error, "check the free space, and run the session again") from error
+        except BaseException:
+            if path.exists() and path.stat().st_size == whole:
+                self.rows.append(row)
+            raise
         self.rows.append(row)
 
-    def _check_open(self) -> None:
+    def check_open(self) -> None:
+        """Refuses a folder that is closed."""
         if self._lock.closed:
             raise ExperimentError("this session is closed: open it again, and it goes on")
 
@@ -104,7 +139,7 @@ class Folder:
             self._write_manifest(begun)
             return begun
         try:
-            earlier = json.loads(path.read_text(encoding="utf-8"))
+            earlier = json.loads(read_bytes(path, "the manifest", ExperimentError))
         except ValueError as error:
             raise ExperimentError(f"{path.name} is no manifest ({error}): give another folder") from error
         for name, value in manifest.items():
@@ -143,8 +178,13 @@ def _commit(partial: Path, path: Path) -> None:
     with partial.open("rb+") as file:
         os.fsync(file.fileno())
     partial.replace(path)
+    _sync_folder(path.parent)
+
+
+def _sync_folder(path: Path) -> None:
+    """Waits until the disk has the names in a folder."""
     if os.name == "posix":
-        folder = os.open(path.parent, os.O_RDONLY)
+        folder = os.open(path, os.O_RDONLY)
         try:
             os.fsync(folder)
         finally:
@@ -155,7 +195,7 @@ def _rows(path: Path) -> list[dict[str, Any]]:
     """The whole lines of a file. What a crash has left of a line is cut off."""
     if not path.exists():
         return []
-    content = path.read_bytes()
+    content = read_bytes(path, "the file of the trials", ExperimentError)
     whole = content[: content.rfind(b"\n") + 1]
     if len(whole) < len(content):
         with path.open("r+b") as file:
@@ -165,16 +205,45 @@ def _rows(path: Path) -> list[dict[str, Any]]:
         try:
             row = json.loads(line)
         except ValueError as error:
-            raise ExperimentError(
-                f"line {number + 1} of {path.name} is no trial ({error}): mend or remove it"
-            ) from error
+            raise _no_trial(path, number, str(error)) from error
+        if (wrong := _mistake(row, number)) is not None:
+            raise _no_trial(path, number, wrong)
         rows.append(row)
     return rows
 
 
+def _mistake(row: object, number: int) -> str | None:
+    """What is wrong with the row of a trial; nothing if it is as it was written."""
+    if not isinstance(row, dict):
+        return "it is no object"
+    kinds = {"number": int, "run": int, "response": int, "correct": bool, "plays": list}
+    for name, kind in kinds.items():
+        if type(row.get(name)) is not kind:
+            return f"{name} is {row.get(name)!r}"
+    if row["number"] != number:
+        return f"number is {row['number']}, and {number} comes here"
+    for play in row["plays"]:
+        recording = play.get("recording") if isinstance(play, dict) else None
+        # The name of a file that the session has written, and no other place on the disk.
+        if not (isinstance(recording, str) and _RECORDING.fullmatch(recording)):
+            return f"the recording of a play is {recording!r}"
+    return None
+
+
+def _no_trial(path: Path, number: int, reason: str) -> ExperimentError:
+    return ExperimentError(
+        f"line {number + 1} of {path.name} is no trial ({reason}): take the file from a copy, or cut it before this "
+        "line, and the session goes on there"
+    )
+
+
 def _locked(path: Path) -> BinaryIO:
-    """A file that one process at a time has locked, until it closes it or ends."""
-    file = path.open("ab")
+    """A file that one process at a time has locked, until `_unlock` or its end."""
+    taken = ExperimentError("another process writes into this folder: wait for its end, or give another one")
+    try:
+        file = path.open("ab")
+    except OSError as error:
+        raise _unlockable(error) from error
     try:
         if os.name == "nt":
             import msvcrt
@@ -186,7 +255,23 @@ def _locked(path: Path) -> BinaryIO:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
         file.close()
-        raise ExperimentError(
-            "another process writes into this folder: wait for its end, or give another one"
-        ) from error
+        is_taken = isinstance(error, BlockingIOError) or error.errno == errno.EACCES
+        raise (taken if is_taken else _unlockable(error)) from error
     return file
+
+
+def _unlockable(error: OSError) -> ExperimentError:
+    return ExperimentError(f"this folder cannot be locked ({error.strerror}): give one on a local disk to write into")
+
+
+def _unlock(file: BinaryIO) -> None:
+    """Lets another process lock the file, even if a fork of this one still has it open."""
+    if os.name == "nt":
+        import msvcrt
+
+        file.seek(0)
+        msvcrt.locking(file.fileno(), msvcrt.LK_UNLCK, 1)  # type: ignore[attr-defined,unused-ignore]
+    else:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_UN)

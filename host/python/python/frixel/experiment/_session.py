@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from .. import _frixel
 from ..device import Device
-from ..errors import ParameterError, whole
-from ..recording import Recording, replay
+from ..errors import ParameterError, participant_code, whole
+from ..recording import Recording
 from ..scene import Scene
 from ..simulator import Simulator
 from ._estimate import Answers, Estimate, estimate
@@ -24,9 +24,8 @@ from ._methods import Method
 from ._psychometric import Task
 
 FORMAT = 2
-KEPT_MAX = 64
-"""Most plays of the simulator that are not played again in the same run."""
-_CODE = re.compile(r"[A-Za-z0-9_-]{1,32}")
+KEPT_MAX_BYTES = 256 << 20
+"""Most bytes of the simulator's recordings that wait for the same play in the same run."""
 _LOG = logging.getLogger("frixel.experiment")
 
 
@@ -48,18 +47,52 @@ class Trial:
     """Whether the trial is a catch trial, which no method asked for."""
 
 
+@dataclass
+class _Kept:
+    """A recording, and its file in the folder once it is there."""
+
+    recording: Recording
+    name: str | None = None
+
+    @property
+    def size(self) -> int:
+        """Bytes of its columns."""
+        return sum(values.nbytes for values in self.recording.values())
+
+
+@dataclass(frozen=True)
+class _Play:
+    """A play of the trial that runs."""
+
+    kept: _Kept
+    began_s: float
+    ended_s: float
+
+    def row(self) -> dict[str, Any]:
+        """The play as the row of its trial has it."""
+        recording = self.kept.recording
+        row = {
+            "recording": self.kept.name,
+            "scene": sha256(recording.scene.text.encode()),
+            "began_s": self.began_s,
+            "ended_s": self.ended_s,
+        }
+        return {**row, "board_s": recording.settings["board_s"]} if "board_s" in recording.settings else row
+
+
 class Session:
     """The answers of one participant in a folder: a manifest, a line for each trial, and the recordings of all plays.
 
     A folder that has trials already is gone on with, if its manifest is the same: no answered trial is repeated, and at
-    most the one that ran is lost. ``participant`` is a code of letters, digits, ``-`` and ``_``, not a name.
+    most the one that ran is lost. ``participant`` is a code of letters, digits, ``-``, ``_`` and ``.``, not a name.
 
     :meth:`play` plays and records, and the manifest gets the SHA-256 of each recording by itself. ``played`` are texts
     of what is played in another way, or must not change between two runs, by a name of your choice; their SHA-256
     stands in the manifest, too, and a folder with others is refused.
 
     ``on_marker`` is called with ``"began"``, ``"play"``, ``"presented"`` and ``"answered"`` and the trial, at that
-    moment: for an outlet of Lab Streaming Layer, or a trigger line.
+    moment: for an outlet of Lab Streaming Layer, or a trigger line. ``"play"`` comes before the simulator plays, and as
+    soon as a board says that it plays; ``"answered"`` when the disk has the answer.
 
     Raises :class:`ExperimentError` for a folder of another session, or one that another process writes into.
     """
@@ -77,11 +110,8 @@ class Session:
         if not isinstance(task, Task):
             raise ExperimentError(f"a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found {task!r}")
         whole("seed", seed, 0)
-        if not (isinstance(participant, str) and _CODE.fullmatch(participant)):
-            raise ExperimentError(
-                f"participant {participant!r}: give a code of 1 to 32 letters, digits, - and _, and no name"
-            )
-        self._participant, self._task, self._seed, self._on_marker = participant, task, seed, on_marker
+        self._participant = participant_code(participant)
+        self._task, self._seed, self._on_marker = task, seed, on_marker
         contents = sorted((played or {}).items())
         manifest = {
             "format": FORMAT,
@@ -97,8 +127,8 @@ class Session:
         self._repeated = 0
         self._is_cut_off = False
         self._trial_now: Trial | None = None
-        self._plays: list[dict[str, Any]] = []
-        self._kept: dict[Any, tuple[Recording, str]] = {}
+        self._plays: list[_Play] = []
+        self._kept: dict[Any, _Kept] = {}
 
     def __enter__(self) -> Session:
         return self
@@ -116,7 +146,8 @@ class Session:
         ``played_s``, ``presented_s`` and ``answered_s`` after the beginning of that run, in seconds.
 
         Each of ``plays`` has ``recording``, its file in the folder, ``scene``, the SHA-256 of the scene's text,
-        ``began_s`` and ``ended_s``, and of a board ``board_s``, the board's time of the recording's first row.
+        ``began_s`` and ``ended_s``, and of a board ``board_s``, the board's time of the recording's first row. A play
+        on a board has begun when the board has said so.
         """
         return [dict(row) for row in self._folder.rows]
 
@@ -128,27 +159,40 @@ class Session:
         seconds: float | None = None,
         **settings: Any,
     ) -> Recording:
-        """Plays a scene, and keeps its recording with the trial that runs.
+        """Plays a scene, and keeps its recording with the trial that runs, once that is answered.
 
-        On the simulator, ``settings`` are those of :class:`frixel.Simulator`; what was played with the same ones in
-        this run is not played again. With a board, ``on``, it plays for ``seconds`` (:meth:`frixel.Device.record`).
+        On the simulator, ``settings`` are those of :class:`frixel.Simulator`; of the same ones, the recording of before
+        is returned, as long as it is among the last 256 MiB of this run. With a board, ``on``, it plays for ``seconds``
+        (:meth:`frixel.Device.record`).
+
+        Without a trial there is nothing to keep it with: then play by :class:`frixel.Simulator` or
+        :meth:`frixel.Device.record`.
         """
+        self._folder.check_open()
         if not (on is None or isinstance(on, Device)):
             raise ParameterError(f"`on` is a board, of Device.open, found {on!r}; without it the simulator plays")
         if on is not None and (settings or seconds is None):
             raise ParameterError("a play on a board takes `seconds`, and no settings of the simulator")
-        self._mark("play")
+        if self._trial_now is None:
+            raise ExperimentError(
+                "no trial runs, with which this play could be kept: call it within `play` or `answer` of `run`, or "
+                "play by Simulator or Device.record"
+            )
         began_s = self._now_s()
+
+        def begins() -> None:
+            nonlocal began_s
+            began_s = self._now_s()
+            self._mark("play")
+
         if on is None or seconds is None:
-            recording, name = self._simulated(Simulator(scene, **settings), seconds)
+            simulator = Simulator(scene, **settings)
+            begins()
+            kept = self._simulated(simulator, seconds)
         else:
-            recording = on.record(scene, seconds)
-            name = self._folder.keep(recording, self._participant)
-        times = {"began_s": began_s, "ended_s": self._now_s()}
-        if "board_s" in recording.settings:
-            times["board_s"] = recording.settings["board_s"]
-        self._plays.append({"recording": name, "scene": sha256(recording.scene.text.encode()), **times})
-        return recording
+            kept = _Kept(on.record(scene, seconds, on_active=begins))
+        self._plays.append(_Play(kept, began_s, self._now_s()))
+        return kept.recording
 
     def replay(self, number: int) -> int:
         """Plays the plays of a trial again, from their recordings alone, and compares every bit.
@@ -162,7 +206,7 @@ class Session:
         if not plays:
             raise ExperimentError(f"trial {number} played nothing through its session: play by `session.play`")
         for play in plays:
-            replay(self._folder.recording(play["recording"]))
+            _frixel.replay(self._folder.recording(play["recording"]), play["recording"])
         return len(plays)
 
     def run(
@@ -233,36 +277,49 @@ class Session:
                 "that presentation is lost",
                 number,
             )
+        self._folder.check_open()
         with self._presenting(trial):
             played_s = self._now_s()
             play(trial)
-            self._mark("presented")
             presented_s = self._now_s()
+            self._mark("presented")
             response = answer(trial)
+            answered_s = self._now_s()
             if response not in (0, 1):
                 raise ExperimentError(f"trial {number}: an answer is 0 or 1, and this one is {response!r}")
-            times = {"played_s": played_s, "presented_s": presented_s, "answered_s": self._now_s()}
-            self._mark("answered")
+            times = {"played_s": played_s, "presented_s": presented_s, "answered_s": answered_s}
             correct = bool(response == (1 if self._task.name == "same-different" else target))
-            answered = {"response": int(response), "correct": correct, "run": self._run, "plays": self._plays}
+            answered = {"response": int(response), "correct": correct, "run": self._run, "plays": self._kept_plays()}
             self._folder.append({**asdict(trial), **answered, **times})
+            self._mark("answered")
         return correct
 
     @contextmanager
     def _presenting(self, trial: Trial) -> Iterator[None]:
         """The time in which a trial runs. Says what is lost if it is left by an exception."""
-        self._trial_now, self._plays = trial, []
+        self._trial_now = trial
         try:
             self._mark("began")
             yield
         except BaseException:
-            _LOG.warning(
-                "trial %d is lost: it was not answered; those before it are kept, and the same program goes on there",
-                trial.number,
-            )
+            if len(self._folder.rows) == trial.number:
+                _LOG.warning(
+                    "trial %d is lost: it was not answered; those before it are kept, and the same program goes on "
+                    "there",
+                    trial.number,
+                )
             raise
         finally:
-            self._trial_now = None
+            self._trial_now, self._plays = None, []
+
+    def _kept_plays(self) -> list[dict[str, Any]]:
+        """The plays of the trial, as its row has them, once the disk has their recordings."""
+        # A play may be there twice.
+        new = list({id(play.kept): play.kept for play in self._plays if play.kept.name is None}.values())
+        names = self._folder.keep([kept.recording for kept in new], self._participant)
+        for kept, name in zip(new, names, strict=True):
+            kept.name = name
+        return [play.row() for play in self._plays]
 
     def _recorded(self, trial: Trial) -> bool:
         row = self._folder.rows[trial.number]
@@ -275,17 +332,29 @@ class Session:
             )
         return bool(row["correct"])
 
-    def _simulated(self, simulator: Simulator, seconds: float | None) -> tuple[Recording, str]:
-        """A play of the simulator with the name of its recording: that of before, if it is the same."""
-        key = (*vars(simulator).values(), seconds)
+    def _simulated(self, simulator: Simulator, seconds: float | None) -> _Kept:
+        """A play of the simulator: that of before, if it is the same."""
+        key = (
+            simulator.scene,
+            simulator.stroke,
+            simulator.seed,
+            simulator.person,
+            simulator.touch,
+            simulator.ideal,
+            simulator.leakage,
+            simulator.rows_per_s,
+            seconds,
+        )
         if key not in self._kept:
             recording = simulator.run(seconds)
             for values in recording.values():
                 # The next trial with the same play gets them as they are.
                 values.setflags(write=False)
-            self._kept[key] = recording, self._folder.keep(recording, self._participant)
-            if len(self._kept) > KEPT_MAX:
-                del self._kept[next(iter(self._kept))]
+            kept = self._kept[key] = _Kept(recording)
+            size = sum(kept.size for kept in self._kept.values())
+            while size > KEPT_MAX_BYTES:
+                size -= self._kept.pop(next(iter(self._kept))).size
+            return kept
         return self._kept[key]
 
     def _mark(self, marker: str) -> None:

@@ -1,0 +1,17 @@
+"""Files that the module reads."""
+
+from __future__ import annotations
+
+from os import PathLike
+
+from . import _frixel
+from .errors import FrixelError
+
+
+def read_bytes(path: str | PathLike[str], what: str, error: type[FrixelError]) -> bytes:
+    """The bytes of a regular file of at most 512 MiB, which messages call `what`. Raises an `error` with a sentence."""
+    try:
+        return _frixel.read_file(path)
+    except OSError as reason:
+        sentence = reason.strerror or reason
+        raise error(f"{path}: {what} cannot be read ({sentence}): check the path") from reason
