@@ -301,6 +301,18 @@ fn replay_names_the_first_difference_or_why_it_cannot_play() {
     write(folder, "silent.parquet", &silent);
     assert!(refused(folder, "silent.parquet").contains("it does not say how it was played"));
 
+    let mut without_stroke = recording.clone();
+    without_stroke.metadata.play["stroke"]["name"] = "file".into();
+    write(folder, "without-stroke.parquet", &without_stroke);
+    assert!(refused(folder, "without-stroke.parquet").contains("it has not the file stroke that it was played with"));
+
+    // A file that asks for 30 years is played for as long as its rows are, and one more.
+    let mut long = recording.clone();
+    long.metadata.play["seconds"] = 1e9.into();
+    write(folder, "long.parquet", &long);
+    let said = refused(folder, "long.parquet");
+    assert!(said.contains("201"), "{said}");
+
     // No command replaces what a person's finger did.
     let before = fs::read(folder.join("person.parquet")).unwrap();
     for line in ["play scene.toml --seconds 0.1 --record person.parquet", "model eval --output person.parquet"] {

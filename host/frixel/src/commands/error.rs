@@ -20,7 +20,7 @@ use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
 use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
-use frixel_lab::recording::{Difference, RecordingError, ReplayError};
+use frixel_lab::recording::{Difference, RecordingError, ReplayError, StrokeOptionsError};
 use frixel_lab::scenario::ScenarioError;
 use frixel_lab::score::TrialsError;
 use frixel_lab::simulation::RehearsalError;
@@ -102,6 +102,8 @@ pub(crate) enum CommandError {
     GeneratedStroke(StrokeError),
     #[error("--from and --to: {0}; give two places that differ")]
     StraightStroke(StrokeError),
+    #[error("--times: {0}")]
+    StrokeTooOften(StrokeOptionsError),
     #[error("--from and --to are the same place: give two places that differ")]
     StrokeInPlace,
     #[error("{scene} has no layer that plays a stream: add one with `kind = \"stream\"`, or leave --stream out")]

@@ -85,6 +85,7 @@ impl StrokeArgs {
         self.options().generated(screen_m, seconds, seed).map_err(|error| match error {
             StrokeOptionsError::InPlace => CommandError::StrokeInPlace,
             StrokeOptionsError::TooLong { seconds } => CommandError::StrokeTooLong { name: self.name(), seconds },
+            StrokeOptionsError::TooOften { .. } => CommandError::StrokeTooOften(error),
             StrokeOptionsError::Straight(source) => CommandError::StraightStroke(source),
             StrokeOptionsError::Human(source) => CommandError::GeneratedStroke(source),
         })

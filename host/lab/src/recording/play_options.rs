@@ -4,6 +4,8 @@ use frixel_hil_sim::{Point, Stroke, StrokeError};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Most times that a finger goes along a straight stroke.
+const TIMES_MAX: u32 = 100_000;
 /// Longest stroke: one day, in s.
 pub const STROKE_MAX_S: f64 = 86_400.0;
 /// Duration of a person's stroke unless another is given, s, and the longest.
@@ -108,6 +110,12 @@ pub enum StrokeOptionsError {
         /// Its duration, s.
         seconds: f64,
     },
+    /// The finger goes along it too often.
+    #[error("the finger goes along the stroke {times} times, more than {TIMES_MAX}: let it go less often")]
+    TooOften {
+        /// How many times it does.
+        times: u32,
+    },
     /// A straight stroke cannot be made.
     #[error(transparent)]
     Straight(StrokeError),
@@ -161,6 +169,9 @@ impl StrokeOptions {
         }
         let failed = StrokeOptionsError::Straight;
         let (speed_m_per_s, times) = (self.speed_m_per_s.unwrap_or(STRAIGHT_M_PER_S), self.times.unwrap_or(1));
+        if times > TIMES_MAX {
+            return Err(StrokeOptionsError::TooOften { times });
+        }
         let once = Stroke::constant_speed(from, to, speed_m_per_s).map_err(failed)?;
         let once_s = once.duration_s();
         let seconds = f64::from(times) * once_s;

@@ -48,9 +48,15 @@ pub enum ReplayError {
     /// Samples were streamed that it does not have.
     #[error("samples were streamed into it (--stream), which the recording does not have")]
     Streamed,
-    /// A file of it is too large to be kept.
+    /// A file of it was too large to be kept.
     #[error("it has only the hash of the file {name}, which is large")]
     OnlyHash {
+        /// What the file is.
+        name: String,
+    },
+    /// A file of it is not there, or damaged.
+    #[error("it has not the file {name} that it was played with, or a damaged one: take the recording from a copy")]
+    MissingFile {
         /// What the file is.
         name: String,
     },
@@ -91,10 +97,10 @@ impl Recording {
         let is_short = options.interrupted || self.is_cut_off;
         let stopped_at_tick = stopped_at_tick(&self.metadata).filter(|_| is_short);
         let tick_hz = play.simulation.rig.board.tick_hz;
-        if is_short && stopped_at_tick.is_none() {
-            let rows_s = self.rows() as f64 * f64::from(play.simulation.ticks_per_row) / f64::from(tick_hz);
-            play.simulation.seconds = play.simulation.seconds.min(rows_s);
-        }
+        // Never more than a row beyond those of the file, which may ask for any duration.
+        let rows = self.rows() + usize::from(!is_short || stopped_at_tick.is_some());
+        let rows_s = rows as f64 * f64::from(play.simulation.ticks_per_row) / f64::from(tick_hz);
+        play.simulation.seconds = play.simulation.seconds.min(rows_s);
         let later = later_programs(&self.metadata, &options, &files)?;
         let mut changes = ReplayedChanges::new(options.lines, later, stopped_at_tick, tick_hz);
         let played = play.run_by(&program, feed, &mut |player| changes.play(player, goes_on));
@@ -129,9 +135,10 @@ fn stopped_at_tick(metadata: &Metadata) -> Option<u64> {
 
 /// The bytes of files that are kept in the recording.
 fn files(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes, ReplayError> {
-    let bytes = |(name, file): (&String, &SourceFile)| match file.bytes() {
-        Some(bytes) => Ok((name.clone(), bytes)),
-        None => Err(ReplayError::OnlyHash { name: name.clone() }),
+    let bytes = |(name, file): (&String, &SourceFile)| match (file.bytes(), file) {
+        (Some(bytes), _) => Ok((name.clone(), bytes)),
+        (None, SourceFile::Hash { .. }) => Err(ReplayError::OnlyHash { name: name.clone() }),
+        (None, _) => Err(ReplayError::MissingFile { name: name.clone() }),
     };
     files.iter().map(bytes).collect()
 }
@@ -205,16 +212,24 @@ fn scene(text: &str, named: &FileBytes, options: &PlayOptions, files: &FileBytes
 
 /// The stroke of a file.
 fn stroke(options: &PlayOptions, files: &FileBytes) -> Result<Option<Stroke>, ReplayError> {
-    let bytes = files.get(PlayOptions::STROKE).filter(|_| options.stroke.is_from_file());
-    Ok(bytes.map(|bytes| StrokeFile::read(bytes.as_slice())).transpose()?.map(|file| file.stroke))
+    if !options.stroke.is_from_file() {
+        return Ok(None);
+    }
+    let bytes = files.get(PlayOptions::STROKE).ok_or_else(|| missing(PlayOptions::STROKE))?;
+    Ok(Some(StrokeFile::read(bytes.as_slice())?.stroke))
 }
 
 fn touch(options: &PlayOptions, files: &FileBytes) -> Result<Option<TouchConfig>, ReplayError> {
     Ok(match (&options.touch, files.get(PlayOptions::TOUCH)) {
         (None, _) => None,
         (Some(_), Some(bytes)) => Some(parse_touch_source(&String::from_utf8_lossy(bytes), PlayOptions::TOUCH)?),
+        (Some(name), None) if name == PlayOptions::FILE => return Err(missing(PlayOptions::TOUCH)),
         (Some(name), None) => Some(bundled(TouchConfig::bundled(name), PlayOptions::TOUCH, name)?),
     })
+}
+
+fn missing(name: &str) -> ReplayError {
+    ReplayError::MissingFile { name: name.to_owned() }
 }
 
 /// A bundled profile, which the same version has.
