@@ -238,7 +238,7 @@ mod tests {
             let main = function("main", 8, &[0x20]);
             Functions(BTreeMap::from([(0x10, main), (0x20, function(called, 100, &[]))])).depth("main", &[])
         };
-        assert_eq!(depth("_ZN5board5fault3end17h0E"), Ok(8 + 108));
+        assert_eq!(depth("_ZN12frixel_board5fault15Ending$LT$P$GT$3end17h0E"), Ok(8 + 108));
         assert_eq!(depth("_ZN12frixel_wire5fault1_9serialize17h0E"), Ok(8 + 100 + 108));
     }
 
