@@ -61,6 +61,8 @@ pub enum Stop {
     Missing(Wire),
     /// The pin at the end of a wire has these levels at rest.
     Resting(Wire, Levels),
+    /// The enable has not fallen after a pulse.
+    EnableStaysHigh,
     /// SDO did not receive what SDI sent: so many of the bytes were others, all of them if the wire is missing.
     Data(u32),
     /// The flash is not in two banks.
@@ -88,6 +90,9 @@ impl fmt::Display for Stop {
             Self::Missing(wire) => write!(f, "the wire of {wire} is missing, or at a pin beside the right one"),
             Self::Resting(wire, levels) => {
                 write!(f, "{wire} does not rest where it must ({levels}): is its wire at another pin?")
+            }
+            Self::EnableStaysHigh => {
+                f.write_str("the enable did not fall after a pulse: no amplifier may be connected to this board")
             }
             Self::Data(wrong) => write!(
                 f,
@@ -318,10 +323,13 @@ fn measure_enable<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<
     let least_us = B::ONE_SHOT_US - B::ONE_SHOT_US / 50;
     counts.say(board, "enable_falls_us", fall_us.unwrap_or(NEVER_US), Some((least_us, FALL_MAX_US)));
     counts.say(board, "enable_falls_between_kicks", u32::from(fell_again), Some((0, 0)));
+    if rise_us.is_some() && fall_us.is_none() {
+        return Err(Stop::EnableStaysHigh);
+    }
     refuse_ready_or_voltage(board)?;
-    let cut_us = board.cut_pulse().unwrap_or(NEVER_US);
-    counts.say(board, "enable_is_cut_within_us", cut_us, Some((0, CUT_MAX_US)));
-    Ok(())
+    let cut_us = board.cut_pulse();
+    counts.say(board, "enable_is_cut_within_us", cut_us.unwrap_or(NEVER_US), Some((0, CUT_MAX_US)));
+    if rise_us.is_some() && cut_us.is_none() { Err(Stop::EnableStaysHigh) } else { Ok(()) }
 }
 
 fn measure_adc<B: LoopedBoard>(board: &mut B, counts: &mut Counts) {
