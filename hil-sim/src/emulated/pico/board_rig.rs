@@ -32,7 +32,9 @@ impl PicoBoardRig {
 
     fn step(&mut self) -> Result<RigTick, RigError> {
         self.switch_open_until = self.switch_open_until.filter(|until| *until > self.tick());
-        self.rig.broken.arm_switch = self.switch_open_until.map(|_| false);
+        // A welded switch stays closed, whatever the person does.
+        let is_open = self.switch_open_until.is_some() && !self.rig.world().is_switch_welded();
+        self.rig.broken.arm_switch = is_open.then_some(false);
         let record = self.rig.step().map_err(|error| ended(&error))?;
         Ok(RigTick { tick: self.tick(), drive: record.drive, felt: record.felt })
     }
