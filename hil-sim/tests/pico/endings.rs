@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_hil_sim::emulated::{Image, PicoRig};
+use frixel_hil_sim::emulated::{Image, PicoRig, WireEvent};
 use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, ResetCause, notice};
@@ -88,6 +88,7 @@ fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
         rig.starts()
     });
     let begin = bench.now();
+    bench.take_events();
     bench.with(|rig| ending.happen(rig, random.below(1 << 30)));
     drop(host);
     let zero_since = loop {
@@ -103,9 +104,23 @@ fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
         bench.step();
         assert!(bench.now().saturating_sub(begin) < RESTART_MAX, "{ending:?}: the board has not started again");
     }
+    if matches!(ending, Ending::Panic | Ending::HardFault) {
+        zeroed_by_firmware(bench, ending);
+    }
     bench.pass(Duration::from_millis(100));
     assert_eq!(bench.with(|rig| rig.zero_since()), Some(zero_since), "{ending:?}: nothing starts by itself");
     *bench.connect().hello()
+}
+
+/// Expects that the firmware itself disabled the amplifier and cleared the DAC, before the start that lets go of all pins.
+fn zeroed_by_firmware(bench: &Bench, ending: Ending) {
+    let events = bench.take_events();
+    assert!(events.is_sorted_by_key(|stamped| stamped.at), "{ending:?}: {events:?}");
+    let before_start = events.split(|stamped| matches!(stamped.event, WireEvent::Start(_))).next().unwrap_or_default();
+    for zeroing in [WireEvent::Enable(false), WireEvent::Clear(false)] {
+        let is_there = before_start.iter().any(|stamped| stamped.event == zeroing);
+        assert!(is_there, "{ending:?}: no {zeroing:?} before the start, in {before_start:?}");
+    }
 }
 
 /// Lets plays end so, at random instructions, each on a board that was just switched on.
