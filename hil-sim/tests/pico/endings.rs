@@ -7,7 +7,7 @@ use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, ResetCause, notice};
 
-use super::bench::{Bench, CONSTANT, TICK};
+use super::bench::{BOARD, Bench, CONSTANT, TICK};
 use crate::emulator;
 
 /// The one-shot ends within this time after the last kick, which was in the last tick.
@@ -16,8 +16,10 @@ const ONE_SHOT_MAX: Duration = Duration::from_millis(1);
 const PANIC_MAX: Duration = Duration::from_micros(100);
 /// The watchdog's time, and a start.
 const RESTART_MAX: Duration = Duration::from_millis(700);
-/// Instructions between a frame and the next, at least.
-const INSTRUCTIONS: u32 = 10_000;
+/// Cycles of the core between two ticks: the RP2040 has 200 MHz here.
+const TICK_CYCLES: u32 = 200_000_000 / BOARD.tick_hz;
+/// Instructions between a frame and the next, at least: one takes 25 / 16 cycles at most, as an average over a tick.
+const INSTRUCTIONS: u32 = TICK_CYCLES * 16 / 25;
 
 /// How a play ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +85,8 @@ fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
         bench.step();
     }
     let starts = bench.with(|rig| {
-        rig.run_instructions(random.below(INSTRUCTIONS)).unwrap();
+        let is_before_next_frame = rig.run_instructions(1 + random.below(INSTRUCTIONS)).unwrap();
+        assert!(is_before_next_frame, "the next frame ended before {INSTRUCTIONS} instructions");
         assert_eq!(rig.zero_since(), None, "the board drives");
         rig.starts()
     });
