@@ -33,8 +33,9 @@ fn a_band_is_felt_as_the_scene_asks_for_it() {
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let ticks = Board::PICO.tick_hz / 2;
     assert_eq!((&json["rig"], &json["ticks"]), (&"pico".into(), &ticks.into()));
-    let error_n = json["friction_error_rms_n"].as_f64().unwrap();
-    let range_n = json["electric_friction_max_n"].as_f64().unwrap();
+    let number = |name: &str| json[name].as_f64().unwrap();
+    let error_n = number("friction_error_rms_n");
+    let range_n = number("reachable_max_n") - number("reachable_min_n");
     assert!(error_n < 0.05 * range_n && error_n > 1e-6, "{error_n} N rms of {range_n} N");
     let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
     assert_eq!(felt.lines().count(), 501);
