@@ -52,8 +52,11 @@ export class Board {
   events = [];
   instructions = 0;
 
-  /** @param {import("./loader.mjs").Image} image @param {Remains} remains @param {number} cause */
-  constructor(image, remains, cause) {
+  /**
+   * @param {import("./loader.mjs").Image} image @param {Remains} remains @param {number} cause
+   * @param {number} elapsed ns from the beginning of the run to this start
+   */
+  constructor(image, remains, cause, elapsed = 0) {
     const rp2040 = this.#rp2040;
     rp2040.logger = this.#logger();
     rp2040.flash.set(remains.flash.subarray(0, FLASH_LEN));
@@ -73,7 +76,8 @@ export class Board {
         this.#hardFault();
       }
     };
-    this.record(EVENT.START, cause);
+    // The clock of this board is 0 now, whenever in the run it starts.
+    this.events.push(EVENT.START, elapsed, cause, 0);
     this.#core.VTOR = image.vectors;
     this.#core.reset();
   }

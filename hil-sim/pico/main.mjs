@@ -96,9 +96,10 @@ class Rig {
     }
   }
 
-  #start(cause, seed = 0) {
+  /** Starts the board anew, `elapsed` ns after the beginning of the run. */
+  #start(cause, seed = 0, elapsed = 0) {
     const { events } = this.#board;
-    this.#board = new Board(this.#image, this.#board.remains(cause, scrambler(seed)), cause);
+    this.#board = new Board(this.#image, this.#board.remains(cause, scrambler(seed)), cause, elapsed);
     this.#board.events.unshift(...events);
     return [];
   }
@@ -114,7 +115,7 @@ class Rig {
     const received = board.takeReceived();
     if (ended === ENDED.RESET && board.cause !== undefined) {
       this.#powerCuts += 1;
-      this.#start(board.cause, this.#powerCuts);
+      this.#start(board.cause, this.#powerCuts, elapsed);
     }
     const { events } = this.#board;
     this.#board.events = [];

@@ -1,4 +1,4 @@
-// The words between this process and `frixel-hil-sim` (src/pico/protocol.rs): little-endian, 32 bits each, in messages
+// The words between this process and `frixel-hil-sim` (src/emulated/pico/protocol.rs): little-endian, 32 bits each, in messages
 // that begin with the number of words that follow.
 
 /** First word of a request. */
@@ -15,7 +15,8 @@ export const REQUEST = {
   HANG_MAIN_LOOP: 5,
   /** Jump to an address. */
   JUMP: 6,
-  /** Cut the power at a flash operation: how many are still carried out, and the seed of how far the next one comes. */
+  /** Cut the power at a flash operation: how many are still carried out, and which part of the
+   *  next one, as a fraction of 2^32. */
   CUT_AT_FLASH_OPERATION: 7,
   /** The address of a function: bytes of its name. */
   ADDRESS_OF: 8,

@@ -64,6 +64,8 @@ pub struct PicoRig {
     now: Duration,
     /// When the current tick ends.
     tick_ends_at: Duration,
+    /// When the last frame ended.
+    frame_ended_at: Option<Duration>,
     amplifier_enable: bool,
     /// Since when the amplifier has been disabled and the DAC's output zero.
     zero_since: Option<Duration>,
@@ -86,6 +88,7 @@ impl PicoRig {
             tick_period,
             now: Duration::ZERO,
             tick_ends_at: tick_period,
+            frame_ended_at: None,
             amplifier_enable: false,
             zero_since: Some(Duration::ZERO),
             to_board: VecDeque::new(),
@@ -177,11 +180,13 @@ impl PicoRig {
     pub fn step(&mut self) -> Result<LinkRecord, EmulatorError> {
         let tolerance = self.tick_period.mul_f64(BOUNDARY_TOLERANCE);
         loop {
+            let frame_before = self.frame_ended_at;
             let ran = self.run((self.tick_ends_at + tolerance).saturating_sub(self.now), 0)?;
+            let is_due = self.now + tolerance >= self.tick_ends_at;
+            // The board's beat begins at any time of the world's tick, which follows it from the second frame on.
+            let is_beat = frame_before.is_some_and(|at| (self.now - at).abs_diff(self.tick_period) <= tolerance);
             let (boundary, earlier) = match (ran.ended, ran.events.split_last()) {
-                (Ended::Frame, Some((frame, earlier))) if self.now + tolerance >= self.tick_ends_at => {
-                    (Some(*frame), earlier)
-                }
+                (Ended::Frame, Some((frame, earlier))) if is_due || is_beat => (Some(*frame), earlier),
                 _ => (None, &ran.events[..]),
             };
             self.follow(earlier);
@@ -226,6 +231,9 @@ impl PicoRig {
             stamped.at += self.now;
         }
         self.now += ran.elapsed;
+        if ran.ended == Ended::Frame {
+            self.frame_ended_at = Some(self.now);
+        }
         self.instructions += u64::from(ran.instructions);
         self.at_host.append(&mut ran.received);
         Ok(ran)

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use frixel_hil_sim::emulated::{Image, PicoRig};
+use frixel_hil_sim::emulated::{Image, PicoRig, WireEvent};
 use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, ResetCause, notice};
 
-use super::bench::{Bench, CONSTANT, TICK};
+use super::bench::{BOARD, Bench, CONSTANT, TICK};
 use crate::emulator;
 
 /// The one-shot ends within this time after the last kick, which was in the last tick.
@@ -16,8 +16,10 @@ const ONE_SHOT_MAX: Duration = Duration::from_millis(1);
 const PANIC_MAX: Duration = Duration::from_micros(100);
 /// The watchdog's time, and a start.
 const RESTART_MAX: Duration = Duration::from_millis(700);
-/// Instructions between a frame and the next, at least.
-const INSTRUCTIONS: u32 = 10_000;
+/// Cycles of the core between two ticks: the RP2040 has 200 MHz here.
+const TICK_CYCLES: u32 = 200_000_000 / BOARD.tick_hz;
+/// Instructions between a frame and the next, at least: one takes 25 / 16 cycles at most, as an average over a tick.
+const INSTRUCTIONS: u32 = TICK_CYCLES * 16 / 25;
 
 /// How a play ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,11 +85,13 @@ fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
         bench.step();
     }
     let starts = bench.with(|rig| {
-        rig.run_instructions(random.below(INSTRUCTIONS)).unwrap();
+        let is_before_next_frame = rig.run_instructions(1 + random.below(INSTRUCTIONS)).unwrap();
+        assert!(is_before_next_frame, "the next frame ended before {INSTRUCTIONS} instructions");
         assert_eq!(rig.zero_since(), None, "the board drives");
         rig.starts()
     });
     let begin = bench.now();
+    bench.take_events();
     bench.with(|rig| ending.happen(rig, random.below(1 << 30)));
     drop(host);
     let zero_since = loop {
@@ -103,9 +107,23 @@ fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
         bench.step();
         assert!(bench.now().saturating_sub(begin) < RESTART_MAX, "{ending:?}: the board has not started again");
     }
+    if matches!(ending, Ending::Panic | Ending::HardFault) {
+        zeroed_by_firmware(bench, ending);
+    }
     bench.pass(Duration::from_millis(100));
     assert_eq!(bench.with(|rig| rig.zero_since()), Some(zero_since), "{ending:?}: nothing starts by itself");
     *bench.connect().hello()
+}
+
+/// Expects that the firmware itself disabled the amplifier and cleared the DAC, before the start that lets go of all pins.
+fn zeroed_by_firmware(bench: &Bench, ending: Ending) {
+    let events = bench.take_events();
+    assert!(events.is_sorted_by_key(|stamped| stamped.at), "{ending:?}: {events:?}");
+    let before_start = events.split(|stamped| matches!(stamped.event, WireEvent::Start(_))).next().unwrap_or_default();
+    for zeroing in [WireEvent::Enable(false), WireEvent::Clear(false)] {
+        let is_there = before_start.iter().any(|stamped| stamped.event == zeroing);
+        assert!(is_there, "{ending:?}: no {zeroing:?} before the start, in {before_start:?}");
+    }
 }
 
 /// Lets plays end so, at random instructions, each on a board that was just switched on.

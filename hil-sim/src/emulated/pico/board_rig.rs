@@ -11,6 +11,9 @@ use crate::{BoardRig, RigError, RigFault, RigTick, World};
 const NAME: &str = "the emulated Pico";
 /// Time until the board is there, and its arm switch counts as held or as let go.
 const SWITCH_TIME: Duration = Duration::from_millis(60);
+/// Most time between a request or an event and what is seen of it: the supervisor of a real board waits for its amplifier,
+/// and its touch reports take longer.
+const LATENESS: Duration = Duration::from_millis(5);
 const BOARD: Board = Board::PICO;
 
 /// A [`PicoRig`] whose person holds the arm switch, and presses it again when it is asked to.
@@ -32,7 +35,9 @@ impl PicoBoardRig {
 
     fn step(&mut self) -> Result<RigTick, RigError> {
         self.switch_open_until = self.switch_open_until.filter(|until| *until > self.tick());
-        self.rig.broken.arm_switch = self.switch_open_until.map(|_| false);
+        // A welded switch stays closed, whatever the person does.
+        let is_open = self.switch_open_until.is_some() && !self.rig.world().is_switch_welded();
+        self.rig.broken.arm_switch = is_open.then_some(false);
         let record = self.rig.step().map_err(|error| ended(&error))?;
         Ok(RigTick { tick: self.tick(), drive: record.drive, felt: record.felt })
     }
@@ -93,15 +98,19 @@ impl BoardRig for PicoBoardRig {
     }
 
     fn press_switch(&mut self) -> u64 {
-        let ticks = (SWITCH_TIME.as_secs_f64() * f64::from(BOARD.tick_hz)) as u64;
+        let ticks = ticks(SWITCH_TIME);
         self.switch_open_until = Some(self.tick() + ticks);
         2 * ticks
     }
 
-    /// The supervisor of a real board waits for its amplifier and its touch reports take longer: 5 ms.
     fn lateness_ticks(&self) -> u64 {
-        50
+        ticks(LATENESS)
     }
+}
+
+/// Ticks of the board in a time.
+fn ticks(time: Duration) -> u64 {
+    (time.as_secs_f64() * f64::from(BOARD.tick_hz)).round() as u64
 }
 
 fn ended(error: &EmulatorError) -> RigError {

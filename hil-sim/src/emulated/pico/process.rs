@@ -1,7 +1,7 @@
 //! The emulator's process, and the messages to and from it.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Write};
+use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::os::fd::AsFd;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
@@ -17,6 +17,8 @@ use crate::emulated::{EmulatorError, Image, harness};
 const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 /// A message of more words is none.
 const WORDS_MAX: u32 = 1 << 24;
+/// Bytes that an error repeats of what the emulator says, from the end.
+const ERRORS_MAX_LEN: u64 = 64 << 10;
 
 /// A running emulator. Dropping this ends it.
 #[derive(Debug)]
@@ -61,16 +63,21 @@ impl Process {
 
     fn words(&mut self, count: usize) -> Result<Vec<u32>, EmulatorError> {
         let mut bytes = vec![0; 4 * count];
-        if self.from.buffer().len() < bytes.len() {
-            self.wait()?;
-        }
-        if self.from.read_exact(&mut bytes).is_err() {
-            return Err(self.ended());
+        let mut missing = &mut bytes[..];
+        while !missing.is_empty() {
+            if self.from.buffer().is_empty() {
+                self.wait()?;
+            }
+            match self.from.read(missing) {
+                Ok(len) if len > 0 => missing = &mut missing[len..],
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                _ => return Err(self.ended()),
+            }
         }
         Ok(bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
     }
 
-    /// Waits for the first bytes of an answer.
+    /// Waits for bytes of an answer.
     fn wait(&self) -> Result<(), EmulatorError> {
         let timeout = Timespec { tv_sec: WALL_TIMEOUT.as_secs() as i64, tv_nsec: 0 };
         let mut ready = [PollFd::from_borrowed_fd(self.from.get_ref().as_fd(), PollFlags::IN)];
@@ -83,13 +90,23 @@ impl Process {
 
     /// The error with which the emulator has ended.
     fn ended(&mut self) -> EmulatorError {
-        // It has closed its output, so it ends by itself, and then has said why.
+        // It has said why before it closed its output. One that answers nonsense lives, and would be waited for.
+        let _ = self.child.kill();
         let _ = self.child.wait();
-        let mut output = String::new();
-        match File::open(self.errors.path()).and_then(|mut file| file.read_to_string(&mut output)) {
-            Ok(_) => EmulatorError::Ended { output },
+        match self.last_errors() {
+            Ok(output) => EmulatorError::Ended { output },
             Err(error) => EmulatorError::system("reading what the emulator says")(error),
         }
+    }
+
+    /// The end of what it has said on standard error.
+    fn last_errors(&self) -> io::Result<String> {
+        let mut file = File::open(self.errors.path())?;
+        let len = file.metadata()?.len();
+        file.seek(SeekFrom::Start(len.saturating_sub(ERRORS_MAX_LEN)))?;
+        let mut bytes = Vec::new();
+        file.take(ERRORS_MAX_LEN).read_to_end(&mut bytes)?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }
 

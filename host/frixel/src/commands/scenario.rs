@@ -47,7 +47,9 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), Command
         #[cfg(unix)]
         RigKind::Pico => run_on_pico(&scenario, &scenes)?,
         #[cfg(not(unix))]
-        RigKind::Qemu | RigKind::Pico => return Err(CommandError::NoPseudoTerminal { what: "--rig qemu" }),
+        RigKind::Qemu => return Err(CommandError::NoPseudoTerminal { what: "--rig qemu" }),
+        #[cfg(not(unix))]
+        RigKind::Pico => return Err(CommandError::NoPseudoTerminal { what: "--rig pico" }),
     };
     print(&outcome)?;
     let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);

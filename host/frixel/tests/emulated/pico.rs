@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use frixel_hil_sim::Board;
 use tempfile::TempDir;
 
 use crate::emulator;
 
-/// A band on an otherwise plain screen, which the stroke below crosses. A grating with a sine takes longer than the tick
-/// of this board has.
+/// A band on an otherwise plain screen, which the stroke below crosses.
 const BAND: &str = "version = 2\n[[layer]]\nname = \"band\"\nkind = \"constant\"\n\
                     region = { x_mm = 30, y_mm = 0, width_mm = 6, height_mm = 80 }\nfriction_fraction = 0.9\n";
 
@@ -31,9 +31,11 @@ fn a_band_is_felt_as_the_scene_asks_for_it() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&json["rig"], &json["ticks"]), (&"pico".into(), &5_000.into()));
-    let error_n = json["friction_error_rms_n"].as_f64().unwrap();
-    let range_n = json["electric_friction_max_n"].as_f64().unwrap();
+    let ticks = Board::PICO.tick_hz / 2;
+    assert_eq!((&json["rig"], &json["ticks"]), (&"pico".into(), &ticks.into()));
+    let number = |name: &str| json[name].as_f64().unwrap();
+    let error_n = number("friction_error_rms_n");
+    let range_n = number("reachable_max_n") - number("reachable_min_n");
     assert!(error_n < 0.05 * range_n && error_n > 1e-6, "{error_n} N rms of {range_n} N");
     let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
     assert_eq!(felt.lines().count(), 501);
