@@ -123,11 +123,6 @@ export class UartLine {
     return this.#toHost.splice(0);
   }
 
-  /** Number of bytes that are still on their way to the board. */
-  get underWay() {
-    return this.#fromHost.length;
-  }
-
   /** Whether both ends of the line have the same rate. */
   get #isInTime() {
     const rate = this.#uart.baudDivider > 0 ? this.#uart.baudRate : 0;

@@ -9,7 +9,7 @@ use frixel_hil_sim::{
     Board, BoardMemory, BoardRig, Felt, InProcessRig, NoiseConfig, RigConfig, RigError, RigFault, RigTick,
 };
 use frixel_lab::scenario::{ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
-use frixel_scene::{Action, Cause, LineDamage, Scenario, Scene};
+use frixel_scene::{Action, At, Cause, Expectation, LineDamage, Scenario, Scene, Seen};
 use frixel_wire::dac_code::DacCode;
 
 fn folder() -> PathBuf {
@@ -167,5 +167,33 @@ fn every_expectation_is_unmet_on_a_broken_rig() {
                 outcomes.iter().any(|outcome| outcome.unmet.iter().any(|unmet| unmet.expectation == Some(number)));
             assert!(is_unmet, "{}:{}: {:?}", scenario.file, expectation.line, expectation.seen);
         }
+    }
+}
+
+fn plays_and_stops() -> (Scenario, BTreeMap<String, Scene>) {
+    scenarios().into_iter().find(|(scenario, _)| scenario.file == "plays-and-stops.toml").unwrap()
+}
+
+/// A rig that is late makes spans shorter, and in less than 10 ms no tick by itself is too late.
+#[test]
+fn a_driven_output_over_a_short_span_is_unmet_on_a_dead_board() {
+    let (mut scenario, scenes) = plays_and_stops();
+    let from_ms = 400.0;
+    let seen = Seen::OutputDriven;
+    scenario.expectations = vec![Expectation { line: 1, after: None, from_ms, to_ms: Some(from_ms + 4.0), seen }];
+    assert_eq!(run_in_process(&scenario, &scenes, &RigConfig::default()).unwrap().unmet, []);
+    let unmet = run_broken(&scenario, &scenes, Break::Dead).unmet;
+    assert_eq!(unmet.len(), 1);
+    assert!(unmet[0].sentence.ends_with("found DAC code 0 in each of its 160 ticks"), "{}", unmet[0]);
+}
+
+#[test]
+fn a_tick_after_the_end_is_an_error() {
+    let (mut scenario, scenes) = plays_and_stops();
+    let end = (scenario.seconds * f64::from(RigConfig::default().board.tick_hz)).round() as u64;
+    for (tick, is_late) in [(end, false), (end + 1, true)] {
+        scenario.commands.last_mut().unwrap().at = At::Tick(tick);
+        let outcome = run_in_process(&scenario, &scenes, &RigConfig::default());
+        assert_eq!(outcome.is_err(), is_late, "{outcome:?}");
     }
 }

@@ -55,7 +55,7 @@ struct Found {
     wrong: Option<(u64, i16, bool, f64)>,
     /// Ticks that were looked at.
     ticks: u64,
-    last_driven_tick: u64,
+    last_driven_tick: Option<u64>,
     friction_sum_n: f64,
     friction_ticks: u64,
 }
@@ -145,9 +145,9 @@ impl Check {
             Seen::OutputOff => code != 0 || enable,
             Seen::OutputDriven => {
                 if code != 0 {
-                    found.last_driven_tick = tick.tick;
+                    found.last_driven_tick = Some(tick.tick);
                 }
-                tick.tick - found.last_driven_tick.max(start) > driven_within
+                tick.tick - found.last_driven_tick.unwrap_or(start) > driven_within
             }
             Seen::ElectrodeBelow(limit_v) => tick.felt.electrode_v.abs() >= limit_v,
             Seen::Friction(_) => {
@@ -172,7 +172,7 @@ impl Check {
         };
         let span = format!("from {:.3} to {:.3} ms", clock.ms(start), clock.ms(end));
         let expected = format!("expected {} {span}", self.expected());
-        let Found { wrong, ticks, friction_sum_n, friction_ticks, .. } = self.found;
+        let Found { wrong, ticks, last_driven_tick, friction_sum_n, friction_ticks } = self.found;
         let is_of_ticks = !matches!(self.expectation.seen, Seen::State(_) | Seen::Fault(_) | Seen::Error(_));
         if is_of_ticks && ticks == 0 {
             return Some(format!("{expected}, and there is no tick in it: let the scenario run for longer"));
@@ -204,6 +204,10 @@ impl Check {
                 };
                 let met = failures.iter_mut().filter(is_it).map(|failure| failure.is_expected = true).count();
                 (met == 0).then(|| format!("{expected}; {}", failed(clock, failures)))
+            }
+            // A span of less than 10 ms has no tick that is wrong by itself.
+            Seen::OutputDriven if wrong.is_none() && last_driven_tick.is_none() => {
+                Some(format!("{expected}; found DAC code 0 in each of its {ticks} ticks"))
             }
             Seen::OutputZero | Seen::OutputOff | Seen::OutputDriven | Seen::ElectrodeBelow(_) => {
                 let (tick, code, enable, electrode_v) = wrong?;

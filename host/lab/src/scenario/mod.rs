@@ -16,7 +16,7 @@ use std::fmt::{self, Display};
 use frixel_hil_sim::{
     BoardMemory, BoardRig, InProcessError, InProcessRig, Point, RigConfig, RigError, Stroke, StrokeError, WorldConfig,
 };
-use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
+use frixel_scene::{At, CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
 use crate::default_stroke::REPEAT_PAUSE_S;
@@ -92,6 +92,18 @@ pub enum ScenarioError {
         /// The reason.
         source: RigError,
     },
+    /// A command or a fault begins after the end, which only a board can say of a tick.
+    #[error(
+        "{file}:{line}: tick {tick} of this board is after the end of the scenario: raise `seconds`, or begin earlier"
+    )]
+    AfterEnd {
+        /// The scenario's file.
+        file: String,
+        /// Line of the command or the fault.
+        line: usize,
+        /// The tick at which it begins.
+        tick: u64,
+    },
     /// A scene was not given.
     #[error("{file} plays {scene}, and this scene was not given")]
     NoScene {
@@ -154,8 +166,20 @@ pub fn run_in_process(
     run(scenario, &programs, &mut rig)
 }
 
+/// Checks that nothing begins after the end, for a board of so many ticks a second.
+fn check_times(scenario: &Scenario, tick_hz: u32) -> Result<(), ScenarioError> {
+    let end = At::Ms(1e3 * scenario.seconds).tick(tick_hz);
+    let commands = scenario.commands.iter().map(|command| (command.at.tick(tick_hz), command.line));
+    let faults = scenario.faults.iter().map(|fault| (fault.at.tick(tick_hz), fault.line));
+    match commands.chain(faults).find(|(tick, _)| *tick > end) {
+        Some((tick, line)) => Err(ScenarioError::AfterEnd { file: scenario.file.clone(), line, tick }),
+        None => Ok(()),
+    }
+}
+
 /// Runs a scenario on a rig, whose world has the finger of [`stroke_and_world`].
 pub fn run(scenario: &Scenario, programs: &Programs, rig: &mut dyn BoardRig) -> Result<ScenarioOutcome, ScenarioError> {
+    check_times(scenario, rig.board().tick_hz)?;
     let line = ScenarioLine::new(scenario, rig);
     let mut host = Host::new(scenario, programs, line.clone());
     host.run();

@@ -41,6 +41,16 @@ pub enum Mistake {
         /// The name, as written.
         found: String,
     },
+    /// A command or a fault of a scenario begins after its end.
+    #[error(
+        "`at_ms = {at_ms}` is after the end of the scenario, which runs for {seconds} s: raise `seconds`, or begin earlier"
+    )]
+    AfterEnd {
+        /// When it begins, in ms since the start.
+        at_ms: f64,
+        /// How long the scenario runs, in s.
+        seconds: f64,
+    },
 }
 
 impl Mistake {

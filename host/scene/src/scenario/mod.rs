@@ -223,7 +223,7 @@ pub enum Seen {
     OutputZero,
     /// DAC code zero and amplifier disabled in every tick.
     OutputOff,
-    /// A code other than zero at least once in every 10 ms.
+    /// A code other than zero at least once, and at least once in every 10 ms.
     OutputDriven,
     /// The electrode's voltage is below this one in every tick, V.
     ElectrodeBelow(f64),

@@ -42,8 +42,8 @@ pub(super) fn scenario(mut fields: Fields, name: &str, log: &mut Log) -> Option<
     let faults = fields.tables(log, &file::FAULT).unwrap_or_default();
     let expectations = fields.tables(log, &file::EXPECT).unwrap_or_default();
     fields.close(log);
-    let commands: Vec<_> = commands.into_iter().filter_map(|table| scenario_command(table, log)).collect();
-    let faults: Vec<_> = faults.into_iter().filter_map(|table| scenario_fault(table, log)).collect();
+    let commands: Vec<_> = commands.into_iter().filter_map(|table| scenario_command(table, seconds, log)).collect();
+    let faults: Vec<_> = faults.into_iter().filter_map(|table| scenario_fault(table, seconds, log)).collect();
     let names = commands.iter().map(|command| &command.name).chain(faults.iter().map(|fault| &fault.name));
     let names: Vec<&str> = names.flatten().map(String::as_str).collect();
     let expectations = expectations.into_iter().flat_map(|table| expected(table, &names, log)).collect();
@@ -78,12 +78,18 @@ fn line_of(fields: &Fields, log: &Log) -> usize {
     log.source().line_and_column(fields.table_place()).0
 }
 
-/// The time of a command or a fault.
-fn at(fields: &mut Fields, log: &mut Log) -> Option<At> {
+/// The time of a command or a fault, in a scenario of so many seconds. Only a board knows when a tick is.
+fn at(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<At> {
     let [ms, tick] = fields.in_either_unit(log, &when::AT_MS, &when::AT_TICK);
-    let at_ms = fields.number(log, &ms).map(At::Ms);
+    let place = fields.place(when::AT_MS.name);
+    let at_ms = fields.number(log, &ms);
+    if let (Some(at_ms), Some(seconds)) = (at_ms, seconds)
+        && at_ms > 1e3 * seconds
+    {
+        log.add(place, Mistake::AfterEnd { at_ms, seconds });
+    }
     let at_tick = fields.number(log, &tick).map(|tick| At::Tick(tick as u64));
-    at_ms.or(at_tick)
+    at_ms.map(At::Ms).or(at_tick)
 }
 
 /// What a command does, before its fields are read.
@@ -110,9 +116,9 @@ pub(super) const VERBS: [(&str, Verb); 11] = [
     ("other-client", Verb::Plain(|| Action::OtherClient)),
 ];
 
-fn scenario_command(mut fields: Fields, log: &mut Log) -> Option<ScenarioCommand> {
+fn scenario_command(mut fields: Fields, seconds: Option<f64>, log: &mut Log) -> Option<ScenarioCommand> {
     let line = line_of(&fields, log);
-    let at = at(&mut fields, log);
+    let at = at(&mut fields, seconds, log);
     let name = fields.text(log, &when::NAME);
     let action = match fields.choice_or_nearest(log, &command::DO, &VERBS) {
         Some(Verb::Plain(action)) => Some(action()),
@@ -177,9 +183,9 @@ pub(super) const KINDS: [(&str, Kind); 20] = [
 ];
 const NO_NOISE: NoiseConfig = NoiseConfig { bit_error_rate: 0.0, lost_share: 0.0, doubled_share: 0.0 };
 
-fn scenario_fault(mut fields: Fields, log: &mut Log) -> Option<ScenarioFault> {
+fn scenario_fault(mut fields: Fields, seconds: Option<f64>, log: &mut Log) -> Option<ScenarioFault> {
     let line = line_of(&fields, log);
-    let at = at(&mut fields, log);
+    let at = at(&mut fields, seconds, log);
     let name = fields.text(log, &when::NAME);
     let Some(kind) = fields.choice_or_nearest(log, &fault::CAUSE, &KINDS) else {
         fields.give_up_without(log, fault::CAUSE.name);

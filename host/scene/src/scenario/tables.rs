@@ -128,7 +128,7 @@ pub(super) mod expect {
         "output",
         Means(""),
         "`\"zero\"`: DAC code zero in every tick; `\"off\"`: and the amplifier disabled; `\"driven\"`: a code other than \
-         zero at least once in every 10 ms",
+         zero at least once, and at least once in every 10 ms",
     );
     pub(crate) const ELECTRODE_BELOW_V: FieldSpec = number(
         "electrode_below_v",

@@ -52,6 +52,14 @@ fn a_mistake_is_a_sentence_with_line_and_column() {
             "[[expect]]\nafter = \"cut\"\noutput = \"zero\"\n",
             "test.toml:5:9: `after = \"cut\"` names no command and no fault: give one",
         ),
+        (
+            "[[fault]]\nat_ms = 2001\ncause = \"reset\"\n",
+            "test.toml:5:9: `at_ms = 2001` is after the end of the scenario, which runs for 2 s: raise `seconds`",
+        ),
+        (
+            "[[command]]\nat_ms = 2e4\ndo = \"play\"\n",
+            "test.toml:5:9: `at_ms = 20000` is after the end of the scenario",
+        ),
         ("[[expect]]\nfrom_ms = 4\n", "test.toml:4:1: this [[expect]] expects nothing: add `output`"),
         ("stroke = { from_mm = [1], to_mm = [1, 2] }\n", "test.toml:4:22: `from_mm`"),
         ("colour = 1\n", "test.toml:4:1: unknown field `colour` in this scenario"),

@@ -94,7 +94,8 @@ impl Met {
             Message::Mistake(Mistake::Fit(mistake)) => Some(fit_name(mistake)),
             Message::Warning(warning) => Some(warning_name(warning)),
             Message::Optimisation(optimisation) => Some(optimisation_name(optimisation)),
-            Message::Mistake(Mistake::NothingExpected | Mistake::UnknownEvent { .. }) | Message::Note(_) => None,
+            Message::Mistake(Mistake::NothingExpected | Mistake::UnknownEvent { .. } | Mistake::AfterEnd { .. })
+            | Message::Note(_) => None,
         }));
         let lines: Vec<String> =
             diagnostics.iter().map(|diagnostic| format!("{} {diagnostic}\n", diagnostic.kind)).collect();
