@@ -48,7 +48,8 @@ pub(crate) enum WiresError {
     Unanswered,
     #[error(
         "the board at {port} has said {} lines and has not ended the self-test: check the line's rate \
-         and its cable, press the reset button, and begin again", SCRIPT_LINES_MAX
+         and its cable, press the reset button, and begin again",
+        SCRIPT_LINES_MAX
     )]
     Endless { port: String },
     #[error(transparent)]
