@@ -5,9 +5,11 @@
 use std::fs;
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
+use std::time::Duration;
 
-use frixel_board::self_test::Stop;
+use frixel_board::self_test::{GREETING, Stop};
 use frixel_hil_sim::PseudoTerminal;
 use frixel_hil_sim::looped_board::{LoopedRig, TerminalPort, Wrong};
 use serde_json::Value;
@@ -101,4 +103,38 @@ fn nobody_who_answers_and_a_board_with_another_program_are_said() {
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output).contains("does not run the self-test"), "{}", text(&output));
     assert_eq!(read(&report)["passed"], false);
+}
+
+#[test]
+fn a_board_that_never_stops_talking_ends_with_a_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = folder.path().join("report.json").display().to_string();
+    let asks = format!("Then type: {GREETING}\n");
+    for (first, again, said) in [
+        ("", "noise without an end", "does not run the self-test"),
+        ("", "a line of another program\n", "does not run the self-test"),
+        (asks.as_str(), "a line of noise\n", "has said 1000 lines"),
+    ] {
+        let mut terminal = PseudoTerminal::open().unwrap();
+        let path = terminal.path().to_owned();
+        let has_ended = AtomicBool::new(false);
+        let output = thread::scope(|scope| {
+            scope.spawn(|| {
+                let mut bytes = first.as_bytes();
+                while !has_ended.load(Ordering::Relaxed) {
+                    let written = terminal.write(bytes).unwrap();
+                    bytes = bytes.get(written..).unwrap();
+                    if bytes.is_empty() {
+                        bytes = again.as_bytes();
+                        thread::sleep(Duration::from_micros(100));
+                    }
+                }
+            });
+            let output = command(&path, 0, "", &report);
+            has_ended.store(true, Ordering::Relaxed);
+            output
+        });
+        assert_eq!(output.status.code(), Some(1), "{}", text(&output));
+        assert!(text(&output).contains(said), "{again}: {}", text(&output));
+    }
 }

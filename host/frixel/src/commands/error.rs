@@ -77,6 +77,11 @@ pub(crate) enum CommandError {
         if *unmet == 1 { "thing was" } else { "things were" }
     )]
     Unmet { file: PathBuf, unmet: usize },
+    #[error(
+        "{}: --expect compares with what this scenario expects, and it expects nothing: add an [[expect]] \
+         (docs/scenarios.md)", file.display()
+    )]
+    NothingExpected { file: PathBuf },
     #[error(transparent)]
     World(#[from] WorldError),
     #[error(transparent)]

@@ -39,6 +39,9 @@ pub(super) enum RigKind {
 /// Runs a scenario, prints what happened, and fails if something was not as expected and `expect` is set.
 pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), CommandError> {
     let scenario = read(file)?;
+    if expect && scenario.expectations.is_empty() {
+        return Err(CommandError::NothingExpected { file: file.to_owned() });
+    }
     let scenes = scenes(&scenario, file)?;
     let outcome = match rig {
         RigKind::Sim => run_in_process(&scenario, &scenes, &RigConfig::default())?,

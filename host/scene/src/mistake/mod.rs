@@ -43,7 +43,8 @@ pub enum Mistake {
     },
     /// A command or a fault of a scenario begins after its end.
     #[error(
-        "`at_ms = {at_ms}` is after the end of the scenario, which runs for {seconds} s: raise `seconds`, or begin earlier"
+        "`at_ms = {at_ms}` is after the end of the scenario, which runs for {seconds} s: raise `seconds`, \
+         or begin earlier"
     )]
     AfterEnd {
         /// When it begins, in ms since the start.

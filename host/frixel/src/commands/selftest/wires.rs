@@ -1,6 +1,6 @@
 //! The host's side of a board's self-test: answers the script, tests the line, and writes the report.
 
-use std::io::{self, BufRead};
+use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -11,17 +11,24 @@ use thiserror::Error;
 use super::super::error::CommandError;
 use super::super::terminal::print_line;
 use super::report::Report;
+use crate::input;
 use crate::output_file::{Inputs, OutputFile};
 
 /// Longest silence of a board that runs the self-test: it counts the clocks of 10,000 frames meanwhile.
 const SILENCE_MAX: Duration = Duration::from_secs(20);
-/// Time within which it says something first, and after which it is asked again.
+/// Time within which it asks first, whatever else it says, and after which it is asked again.
 const FIRST_LINE_MAX: Duration = Duration::from_secs(6);
 const ASK_AGAIN_AFTER: Duration = Duration::from_secs(2);
 /// How long a read waits.
 const READ_WAIT: Duration = Duration::from_millis(2);
 /// Silence after the last block, by which the board's side of the test is over.
 const LINE_SILENCE: Duration = Duration::from_secs(1);
+/// Time after the last block, by which the test is over even if the board goes on.
+const LINE_END_MAX: Duration = Duration::from_secs(5);
+/// Longest line of the script, in bytes; a longer one is noise, and is taken in pieces.
+const SCRIPT_LINE_MAX_BYTES: usize = 1024;
+/// Most lines of a board: some ten times those of the script.
+const SCRIPT_LINES_MAX: usize = 1000;
 /// Bytes a second at 8 data bits, a start bit and a stop bit.
 const LINE_BYTES_PER_S: f64 = DEFAULT_BAUD as f64 / 10.0;
 /// In front of a word that the board waits for.
@@ -39,8 +46,12 @@ pub(crate) enum WiresError {
     Silent { port: String },
     #[error("standard input ended before the answer: unplug the amplifier, then type {UNPLUGGED}")]
     Unanswered,
-    #[error("standard input: {0}")]
-    StandardInput(#[source] io::Error),
+    #[error(
+        "the board at {port} has said {} lines and has not ended the self-test: check the line's rate \
+         and its cable, press the reset button, and begin again",
+        SCRIPT_LINES_MAX
+    )]
+    Endless { port: String },
     #[error(transparent)]
     Link(#[from] LinkClosed),
     #[error("the board at {port} has ended the self-test: {reason}")]
@@ -87,21 +98,26 @@ struct Host {
 impl Host {
     /// Answers the board until its last line.
     fn talk(&mut self, port: &str) -> Result<(), CommandError> {
-        let mut is_first = true;
-        let mut heard_at = Instant::now();
+        let begun = Instant::now();
+        let (mut is_first, mut heard_at, mut lines) = (true, begun, 0);
         while !self.report.has_ended() {
+            if is_first && (begun.elapsed() >= FIRST_LINE_MAX || lines == SCRIPT_LINES_MAX) {
+                return Err(WiresError::OtherProgram { port: port.to_owned() }.into());
+            }
+            if lines == SCRIPT_LINES_MAX {
+                return Err(WiresError::Endless { port: port.to_owned() }.into());
+            }
             // The board may have asked before anyone listened, or waits for the end of the line's test.
             let is_nudged = is_first || self.line_was_tested;
             let Some(line) = self.line(if is_nudged { ASK_AGAIN_AFTER } else { SILENCE_MAX })? else {
-                if is_nudged && heard_at.elapsed() < if is_first { FIRST_LINE_MAX } else { SILENCE_MAX } {
+                if is_nudged && heard_at.elapsed() < SILENCE_MAX {
                     self.type_line("")?;
                     continue;
                 }
-                let port = port.to_owned();
-                let error = if is_first { WiresError::OtherProgram { port } } else { WiresError::Silent { port } };
-                return Err(error.into());
+                return Err(WiresError::Silent { port: port.to_owned() }.into());
             };
             heard_at = Instant::now();
+            lines += 1;
             // Noise, or a firmware that speaks frames, is no line of the script.
             is_first &= !line.contains(ASKS);
             self.line_was_tested = false;
@@ -119,10 +135,7 @@ impl Host {
         match word {
             GREETING => self.type_line(GREETING),
             UNPLUGGED => {
-                let mut typed = String::new();
-                if io::stdin().lock().read_line(&mut typed).map_err(WiresError::StandardInput)? == 0 {
-                    return Err(WiresError::Unanswered);
-                }
+                let typed = input::next_line(&mut io::stdin().lock()).ok_or(WiresError::Unanswered)?;
                 self.type_line(typed.trim())
             }
             _ if self.line_seconds == 0 => self.type_line(SKIP),
@@ -145,7 +158,7 @@ impl Host {
                     let len = bytes.len();
                     test.advance(len);
                 }
-            } else if heard_at.elapsed() > LINE_SILENCE {
+            } else if heard_at.elapsed() > LINE_SILENCE || elapsed > length + LINE_END_MAX {
                 break;
             }
             let mut bytes = Vec::new();
@@ -165,25 +178,39 @@ impl Host {
         Ok(())
     }
 
-    /// The next line of the board that is not empty; `None` if it is silent for so long.
+    /// The next line of the board that is not empty; `None` if none ends for so long.
     fn line(&mut self, patience: Duration) -> Result<Option<String>, WiresError> {
-        let mut heard_at = Instant::now();
+        let begun = Instant::now();
         loop {
-            while let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
-                let line: Vec<u8> = self.heard.drain(..=end).collect();
+            while let Some(len) = line_len(&self.heard) {
+                let line: Vec<u8> = self.heard.drain(..len).collect();
                 let line = String::from_utf8_lossy(&line).trim().to_owned();
                 if !line.is_empty() {
                     return Ok(Some(line));
                 }
             }
-            if heard_at.elapsed() > patience {
+            if begun.elapsed() > patience {
                 return Ok(None);
             }
-            let before = self.heard.len();
             self.link.read(&mut self.heard, READ_WAIT)?;
-            if self.heard.len() > before {
-                heard_at = Instant::now();
-            }
         }
+    }
+}
+
+/// Bytes of the first line with its end, or of a piece of one that is too long; `None` if more may follow.
+fn line_len(heard: &[u8]) -> Option<usize> {
+    let end = heard.iter().take(SCRIPT_LINE_MAX_BYTES).position(|byte| *byte == b'\n');
+    end.map(|end| end + 1).or((heard.len() >= SCRIPT_LINE_MAX_BYTES).then_some(SCRIPT_LINE_MAX_BYTES))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_without_end_is_taken_in_pieces() {
+        assert_eq!(line_len(b"SELF-TEST"), None);
+        assert_eq!(line_len(b"ok\nnext\n"), Some(3));
+        assert_eq!(line_len(&[b'x'; 5_000]), Some(SCRIPT_LINE_MAX_BYTES));
     }
 }
