@@ -184,7 +184,8 @@ impl PicoRig {
             let ran = self.run((self.tick_ends_at + tolerance).saturating_sub(self.now), 0)?;
             let is_due = self.now + tolerance >= self.tick_ends_at;
             // The board's beat begins at any time of the world's tick, which follows it from the second frame on.
-            let is_beat = frame_before.is_some_and(|at| (self.now - at).abs_diff(self.tick_period) <= tolerance);
+            let is_beat =
+                frame_before.is_some_and(|at| self.now.saturating_sub(at).abs_diff(self.tick_period) <= tolerance);
             let (boundary, earlier) = match (ran.ended, ran.events.split_last()) {
                 (Ended::Frame, Some((frame, earlier))) if is_due || is_beat => (Some(*frame), earlier),
                 _ => (None, &ran.events[..]),
