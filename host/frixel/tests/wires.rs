@@ -110,18 +110,20 @@ fn a_board_that_never_stops_talking_ends_with_a_sentence() {
     let folder = tempfile::tempdir().unwrap();
     let report = folder.path().join("report.json").display().to_string();
     let asks = format!("Then type: {GREETING}\n");
-    for (first, again, said) in [
-        ("", "noise without an end", "does not run the self-test"),
-        ("", "a line of another program\n", "does not run the self-test"),
-        (asks.as_str(), "a line of noise\n", "has said 1000 lines"),
+    for (again, said) in [
+        ("noise without an end", "does not run the self-test"),
+        ("a line of another program\n", "does not run the self-test"),
+        (asks.as_str(), "has said 1000 lines"),
     ] {
         let mut terminal = PseudoTerminal::open().unwrap();
         let path = terminal.path().to_owned();
         let has_ended = AtomicBool::new(false);
         let output = thread::scope(|scope| {
             scope.spawn(|| {
-                let mut bytes = first.as_bytes();
+                let mut bytes = again.as_bytes();
                 while !has_ended.load(Ordering::Relaxed) {
+                    // What the command types is read, so that it is not kept from typing.
+                    terminal.read(&mut [0; 256]).unwrap();
                     let written = terminal.write(bytes).unwrap();
                     bytes = bytes.get(written..).unwrap();
                     if bytes.is_empty() {
