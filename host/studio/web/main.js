@@ -24,6 +24,7 @@ import { Project } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
+import { keepSite } from "./page/site.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -195,6 +196,7 @@ function takeScenes({ engine, project, editor, gallery }, scene) {
   incoming.onFiles = (found) => scene.take(found);
 }
 
+keepSite();
 start().catch((error) => {
   const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
   document.querySelector("main")?.replaceChildren(why);
