@@ -8,12 +8,14 @@ import { openPage, pageUrl } from "./harness.mjs";
 
 /**
  * Opens the page, as `openPage` does, and waits until its first scene plays. Its time is simulated, unless the options
- * say otherwise: nothing that the tests of the page look at depends on the speed of the machine.
+ * say otherwise: nothing that the tests of the page look at depends on the speed of the machine. The ghost finger of the
+ * first visit is dismissed, unless `keepsGhost`.
  */
-export async function openStudio(url = pageUrl, options = {}) {
+export async function openStudio(url = pageUrl, { keepsGhost = false, ...options } = {}) {
   const opened = await openPage(url, { isSimulated: true, ...options });
   await opened.page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
   await opened.page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  if (!keepsGhost) await opened.page.evaluate(() => document.getElementById("first-dismiss").click());
   await opened.page.evaluate(addHelpers);
   return opened;
 }

@@ -12,6 +12,7 @@ import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
+import { Ghost } from "./page/ghost.js";
 import { Incoming } from "./page/incoming.js";
 import { Layers } from "./page/layers.js";
 import { FrictionMap } from "./page/map.js";
@@ -56,7 +57,8 @@ async function start() {
   const [navigation] = performance.getEntriesByType("navigation");
   const isReload = navigation instanceof PerformanceNavigationTiming && navigation.type === "reload";
   if (!(isReload && last)) openLink(scene);
-  const { editor, sound, samples, map, player } = parts;
+  const { editor, sound, samples, map, player, ghost } = parts;
+  ghost.start();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
@@ -70,6 +72,7 @@ async function makeParts(engine) {
   map.reservedPx = AROUND_MAP_PX;
   const samples = new Samples();
   const sound = new Sound();
+  const finger = new Finger(engine, map, byId("map-finger"));
   return {
     engine,
     project,
@@ -79,7 +82,8 @@ async function makeParts(engine) {
     samples,
     sound,
     works: new Works(),
-    finger: new Finger(engine, map, byId("map-finger")),
+    finger,
+    ghost: new Ghost({ engine, map, finger, sound }),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
     layers: new Layers(engine, editor),
@@ -141,6 +145,8 @@ function showWhatPlays(parts, scene) {
   };
   player.onMap = (picture, check) => {
     if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
+    // The words of the first visit say the same.
+    hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
     const { opened } = project;
@@ -160,13 +166,14 @@ function showWhatPlays(parts, scene) {
  * @param {Parts} parts
  */
 function showWhatIsFelt(parts) {
-  const { engine, samples, scope, numbers, finger, sound, board } = parts;
+  const { engine, samples, scope, numbers, finger, ghost, sound, board } = parts;
   const hint = byId("map-hint");
   engine.onFrames = (frame) => {
     samples.add(frame);
     scope.feel(frame);
     numbers.feel(frame, parts.reach.naturalN);
     finger.feel(frame, parts.reach);
+    ghost.feel(frame);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
