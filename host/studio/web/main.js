@@ -14,7 +14,9 @@ import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
 import { Ghost } from "./page/ghost.js";
 import { Incoming } from "./page/incoming.js";
+import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
+import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
@@ -83,6 +85,8 @@ async function makeParts(engine) {
     sound,
     works: new Works(),
     finger,
+    lag: new Lag({ engine, map, finger, player }),
+    lens: new Lens({ map, finger }),
     ghost: new Ghost({ engine, map, finger, sound }),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
@@ -102,7 +106,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, editor, map, finger, scope, compare }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag }) {
   new FileTabs(editor, project);
   new RealSize(map);
   makeAbout();
@@ -113,6 +117,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
   });
   makeView({ map, finger, scope, engine });
   compare.onChange = () => map.draw();
+  lag.onChange = () => player.now(editor.text);
 }
 
 /**
@@ -121,7 +126,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
@@ -136,6 +141,7 @@ function showWhatPlays(parts, scene) {
   };
   player.onPlay = () => {
     layers.reset();
+    lag.played();
     if (!compare.isRunning && shown) layers.show(shown);
   };
   layers.onLive = (changes) => {
@@ -166,7 +172,7 @@ function showWhatPlays(parts, scene) {
  * @param {Parts} parts
  */
 function showWhatIsFelt(parts) {
-  const { engine, samples, scope, numbers, finger, ghost, sound, board } = parts;
+  const { engine, samples, scope, numbers, finger, ghost, lag, lens, sound, board } = parts;
   const hint = byId("map-hint");
   engine.onFrames = (frame) => {
     samples.add(frame);
@@ -174,16 +180,20 @@ function showWhatIsFelt(parts) {
     numbers.feel(frame, parts.reach.naturalN);
     finger.feel(frame, parts.reach);
     ghost.feel(frame);
+    lag.feel(frame);
+    lens.feel(frame, parts.reach);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
     parts.hasSlid = true;
+    lag.hasStroke = true;
     hint.hidden = board.isPlaying;
     hint.textContent = "nothing plays: press Play or Arm, at the top";
     byId("replay").disabled = false;
   };
   board.onState = () => {
     showOutcome();
+    lag.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
 }
