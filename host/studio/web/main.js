@@ -13,8 +13,11 @@ import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
+import { Ghost } from "./page/ghost.js";
 import { Incoming } from "./page/incoming.js";
+import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
+import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
@@ -56,7 +59,8 @@ async function start() {
   const [navigation] = performance.getEntriesByType("navigation");
   const isReload = navigation instanceof PerformanceNavigationTiming && navigation.type === "reload";
   if (!(isReload && last)) openLink(scene);
-  const { editor, sound, samples, map, player } = parts;
+  const { editor, sound, samples, map, player, ghost } = parts;
+  ghost.start();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
@@ -72,6 +76,7 @@ async function makeParts(engine) {
   map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
   const samples = new Samples();
   const sound = new Sound();
+  const finger = new Finger(engine, map, byId("map-finger"));
   return {
     engine,
     project,
@@ -81,7 +86,10 @@ async function makeParts(engine) {
     samples,
     sound,
     works: new Works(),
-    finger: new Finger(engine, map, byId("map-finger")),
+    finger,
+    lag: new Lag({ engine, map, finger, player }),
+    lens: new Lens({ map, finger }),
+    ghost: new Ghost({ engine, map, finger, sound }),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
     layers: new Layers(engine, editor),
@@ -100,7 +108,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, editor, map, finger, scope, compare }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -113,6 +121,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
   });
   makeView({ map, finger, scope, engine });
   compare.onChange = () => map.draw();
+  lag.onChange = () => player.now(editor.text);
 }
 
 /**
@@ -121,7 +130,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
@@ -136,6 +145,7 @@ function showWhatPlays(parts, scene) {
   };
   player.onPlay = () => {
     layers.reset();
+    lag.played();
     if (!compare.isRunning && shown) layers.show(shown);
   };
   layers.onLive = (changes) => {
@@ -145,6 +155,8 @@ function showWhatPlays(parts, scene) {
   };
   player.onMap = (picture, check) => {
     if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
+    // The words of the first visit say the same.
+    hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
     const { opened } = project;
@@ -164,23 +176,28 @@ function showWhatPlays(parts, scene) {
  * @param {Parts} parts
  */
 function showWhatIsFelt(parts) {
-  const { engine, samples, scope, numbers, finger, sound, board } = parts;
+  const { engine, samples, scope, numbers, finger, ghost, lag, lens, sound, board } = parts;
   const hint = byId("map-hint");
   engine.onFrames = (frame) => {
     samples.add(frame);
     scope.feel(frame);
     numbers.feel(frame, parts.reach.naturalN);
     finger.feel(frame, parts.reach);
+    ghost.feel(frame);
+    lag.feel(frame);
+    lens.feel(frame, parts.reach);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
     parts.hasSlid = true;
+    lag.hasStroke = true;
     hint.hidden = board.isPlaying;
     hint.textContent = "nothing plays: press Play or Arm, at the top";
     byId("replay").disabled = false;
   };
   board.onState = () => {
     showOutcome();
+    lag.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
 }
