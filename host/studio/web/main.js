@@ -12,6 +12,7 @@ import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
+import { Hands } from "./page/hands.js";
 import { Incoming } from "./page/incoming.js";
 import { Layers } from "./page/layers.js";
 import { FrictionMap } from "./page/map.js";
@@ -65,11 +66,13 @@ async function start() {
 async function makeParts(engine) {
   const project = new Project(engine);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema());
+  const sceneSchema = await schema();
+  const editor = new Editor(byId("editor"), sceneSchema);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   map.reservedPx = AROUND_MAP_PX;
   const samples = new Samples();
   const sound = new Sound();
+  const finger = new Finger(engine, map, byId("map-finger"));
   return {
     engine,
     project,
@@ -79,7 +82,8 @@ async function makeParts(engine) {
     samples,
     sound,
     works: new Works(),
-    finger: new Finger(engine, map, byId("map-finger")),
+    finger,
+    hands: new Hands({ map, editor, player, project }, sceneSchema),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
     layers: new Layers(engine, editor),
@@ -98,7 +102,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, editor, map, finger, scope, compare }) {
+function makeControls({ engine, project, editor, map, finger, scope, compare, hands }) {
   new FileTabs(editor, project);
   new RealSize(map);
   makeAbout();
@@ -108,7 +112,11 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
     scope.restyle();
   });
   makeView({ map, finger, scope, engine });
-  compare.onChange = () => map.draw();
+  compare.onChange = () => {
+    // Outlines and numbers would say which version is felt.
+    hands.setEditing(false);
+    map.draw();
+  };
 }
 
 /**
@@ -117,17 +125,18 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
-  player.onCheck = (check) => {
+  player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
     if (isPlayable(check)) {
       parts.reach = check;
       scope.isDraft = check.isDraft;
       shown = check.layers;
+      hands.show(check, files);
     } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
   };
   player.onPlay = () => {
@@ -143,6 +152,8 @@ function showWhatPlays(parts, scene) {
     if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
     if (compare.isRunning) return;
     map.show(picture, check);
+    // While a hand moves layers, the next map is about to come.
+    if (player.isHeld) return;
     const { opened } = project;
     map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
   };

@@ -14,6 +14,7 @@
  * @property {Box} box Of the first copy.
  * @property {[number, number][]} copies
  * @property {boolean} isWholeScreen
+ * @property {boolean} keepsRatio Whether its height follows from its width.
  * @property {string} whyNotMoved
  * @property {string} whyNotResized
  * @property {(dxMm: number, dyMm: number) => Change[]} move
@@ -49,6 +50,7 @@ export function placeOf(toml, at, layer, screen, hasOtherDefaults) {
     box,
     copies,
     isWholeScreen,
+    keepsRatio: reader.keepsRatio,
     whyNotMoved: why || (isMovable ? "" : WHOLE_SCREEN),
     whyNotResized: why || reader.whyNotResized(),
     move: (dxMm, dyMm) => reader.move(dxMm, dyMm, bounds(box, copies)),
@@ -290,10 +292,8 @@ class PlaceReader {
     return region ? this.#inOwnRegion(changes) : changes;
   }
 
-  /**
-   * Whether the height of a picture follows from its width.
-   */
   get keepsRatio() {
+    if (this.#layer.boxMm === null) return false;
     return this.#kind === "bitmap" && !this.hasRegion && this.#length(undefined, "height") === undefined;
   }
 
@@ -304,7 +304,7 @@ class PlaceReader {
    */
   #inOwnRegion(changes) {
     const region = this.#region;
-    if (!region || region[0] !== "defaults" || changes.length === 0) return changes;
+    if (region?.[0] !== "defaults" || changes.length === 0) return changes;
     const value = structuredClone(/** @type {Record<string, any>} */ (this.#toml.value(region)));
     for (const change of changes) {
       /** @type {any} */

@@ -9,9 +9,9 @@ import { parseTOML } from "../vendor/studio-vendor.js";
 /** @typedef {{ from: number, to: number, insert: string }} Replacement */
 /** @typedef {number | string | boolean | Value[] | { [key: string]: Value }} Value */
 /**
- * A value to write: a number with at most so many decimals, or a new table of such numbers and of words. Where the
- * table that it belongs to does not have it yet, it goes behind the key `after`, or behind all others.
- * @typedef {{ path: Path, value: number | Record<string, number | string>, decimals: number, after?: string }} Change
+ * A value to write, whose numbers have at most so many decimals. Where the table that it belongs to does not have it
+ * yet, it goes behind the key `after`, or behind all others.
+ * @typedef {{ path: Path, value: Value, decimals: number, after?: string }} Change
  */
 /** @typedef {{ path: Path, node: AST.TOMLKeyValue, isInline: boolean }} Entry */
 
@@ -267,14 +267,15 @@ export function numberText(value, decimals, before = "") {
 }
 
 /**
- * @param {Change["value"]} value
+ * @param {Value} value
  * @param {number} decimals
+ * @returns {string}
  */
 function wordsOf(value, decimals) {
   if (typeof value === "number") return numberText(value, decimals);
-  const words = Object.entries(value).map(
-    ([key, each]) => `${key} = ${typeof each === "number" ? numberText(each, decimals) : JSON.stringify(each)}`,
-  );
+  if (typeof value !== "object") return JSON.stringify(value);
+  if (Array.isArray(value)) return `[${value.map((each) => wordsOf(each, decimals)).join(", ")}]`;
+  const words = Object.entries(value).map(([key, each]) => `${key} = ${wordsOf(each, decimals)}`);
   return `{ ${words.join(", ")} }`;
 }
 
