@@ -91,9 +91,10 @@ export class HandDrag {
     if (event.pointerId !== press.pointerId) return;
     const isFar = Math.hypot(event.clientX - press.clientX, event.clientY - press.clientY) >= CLICK_PX;
     if (!press.hasMoved && !isFar) return;
+    if (!press.hasMoved) press.place = this.#hands.grip()?.place;
     press.hasMoved = true;
-    press.place ??= this.#hands.grip()?.place;
-    this.#drag(press, this.#at(event), event.shiftKey ? FINE_GRID_MM : GRID_MM);
+    // What was taken back by a key, or whose text has gone, is not dragged on.
+    if (this.#hands.isHolding) this.#drag(press, this.#at(event), event.shiftKey ? FINE_GRID_MM : GRID_MM);
   }
 
   /**

@@ -125,7 +125,7 @@ export class Hands {
    */
   show(check, files) {
     const { editor, project } = this.#parts;
-    if (this.#grip && !this.#grip.held.isOver) return;
+    if (this.isHolding) return;
     this.#reach = check;
     if (!this.#layers.take(check, files, project.entry)) return;
     if (!this.#layers.find(this.#selected)) this.#selected = undefined;
@@ -180,12 +180,16 @@ export class Hands {
     this.#panel.note = sentence;
   }
 
+  get isHolding() {
+    return this.#grip !== undefined && !this.#grip.held.isOver;
+  }
+
   /**
    * Begins a change of the layer that is selected, or goes on with it; returns what it was before. Where it cannot be
    * changed now, says why.
    */
   grip() {
-    if (this.#grip && !this.#grip.held.isOver) return this.#grip.from;
+    if (this.#grip && this.isHolding) return this.#grip.from;
     if (this.#grip) this.end();
     const from = this.selected;
     if (!from || from.at === undefined) return undefined;

@@ -14,7 +14,7 @@ const HANDLES = {
 };
 /** A side shorter than this has no handle of its own, and handles stand outside of a box that is as small, CSS pixels. */
 const LONG_SIDE_PX = 80;
-const OUTSIDE_PX = 11;
+const OUTSIDE_PX = 8;
 
 export class LayerBoxes {
   #parent;
@@ -62,9 +62,13 @@ export class LayerBoxes {
     }
     /** @type {HTMLElement[]} */
     const extra = [];
-    for (const each of layers) {
+    const buttons = layers.map(({ key }) => this.#buttons.get(key) ?? this.#newButton(key));
+    this.#buttons = new Map(layers.map(({ key }, at) => [key, buttons[at]]));
+    for (const [at, button] of buttons.entries()) {
+      // Tab goes from layer to layer as the text does. A button that stays where it is keeps the focus.
+      if (this.#parent.children[at] !== button) this.#parent.insertBefore(button, this.#parent.children[at]);
+      const each = layers[at];
       const { key, place } = each;
-      const button = this.#buttons.get(key) ?? this.#newButton(key);
       const isSelected = key === selected;
       button.classList.toggle("is-selected", isSelected);
       button.setAttribute("aria-current", String(isSelected));
@@ -78,9 +82,7 @@ export class LayerBoxes {
       }
       if (isSelected && !place.whyNotResized) extra.push(...handles(place.box, place.keepsRatio, scale));
     }
-    // Handles are the last, over all else.
     this.#extra.replaceChildren(...extra);
-    this.#parent.append(this.#extra);
   }
 
   /**
@@ -95,8 +97,6 @@ export class LayerBoxes {
   #newButton(key) {
     const button = element("button", { className: "layer-box", type: "button", "aria-describedby": "hands-keys" });
     button.onfocus = () => this.onFocus(key);
-    this.#buttons.set(key, button);
-    this.#parent.append(button);
     return button;
   }
 }

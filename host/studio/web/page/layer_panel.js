@@ -13,12 +13,13 @@ import { numberText } from "./toml_text.js";
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
 const GAP_PX = 14;
 const EDGE_PX = 8;
+/** Widest panel below the map, and what is seen of it at least where the window ends there. */
+const WIDE_PX = 640;
+const LEAST_PX = 220;
 /** The panel may cover the scale beside the map. */
 const SCALE_PX = 70;
-/** What is seen of the panel at least, where the window ends below the map. */
-const LEAST_PX = 220;
 /** Places that a slider has at least. */
-const POSITIONS = 200;
+const POSITIONS = 100;
 
 export class LayerPanel {
   element = element("div", { className: "layer-panel", role: "group", hidden: true });
@@ -166,16 +167,15 @@ export class LayerPanel {
    * @param {DOMRect} map
    */
   place(box, map) {
-    const { style, classList } = this.element;
-    classList.remove("is-wide");
-    style.maxHeight = "";
+    const { style } = this.element;
+    Object.assign(style, { width: "", maxHeight: "" });
     const { offsetWidth: width, offsetHeight: height } = this.element;
     const room = { right: innerWidth - EDGE_PX, bottom: innerHeight - EDGE_PX };
     const beside = [box.right + GAP_PX, box.left - GAP_PX - width];
     let left = beside.find((at) => at >= EDGE_PX && at + width <= Math.min(room.right, map.right + SCALE_PX));
     let top = clamp(box.top, EDGE_PX, Math.max(EDGE_PX, room.bottom - height));
     if (left === undefined) {
-      classList.add("is-wide");
+      style.width = `${clamp(map.width + SCALE_PX, width, WIDE_PX)}px`;
       left = clamp(map.left, EDGE_PX, Math.max(EDGE_PX, room.right - this.element.offsetWidth));
       top = Math.min(map.bottom + GAP_PX, room.bottom - Math.min(this.element.offsetHeight, LEAST_PX));
       style.maxHeight = `${room.bottom - top}px`;
