@@ -97,7 +97,7 @@ async function changeAll(more) {
       };
       const { x, y, width, height } = bounds(place.box, place.copies);
       if (!place.whyNotMoved) {
-        const { widthMm, heightMm } = before.screen;
+        const { widthMm } = before.screen;
         const [dx, dy] = [Math.min(3, widthMm - x - width), Math.max(-4, -y)];
         await make("moved", place.move(3, -4), place.isWholeScreen ? null : [x + dx, y + dy, width, height]);
       }

@@ -5,7 +5,7 @@ import { element } from "./dom.js";
 import { numberText } from "./toml_text.js";
 
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { Box } from "./place.js" */
+/** @import { Box, Place } from "./place.js" */
 /** @typedef {"nw" | "n" | "ne" | "e" | "se" | "s" | "sw" | "w"} Handle */
 
 /** @type {Record<Handle, [number, number]>} Of each handle, the part of the box's width and height. */
@@ -20,7 +20,12 @@ export class LayerBoxes {
   #parent;
   /** Buttons, by the layers' keys. */
   #buttons = /** @type {Map<string, HTMLButtonElement>} */ (new Map());
-  #extra = element("div", { className: "layer-extra" });
+  #copies = element("div");
+  #handles = /** @type {Handle[]} */ (Object.keys(HANDLES)).map((side) => {
+    const handle = element("span", { className: "layer-handle", hidden: true });
+    handle.dataset.side = side;
+    return handle;
+  });
   /**
    * A layer has got the focus.
    * @type {(key: string) => void}
@@ -30,7 +35,7 @@ export class LayerBoxes {
   /** @param {HTMLElement} parent */
   constructor(parent) {
     this.#parent = parent;
-    parent.append(this.#extra);
+    parent.append(this.#copies, ...this.#handles);
   }
 
   /** @param {string | undefined} key */
@@ -61,7 +66,7 @@ export class LayerBoxes {
       button.remove();
     }
     /** @type {HTMLElement[]} */
-    const extra = [];
+    const copies = [];
     const buttons = layers.map(({ key }) => this.#buttons.get(key) ?? this.#newButton(key));
     this.#buttons = new Map(layers.map(({ key }, at) => [key, buttons[at]]));
     for (const [at, button] of buttons.entries()) {
@@ -78,11 +83,32 @@ export class LayerBoxes {
         if (dx === 0 && dy === 0) continue;
         const copy = element("div", { className: isSelected ? "layer-copy is-selected" : "layer-copy" });
         lay(copy, { ...place.box, x: place.box.x + dx, y: place.box.y + dy }, scale);
-        extra.push(copy);
+        copies.push(copy);
       }
-      if (isSelected && !place.whyNotResized) extra.push(...handles(place.box, place.keepsRatio, scale));
     }
-    this.#extra.replaceChildren(...extra);
+    this.#copies.replaceChildren(...copies);
+    this.#showHandles(layers.find(({ key }) => key === selected)?.place, scale);
+  }
+
+  /**
+   * @param {Place | undefined} place
+   * @param {number} scale
+   */
+  #showHandles(place, scale) {
+    const [width, height] = place ? [place.box.width * scale, place.box.height * scale] : [0, 0];
+    const out = Math.min(width, height) < LONG_SIDE_PX ? OUTSIDE_PX : 0;
+    for (const handle of this.#handles) {
+      const side = /** @type {Handle} */ (handle.dataset.side);
+      const [x, y] = HANDLES[side];
+      const isCorner = side.length === 2;
+      handle.hidden =
+        !place ||
+        place.whyNotResized !== "" ||
+        (!isCorner && (place.keepsRatio || (y === 0.5 ? height : width) < LONG_SIDE_PX));
+      if (handle.hidden || !place) continue;
+      handle.style.left = `${place.box.x * scale + x * width + (2 * x - 1) * out}px`;
+      handle.style.top = `${place.box.y * scale + y * height + (2 * y - 1) * out}px`;
+    }
   }
 
   /**
@@ -112,24 +138,6 @@ function lay(made, { x, y, width, height }, scale) {
     top: `${y * scale}px`,
     width: `${width * scale}px`,
     height: `${height * scale}px`,
-  });
-}
-
-/**
- * @param {Box} box
- * @param {boolean} keepsRatio
- * @param {number} scale
- */
-function handles(box, keepsRatio, scale) {
-  const [width, height] = [box.width * scale, box.height * scale];
-  const out = Math.min(width, height) < LONG_SIDE_PX ? OUTSIDE_PX : 0;
-  return Object.entries(HANDLES).flatMap(([side, [x, y]]) => {
-    if (side.length === 1 && (keepsRatio || (y === 0.5 ? height : width) < LONG_SIDE_PX)) return [];
-    const handle = element("span", { className: "layer-handle" });
-    handle.dataset.side = side;
-    handle.style.left = `${box.x * scale + x * width + (2 * x - 1) * out}px`;
-    handle.style.top = `${box.y * scale + y * height + (2 * y - 1) * out}px`;
-    return [handle];
   });
 }
 
