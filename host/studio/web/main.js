@@ -8,6 +8,7 @@ import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
 import { byId, element, notify, sentenceOf } from "./page/dom.js";
+import { Drawer } from "./page/drawer.js";
 import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
@@ -36,8 +37,6 @@ import { Works } from "./page/works.js";
 /** @typedef {Awaited<ReturnType<typeof makeParts>>} Parts */
 
 const FIRST_SCENE = "brick";
-/** Height of header, tools, numbers and scope, CSS pixels: in a low window they are seen together with the map. */
-const AROUND_MAP_PX = 530;
 
 async function start() {
   const engine = await createEngine();
@@ -69,7 +68,9 @@ async function makeParts(engine) {
   const sceneSchema = await schema();
   const editor = new Editor(byId("editor"), sceneSchema);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
-  map.reservedPx = AROUND_MAP_PX;
+  /** @type {HTMLElement | null} */
+  const grid = document.querySelector(".feel-grid");
+  map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
   const samples = new Samples();
   const sound = new Sound();
   const finger = new Finger(engine, map, byId("map-finger"));
@@ -103,6 +104,8 @@ async function makeParts(engine) {
  * @param {Parts} parts
  */
 function makeControls({ engine, project, editor, map, finger, scope, compare, hands }) {
+  const drawer = new Drawer();
+  editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
   new RealSize(map);
   makeAbout();

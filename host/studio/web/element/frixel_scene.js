@@ -26,7 +26,8 @@ const LABEL = "The screen. Slide with mouse, finger or pen, or hold an arrow key
 const STYLE = `
 :host { display: block; }
 .card { background: var(--card); border: 1px solid var(--line); border-radius: 12px; overflow: hidden; }
-.map { border-top: 0; }
+.map { border-top: 0; aspect-ratio: 3 / 2; }
+.scope { height: 190px; }
 .line { padding: 4px 12px; }
 .bad { color: var(--danger); white-space: pre-line; }
 `;

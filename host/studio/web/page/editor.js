@@ -71,6 +71,8 @@ export class Editor {
    * @type {(files: FileOfScene[]) => void}
    */
   onFiles = () => {};
+  /** A person is led to a place in the text: it has to be seen. */
+  onReveal = () => {};
 
   /**
    * @param {HTMLElement} parent
@@ -191,6 +193,7 @@ export class Editor {
    * @param {string} text
    */
   insertAfterLine(file, number, text) {
+    this.onReveal();
     this.show(file);
     const { doc } = this.#view.state;
     const at = number === 0 ? 0 : doc.line(Math.min(number, doc.lines)).to;
@@ -248,6 +251,7 @@ export class Editor {
    * @param {number} number
    */
   goTo(file, number) {
+    this.onReveal();
     this.show(file);
     const line = this.#view.state.doc.line(Math.max(1, Math.min(number, this.#view.state.doc.lines)));
     this.#view.dispatch({

@@ -101,11 +101,9 @@ export class LayerBoxes {
       const side = /** @type {Handle} */ (handle.dataset.side);
       const [x, y] = HANDLES[side];
       const isCorner = side.length === 2;
-      handle.hidden =
-        !place ||
-        place.whyNotResized !== "" ||
-        (!isCorner && (place.keepsRatio || (y === 0.5 ? height : width) < LONG_SIDE_PX));
-      if (handle.hidden || !place) continue;
+      const isLong = (y === 0.5 ? height : width) >= LONG_SIDE_PX;
+      handle.hidden = place?.whyNotResized !== "" || (!isCorner && (place.keepsRatio || !isLong));
+      if (!place) continue;
       handle.style.left = `${place.box.x * scale + x * width + (2 * x - 1) * out}px`;
       handle.style.top = `${place.box.y * scale + y * height + (2 * y - 1) * out}px`;
     }
