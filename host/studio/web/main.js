@@ -14,6 +14,7 @@ import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
 import { Ghost } from "./page/ghost.js";
+import { Hands } from "./page/hands.js";
 import { Incoming } from "./page/incoming.js";
 import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
@@ -69,7 +70,8 @@ async function start() {
 async function makeParts(engine) {
   const project = new Project(engine);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema());
+  const sceneSchema = await schema();
+  const editor = new Editor(byId("editor"), sceneSchema);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   /** @type {HTMLElement | null} */
   const grid = document.querySelector(".feel-grid");
@@ -90,6 +92,7 @@ async function makeParts(engine) {
     lag: new Lag({ engine, map, finger, player }),
     lens: new Lens({ map, finger }),
     ghost: new Ghost({ engine, map, finger, sound }),
+    hands: new Hands({ map, editor, player, project }, sceneSchema),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
     layers: new Layers(engine, editor),
@@ -108,7 +111,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag, hands }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -120,7 +123,11 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
     scope.restyle();
   });
   makeView({ map, finger, scope, engine });
-  compare.onChange = () => map.draw();
+  compare.onChange = () => {
+    // Outlines and numbers would say which version is felt.
+    hands.setEditing(false);
+    map.draw();
+  };
   lag.onChange = () => player.now(editor.text);
 }
 
@@ -130,17 +137,18 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare, lag } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
-  player.onCheck = (check) => {
+  player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
     if (isPlayable(check)) {
       parts.reach = check;
       scope.isDraft = check.isDraft;
       shown = check.layers;
+      hands.show(check, files);
     } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
   };
   player.onPlay = () => {
@@ -159,6 +167,8 @@ function showWhatPlays(parts, scene) {
     hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
+    // While a hand moves layers, the next map is about to come.
+    if (player.isHeld) return;
     const { opened } = project;
     map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
   };
