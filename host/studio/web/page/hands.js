@@ -7,7 +7,6 @@ import { HandDrag, withSide } from "./hand_drag.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { layerNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
-import { bounds } from "./place.js";
 
 /** @import { Checked, Files } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
@@ -355,19 +354,10 @@ export class Hands {
       this.#panel.hide();
       return;
     }
-    const { toml, at, layer, place } = selected;
+    const { toml, at, layer } = selected;
     const numbers = toml && at !== undefined ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
     this.#panel.show(selected, numbers, isNew);
-    if (!this.#grip) this.#placePanel(bounds(place.box, place.copies), scale);
-  }
-
-  /**
-   * @param {Box} all
-   * @param {number} scale
-   */
-  #placePanel({ x, y, width, height }, scale) {
-    const map = this.#surface.getBoundingClientRect();
-    this.#panel.place(new DOMRect(map.left + x * scale, map.top + y * scale, width * scale, height * scale), map);
+    this.#panel.place([byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect()));
   }
 }
 
