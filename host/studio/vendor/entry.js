@@ -1,4 +1,4 @@
-// What the page uses of others; build.mjs joins it into studio-vendor.js.
+// What the page alone uses of others; build.mjs joins it into studio-vendor.js.
 
 export { Annotation, EditorState, Transaction } from "@codemirror/state";
 export {
@@ -10,7 +10,5 @@ export { autocompletion, completionKeymap, closeBrackets } from "@codemirror/aut
 export { setDiagnostics, lintGutter, lintKeymap } from "@codemirror/lint";
 export { toml } from "@codemirror/legacy-modes/mode/toml";
 export { tags } from "@lezer/highlight";
-export { default as uPlot } from "uplot";
-export { default as uPlotStyle } from "uplot/dist/uPlot.min.css";
 export { deflateSync, inflateSync, zipSync, unzipSync, strToU8, strFromU8 } from "fflate";
 export { parseTOML } from "toml-eslint-parser";

@@ -13,9 +13,12 @@ import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
+import { Ghost } from "./page/ghost.js";
 import { Hands } from "./page/hands.js";
 import { Incoming } from "./page/incoming.js";
+import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
+import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
@@ -26,6 +29,7 @@ import { Project } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
+import { keepSite } from "./page/site.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -56,7 +60,8 @@ async function start() {
   const [navigation] = performance.getEntriesByType("navigation");
   const isReload = navigation instanceof PerformanceNavigationTiming && navigation.type === "reload";
   if (!(isReload && last)) openLink(scene);
-  const { editor, sound, samples, map, player } = parts;
+  const { editor, sound, samples, map, player, ghost } = parts;
+  ghost.start();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
@@ -84,6 +89,9 @@ async function makeParts(engine) {
     sound,
     works: new Works(),
     finger,
+    lag: new Lag({ engine, map, finger, player }),
+    lens: new Lens({ map, finger }),
+    ghost: new Ghost({ engine, map, finger, sound }),
     hands: new Hands({ map, editor, player, project }, sceneSchema),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
@@ -103,7 +111,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, editor, map, finger, scope, compare, hands }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag, hands }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -120,6 +128,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, ha
     hands.setEditing(false);
     map.draw();
   };
+  lag.onChange = () => player.now(editor.text);
 }
 
 /**
@@ -128,7 +137,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, ha
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare, hands } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
@@ -144,6 +153,7 @@ function showWhatPlays(parts, scene) {
   };
   player.onPlay = () => {
     layers.reset();
+    lag.played();
     if (!compare.isRunning && shown) layers.show(shown);
   };
   layers.onLive = (changes) => {
@@ -153,6 +163,8 @@ function showWhatPlays(parts, scene) {
   };
   player.onMap = (picture, check) => {
     if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
+    // The words of the first visit say the same.
+    hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
     // While a hand moves layers, the next map is about to come.
@@ -174,23 +186,28 @@ function showWhatPlays(parts, scene) {
  * @param {Parts} parts
  */
 function showWhatIsFelt(parts) {
-  const { engine, samples, scope, numbers, finger, sound, board } = parts;
+  const { engine, samples, scope, numbers, finger, ghost, lag, lens, sound, board } = parts;
   const hint = byId("map-hint");
   engine.onFrames = (frame) => {
     samples.add(frame);
     scope.feel(frame);
     numbers.feel(frame, parts.reach.naturalN);
     finger.feel(frame, parts.reach);
+    ghost.feel(frame);
+    lag.feel(frame);
+    lens.feel(frame, parts.reach);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
     parts.hasSlid = true;
+    lag.hasStroke = true;
     hint.hidden = board.isPlaying;
     hint.textContent = "nothing plays: press Play or Arm, at the top";
     byId("replay").disabled = false;
   };
   board.onState = () => {
     showOutcome();
+    lag.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
 }
@@ -209,6 +226,7 @@ function takeScenes({ engine, project, editor, gallery }, scene) {
   incoming.onFiles = (found) => scene.take(found);
 }
 
+keepSite();
 start().catch((error) => {
   const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
   document.querySelector("main")?.replaceChildren(why);

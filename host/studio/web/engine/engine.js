@@ -204,7 +204,7 @@ export class Engine {
   /**
    * @param {T.Files} files
    * @param {string} entry
-   * @param {T.Profiles} profiles
+   * @param {T.Profiles & T.PlayOptions} profiles
    */
   play(files, entry, profiles) {
     return this.#player.ask({ type: "play", scene: { files, entry, ...profiles } });

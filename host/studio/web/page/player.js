@@ -36,6 +36,8 @@ export class Player {
   #outcome = "loading";
   /** @type {Status} */
   #status = "loading";
+  /** Whether the simulator in the page plays without prediction, whatever the scene says. */
+  withoutPrediction = false;
 
   /**
    * The check has an answer: `onCheck(check, files)`.
@@ -197,10 +199,11 @@ export class Player {
    * @param {Parameters<Engine["play"]>} scene
    * @param {Checked} check
    */
-  async #load(scene, { isDraft }) {
+  async #load([files, entry, profiles], { isDraft }) {
+    const options = this.withoutPrediction ? { withoutPrediction: true } : {};
     for (;;) {
       try {
-        await this.#engine.play(...scene);
+        await this.#engine.play(files, entry, { ...profiles, ...options });
         return true;
       } catch (error) {
         const { message, canLoadAgain } = /** @type {EngineFailure} */ (error);
