@@ -49,6 +49,8 @@ export class Hands {
   #byKeysMm = [0, 0];
   #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
   isEditing = false;
+  /** The mode Edit begins: the map is no longer for sliding. */
+  onEdit = () => {};
 
   /**
    * @param {Parts} parts
@@ -113,7 +115,8 @@ export class Hands {
     this.#surface.hidden = !isEditing;
     byId("map").classList.toggle("editing", isEditing);
     byId("map-finger").inert = isEditing;
-    if (!isEditing) this.#selected = undefined;
+    if (isEditing) this.onEdit();
+    else this.#selected = undefined;
     this.#draw(true);
   }
 
