@@ -54,7 +54,12 @@ pub(crate) fn run_page() -> Result<(), String> {
     let hashes = target_folder().join("studio/hashes.json");
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
     fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
-    runner.env("STUDIO_HASHES", absolute(&hashes)?).env_remove("FRIXEL");
+    let site = target_folder().join("studio/site");
+    if site.exists() {
+        fs::remove_dir_all(&site).map_err(|error| format!("{}: {error}", site.display()))?;
+    }
+    studio::build_site(&site.to_string_lossy(), None)?;
+    runner.env("STUDIO_HASHES", absolute(&hashes)?).env("STUDIO_SITE", absolute(&site)?).env_remove("FRIXEL");
     results::run("studio in a browser", runner.args(tests))
 }
 

@@ -3,14 +3,14 @@
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import { cleanUp, endLeftovers, setVisibility } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio, showDrawer } from "./page.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
 
 /** Opens the page as a stranger does. In it, `sent` is what goes to the board as touch. */
 async function openAsStranger(options = {}) {
-  const opened = await openStudio(undefined, { keepsGhost: true, ...options });
+  const opened = await openStudio(undefined, { isFirstVisit: true, ...options });
   await opened.page.evaluate(() => {
     globalThis.sent = [];
     const { engine } = studioPage;
@@ -128,6 +128,7 @@ test("hidden, in a blind comparison and stopped, it lifts and sends nothing; it 
   await isLifted("stopped");
   await page.click("#stop");
   assert.ok((await sentIn(page, 2000)).some(({ down }) => down), "it goes on");
+  await showDrawer(page);
   await page.click("#tab-compare");
   await page.click("text=Keep this scene as A");
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);

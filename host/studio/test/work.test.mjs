@@ -224,6 +224,7 @@ test("a press on the map ends a replay and is felt; the button stops one, too", 
   const { page, errors, close } = await openStudio();
   await wholeStroke(page, 40);
   const button = page.locator("#replay");
+  await page.click("#scope-options summary");
   await page.selectOption("#slowness", "25");
   await page.check("#loop");
   const pressOnReplay = async () => {

@@ -8,11 +8,13 @@ import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
 import { byId, element, notify, sentenceOf } from "./page/dom.js";
+import { Drawer } from "./page/drawer.js";
 import { Editor } from "./page/editor.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
 import { Ghost } from "./page/ghost.js";
+import { Hands } from "./page/hands.js";
 import { Incoming } from "./page/incoming.js";
 import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
@@ -28,6 +30,7 @@ import { Project } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
+import { keepSite } from "./page/site.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -39,8 +42,6 @@ import { Works } from "./page/works.js";
 /** @typedef {Awaited<ReturnType<typeof makeParts>>} Parts */
 
 const FIRST_SCENE = "brick";
-/** Height of header, tools, numbers and scope, CSS pixels: in a low window they are seen together with the map. */
-const AROUND_MAP_PX = 530;
 
 async function start() {
   const engine = await createEngine();
@@ -70,9 +71,12 @@ async function start() {
 async function makeParts(engine) {
   const project = new Project(engine);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema());
+  const sceneSchema = await schema();
+  const editor = new Editor(byId("editor"), sceneSchema);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
-  map.reservedPx = AROUND_MAP_PX;
+  /** @type {HTMLElement | null} */
+  const grid = document.querySelector(".feel-grid");
+  map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
   const samples = new Samples();
   const sound = new Sound();
   const finger = new Finger(engine, map, byId("map-finger"));
@@ -89,6 +93,7 @@ async function makeParts(engine) {
     lag: new Lag({ engine, map, finger, player }),
     lens: new Lens({ map, finger }),
     ghost: new Ghost({ engine, map, finger, sound }),
+    hands: new Hands({ map, editor, player, project }, sceneSchema),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
     layers: new Layers(engine, editor),
@@ -107,7 +112,9 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag, hands }) {
+  const drawer = new Drawer();
+  editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
   new RealSize(map);
   makeAbout();
@@ -117,7 +124,11 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
     scope.restyle();
   });
   makeView({ map, finger, scope, engine });
-  compare.onChange = () => map.draw();
+  compare.onChange = () => {
+    // Outlines and numbers would say which version is felt.
+    hands.setEditing(false);
+    map.draw();
+  };
   lag.onChange = () => player.now(editor.text);
 }
 
@@ -127,17 +138,18 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare, lag } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Layer[] | undefined} */
   let shown;
-  player.onCheck = (check) => {
+  player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
     if (isPlayable(check)) {
       parts.reach = check;
       scope.isDraft = check.isDraft;
       shown = check.layers;
+      hands.show(check, files);
     } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
   };
   player.onPlay = () => {
@@ -156,6 +168,8 @@ function showWhatPlays(parts, scene) {
     hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
+    // While a hand moves layers, the next map is about to come.
+    if (player.isHeld) return;
     const { opened } = project;
     map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
   };
@@ -214,6 +228,7 @@ function takeScenes({ engine, project, editor, gallery }, scene) {
   incoming.onFiles = (found) => scene.take(found);
 }
 
+keepSite();
 start().catch((error) => {
   const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
   document.querySelector("main")?.replaceChildren(why);

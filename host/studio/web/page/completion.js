@@ -267,3 +267,13 @@ function kindOf(root, { schemas }) {
   if (schemas.some((schema) => resolve(root, schema).items)) return "array";
   return schemas.some((schema) => tables(root, schema).length > 0) ? "table" : "plain";
 }
+
+/**
+ * The fields that a layer with these words may have.
+ * @param {Schema} schema
+ * @param {Record<string, string>} words
+ */
+export function layerFields(schema, words) {
+  const { layer } = propertiesOf(schema, schema, { version: "2" });
+  return merged(schema, layer.schemas, words);
+}
