@@ -20,6 +20,7 @@ import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
 import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
+import { NewScene } from "./page/new_scene.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
 import { Player, isPlayable } from "./page/player.js";
@@ -223,6 +224,7 @@ function showWhatIsFelt(parts) {
  */
 function takeScenes({ engine, project, editor, gallery }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
+  new NewScene(engine).onScene = gallery.onScene;
   gallery.onLayer = (text) => scene.append(text);
   const incoming = new Incoming(async (files, entry) =>
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),

@@ -67,11 +67,11 @@ export class Ghost {
     document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
   }
 
-  /** Whether it may slide now: never with a board, nor unseen, nor where it would tell what a comparison hides. */
+  /** Whether it may slide now: never with a board, unseen, while layers are edited, or in a blind comparison. */
   get #maySlide() {
     const { link, state } = this.#engine.state;
-    const isBlind = document.body.classList.contains("blind");
-    return link === "simulator" && state === "active" && !isBlind && document.visibilityState === "visible";
+    const isOthers = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
+    return link === "simulator" && state === "active" && !isOthers && document.visibilityState === "visible";
   }
 
   /** Whether it is drawn. */

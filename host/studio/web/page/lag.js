@@ -14,7 +14,7 @@ import { Borders } from "./borders.js";
 /** How far a band reaches to its side of the stroke, CSS pixels; that with prediction and that without lie side by side. */
 const WIDE_PX = 15;
 /** A band is drawn at least this long, CSS pixels, so that a lag of nothing is seen. */
-const LONG_MIN_PX = 1.5;
+const LONG_MIN_PX = 3;
 /** @type {Record<By, { ink: string, side: number }>} */
 const BANDS = { predicted: { ink: "good", side: -1 }, reported: { ink: "felt", side: 1 } };
 
@@ -141,12 +141,9 @@ export class Lag {
         if (lagMm === undefined) continue;
         const long = Math.sign(lagMm || 1) * Math.max(LONG_MIN_PX, Math.abs(lagMm) * scale);
         context.fillStyle = colour(ink, box);
-        context.globalAlpha = 0.8;
+        context.globalAlpha = 0.85;
         context.fillRect(0, 0, long, side * WIDE_PX);
         context.globalAlpha = 1;
-        context.lineWidth = 1;
-        context.strokeStyle = "#fff";
-        context.strokeRect(0, 0, long, side * WIDE_PX);
       }
       context.fillStyle = "#fff";
       context.fillRect(-0.5, -WIDE_PX, 1, 2 * WIDE_PX);
