@@ -115,9 +115,9 @@ fn start_pll(pll: Pll, set_reset: fn(&mut Peripherals, bool), settings: &PllSett
 /// so the watchdog counts on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators").
 /// The boot ROM has run from the ring oscillator, so it is on.
 fn start_watchdog_ticks() {
+    const CYCLES: u16 = (chip::RING_OSCILLATOR_MAX_HZ / 1_000_000) as u16;
     CLOCKS.clk_ref_ctrl().modify(|w| w.set_src(ClkRefCtrlSrc::ROSC_CLKSRC_PH));
     wait_until(|| selected_ref() == 1 << ClkRefCtrlSrc::ROSC_CLKSRC_PH as u32, "the ring oscillator as reference");
-    const CYCLES: u16 = (chip::RING_OSCILLATOR_MAX_HZ / 1_000_000) as u16;
     #[cfg(feature = "rp2040")]
     rp_pac::WATCHDOG.tick().write(|w| {
         w.set_cycles(CYCLES);

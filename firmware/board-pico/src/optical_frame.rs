@@ -136,8 +136,8 @@ async fn clear() -> bool {
 }
 
 /// Disables the peripheral, which clears its FIFOs, and clears its flags: those of a transfer that was given up must not end
-/// the next one. Returns whether it is idle; until then, it takes no configuration (RP2040, 4.3.10.1, "Disabling
-/// DW_apb_i2c").
+/// the next one. Returns whether it is idle; until then, it takes no configuration (RP2040, 4.3.10,
+/// "Disabling").
 async fn disable() -> bool {
     I2C0.ic_enable().write(|w| w.set_enable(false));
     let from_tick = tick::SHARED.count();

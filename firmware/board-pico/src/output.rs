@@ -78,7 +78,7 @@ impl Output {
     }
 }
 
-/// Lets the enable follow the one-shot, or be low whatever that does (RP2040, 2.19.6.1, GPIO0_CTRL).
+/// Lets the enable follow the one-shot, or be low whatever that does (RP2040, 2.19.6.1, `GPIO0_CTRL`).
 #[inline]
 fn override_enable(over: Outover) {
     IO_BANK0.gpio(AMPLIFIER_ENABLE).ctrl().write(|w| {

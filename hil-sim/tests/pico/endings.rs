@@ -44,11 +44,11 @@ enum Ending {
 
 impl Ending {
     const ALL: [Self; 7] = [
+        Self::CrystalStops,
         Self::Panic,
         Self::HardFault,
         Self::Hang,
         Self::HangingMainLoop,
-        Self::CrystalStops,
         Self::RunPin,
         Self::PowerCut,
     ];

@@ -31,8 +31,8 @@ fn store(bench: &Bench, text: &str) {
 /// A scene that takes half a second to store.
 fn large() -> Program {
     let picture = include_bytes!("../../../scenes/textures/brick.png").to_vec();
-    let text = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nwidth_mm = 40\npitch_mm = 0.4\n\
-                white_n = 0.01\n";
+    let text = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 10\ny_mm = 10\n\
+                width_mm = 40\npitch_mm = 0.4\nwhite_n = 0.01\n";
     let files = BTreeMap::from([("brick.png".to_owned(), picture)]);
     let scene = Scene::parse(text, "scene.toml", &files).unwrap();
     compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
