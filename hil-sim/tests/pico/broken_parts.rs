@@ -11,7 +11,7 @@ use frixel_wire::message::Refusal;
 use super::bench::{Bench, CONSTANT, Host, program};
 use crate::emulator;
 
-/// From a broken part to zero: the 0.5 ms after which the monitor or the ready line counts as wrong, and what the tick, the
+/// From a broken part to zero: the 0.4 ms after which the monitor or the ready line counts as wrong, and what the tick, the
 /// DAC and the reading of the monitor take.
 const ZERO_WITHIN: Duration = Duration::from_millis(2);
 

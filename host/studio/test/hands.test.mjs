@@ -37,7 +37,9 @@ high_fraction = 0.9
 async function openEditing(text = PLATES) {
   const opened = await openStudio();
   await opened.page.evaluate((text) => played(text), text);
-  await opened.page.click("text=Edit");
+  // The screen has another size than that of the first scene: a press has to wait for its map.
+  await opened.page.waitForFunction(() => studioPage.map.screen.heightMm === 80);
+  await opened.page.getByRole("button", { name: "Edit", exact: true }).click();
   return opened;
 }
 

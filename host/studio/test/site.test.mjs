@@ -2,45 +2,18 @@
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import http from "node:http";
 import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { assertFelt, lineOf, slideOver } from "./element.mjs";
 import { cleanUp, endLeftovers, openPage, required } from "./harness.mjs";
+import { serve } from "./web_server.mjs";
 
 const SITE = required("STUDIO_SITE");
 /** Largest module of <frixel-scene>, as a web server sends it, bytes. */
 const MODULE_MAX_BYTES = 900_000;
-const TYPES = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".webmanifest": "application/manifest+json",
-  ".svg": "image/svg+xml",
-  ".png": "image/png",
-  ".jpg": "image/jpeg",
-};
-
 afterEach(endLeftovers);
 after(cleanUp);
-
-/** Serves the site below a folder of its own, as a host of many sites does. Returns its address, and what ends it. */
-async function serve() {
-  const server = http.createServer((request, answer) => {
-    const { pathname } = new URL(request.url, "http://a");
-    const name = decodeURIComponent(pathname.replace(/^\/mine\//, "").replace(/(^|\/)$/, "$1index.html"));
-    const file = path.join(SITE, path.normalize(`/${name}`));
-    const isThere = pathname.startsWith("/mine/") && fs.existsSync(file);
-    if (isThere) answer.writeHead(200, { "content-type": TYPES[path.extname(file)] }).end(fs.readFileSync(file));
-    else answer.writeHead(404).end();
-  });
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  const end = () => {
-    server.close();
-    server.closeAllConnections();
-  };
-  return { address: `http://127.0.0.1:${server.address().port}/mine/`, end };
-}
 
 const plays = (page) =>
   page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
@@ -49,7 +22,7 @@ const plays = (page) =>
 const isKept = (page) => page.evaluate(async () => void (await navigator.serviceWorker.ready));
 
 test("from the second visit on, page and gallery open without the server", async (context) => {
-  const { address, end } = await serve();
+  const { address, end } = await serve(SITE);
   context.after(end);
   const { page, errors } = await openPage(address, { isSimulated: true });
   await plays(page);
@@ -65,7 +38,7 @@ test("from the second visit on, page and gallery open without the server", async
 });
 
 test("a link opens its scene, also without the server", async (context) => {
-  const { address, end } = await serve();
+  const { address, end } = await serve(SITE);
   context.after(end);
   const { page, errors } = await openPage(address, { isSimulated: true });
   await plays(page);
@@ -84,7 +57,7 @@ test("a link opens its scene, also without the server", async (context) => {
 });
 
 test("Chromium would install it", async (context) => {
-  const { address, end } = await serve();
+  const { address, end } = await serve(SITE);
   context.after(end);
   const { page } = await openPage(address, { isSimulated: true });
   await plays(page);

@@ -112,7 +112,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, player, editor, map, finger, scope, compare, lag, hands }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, ghost, lag, hands }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -130,6 +130,10 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
     map.draw();
   };
   lag.onChange = () => player.now(editor.text);
+  hands.onEdit = () => {
+    ghost.end();
+    byId("first-words").hidden = true;
+  };
 }
 
 /**

@@ -7,7 +7,6 @@ import { HandDrag, withSide } from "./hand_drag.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { layerNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
-import { bounds } from "./place.js";
 
 /** @import { Checked, Files } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
@@ -50,6 +49,8 @@ export class Hands {
   #byKeysMm = [0, 0];
   #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
   isEditing = false;
+  /** The mode Edit begins: the map is no longer for sliding. */
+  onEdit = () => {};
 
   /**
    * @param {Parts} parts
@@ -114,7 +115,8 @@ export class Hands {
     this.#surface.hidden = !isEditing;
     byId("map").classList.toggle("editing", isEditing);
     byId("map-finger").inert = isEditing;
-    if (!isEditing) this.#selected = undefined;
+    if (isEditing) this.onEdit();
+    else this.#selected = undefined;
     this.#draw(true);
   }
 
@@ -355,19 +357,10 @@ export class Hands {
       this.#panel.hide();
       return;
     }
-    const { toml, at, layer, place } = selected;
+    const { toml, at, layer } = selected;
     const numbers = toml && at !== undefined ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
     this.#panel.show(selected, numbers, isNew);
-    if (!this.#grip) this.#placePanel(bounds(place.box, place.copies), scale);
-  }
-
-  /**
-   * @param {Box} all
-   * @param {number} scale
-   */
-  #placePanel({ x, y, width, height }, scale) {
-    const map = this.#surface.getBoundingClientRect();
-    this.#panel.place(new DOMRect(map.left + x * scale, map.top + y * scale, width * scale, height * scale), map);
+    this.#panel.place([byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect()));
   }
 }
 

@@ -11,13 +11,8 @@ import { numberText } from "./toml_text.js";
 
 /** @type {[Side, string][]} */
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
-const GAP_PX = 14;
-const EDGE_PX = 8;
-/** Widest panel below the map, and what is seen of it at least where the window ends there. */
-const WIDE_PX = 640;
+/** Least height of the panel, CSS pixels. */
 const LEAST_PX = 220;
-/** The panel may cover the scale beside the map. */
-const SCALE_PX = 70;
 /** Places that a slider has at least. */
 const POSITIONS = 100;
 
@@ -162,25 +157,20 @@ export class LayerPanel {
   }
 
   /**
-   * Puts the panel beside a box, or else below the map: it covers neither the box nor, if there is room, the map.
-   * @param {DOMRect} box
-   * @param {DOMRect} map
+   * Puts the panel over what shows what a finger feels: nothing is felt while layers are edited, and neither map nor text
+   * is covered.
+   * @param {DOMRect[]} covered
    */
-  place(box, map) {
-    const { style } = this.element;
-    Object.assign(style, { width: "", maxHeight: "" });
-    const { offsetWidth: width, offsetHeight: height } = this.element;
-    const room = { right: innerWidth - EDGE_PX, bottom: innerHeight - EDGE_PX };
-    const beside = [box.right + GAP_PX, box.left - GAP_PX - width];
-    let left = beside.find((at) => at >= EDGE_PX && at + width <= Math.min(room.right, map.right + SCALE_PX));
-    let top = clamp(box.top, EDGE_PX, Math.max(EDGE_PX, room.bottom - height));
-    if (left === undefined) {
-      style.width = `${clamp(map.width + SCALE_PX, width, WIDE_PX)}px`;
-      left = clamp(map.left, EDGE_PX, Math.max(EDGE_PX, room.right - this.element.offsetWidth));
-      top = Math.min(map.bottom + GAP_PX, room.bottom - Math.min(this.element.offsetHeight, LEAST_PX));
-      style.maxHeight = `${room.bottom - top}px`;
-    }
-    style.left = `${left + scrollX}px`;
-    style.top = `${top + scrollY}px`;
+  place(covered) {
+    const left = Math.min(...covered.map((each) => each.left));
+    const top = Math.min(...covered.map((each) => each.top));
+    const right = Math.max(...covered.map((each) => each.right));
+    const bottom = Math.max(...covered.map((each) => each.bottom));
+    Object.assign(this.element.style, {
+      left: `${left + scrollX}px`,
+      top: `${top + scrollY}px`,
+      width: `${right - left}px`,
+      maxHeight: `${Math.max(bottom - top, LEAST_PX)}px`,
+    });
   }
 }
