@@ -19,6 +19,11 @@ async function openAsStranger(options = {}) {
       sent.push(sample);
       send(sample);
     };
+    const lift = engine.lift.bind(engine);
+    engine.lift = () => {
+      sent.push({ down: false });
+      lift();
+    };
   });
   return opened;
 }
@@ -75,6 +80,13 @@ test("a press takes over for good: the ghost lifts first, then the press plays",
   const [lift, ...own] = pressed.sent;
   assert.deepEqual([lift.down, own.every(({ down }) => down)], [false, true]);
   assert.ok(own.every(({ yMm }) => Math.abs(yMm - 55) < 0.2), JSON.stringify(own.slice(0, 3)));
+  const came = await page.evaluate(async () => {
+    await wait(200);
+    const { samples } = studioPage;
+    const { xMm, yMm } = samples.since(samples.nowS - 0.7);
+    return { ups: xMm.filter(Number.isNaN).length, firstYMm: yMm[xMm.findLastIndex(Number.isNaN) + 1] };
+  });
+  assert.ok(came.ups > 20 && Math.abs(came.firstYMm - 55) < 0.2, `no way leads from ghost to press: ${JSON.stringify(came)}`);
   // The board's finger is the person's, and nobody moves it away.
   const places = await page.evaluate(async () => {
     await wait(200);

@@ -185,7 +185,7 @@ test("a slow replay has a lens at the finger: contact, reports, predicted place,
   const { reports, predicted, words, last } = await lensParts(page);
   const [xMm, contactMm, feltN, voltageV] = ["xMm", "contactRadiusMm", "feltN", "voltageV"].map((name) => last[name][0]);
   assert.ok(xMm > 30 && xMm < 90, `${xMm} mm`);
-  assert.ok(predicted && Math.abs(predicted.xMm - xMm) < 2 && Math.abs(predicted.yMm - 40) < 1, JSON.stringify({ predicted, xMm }));
+  assert.ok(predicted && Math.hypot(predicted.xMm - xMm, predicted.yMm - 40) < 2, JSON.stringify({ predicted, xMm }));
   assert.ok(reports && reports.leftMm < xMm - 2, `reports trail behind: ${JSON.stringify({ reports, xMm })}`);
   const [, contact, force, voltage] = /contact\s*([\d.]+) mm[\s\S]*force\s*(\d+) mN[\s\S]*voltage\s*(\d+) V rms/.exec(words) ?? [];
   // The words are of a picture at most two samples older.

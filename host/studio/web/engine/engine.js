@@ -248,6 +248,11 @@ export class Engine {
     this.#board.send({ type: "pointer", sample });
   }
 
+  /** Lifts the finger at once, and forgets what is still to be played of it. */
+  lift() {
+    this.#board.send({ type: "lift" });
+  }
+
   replay({ slowness = 10 } = {}) {
     return this.#board.ask({ type: "replay", slowness });
   }

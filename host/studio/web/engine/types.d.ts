@@ -140,7 +140,7 @@ export type Questions = {
 export type Question = { [Type in keyof Questions]: { type: Type } & Questions[Type]["asked"] }[keyof Questions];
 
 /** What needs no answer. */
-export type Note = { type: "alive" | "gone" } | { type: "pointer"; sample: PointerSample };
+export type Note = { type: "alive" | "gone" | "lift" } | { type: "pointer"; sample: PointerSample };
 /** What the page sends to a worker; `id` is that of the answer. */
 export type ToWorker = (Question & { id: number }) | Note;
 
@@ -173,7 +173,7 @@ export type Actions = {
   [Type in keyof Questions]?: (
     message: Questions[Type]["asked"],
   ) => Questions[Type]["answer"] | Promise<Questions[Type]["answer"]>;
-} & { alive?: () => void; gone?: () => void; pointer?: (message: { sample: PointerSample }) => void };
+} & { alive?: () => void; gone?: () => void; lift?: () => void; pointer?: (message: { sample: PointerSample }) => void };
 
 /** A line to a board outside of the page. */
 export type Line = {

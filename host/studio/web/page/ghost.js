@@ -48,8 +48,6 @@ export class Ghost {
    * @type {{ xMm: number, yMm: number } | undefined}
    */
   #felt;
-  /** Where it was sent last, mm. */
-  #sent = { xMm: 0, yMm: 0 };
 
   /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, sound: Sound }} parts */
   constructor({ engine, map, finger, sound }) {
@@ -146,22 +144,18 @@ export class Ghost {
     this.#slidMs += Math.min(ms - this.#lastMs, 50);
     const stroke = Math.floor(this.#slidMs / (STROKE_MS + PAUSE_MS));
     const part = (this.#slidMs % (STROKE_MS + PAUSE_MS)) / STROKE_MS;
-    if (part > 1) this.#lift();
-    else this.#send(ms, placeAt(stroke, part, this.#map.screen), true);
+    if (part > 1) {
+      this.#lift();
+      return;
+    }
+    this.#isDown = true;
+    this.#engine.pointer({ timeMs: ms, ...placeAt(stroke, part, this.#map.screen), down: true });
   }
 
+  /** At once: whoever takes over comes to a screen without a finger. */
   #lift() {
-    if (this.#isDown) this.#send(clock.nowMs(), this.#sent, false);
-  }
-
-  /**
-   * @param {number} timeMs
-   * @param {{ xMm: number, yMm: number }} place
-   * @param {boolean} down
-   */
-  #send(timeMs, place, down) {
-    [this.#sent, this.#isDown] = [place, down];
-    this.#engine.pointer({ timeMs, ...place, down });
+    if (this.#isDown) this.#engine.lift();
+    this.#isDown = false;
   }
 
   /** @param {Frame} frame */

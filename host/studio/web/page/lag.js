@@ -88,9 +88,9 @@ export class Lag {
   /** @param {Frame} frame */
   feel(frame) {
     if (!this.isOpen || !frame.simulated) return;
-    const before = this.#borders?.found.length ?? 0;
+    const wasStroke = this.#isStroke;
     for (let at = 0; at < frame.xMm.length; at += 1) this.#add(frame, at);
-    if (this.#borders && (this.#borders.found.length > before || this.#isStroke)) {
+    if (wasStroke || this.#isStroke) {
       this.#finger.redraw();
       this.#say();
     }
@@ -105,6 +105,7 @@ export class Lag {
     if (isDown && !this.#isStroke) {
       this.#borders = new Borders((x, y) => this.#map.frictionAt(x, y), this.#map.frictionN);
     }
+    if (this.#isStroke && !isDown) this.#borders?.end();
     this.#isStroke = isDown;
     if (!isDown || !Number.isFinite(predictedXMm[at]) || !Number.isFinite(reportedXMm[at])) return;
     this.#borders?.add(
