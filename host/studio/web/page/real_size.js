@@ -1,7 +1,8 @@
 // Real size, also on the full screen: a bank card held to the screen says how many pixels a millimetre has.
 // @ts-check
 
-import { attempt, byId, element, settings } from "./dom.js";
+import { byId, element, settings } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { FrictionMap } from "./map.js" */
 
