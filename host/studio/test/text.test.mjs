@@ -110,13 +110,17 @@ test("a scene that a board refuses plays as a draft, and is called so", async ()
   assert.ok(await page.locator(".scope-card .draft").isVisible());
   const most = Math.max(...(await wholeStroke(page, 40)).voltageV);
   assert.ok(most > 140, `clamped to the largest voltage, found ${most} V`);
+  await page.click("#scope-options summary");
   const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save-csv")]);
   assert.match(saved.suggestedFilename(), /draft/);
   /** Waits until the map is marked as a draft, with black in its corner, or is not. */
   const markedAs = (isDraft) =>
     page.waitForFunction((isDraft) => {
       const canvas = document.getElementById("map-picture");
-      const place = [(40 + 4) * devicePixelRatio, (26 + 4) * devicePixelRatio];
+      const finger = document.getElementById("map-finger").getBoundingClientRect();
+      const box = canvas.getBoundingClientRect();
+      const inset = 4;
+      const place = [finger.x - box.x + inset, finger.y - box.y + inset].map((px) => px * devicePixelRatio);
       const [red, green, blue, alpha] = canvas.getContext("2d").getImageData(...place, 1, 1).data;
       return alpha === 255 && (isDraft ? red + green + blue === 0 : blue > 0);
     }, isDraft);

@@ -12,17 +12,12 @@ import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 /** @import { Project } from "./project.js" */
 /** @import { Works } from "./works.js" */
 
-const NEW_SCENE = `version = 2
-
-# Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
-`;
-
 /** @param {{ scene: OpenScene, gallery: Gallery, works: Works, editor: Editor, project: Project }} parts */
 export function makeBar({ scene, gallery, works, editor, project }) {
   const dialog = new Open(works, () => byId("files").click());
   dialog.onWork = async (id) => scene.open(await scene.work(id));
+  makeMenu();
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
-  byId("new").onclick = () => attempt(() => scene.open({ name: "untitled", text: NEW_SCENE, files: [] }));
   byId("undo").onclick = () => editor.undo();
   byId("redo").onclick = () => editor.redo();
   editor.onHistory = () => {
@@ -31,6 +26,24 @@ export function makeBar({ scene, gallery, works, editor, project }) {
   };
   byId("save").onclick = () => attempt(() => save(scene, project, editor));
   byId("share").onclick = () => attempt(() => share(project, editor));
+}
+
+/** In a narrow window most of the buttons are in a menu, which closes at a press anywhere, and at Escape. */
+function makeMenu() {
+  const [menu, toggle] = [byId("menu"), byId("toggle-menu")];
+  const show = (/** @type {boolean} */ isOpen) => {
+    menu.classList.toggle("is-open", isOpen);
+    toggle.setAttribute("aria-expanded", String(isOpen));
+  };
+  document.addEventListener("click", ({ target }) => {
+    const isToggled = target instanceof Node && toggle.contains(target);
+    show(isToggled && !menu.classList.contains("is-open"));
+  });
+  menu.parentElement?.addEventListener("keydown", ({ key }) => {
+    if (key !== "Escape" || !menu.classList.contains("is-open")) return;
+    show(false);
+    toggle.focus();
+  });
 }
 
 /**

@@ -101,7 +101,8 @@ export class Board {
     const details = fault && link !== "none" ? `, ${fault}` : "";
     board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state]}${details}`;
     this.#showArm(needsArm);
-    byId("arm").textContent = `Arm: drive ${driving}`;
+    const arm = byId("arm");
+    arm.lastElementChild?.replaceChildren(`: drive ${driving}`);
     // A board latches a fault also when its arm switch is let go.
     byId("clear-fault").hidden = state !== "faulted" || link === "simulator";
     const stop = byId("stop");

@@ -29,6 +29,7 @@ import {
   undo,
 } from "../vendor/studio-vendor.js";
 import { completeFrom } from "./completion.js";
+import { HeldChange, joinHeld } from "./held_change.js";
 
 /** @import { StateCommand } from "../vendor/studio-vendor.js" */
 /** @import { Problem } from "../engine/types" */
@@ -70,6 +71,8 @@ export class Editor {
    * @type {(files: FileOfScene[]) => void}
    */
   onFiles = () => {};
+  /** A person is led to a place in the text: it has to be seen. */
+  onReveal = () => {};
 
   /**
    * @param {HTMLElement} parent
@@ -87,7 +90,7 @@ export class Editor {
       lintGutter(),
       highlightActiveLineGutter(),
       highlightSpecialChars(),
-      history(),
+      history({ joinToEvent: joinHeld }),
       drawSelection(),
       bracketMatching(),
       closeBrackets(),
@@ -190,6 +193,7 @@ export class Editor {
    * @param {string} text
    */
   insertAfterLine(file, number, text) {
+    this.onReveal();
     this.show(file);
     const { doc } = this.#view.state;
     const at = number === 0 ? 0 : doc.line(Math.min(number, doc.lines)).to;
@@ -211,6 +215,24 @@ export class Editor {
     return state !== undefined && first <= state.doc.lines && /^\s*\[\[/.test(state.doc.line(first).text);
   }
 
+  /**
+   * The text of a file, if it is here.
+   * @param {string | undefined} file
+   */
+  textOf(file) {
+    const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
+    return state?.doc.toString();
+  }
+
+  /**
+   * Shows a file that a hand changes on the map: all that the hand does is one step of undo.
+   * @param {string | undefined} file
+   */
+  hold(file) {
+    this.show(file);
+    return new HeldChange(this.#view);
+  }
+
   /** @param {string} text */
   append(text) {
     this.show();
@@ -229,6 +251,7 @@ export class Editor {
    * @param {number} number
    */
   goTo(file, number) {
+    this.onReveal();
     this.show(file);
     const line = this.#view.state.doc.line(Math.max(1, Math.min(number, this.#view.state.doc.lines)));
     this.#view.dispatch({

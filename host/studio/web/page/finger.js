@@ -7,6 +7,10 @@ import { colour, contextOf } from "./dom.js";
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame, Reach } from "../engine/types" */
 /** @import { Area, FrictionMap } from "./map.js" */
+/**
+ * What others draw between the trail and the finger. While `isActive`, it is drawn at each picture of the screen.
+ * @typedef {{ isActive: boolean, draw: (context: CanvasRenderingContext2D) => void }} Overlay
+ */
 /** @typedef {{ xMm: number, yMm: number, friction: number, ms: number }} TrailPoint */
 
 /** How long a trail stays, s. */
@@ -42,6 +46,12 @@ export class Finger {
   #isShown = false;
   /** Part of the reach that is felt now, 0 to 1. */
   #friction = 0;
+  /** Others have drawn something new: one more picture. */
+  #isStale = false;
+  /** @type {Overlay[]} */
+  overlays = [];
+  /** Something else slides, so a pointer that is not pressed lifts nothing. */
+  isGuided = false;
   usesPressure = false;
   drags = true;
   /** A stroke begins. */
@@ -72,6 +82,7 @@ export class Finger {
   /** @param {Area} area */
   #place({ left, top, width, height }) {
     this.#area = { width, height };
+    this.#isStale = true;
     Object.assign(this.#canvas, {
       width: Math.round(width * devicePixelRatio),
       height: Math.round(height * devicePixelRatio),
@@ -84,17 +95,27 @@ export class Finger {
     });
   }
 
-  /**
-   * @param {PointerEvent} event
-   * @param {boolean} down
-   */
-  #send(event, down) {
+  /** Draws once more: an overlay has changed. */
+  redraw() {
+    this.#isStale = true;
+  }
+
+  /** @param {PointerEvent} event */
+  #aim(event) {
     const box = this.#canvas.getBoundingClientRect();
     const { widthMm, heightMm } = this.#map.screen;
     this.#target = {
       xMm: ((event.clientX - box.left) / box.width) * widthMm,
       yMm: ((event.clientY - box.top) / box.height) * heightMm,
     };
+  }
+
+  /**
+   * @param {PointerEvent} event
+   * @param {boolean} down
+   */
+  #send(event, down) {
+    this.#aim(event);
     const loadN = this.usesPressure && event.pressure > 0 ? LOAD_AT_FULL_PRESSURE_N * event.pressure : undefined;
     this.#engine.pointer({ timeMs: event.timeStamp, ...this.#target, down, loadN });
   }
@@ -114,7 +135,8 @@ export class Finger {
   /** @param {PointerEvent} event */
   #move(event) {
     this.#isInside = true;
-    if (!this.#isDown) this.#send(event, false);
+    if (!this.#isDown && this.isGuided) this.#aim(event);
+    else if (!this.#isDown) this.#send(event, false);
     else if (event.pointerId === this.#pointerId) {
       const events = event.getCoalescedEvents?.() ?? [];
       for (const each of events.length > 0 ? events : [event]) this.#send(each, true);
@@ -197,9 +219,10 @@ export class Finger {
     this.#drawn.xMm += part * (this.#target.xMm - this.#drawn.xMm);
     this.#drawn.yMm += part * (this.#target.yMm - this.#drawn.yMm);
     this.#lastMs = ms;
-    const isShown = this.#isInside || this.#isDown || this.#trail.length > 0 || this.#hasFocus;
-    if (isShown || this.#isShown) this.#draw();
-    this.#isShown = isShown;
+    const isAlone = this.#isInside || this.#isDown || this.#trail.length > 0 || this.#hasFocus;
+    const isShown = isAlone || this.overlays.some(({ isActive }) => isActive);
+    if (isShown || this.#isShown || this.#isStale) this.#draw();
+    [this.#isShown, this.#isStale] = [isShown, false];
     clock.nextFrame((next) => this.#frame(next));
   }
 
@@ -217,6 +240,7 @@ export class Finger {
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#area.width, this.#area.height);
     this.#drawTrail(context);
+    if (!this.#isBlind) for (const overlay of this.overlays) overlay.draw(context);
     if (!this.#isInside && !this.#isDown && !this.#hasFocus) return;
     const { scale } = this.#map;
     const [x, y] = [this.#drawn.xMm * scale, this.#drawn.yMm * scale];

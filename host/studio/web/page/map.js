@@ -10,13 +10,12 @@ import { MOCKUPS, drawMockup } from "./mockup.js";
 /** @typedef {{ x: number, y: number, width: number, height: number }} Box */
 /** @typedef {{ line: string, text: string }} Ink */
 
-/** Room for the ruler and the scale around the map, CSS pixels. */
-const LEFT_PX = 40;
-const TOP_PX = 26;
-const RIGHT_PX = 78;
-const BOTTOM_PX = 8;
-/** The map takes at most this part of the window's height. */
-const HEIGHT_PART = 0.44;
+/** Room for ruler and scale around the map, CSS pixels: in a narrow box they are above and below it. */
+const AROUND_PX = {
+  wide: { left: 38, top: 26, right: 64, bottom: 10 },
+  narrow: { left: 2, top: 24, right: 2, bottom: 28 },
+};
+const NARROW_BOX_PX = 480;
 /** Height of the word that marks a draft, CSS pixels. */
 const DRAFT_HEIGHT_PX = 36;
 
@@ -61,8 +60,8 @@ export class FrictionMap {
    * @type {number | undefined}
    */
   realSize;
-  /** Height of the window that is kept for other parts of the page, CSS pixels. */
-  reservedPx = 0;
+  /** Room around the map, CSS pixels. */
+  #around = AROUND_PX.wide;
   /** @type {keyof typeof MAP_ALPHA} */
   look = "map";
   hasNames = true;
@@ -73,6 +72,11 @@ export class FrictionMap {
    * @type {(area: Area) => void}
    */
   onLayout = () => {};
+  /**
+   * `onRoom(widthPx)`: the map would be so wide, with what is around it, if its height alone limited it.
+   * @type {(widthPx: number) => void}
+   */
+  onRoom = () => {};
 
   /**
    * Draws on the canvas `picture` in the element `box`.
@@ -99,6 +103,33 @@ export class FrictionMap {
     this.layout();
   }
 
+  /**
+   * The target friction at a place, N; undefined outside of the map, or before there is one.
+   * @param {number} xMm
+   * @param {number} yMm
+   */
+  frictionAt(xMm, yMm) {
+    const map = this.#map;
+    if (!map) return undefined;
+    const column = Math.floor((xMm / this.screen.widthMm) * map.widthPx);
+    const row = Math.floor((yMm / this.screen.heightMm) * map.heightPx);
+    const isInside = column >= 0 && row >= 0 && column < map.widthPx && row < map.heightPx;
+    return isInside ? map.frictionN[row * map.widthPx + column] : undefined;
+  }
+
+  /** The friction of each pixel, N. */
+  get frictionN() {
+    return this.#map?.frictionN ?? new Float32Array();
+  }
+
+  /**
+   * Draws the friction alone on another canvas, whose unit is a mm.
+   * @param {CanvasRenderingContext2D} context
+   */
+  drawOn(context) {
+    if (this.#picture) context.drawImage(this.#picture, 0, 0, this.screen.widthMm, this.screen.heightMm);
+  }
+
   /** A small picture of the friction alone, as a PNG. */
   thumbnail() {
     if (!this.#picture) throw new Error("there is no map yet");
@@ -112,24 +143,28 @@ export class FrictionMap {
   /** Fits the map into its box, or shows it in real size. */
   layout() {
     const { widthMm, heightMm } = this.screen;
-    const style = getComputedStyle(this.box);
-    const room = this.box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-    const most = Math.max(240, Math.min(HEIGHT_PART * innerHeight, innerHeight - this.reservedPx));
-    const fitted = Math.min((room - LEFT_PX - RIGHT_PX) / widthMm, most / heightMm);
+    this.box.classList.toggle("in-real-size", this.realSize !== undefined);
+    const { clientWidth, clientHeight } = this.box;
+    this.#around = clientWidth < NARROW_BOX_PX ? AROUND_PX.narrow : AROUND_PX.wide;
+    const { left, top, right, bottom } = this.#around;
+    const scaleByHeight = (clientHeight - top - bottom) / heightMm;
+    const fitted = Math.min((clientWidth - left - right) / widthMm, scaleByHeight);
+    this.onRoom(left + right + widthMm * scaleByHeight);
     this.scale = this.realSize ?? Math.max(0.5, fitted);
-    const width = LEFT_PX + RIGHT_PX + widthMm * this.scale;
-    const height = TOP_PX + BOTTOM_PX + heightMm * this.scale;
+    const width = left + right + widthMm * this.scale;
+    const height = top + bottom + heightMm * this.scale;
     const ratio = devicePixelRatio;
     Object.assign(this.#canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
     Object.assign(this.#canvas.style, {
       width: `${width}px`,
       height: `${height}px`,
-      marginLeft: `${Math.max(0, (room - width) / 2)}px`,
+      marginLeft: `${Math.max(0, (clientWidth - width) / 2)}px`,
+      marginTop: `${Math.max(0, (clientHeight - height) / 2)}px`,
     });
     this.draw();
     this.onLayout({
-      left: this.#canvas.offsetLeft + LEFT_PX,
-      top: this.#canvas.offsetTop + TOP_PX,
+      left: this.#canvas.offsetLeft + left,
+      top: this.#canvas.offsetTop + top,
       width: widthMm * this.scale,
       height: heightMm * this.scale,
     });
@@ -142,7 +177,7 @@ export class FrictionMap {
     const [map, check, picture] = [this.#map, this.#check, this.#picture];
     if (!map || !check || !picture) return;
     const { widthMm, heightMm } = this.screen;
-    const area = { x: LEFT_PX, y: TOP_PX, width: widthMm * this.scale, height: heightMm * this.scale };
+    const area = { x: this.#around.left, y: this.#around.top, width: widthMm * this.scale, height: heightMm * this.scale };
     context.save();
     context.translate(area.x, area.y);
     // A blind comparison shows nothing of the friction.
@@ -171,19 +206,21 @@ export class FrictionMap {
     context.strokeStyle = ink.line;
     context.font = "13px system-ui, sans-serif";
     const every = [10, 20, 50, 100, 200, 500].find((step) => step * this.scale >= 44) ?? 1000;
+    const isNarrow = this.#around === AROUND_PX.narrow;
     context.lineWidth = 1;
     context.beginPath();
-    context.textAlign = "center";
     context.textBaseline = "bottom";
     for (let mm = 0; mm <= this.screen.widthMm; mm += every / 5) {
       const isLong = Math.round((mm * 5) / every) % 5 === 0;
       context.moveTo(x + mm * this.scale, y - 2);
       context.lineTo(x + mm * this.scale, y - (isLong ? 9 : 5));
-      if (isLong) context.fillText(mm === 0 ? "0 mm" : `${Math.round(mm)}`, x + mm * this.scale, y - 10);
+      const isCut = isNarrow && x + mm * this.scale > x + width - 12;
+      context.textAlign = isNarrow && mm === 0 ? "left" : "center";
+      if (isLong && !isCut) context.fillText(mm === 0 ? "0 mm" : `${Math.round(mm)}`, x + mm * this.scale, y - 10);
     }
     context.textAlign = "right";
     context.textBaseline = "middle";
-    for (let mm = 0; mm <= this.screen.heightMm; mm += every / 5) {
+    for (let mm = 0; mm <= this.screen.heightMm && !isNarrow; mm += every / 5) {
       const isLong = Math.round((mm * 5) / every) % 5 === 0;
       context.moveTo(x - 2, y + mm * this.scale);
       context.lineTo(x - (isLong ? 9 : 5), y + mm * this.scale);
@@ -200,24 +237,34 @@ export class FrictionMap {
    * @param {Ink} ink
    */
   #drawScale(context, { lowN, highN }, { x, y, width, height }, ink) {
-    const left = x + width + 14;
-    const top = y + 18;
-    const length = height - 18;
+    const isNarrow = this.#around === AROUND_PX.narrow;
+    const bar = isNarrow
+      ? { left: x + 6, top: y + height + 6, length: width - 50 }
+      : { left: x + width + 10, top: y + 18, length: height - 18 };
+    /** Fills a part of the bar, from 0 at low to 1 at high friction, and `wide` pixels across it from `across`. */
+    const fill = (/** @type {number} */ from, /** @type {number} */ long, across = 0, wide = 14) => {
+      if (isNarrow) context.fillRect(bar.left + from * bar.length, bar.top + across, long, wide / 2);
+      else context.fillRect(bar.left + across, bar.top + (1 - from) * bar.length - long, wide, long);
+    };
     for (let at = 0; at < 256; at += 1) {
       context.fillStyle = `rgb(${SCALE.subarray(3 * at, 3 * at + 3).join(",")})`;
-      context.fillRect(left, top + (length * (255 - at)) / 256, 14, length / 256 + 1);
+      fill(at / 256, bar.length / 256 + 1);
     }
     context.fillStyle = ink.text;
     context.font = "13px system-ui, sans-serif";
-    context.textAlign = "left";
+    context.textAlign = isNarrow ? "center" : "left";
     context.textBaseline = "middle";
-    context.fillText("mN", left, y + 6);
+    if (isNarrow) context.fillText("mN", x + width - 18, bar.top + 12);
+    else context.fillText("mN", bar.left, y + 6);
+    const room = isNarrow ? 40 : 26;
     const everyMn =
-      [5, 10, 20, 25, 50, 100, 200, 500].find((step) => (length * step) / (1000 * (highN - lowN)) >= 26) ?? 1000;
+      [5, 10, 20, 25, 50, 100, 200, 500].find((step) => (bar.length * step) / (1000 * (highN - lowN)) >= room) ?? 1000;
     for (let mN = Math.ceil((lowN * 1000) / everyMn) * everyMn; mN <= highN * 1000 + 1e-6; mN += everyMn) {
-      const place = top + length * (1 - (mN / 1000 - lowN) / (highN - lowN));
-      context.fillText(`${mN}`, left + 22, Math.max(top + 5, Math.min(place, top + length - 5)));
-      context.fillRect(left + 14, place - 0.5, 4, 1);
+      const part = (mN / 1000 - lowN) / (highN - lowN);
+      const place = Math.max(5, Math.min(part * bar.length, bar.length - 5));
+      if (isNarrow) context.fillText(`${mN}`, bar.left + Math.max(14, place), bar.top + 15);
+      else context.fillText(`${mN}`, bar.left + 22, bar.top + bar.length - place);
+      if (!isNarrow) fill(part, 1, 14, 4);
     }
   }
 

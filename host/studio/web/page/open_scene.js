@@ -121,7 +121,9 @@ export class OpenScene {
         for (const [name, content] of files) this.#project.add(name, content);
         this.#filesChanged();
       }
-      if (files.some(([name]) => isPicture(name))) byId("tab-pictures").click();
+      if (!files.some(([name]) => isPicture(name))) return;
+      this.#editor.onReveal();
+      byId("tab-pictures").click();
     });
   }
 

@@ -25,6 +25,10 @@ export function showCheck({ ok, isDraft, problems, report }, editor) {
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
   found = { count: errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`, isDraft: isDraft === true };
   showOutcome();
+  const mistakes = byId("mistakes");
+  mistakes.hidden = errors.length === 0;
+  mistakes.textContent = `${errors.length}`;
+  mistakes.setAttribute("aria-label", found.count);
   byId("problems").replaceChildren(...problems.map((problem) => item(problem, editor)));
   if (report) byId("report").textContent = feltFirst(report);
   editor.mark(problems);

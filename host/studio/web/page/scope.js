@@ -2,7 +2,7 @@
 // @ts-check
 
 import { clock } from "../clock.js";
-import { uPlot, uPlotStyle } from "../vendor/studio-vendor.js";
+import { uPlot, uPlotStyle } from "../vendor/chart-vendor.js";
 import { colour, contextOf, download, element } from "./dom.js";
 
 /** @import { Frame } from "../engine/types" */
@@ -10,9 +10,8 @@ import { colour, contextOf, download, element } from "./dom.js";
 
 /** What the scope shows while it runs, s. */
 const WINDOW_S = 3;
-const HEIGHT_PX = { usual: 190, low: 155 };
-/** A window below this height has a low chart, so that map and chart are seen together. */
-const LOW_WINDOW_PX = 900;
+/** Smallest chart, CSS pixels. */
+const SIZE_MIN_PX = { width: 160, height: 60 };
 /** Least time between two drawings, ms. */
 const FRAME_MS = 30;
 /** The scope runs on for this long after a lift, s. */
@@ -57,9 +56,7 @@ export class Scope {
     box.before(element("style", {}, uPlotStyle));
     this.#plot = this.#made();
     this.#draw();
-    new ResizeObserver(([{ contentRect }]) => {
-      this.#plot.setSize({ width: Math.max(200, contentRect.width - 4), height: heightPx() });
-    }).observe(this.#box);
+    new ResizeObserver(() => this.#fit()).observe(this.#box);
     let drawnMs = 0;
     /** @param {number} ms */
     const frame = (ms) => {
@@ -86,8 +83,7 @@ export class Scope {
     const digits = (unit, count) => (_, value) => (Number.isFinite(value) ? `${value.toFixed(count)} ${unit}` : "–");
     /** @type {uPlot.Options} */
     const options = {
-      width: Math.max(200, this.#box.clientWidth - 4),
-      height: heightPx(),
+      ...SIZE_MIN_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
         { ...axis, values: (_, splits) => splits.map((value) => `${Number(value.toFixed(4))} s`) },
@@ -117,9 +113,22 @@ export class Scope {
     return plot;
   }
 
+  /** The chart fills its box, but for the legend below it. */
+  #fit() {
+    const { paddingLeft, paddingRight } = getComputedStyle(this.#box);
+    const width = this.#box.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight);
+    const legend = this.#box.querySelector(".u-legend");
+    const height = this.#box.clientHeight - (legend?.getBoundingClientRect().height ?? 0);
+    this.#plot.setSize({
+      width: Math.max(SIZE_MIN_PX.width, width),
+      height: Math.max(SIZE_MIN_PX.height, height),
+    });
+  }
+
   restyle() {
     this.#plot.destroy();
     this.#plot = this.#made();
+    this.#fit();
     this.#draw();
   }
 
@@ -193,10 +202,6 @@ export class Scope {
     write("time in s", "ink");
     picture.toBlob((blob) => blob && download(`${this.#fileName}.png`, blob, "image/png"));
   }
-}
-
-function heightPx() {
-  return innerHeight < LOW_WINDOW_PX ? HEIGHT_PX.low : HEIGHT_PX.usual;
 }
 
 /**

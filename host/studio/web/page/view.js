@@ -22,7 +22,7 @@ export function makeView({ map, finger, scope, engine }) {
     finger.drags = drag.checked;
     byId("map").classList.toggle("no-drag", !drag.checked);
   };
-  makeMenu(/** @type {HTMLDetailsElement} */ (byId("options")));
+  for (const id of ["options", "scope-options"]) makeMenu(/** @type {HTMLDetailsElement} */ (byId(id)));
   makeScope(scope);
   makeReplay(engine);
 }

@@ -1,0 +1,109 @@
+// The page in windows of eight sizes: what is felt is seen without scrolling, and the map has most of the room.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { openStudio } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** Width and height of windows, CSS pixels. */
+const WINDOWS = [[1366, 657], [1440, 789], [1536, 730], [1920, 969], [2560, 1300], [1024, 768], [820, 1180], [390, 844]];
+/** Least part of a window that the screen's picture has, without ruler and scale: on a phone, and otherwise. */
+const PART = { phone: 0.4, other: 0.25 };
+const PHONE_MAX_PX = 480;
+/** Edges of boxes may lie within a pixel beyond those of the window. */
+const ROUNDING_PX = 1;
+
+/** In the page: the box of the first element of a selector. */
+function boxOf(selector) {
+  const { left, top, right, bottom, width, height } = document.querySelector(selector).getBoundingClientRect();
+  return { left, top, right, bottom, width, height };
+}
+
+/** Boxes on the page, by their selectors. */
+async function boxes(page, selectors) {
+  const found = {};
+  for (const selector of selectors) found[selector] = await page.evaluate(boxOf, selector);
+  return found;
+}
+
+const isWithin = (inner, outer) =>
+  inner.left >= outer.left - ROUNDING_PX && inner.top >= outer.top - ROUNDING_PX &&
+  inner.right <= outer.right + ROUNDING_PX && inner.bottom <= outer.bottom + ROUNDING_PX;
+
+const overlap = (one, other) =>
+  Math.min(one.right, other.right) - Math.max(one.left, other.left) > ROUNDING_PX &&
+  Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > ROUNDING_PX;
+
+/** The page has taken this window. */
+async function resize(page, [width, height]) {
+  await page.setViewportSize({ width, height });
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
+const SEEN = ["header", "#stop", "#map-finger", "#numbers", "#scope .u-wrap", "#scope .u-legend"];
+
+for (const colorScheme of ["light", "dark"]) {
+  test(`map, numbers, scope and legend are seen at eight sizes, ${colorScheme}`, async () => {
+    const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+    await page.emulateMedia({ colorScheme });
+    for (const [width, height] of WINDOWS) {
+      await resize(page, [width, height]);
+      const size = `${width}x${height}`;
+      const window = { left: 0, top: 0, right: width, bottom: height };
+      const found = await boxes(page, SEEN);
+      for (const [name, box] of Object.entries(found)) {
+        assert.ok(isWithin(box, window), `${size}: ${name} ${JSON.stringify(box)}`);
+        assert.ok(box.width > 0 && box.height > 0, `${size}: ${name} has no size`);
+      }
+      const { "#map-finger": map, "#numbers": numbers, "#scope .u-wrap": chart, "#scope .u-legend": legend } = found;
+      const apart = [map, numbers, chart, legend];
+      for (const [at, one] of apart.entries())
+        for (const other of apart.slice(at + 1)) assert.ok(!overlap(one, other), `${size}: ${JSON.stringify([one, other])}`);
+      const part = (map.width * map.height) / (width * height);
+      const least = width <= PHONE_MAX_PX ? PART.phone : PART.other;
+      assert.ok(part >= least, `${size}: the map has ${part.toFixed(3)} of the window`);
+      const scrolls = () => {
+        const { scrollWidth, clientWidth, scrollHeight, clientHeight } = document.scrollingElement;
+        return scrollWidth > clientWidth || scrollHeight > clientHeight;
+      };
+      assert.ok(!(await page.evaluate(scrolls)), `${size}: the page scrolls`);
+      const isCut = () => {
+        const cells = document.querySelectorAll("#numbers dd, #numbers dt, .u-legend tr, header button, .map-card h2");
+        const seen = [...cells].filter((each) => each.checkVisibility());
+        return seen.filter((each) => each.scrollWidth > each.clientWidth + 1).map((each) => each.outerHTML);
+      };
+      assert.deepEqual(await page.evaluate(isCut), [], `${size}: cut`);
+    }
+    assert.deepEqual(errors, []);
+    await close();
+  });
+}
+
+test("text and tools are closed at the first visit, and later as they were left", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const drawer = page.locator("#drawer");
+  const toggle = page.locator("#toggle-drawer");
+  assert.ok(await drawer.isHidden());
+  assert.match(await toggle.innerText(), /Text and tools/);
+  await toggle.click();
+  assert.ok(await page.locator("#editor .cm-content").isVisible());
+  assert.equal(await toggle.getAttribute("aria-expanded"), "true");
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage);
+  assert.ok(await drawer.isVisible(), "it stays open");
+  for (const size of WINDOWS) {
+    await resize(page, size);
+    const { "#drawer": box, "#map-finger": map } = await boxes(page, ["#drawer", "#map-finger"]);
+    const window = { left: 0, top: 0, right: size[0], bottom: size[1] };
+    assert.ok(isWithin(box, window) && isWithin(map, window) && !overlap(box, map), `${size}: ${JSON.stringify([box, map])}`);
+  }
+  await toggle.click();
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage);
+  assert.ok(await drawer.isHidden(), "it stays closed");
+  assert.deepEqual(errors, []);
+  await close();
+});
