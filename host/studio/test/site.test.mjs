@@ -2,45 +2,19 @@
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import http from "node:http";
+import os from "node:os";
 import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { assertFelt, lineOf, slideOver } from "./element.mjs";
 import { cleanUp, endLeftovers, openPage, required } from "./harness.mjs";
+import { serve } from "./web_server.mjs";
 
 const SITE = required("STUDIO_SITE");
 /** Largest module of <frixel-scene>, as a web server sends it, bytes. */
 const MODULE_MAX_BYTES = 900_000;
-const TYPES = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".webmanifest": "application/manifest+json",
-  ".svg": "image/svg+xml",
-  ".png": "image/png",
-  ".jpg": "image/jpeg",
-};
-
 afterEach(endLeftovers);
 after(cleanUp);
-
-/** Serves the site below a folder of its own, as a host of many sites does. Returns its address, and what ends it. */
-async function serve() {
-  const server = http.createServer((request, answer) => {
-    const { pathname } = new URL(request.url, "http://a");
-    const name = decodeURIComponent(pathname.replace(/^\/mine\//, "").replace(/(^|\/)$/, "$1index.html"));
-    const file = path.join(SITE, path.normalize(`/${name}`));
-    const isThere = pathname.startsWith("/mine/") && fs.existsSync(file);
-    if (isThere) answer.writeHead(200, { "content-type": TYPES[path.extname(file)] }).end(fs.readFileSync(file));
-    else answer.writeHead(404).end();
-  });
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  const end = () => {
-    server.close();
-    server.closeAllConnections();
-  };
-  return { address: `http://127.0.0.1:${server.address().port}/mine/`, end };
-}
 
 const plays = (page) =>
   page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
@@ -49,7 +23,7 @@ const plays = (page) =>
 const isKept = (page) => page.evaluate(async () => void (await navigator.serviceWorker.ready));
 
 test("from the second visit on, page and gallery open without the server", async (context) => {
-  const { address, end } = await serve();
+  const { address, end } = await serve(SITE);
   context.after(end);
   const { page, errors } = await openPage(address, { isSimulated: true });
   await plays(page);
@@ -65,7 +39,7 @@ test("from the second visit on, page and gallery open without the server", async
 });
 
 test("a link opens its scene, also without the server", async (context) => {
-  const { address, end } = await serve();
+  const { address, end } = await serve(SITE);
   context.after(end);
   const { page, errors } = await openPage(address, { isSimulated: true });
   await plays(page);
@@ -83,8 +57,32 @@ test("a link opens its scene, also without the server", async (context) => {
   assert.deepEqual(errors, []);
 });
 
+test("a newer version is offered, and takes the place of the one before once a person wants it", async (context) => {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-site-"));
+  fs.cpSync(SITE, folder, { recursive: true });
+  const { address, end } = await serve(folder);
+  context.after(end);
+  const { page, errors } = await openPage(address, { isSimulated: true });
+  await plays(page);
+  await isKept(page);
+  const cachesOf = () => page.evaluate(() => caches.keys());
+  await page.evaluate(() => caches.open("of somebody else"));
+  const [before] = await cachesOf();
+  const worker = path.join(folder, "service-worker.js");
+  fs.writeFileSync(worker, fs.readFileSync(worker, "utf8").replace(/"version":"[^"]*"/, '"version":"newer"'));
+  await page.goto(address);
+  await plays(page);
+  await page.getByText("Load it", { exact: true }).waitFor();
+  assert.ok((await cachesOf()).includes(before), "the version before goes on");
+  await Promise.all([page.waitForEvent("load"), page.getByText("Load it", { exact: true }).click()]);
+  await plays(page);
+  const after = await cachesOf();
+  assert.ok(after.length === 2 && !after.includes(before) && after.includes("of somebody else"), after.join());
+  assert.deepEqual(errors, []);
+});
+
 test("Chromium would install it", async (context) => {
-  const { address, end } = await serve();
+  const { address, end } = await serve(SITE);
   context.after(end);
   const { page } = await openPage(address, { isSimulated: true });
   await plays(page);

@@ -9,8 +9,13 @@
  * @typedef {Place & { ux: number, uy: number, tMs: number, isUp: boolean } & { [each in By]?: number }} Border
  */
 
+/**
+ * A border that a board has crossed, and where the finger was then.
+ * @typedef {{ by: By, isUp: boolean, tMs: number, at: Place }} Crossing
+ */
+
 /** A border is the mean of the least and the largest friction; this part of their difference around it is not crossed. */
-const HYSTERESIS = 0.08;
+const HYSTERESIS = 0.12;
 /** A board crosses a border within this time of the finger, or misses it, ms: reports of 100 Hz, one of which is lost. */
 const WITHIN_MS = 60;
 /** How far back the direction of the finger is taken from, samples of a millisecond. */
@@ -40,7 +45,7 @@ export class Borders {
   /** @type {Border[]} */
   found = [];
   #sides = { finger: new Side(), predicted: new Side(), reported: new Side() };
-  /** @type {{ by: By, isUp: boolean, tMs: number, at: Place }[]} */
+  /** @type {Crossing[]} */
   #open = [];
   /** @type {Place[]} */
   #way = [];
@@ -83,7 +88,15 @@ export class Borders {
       const side = this.#crossed(by, board[by]);
       if (side !== undefined) this.#open.push({ by, isUp: side, tMs, at: finger });
     }
-    this.#open = this.#open.filter((crossing) => tMs - crossing.tMs < WITHIN_MS && !this.#match(crossing));
+    // The finger may cross later than the board.
+    const isOver = (/** @type {Crossing} */ crossing) => tMs - crossing.tMs >= WITHIN_MS;
+    for (const crossing of this.#open.filter(isOver)) this.#match(crossing);
+    this.#open = this.#open.filter((crossing) => !isOver(crossing));
+  }
+
+  /** The stroke is over. */
+  end() {
+    for (const crossing of this.#open.splice(0)) this.#match(crossing);
   }
 
   /**
@@ -95,18 +108,15 @@ export class Borders {
   }
 
   /**
-   * Whether the finger has crossed this border, too, at about that time: then its lag is known.
-   * @param {{ by: By, isUp: boolean, tMs: number, at: Place }} crossing
+   * The border that the finger has crossed nearest in time is the one that the board has crossed, unless it has before.
+   * @param {Crossing} crossing
    */
   #match({ by, isUp, tMs, at }) {
-    const fits = (/** @type {Border} */ border) =>
-      border[by] === undefined && border.isUp === isUp && Math.abs(border.tMs - tMs) < WITHIN_MS;
-    const near = this.found.filter(fits);
-    if (near.length === 0) return false;
     const apart = (/** @type {Border} */ border) => Math.abs(border.tMs - tMs);
+    const near = this.found.filter((border) => border.isUp === isUp && apart(border) < WITHIN_MS);
+    if (near.length === 0) return;
     const border = near.reduce((best, each) => (apart(each) < apart(best) ? each : best));
-    border[by] = (at.xMm - border.xMm) * border.ux + (at.yMm - border.yMm) * border.uy;
-    return true;
+    border[by] ??= (at.xMm - border.xMm) * border.ux + (at.yMm - border.yMm) * border.uy;
   }
 
   /**

@@ -2,7 +2,8 @@
 // @ts-check
 
 import { clock } from "../clock.js";
-import { attempt, byId } from "./dom.js";
+import { byId } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame, Screen } from "../engine/types" */
@@ -48,8 +49,6 @@ export class Ghost {
    * @type {{ xMm: number, yMm: number } | undefined}
    */
   #felt;
-  /** Where it was sent last, mm. */
-  #sent = { xMm: 0, yMm: 0 };
 
   /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, sound: Sound }} parts */
   constructor({ engine, map, finger, sound }) {
@@ -67,11 +66,11 @@ export class Ghost {
     document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
   }
 
-  /** Whether it may slide now: never with a board, nor unseen, nor where it would tell what a comparison hides. */
+  /** Whether it may slide now: never with a board, unseen, while layers are edited, or in a blind comparison. */
   get #maySlide() {
     const { link, state } = this.#engine.state;
-    const isBlind = document.body.classList.contains("blind");
-    return link === "simulator" && state === "active" && !isBlind && document.visibilityState === "visible";
+    const isOthers = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
+    return link === "simulator" && state === "active" && !isOthers && document.visibilityState === "visible";
   }
 
   /** Whether it is drawn. */
@@ -146,22 +145,18 @@ export class Ghost {
     this.#slidMs += Math.min(ms - this.#lastMs, 50);
     const stroke = Math.floor(this.#slidMs / (STROKE_MS + PAUSE_MS));
     const part = (this.#slidMs % (STROKE_MS + PAUSE_MS)) / STROKE_MS;
-    if (part > 1) this.#lift();
-    else this.#send(ms, placeAt(stroke, part, this.#map.screen), true);
+    if (part > 1) {
+      this.#lift();
+      return;
+    }
+    this.#isDown = true;
+    this.#engine.pointer({ timeMs: ms, ...placeAt(stroke, part, this.#map.screen), down: true });
   }
 
+  /** At once: whoever takes over comes to a screen without a finger. */
   #lift() {
-    if (this.#isDown) this.#send(clock.nowMs(), this.#sent, false);
-  }
-
-  /**
-   * @param {number} timeMs
-   * @param {{ xMm: number, yMm: number }} place
-   * @param {boolean} down
-   */
-  #send(timeMs, place, down) {
-    [this.#sent, this.#isDown] = [place, down];
-    this.#engine.pointer({ timeMs, ...place, down });
+    if (this.#isDown) this.#engine.lift();
+    this.#isDown = false;
   }
 
   /** @param {Frame} frame */

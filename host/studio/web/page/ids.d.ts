@@ -7,6 +7,6 @@ export type Ids = {
     | "tab-pictures" | "hear" | "first-dismiss" | "open-lag"]: HTMLButtonElement;
 } & { [id in "files" | "names" | "drag" | "pressure" | "loop" | "prediction" | "scene-name"]: HTMLInputElement } & {
   [id in "finger" | "screen" | "touch" | "look" | "mockup" | "slowness"]: HTMLSelectElement;
-} & { [id in "gallery" | "open" | "about" | "size" | "board-dialog"]: HTMLDialogElement } & {
+} & { [id in "gallery" | "new-scene" | "open" | "about" | "size" | "board-dialog"]: HTMLDialogElement } & {
   [id in "map-picture" | "map-finger"]: HTMLCanvasElement;
 };

@@ -1,8 +1,9 @@
 // How late friction comes: prediction on and off, the touch source, and the lag of both as bands on the map.
 // @ts-check
 
-import { attempt, byId, colour } from "./dom.js";
+import { byId, colour } from "./dom.js";
 import { Borders } from "./borders.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame } from "../engine/types" */
@@ -14,7 +15,7 @@ import { Borders } from "./borders.js";
 /** How far a band reaches to its side of the stroke, CSS pixels; that with prediction and that without lie side by side. */
 const WIDE_PX = 15;
 /** A band is drawn at least this long, CSS pixels, so that a lag of nothing is seen. */
-const LONG_MIN_PX = 1.5;
+const LONG_MIN_PX = 3;
 /** @type {Record<By, { ink: string, side: number }>} */
 const BANDS = { predicted: { ink: "good", side: -1 }, reported: { ink: "felt", side: 1 } };
 
@@ -88,9 +89,9 @@ export class Lag {
   /** @param {Frame} frame */
   feel(frame) {
     if (!this.isOpen || !frame.simulated) return;
-    const before = this.#borders?.found.length ?? 0;
+    const wasStroke = this.#isStroke;
     for (let at = 0; at < frame.xMm.length; at += 1) this.#add(frame, at);
-    if (this.#borders && (this.#borders.found.length > before || this.#isStroke)) {
+    if (wasStroke || this.#isStroke) {
       this.#finger.redraw();
       this.#say();
     }
@@ -105,6 +106,7 @@ export class Lag {
     if (isDown && !this.#isStroke) {
       this.#borders = new Borders((x, y) => this.#map.frictionAt(x, y), this.#map.frictionN);
     }
+    if (this.#isStroke && !isDown) this.#borders?.end();
     this.#isStroke = isDown;
     if (!isDown || !Number.isFinite(predictedXMm[at]) || !Number.isFinite(reportedXMm[at])) return;
     this.#borders?.add(
@@ -141,12 +143,9 @@ export class Lag {
         if (lagMm === undefined) continue;
         const long = Math.sign(lagMm || 1) * Math.max(LONG_MIN_PX, Math.abs(lagMm) * scale);
         context.fillStyle = colour(ink, box);
-        context.globalAlpha = 0.8;
+        context.globalAlpha = 0.85;
         context.fillRect(0, 0, long, side * WIDE_PX);
         context.globalAlpha = 1;
-        context.lineWidth = 1;
-        context.strokeStyle = "#fff";
-        context.strokeRect(0, 0, long, side * WIDE_PX);
       }
       context.fillStyle = "#fff";
       context.fillRect(-0.5, -WIDE_PX, 1, 2 * WIDE_PX);
