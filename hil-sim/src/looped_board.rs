@@ -2,6 +2,7 @@
 //! [`frixel_board::self_test`] must find. Its session, ticker and supervisor are the firmware's own.
 
 mod flash;
+mod one_shot;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a terminal of another process, in real time")]
 mod terminal_port;
@@ -10,7 +11,7 @@ mod wrong;
 use core::fmt::{Arguments, Write};
 
 use frixel_board::self_test::{
-    Clocks, Levels, Line, LineReader, LoopedBoard, Pulse, Round, Stop, Typed, UNPLUGGED, Wire,
+    Clocks, Fall, Inputs, Levels, Line, LineReader, LoopedBoard, Round, Stop, Typed, UNPLUGGED, Wire,
 };
 use frixel_control::{Active, Board, Sense, Status, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
@@ -20,8 +21,10 @@ use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::TickTimes;
 
 pub use flash::SimulatedFlash;
+use one_shot::OneShot;
 #[cfg(unix)]
 pub use terminal_port::TerminalPort;
+use wrong::Progress;
 pub use wrong::Wrong;
 
 /// Ticks of a round of the main loop.
@@ -32,8 +35,6 @@ const LOADED_CYCLES: u32 = 2_300;
 /// The same on a board whose flash is slower than assumed, and the deadline of its ticks.
 const SLOW_CYCLES: u32 = 2_900;
 const DEADLINE_CYCLES: u32 = 3_700;
-/// Time from a kick to the rise of the enable, and from disabling it to its fall, us.
-const EDGE_US: u32 = 1;
 
 /// The other end of the board's serial line.
 pub trait Port {
@@ -65,6 +66,7 @@ pub struct LoopedRig<P> {
     /// Bytes that the board has received, for a line that loses some.
     received: usize,
     latch_moved: bool,
+    one_shot: OneShot,
     monitor_mv: u32,
     enable_was_found_low: bool,
     said_unplugged: bool,
@@ -89,6 +91,7 @@ impl<P: Port> LoopedRig<P> {
             kept: 0,
             received: 0,
             latch_moved: false,
+            one_shot: OneShot::default(),
             monitor_mv: 0,
             enable_was_found_low: false,
             said_unplugged: false,
@@ -102,6 +105,8 @@ impl<P: Port> LoopedRig<P> {
             let kept = core::mem::take(&mut self.kept);
             let result = frixel_board::self_test::run(self, kept);
             if result != Err(Stop::Reset) {
+                // What the script has left as it is goes on.
+                (0..10 * one_shot::ONE_SHOT_US * one_shot::CYCLES_PER_US).for_each(|_| _ = self.cycles());
                 return result;
             }
         }
@@ -116,12 +121,29 @@ impl<P: Port> LoopedRig<P> {
         self.wrong == wrong
     }
 
-    /// A pulse may switch an amplifier on: only a board on which nothing of one was found may have it.
-    fn check_pulse(&mut self) {
-        assert!(self.said_unplugged, "a pulse before the person has unplugged the amplifier");
-        assert!(self.enable_was_found_low, "a pulse before the wire was found with the enable low");
-        assert!(!self.amplifier_is_ready(), "a pulse with ready high");
-        assert!(!self.ticks_run, "a pulse under the tick");
+    /// Microseconds for which the enable has been high while ready was high or the arm switch closed.
+    pub fn refused_us(&self) -> u32 {
+        self.one_shot.refused_us()
+    }
+
+    fn progress(&self) -> Progress {
+        if self.ticks_run {
+            Progress::Ticks
+        } else if self.one_shot.amplifier_has_turned_on() {
+            Progress::Enabled
+        } else if self.enable_was_found_low {
+            Progress::Wired
+        } else {
+            Progress::Begun
+        }
+    }
+
+    /// A kick may switch an amplifier on: only a board on which nothing of one was found may have it.
+    fn check_kick(&self) {
+        assert!(self.said_unplugged, "a kick before the person has unplugged the amplifier");
+        assert!(self.enable_was_found_low, "a kick before the wire was found with the enable low");
+        assert_eq!(self.wrong.inputs(self.progress()), wrong::LOW, "a kick");
+        assert!(!self.ticks_run, "a kick under the tick");
     }
 
     fn write_all(&mut self, mut bytes: &[u8]) {
@@ -140,7 +162,8 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
 
     const SLOT: Slot = Slot { first_page: 2, pages: 16 };
     const LATCH_CYCLES: u32 = 4_100;
-    const ONE_SHOT_US: u32 = 900;
+    const ONE_SHOT_US: u32 = one_shot::ONE_SHOT_US;
+    const CYCLES_PER_US: u32 = one_shot::CYCLES_PER_US;
     const MONITOR_ZERO_MV: u32 = 1_650;
     const MONITOR_MV_PER_V: f32 = 7.5;
 
@@ -175,8 +198,8 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
 
     fn idle(&mut self) {}
 
-    fn amplifier_is_ready(&mut self) -> bool {
-        self.is(Wrong::ReadyHigh) || self.is(Wrong::ReadyRises) && self.enable_was_found_low
+    fn inputs(&mut self) -> Inputs {
+        self.wrong.inputs(self.progress())
     }
 
     fn levels(&mut self, wire: Wire) -> Levels {
@@ -222,20 +245,30 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
         }
     }
 
-    fn pulse(&mut self, kicks: u32) -> Pulse {
-        self.check_pulse();
-        assert!(kicks > 1, "one kick does not show that the one-shot is retriggered");
-        let fall_us = if self.is(Wrong::OneShotLong) { 1_200 } else { Self::ONE_SHOT_US + 2 };
-        Pulse {
-            rise_us: (!self.is(Wrong::EnableDead)).then_some(EDGE_US),
-            fall_us: (!self.is(Wrong::EnableDead) && !self.is(Wrong::EnableStaysHigh)).then_some(fall_us),
-            fell_again: self.is(Wrong::NotRetriggered),
-        }
+    fn cycles(&mut self) -> u32 {
+        let is_refused = self.inputs() != wrong::LOW;
+        self.one_shot.pass(is_refused)
     }
 
-    fn cut_pulse(&mut self) -> Option<u32> {
-        self.check_pulse();
-        Some(if self.is(Wrong::NotCut) { Self::ONE_SHOT_US } else { EDGE_US })
+    fn forget_edges(&mut self) -> u32 {
+        self.one_shot.forget_edges()
+    }
+
+    fn kick(&mut self) {
+        self.check_kick();
+        self.one_shot.kick(self.wrong);
+    }
+
+    fn disable(&mut self) {
+        self.one_shot.disable(self.wrong);
+    }
+
+    fn enable_rose(&mut self) -> Option<u32> {
+        self.one_shot.rose()
+    }
+
+    fn enable_fell(&mut self) -> Option<Fall> {
+        self.one_shot.fell()
     }
 
     fn start_ticks(&mut self) {

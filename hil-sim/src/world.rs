@@ -325,6 +325,14 @@ impl World {
         }
     }
 
+    /// What the amplifier's monitor shows at the end of the last tick, in V: for a rig that advances the world when the
+    /// board has latched the next code. In [`Self::sense`] it is a tick behind, because a board latches the code of a tick
+    /// at the end of that tick.
+    #[cfg(unix)]
+    pub(crate) fn monitor_now_v(&self) -> f64 {
+        self.amplifier.monitor_now_v()
+    }
+
     /// Returns the touch report that arrived at the current tick.
     pub fn touch(&self) -> Option<Touch> {
         self.touch

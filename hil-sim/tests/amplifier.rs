@@ -210,7 +210,7 @@ fn a_monitor_that_dies_and_a_gain_that_changes_fault_within_half_a_millisecond()
                 script.step();
                 script.status().telemetry.state == State::Faulted
             });
-            assert!(ticks.is_some_and(|ticks| (20..=26).contains(&ticks)), "{broken:?}: {ticks:?}");
+            assert!(ticks.is_some_and(|ticks| (16..=20).contains(&ticks)), "{broken:?}: {ticks:?}");
         });
     }
 }

@@ -13,6 +13,10 @@ const LINE_TICKS: u32 = 20_000;
 /// Bytes that the line takes in a tick at 2 Mbaud.
 const LINE_BYTES: usize = 5;
 
+/// Longest time for which the enable may be high after ready has risen or the switch was closed, us: a look at the inputs,
+/// and the enable's own fall.
+const REFUSED_MAX_US: u32 = 2;
+
 /// A person, or a host, at the other end of the line.
 struct Person {
     tests_line: bool,
@@ -134,10 +138,16 @@ fn a_person_skips_the_line() {
 
 /// What ends the script, and before what.
 #[test]
-fn an_amplifier_that_is_there_and_a_missing_wire_end_it_at_once() {
+fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once() {
     for (wrong, stop) in [
         (Wrong::ReadyHigh, Stop::Ready),
         (Wrong::ReadyRises, Stop::Ready),
+        (Wrong::ReadyWhileEnabled, Stop::Ready),
+        (Wrong::ReadyUnderTicks, Stop::Ready),
+        (Wrong::SwitchClosed, Stop::Switch),
+        (Wrong::SwitchPressed, Stop::Switch),
+        (Wrong::SwitchPressedInPulse, Stop::Switch),
+        (Wrong::SwitchPressedUnderTicks, Stop::Switch),
         (Wrong::MonitorDriven, Stop::MonitorDriven(Levels::HIGH)),
         (Wrong::MonitorNotZero, Stop::MonitorNotZero(1_750)),
         (Wrong::NoDataWire, Stop::Data(11)),
@@ -156,8 +166,12 @@ fn an_amplifier_that_is_there_and_a_missing_wire_end_it_at_once() {
         let said = &rig.port().said;
         assert!(said.trim_end().lines().last().unwrap().starts_with("STOP. "), "{said}");
         // A pulse where there must be none is caught by the simulated board, too.
-        let comes_after_pulses = matches!(wrong, Wrong::TickLate | Wrong::EnableStaysHigh);
+        let comes_after_pulses = matches!(
+            wrong,
+            Wrong::TickLate | Wrong::EnableStaysHigh | Wrong::ReadyUnderTicks | Wrong::SwitchPressedUnderTicks
+        );
         assert!(comes_after_pulses || !said.contains("enable_rises_us"), "{said}");
+        assert!(rig.refused_us() <= REFUSED_MAX_US, "{wrong:?}: {} us", rig.refused_us());
     }
 }
 
@@ -165,7 +179,7 @@ fn an_amplifier_that_is_there_and_a_missing_wire_end_it_at_once() {
 #[test]
 fn each_wrong_measurement_fails_by_its_name() {
     for (wrong, names) in [
-        (Wrong::EnableDead, &["enable_rises_us", "enable_falls_us"][..]),
+        (Wrong::EnableDead, &["enable_rises_us", "enable_falls_us", "enable_is_cut_within_us"][..]),
         (Wrong::OneShotLong, &["enable_falls_us"]),
         (Wrong::NotRetriggered, &["enable_falls_between_kicks"]),
         (Wrong::NotCut, &["enable_is_cut_within_us"]),

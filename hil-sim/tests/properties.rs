@@ -216,7 +216,7 @@ enum FoundBy {
     HalfOfTicks,
 }
 
-/// Ticks from a hard fault of one kind until the output is off, the most of many times.
+/// Ticks from a hard fault of one kind to the end of the one that puts zero out, the most of many times.
 fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
     let mut random = Random::new(seed);
     let (mut script, monitor) = watched(seed);
@@ -247,8 +247,7 @@ fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
             let record = script.step();
             record.drive.dac_code.bits() == 0 && !record.drive.amplifier_enable
         });
-        // The tick in which the fault is found is off.
-        most = most.max(off.unwrap_or(400) - 1);
+        most = most.max(off.unwrap_or(400));
         script.run(500);
     }
     assert!(faults * 20_000 > ticks && monitor.borrow().ticks >= ticks, "{faults} faults");
@@ -256,7 +255,7 @@ fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
 }
 
 fn check_time_to_off(ticks: u64, seed: u64) {
-    for (found_by, expected) in [(FoundBy::Pin, 0..=0), (FoundBy::Monitor, 18..=22), (FoundBy::HalfOfTicks, 40..=62)] {
+    for (found_by, expected) in [(FoundBy::Pin, 1..=1), (FoundBy::Monitor, 16..=20), (FoundBy::HalfOfTicks, 40..=60)] {
         let most = ticks_to_off(found_by, ticks, seed);
         println!("at most {most} ticks of 25 us from a fault until the output is off: {found_by:?}");
         assert!(expected.contains(&most), "{most} ticks: {found_by:?}");
@@ -264,13 +263,13 @@ fn check_time_to_off(ticks: u64, seed: u64) {
 }
 
 #[test]
-fn the_output_is_off_within_0_55_ms_of_a_hard_fault_and_1_55_ms_of_a_dac_that_holds_its_code() {
+fn the_output_is_off_within_0_5_ms_of_a_hard_fault_and_1_5_ms_of_a_dac_that_holds_its_code() {
     check_time_to_off(TICKS, 5);
 }
 
 #[test]
 #[ignore = "minutes: cargo xtask soak faults"]
-fn the_output_is_off_within_0_55_ms_of_many_hard_faults_and_1_55_ms_of_a_dac_that_holds_its_code() {
+fn the_output_is_off_within_0_5_ms_of_many_hard_faults_and_1_5_ms_of_a_dac_that_holds_its_code() {
     check_time_to_off(SOAK_TICKS, 6);
 }
 

@@ -78,7 +78,7 @@ const STAGES: [Stage; 16] = [
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
         run: tests_on_emulators,
     },
     Stage {
@@ -246,8 +246,8 @@ pub(crate) const IMAGES: [Image; 5] = [
             &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,grating,optical-frame,log"],
         ],
     },
-    Image { folder: "firmware/board-mps2-an386", more: &[] },
-    Image { folder: "firmware/bench", more: &[] },
+    Image { folder: "firmware/board-mps2-an386", more: &[&["--target", M33]] },
+    Image { folder: "firmware/bench", more: &[&["--target", M33]] },
     Image { folder: "firmware/table-cortex-m3", more: &[] },
 ];
 

@@ -7,6 +7,7 @@
 //! | `images/pico-rig` | the emulator of the Pico, with the programs that `frixel play --port pico` runs by node |
 //! | `frixel-*.whl` | the Python module, with its widget |
 //! | `frixel-studio.html` | the page |
+//! | `site` | the page, `<frixel-scene>` and the gallery for a web server |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
 //! | `SHA256SUMS` | for `sha256sum --check` |
 //!
@@ -87,6 +88,7 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     pico_rig::copy_to(&images.join(PICO_RIG))?;
     // The page's build also makes the widget in the wheel.
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
+    studio::build_site(&folder.join("site").to_string_lossy(), None)?;
     wheel(&folder)?;
     let boards = IMAGES.map(|(_, _, program)| program);
     let programs = [[COMMAND].as_slice(), &WHEEL, &boards].concat();

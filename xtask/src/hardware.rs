@@ -400,6 +400,10 @@ mod tests {
         assert_eq!(said.parse::<f64>().unwrap(), series_ohm);
         assert_eq!(value(&carrier, "R1"), value(&carrier, "R2"), "each alone must meet the limit of one fault");
         assert_eq!(value(&carrier, "R4") + value(&carrier, "R5"), 100e3);
+        // What pulls an RP2350's input down that was high (erratum RP2350-E9).
+        for name in ["R11", "R17"] {
+            assert!(value(&carrier, name) <= 8.2e3, "{name}");
+        }
         // 45 uC over 400 V, and below 30 V within 10 s (docs/safety.md).
         let (farad, ohm) = (value(&carrier, "C3"), value(&carrier, "R16"));
         assert!(400.0 * farad <= 45e-6, "{} uC", 400e6 * farad);

@@ -46,6 +46,9 @@ cargo xtask portability
                      the crates of a page for WebAssembly; the command for Windows and macOS
 cargo xtask studio   the studio as one HTML file, <frixel-scene> beside it, the widget of the Python module; the page's
                      path is the last line
+cargo xtask studio --site FOLDER [ADDRESS]
+                     the studio, <frixel-scene> and the gallery as files for any web server; with the site's address,
+                     links to it show a picture
 cargo xtask studio-test
                      types and lints of the studio's scripts, and the studio in a browser: needs node,
                      npm and Chromium
@@ -80,6 +83,10 @@ fn main() -> ExitCode {
             .and_then(|()| portability::page_crates())
             .and_then(|()| portability::other_systems()),
         ["studio"] => require(&[WASM_TARGET]).and_then(|()| studio::build()).map(|path| println!("{}", path.display())),
+        ["studio", "--site", folder] => require(&[WASM_TARGET]).and_then(|()| studio::build_site(folder, None)),
+        ["studio", "--site", folder, address] => {
+            require(&[WASM_TARGET]).and_then(|()| studio::build_site(folder, Some(address)))
+        }
         ["studio-test"] => {
             let result = require(&studio_tests::NEEDS)
                 .and_then(|()| studio_tests::check_scripts())

@@ -13,6 +13,7 @@ use crate::outcome::is_ci;
 
 /// Where Debian installs the browser; the environment's CHROMIUM names another.
 const CHROMIUM: &str = "/usr/bin/chromium";
+const FIREFOX: &str = "/usr/bin/firefox-esr";
 /// The oldest node that runs the tests of the studio.
 const NODE_MAJOR_MIN: u32 = 20;
 
@@ -33,6 +34,7 @@ pub(crate) enum Need {
     Node,
     Npm,
     Chromium,
+    Firefox,
     /// A compiler for C++, which libFuzzer is written in.
     CppCompiler,
     /// Python with what makes virtual environments.
@@ -50,6 +52,7 @@ impl Need {
             Self::Node => format!("node {NODE_MAJOR_MIN} or newer"),
             Self::Npm => "npm".to_owned(),
             Self::Chromium => "Chromium".to_owned(),
+            Self::Firefox => "Firefox".to_owned(),
             Self::CppCompiler => "a C++ compiler (c++)".to_owned(),
             Self::Python => "python3, 3.11 or newer, with venv".to_owned(),
         }
@@ -65,6 +68,7 @@ impl Need {
             Self::Node => "Debian: `apt-get install nodejs`".to_owned(),
             Self::Npm => "Debian: `apt-get install npm`".to_owned(),
             Self::Chromium => "Debian: `apt-get install chromium`, or set CHROMIUM to its path".to_owned(),
+            Self::Firefox => "Debian: `apt-get install firefox-esr`, or set FIREFOX to its path".to_owned(),
             Self::CppCompiler => "Debian: `apt-get install g++`".to_owned(),
             Self::Python => "Debian: `apt-get install python3-venv`".to_owned(),
         }
@@ -88,6 +92,11 @@ pub(crate) struct Machine {
     chromium: PathBuf,
     /// What is missing is an error.
     is_ci: bool,
+}
+
+/// The program of Firefox, whether it is there or not.
+pub(crate) fn firefox() -> PathBuf {
+    env::var_os("FIREFOX").unwrap_or_else(|| FIREFOX.into()).into()
 }
 
 impl Machine {
@@ -124,6 +133,7 @@ impl Machine {
             Need::Node => self.text("node", &["--version"]).is_some_and(|version| is_new_enough(&version)),
             Need::Npm => runs("npm"),
             Need::Chromium => self.chromium.is_file(),
+            Need::Firefox => firefox().is_file(),
             Need::CppCompiler => runs("c++"),
             Need::Python => self.text("python3", &["-c", PYTHON_PROBE]).is_some(),
         }

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use crate::bench::programs::{self, Pace};
 use crate::check::{M0_PLUS_TARGET, M4F_TARGET};
-use crate::command::cargo_in;
+use crate::command::{WASM, cargo_in};
 use crate::needs::{self, Need};
 use crate::outcome::Outcome;
 use crate::stages::Stages;
-use crate::{fuzz, packages, results};
+use crate::{fuzz, packages, results, studio_tests};
 
 /// How long each fuzz target runs.
 const FUZZ_TIME: Duration = Duration::from_mins(15);
@@ -22,7 +22,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 11] = [
+const PARTS: [Part; 12] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -77,6 +77,12 @@ const PARTS: [Part; 11] = [
         what: "what holds in every tick whatever goes wrong, and what bit errors leave of uploads and streams",
         needs: &[],
         run: faults,
+    },
+    Part {
+        name: "firefox",
+        what: "the studio's site in Firefox: plays, is felt, opens again without the server",
+        needs: &[Need::Target(WASM), Need::Node, Need::Npm, Need::Firefox],
+        run: studio_tests::run_in_firefox,
     },
     Part {
         name: "packages",

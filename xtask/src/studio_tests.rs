@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
 use crate::inputs::{self, Package};
-use crate::needs::Need;
+use crate::needs::{self, Need};
 use crate::{pico_rig, results, studio};
 
 /// What types and lints need.
@@ -54,7 +54,7 @@ pub(crate) fn run_page() -> Result<(), String> {
     let hashes = target_folder().join("studio/hashes.json");
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
     fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
-    runner.env("STUDIO_HASHES", absolute(&hashes)?).env_remove("FRIXEL");
+    runner.env("STUDIO_HASHES", absolute(&hashes)?).env("STUDIO_SITE", site()?).env_remove("FRIXEL");
     results::run("studio in a browser", runner.args(tests))
 }
 
@@ -62,6 +62,26 @@ pub(crate) fn run_page() -> Result<(), String> {
 pub(crate) fn run_beside_command() -> Result<(), String> {
     let mut runner = runner(&["--bin", "frixel"])?;
     results::run("studio beside the command", runner.env("FRIXEL", built("frixel")?).arg(COMMAND_TESTS))
+}
+
+/// Builds the site, and opens it in Firefox.
+pub(crate) fn run_in_firefox() -> Result<(), String> {
+    let site = site()?;
+    let folder = folder().join("firefox");
+    install(&folder)?;
+    let mut node = Command::new("npm");
+    node.current_dir(&folder).args(["run", "--silent", "test"]).env("STUDIO_SITE", site);
+    results::run("site in Firefox", node.env("FIREFOX", needs::firefox()))
+}
+
+/// Builds the site anew, and returns its folder.
+fn site() -> Result<PathBuf, String> {
+    let site = target_folder().join("studio/site");
+    if site.exists() {
+        fs::remove_dir_all(&site).map_err(|error| format!("{}: {error}", site.display()))?;
+    }
+    studio::build_site(&site.to_string_lossy(), None)?;
+    absolute(&site)
 }
 
 /// The runner of tests, with the page and the virtual board that says it is real. Builds these programs, too.

@@ -4,6 +4,9 @@
 //! above everything. Amplifier and touch source are words of memory that it shares with the simulator ([`shared`]).
 //! Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`] causes faults on
 //! demand.
+//!
+//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep: timer,
+//! serial port and memory are others there.
 #![no_std]
 #![no_main]
 
@@ -37,6 +40,9 @@ use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 use board::{Mps2, NoDac, NoLight, NoWatchdog};
 use uart::Uart;
 
+/// Whether the machine is the one of timer, serial port and stack guard.
+const IS_AN386: bool = cfg!(not(an505));
+
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
 /// Samples of a stream, likewise.
@@ -47,11 +53,13 @@ fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
 
     let Some(mut peripherals) = Peripherals::take() else { fault::never() };
-    guard::start(&mut peripherals.MPU);
+    if IS_AN386 {
+        guard::start(&mut peripherals.MPU);
+    }
     shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
     let (ticker, session) = make(started(TEXT));
     match shared::get(layout::MODE) {
-        layout::MODE_LINK => run(session, ticker, peripherals),
+        layout::MODE_LINK if IS_AN386 => run(session, ticker, peripherals),
         _ => lockstep::run(session, ticker),
     }
 }

@@ -23,10 +23,12 @@ const FLOOR: f32 = 0.04;
 /// is out when the monitor is read.
 const GAIN_TOLERANCE: f32 = 0.25;
 /// The monitor faults once ticks with a wrong voltage exceed a third of those with a right one by as many as are in this
-/// time, in s. Long against a disturbed reading, short against the 100 ms in which a hand lets go.
-const WRONG_S: f32 = 0.5e-3;
+/// time, in s. Long against a disturbed reading; and a monitor that is wrong in every tick has the output off within
+/// 0.5 ms at 40 kHz, the ticks included after which a wrong voltage is seen and the zero is put out.
+const WRONG_S: f32 = 0.4e-3;
 /// Right ticks that make up for a wrong one. A DAC that holds its last code is right in every other half period of a
-/// square carrier, however fast: it is found after three times that time. A healthy amplifier has no wrong tick.
+/// square carrier: it is found after three times that time, or in the first half period that is longer. A healthy
+/// amplifier has no wrong tick.
 const RIGHT_PER_WRONG: u32 = 3;
 /// Ticks between an edge of the enable and the first reading that shows it for a whole tick, one more for an edge that
 /// falls anywhere within its tick.

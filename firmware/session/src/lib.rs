@@ -67,6 +67,7 @@ mod states;
 pub mod store;
 
 pub use frixel_wire::touch::Touch;
+pub use motion::Tracker;
 pub use queues::{Queues, SessionEnds, TickEnds};
 #[cfg(feature = "store")]
 pub use scene::StoredScene;

@@ -1,6 +1,6 @@
 //! What can be wrong with a board.
 
-use frixel_board::self_test::{Levels, Wire};
+use frixel_board::self_test::{Inputs, Levels, Wire};
 
 /// Declares [`Wrong`] with its names, so that none is left out of [`Wrong::ALL`].
 macro_rules! wrongs {
@@ -25,6 +25,18 @@ wrongs! {
     ReadyHigh = "ready-high",
     /// The amplifier is switched on after the wires were found.
     ReadyRises = "ready-rises",
+    /// The amplifier is plugged in, and its ready is high only while it is enabled.
+    ReadyWhileEnabled = "ready-while-enabled",
+    /// The amplifier is switched on after the tick was started.
+    ReadyUnderTicks = "ready-under-ticks",
+    /// The arm switch is held from the beginning, or welded.
+    SwitchClosed = "switch-closed",
+    /// The arm switch is pressed after the wires were found.
+    SwitchPressed = "switch-pressed",
+    /// The arm switch is pressed during a pulse of the enable, and let go at its end.
+    SwitchPressedInPulse = "switch-pressed-in-pulse",
+    /// The arm switch is pressed after the tick was started.
+    SwitchPressedUnderTicks = "switch-pressed-under-ticks",
     /// The amplifier's monitor is plugged in.
     MonitorDriven = "monitor-driven",
     /// The monitor is beside zero.
@@ -79,10 +91,43 @@ wrongs! {
     LineLoses = "line-loses",
 }
 
+/// How far the script is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Progress {
+    /// The wire of the enable was not looked for yet.
+    Begun,
+    /// It was found, and the enable is low, or was not high for long.
+    Wired,
+    /// The enable has been high long enough for an amplifier to turn on.
+    Enabled,
+    /// The tick runs.
+    Ticks,
+}
+
+/// Inputs with nothing connected to them.
+pub(super) const LOW: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
+
 impl Wrong {
     /// What is wrong by its name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, wrong)| *wrong)
+    }
+
+    /// The levels of ready and arm switch.
+    pub(super) fn inputs(self, progress: Progress) -> Inputs {
+        let ready = Inputs { amplifier_ready: true, ..LOW };
+        let closed = Inputs { switch_closed: true, ..LOW };
+        match (self, progress) {
+            (Self::ReadyHigh, _)
+            | (Self::ReadyRises, Progress::Wired | Progress::Enabled | Progress::Ticks)
+            | (Self::ReadyWhileEnabled, Progress::Enabled)
+            | (Self::ReadyUnderTicks, Progress::Ticks) => ready,
+            (Self::SwitchClosed, _)
+            | (Self::SwitchPressed, Progress::Wired | Progress::Enabled | Progress::Ticks)
+            | (Self::SwitchPressedInPulse, Progress::Enabled)
+            | (Self::SwitchPressedUnderTicks, Progress::Ticks) => closed,
+            _ => LOW,
+        }
     }
 
     /// The levels at the end of a wire.

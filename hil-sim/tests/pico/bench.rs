@@ -31,6 +31,15 @@ pub(super) fn program(text: &str) -> Program {
     compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
 }
 
+/// A finger that slides again and again.
+fn world() -> World {
+    let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
+    let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
+    let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
+    world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+    world
+}
+
 /// The board, which tests and hosts share.
 #[derive(Clone)]
 pub(super) struct Bench {
@@ -48,11 +57,15 @@ impl Bench {
 
     /// Switches the board on.
     pub(super) fn just_on(image: &Image) -> Self {
-        let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
-        let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
-        let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
-        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
-        let mut rig = PicoRig::start(image, world).unwrap();
+        Self::of(PicoRig::start(image, world()).unwrap())
+    }
+
+    /// Switches a board on that has stored nothing yet.
+    pub(super) fn factory_new(image: &Image) -> Self {
+        Self::of(PicoRig::factory_new(image, world()).unwrap())
+    }
+
+    fn of(mut rig: PicoRig) -> Self {
         rig.record_events();
         Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default() }
     }

@@ -2,6 +2,9 @@
 
 use frixel_felt::recorder::{FeltRow, Observation, Recorder};
 use frixel_hil_sim::{Felt, TickRecord};
+use frixel_model::{ContactModel, FrictionLaw};
+
+use crate::touched::TouchedPlaces;
 
 /// Ticks of one sample for the page: a period of the usual carrier of 1 kHz, so that its ripple averages out.
 pub(crate) const TICKS_PER_SAMPLE: u32 = 40;
@@ -11,18 +14,40 @@ const SOUND_MIN_HZ: f64 = 10.0;
 /// Records what happens tick by tick, for the page.
 pub(crate) struct FeltSampler {
     recorder: Recorder,
+    /// What the recorder's rows do not have, for each row.
+    touched: Vec<Touched>,
     tick_hz: f64,
     sound: Sound,
 }
 
-/// The names of the columns, with their units: the page has no other list of them. The voltage is the rms.
-pub(crate) const COLUMNS: [&str; 6] = ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
+/// The places of the finger to the board, and its contact, at the end of a sample.
+struct Touched {
+    places: TouchedPlaces,
+    contact_radius_m: f64,
+}
+
+/// The names of the columns, with their units: the page has no other list of them. The voltage is the rms. `predicted`
+/// and `reported` are where the finger is to the board, with prediction and without.
+pub(crate) const COLUMNS: [&str; 11] = [
+    "xMm",
+    "yMm",
+    "speedMmPerS",
+    "referenceN",
+    "feltN",
+    "voltageV",
+    "predictedXMm",
+    "predictedYMm",
+    "reportedXMm",
+    "reportedYMm",
+    "contactRadiusMm",
+];
 
 /// Samples for the page.
 pub(crate) struct FeltSamples {
     /// Tick of the first sample's first tick.
     pub(crate) first_tick: u64,
-    /// As [`COLUMNS`] names them; place and speed are not-a-number while the finger is up.
+    /// As [`COLUMNS`] names them; places, speed and contact are not-a-number while the finger is up, and so is the
+    /// contact of a finger whose friction was measured, of which no model says it.
     pub(crate) columns: [Vec<f32>; COLUMNS.len()],
     /// The change of the felt friction at every tick, N.
     pub(crate) sound_n: Vec<f32>,
@@ -32,7 +57,7 @@ impl FeltSampler {
     pub(crate) fn new(tick_hz: u32) -> Self {
         let mut recorder = Recorder::without_reference(tick_hz, TICKS_PER_SAMPLE).through_finger();
         recorder.start(0);
-        Self { recorder, tick_hz: f64::from(tick_hz), sound: Sound::new(f64::from(tick_hz)) }
+        Self { recorder, touched: Vec::new(), tick_hz: f64::from(tick_hz), sound: Sound::new(f64::from(tick_hz)) }
     }
 
     /// What is told which scene plays.
@@ -40,9 +65,14 @@ impl FeltSampler {
         &mut self.recorder
     }
 
-    /// Adds a tick.
-    pub(crate) fn add(&mut self, record: &TickRecord) {
+    /// Adds a tick, in which the board had the finger at `places`, and its friction by `law`.
+    pub(crate) fn add(&mut self, record: &TickRecord, places: TouchedPlaces, law: &FrictionLaw) {
         self.recorder.record(&Observation::of_tick(record));
+        if let Some(row) = self.recorder.rows().get(self.touched.len()) {
+            let radius_m = |voltage_v_rms| contact_radius_m(law, voltage_v_rms);
+            let contact_radius_m = row.x_mm.and(row.electrode_v_rms).map_or(f64::NAN, radius_m);
+            self.touched.push(Touched { places, contact_radius_m });
+        }
         self.sound.add(&record.felt);
     }
 
@@ -50,7 +80,9 @@ impl FeltSampler {
     pub(crate) fn take(&mut self) -> FeltSamples {
         let rows = self.recorder.take_rows();
         let end_tick = |row: &FeltRow| (row.t_s * self.tick_hz).round() as u64;
+        let touched = std::mem::take(&mut self.touched);
         let column = |value: fn(&FeltRow) -> f64| rows.iter().map(|row| value(row) as f32).collect();
+        let touch = |value: fn(&Touched) -> f32| touched.iter().map(value).collect();
         FeltSamples {
             first_tick: rows.first().map_or(0, |row| end_tick(row) + 1 - u64::from(TICKS_PER_SAMPLE)),
             columns: [
@@ -61,9 +93,27 @@ impl FeltSampler {
                 column(|row| row.wanted_n.or(row.natural_n).unwrap_or(0.0)),
                 column(|row| row.felt_n.unwrap_or(0.0)),
                 column(|row| row.electrode_v_rms.unwrap_or(0.0)),
+                touch(|touched| in_mm(touched.places.predicted_m)[0]),
+                touch(|touched| in_mm(touched.places.predicted_m)[1]),
+                touch(|touched| in_mm(touched.places.reported_m)[0]),
+                touch(|touched| in_mm(touched.places.reported_m)[1]),
+                touch(|touched| (1e3 * touched.contact_radius_m) as f32),
             ],
             sound_n: std::mem::take(&mut self.sound.samples_n),
         }
+    }
+}
+
+/// Coordinates in mm, not-a-number without a place.
+fn in_mm(place_m: Option<[f32; 2]>) -> [f32; 2] {
+    place_m.map_or([f32::NAN; 2], |place_m| place_m.map(|along_m| 1e3 * along_m))
+}
+
+/// Radius of the contact at a voltage by the model, m; not-a-number for a friction that was measured.
+fn contact_radius_m(law: &FrictionLaw, voltage_v_rms: f64) -> f64 {
+    match law {
+        FrictionLaw::Contact(contact) => contact.state(voltage_v_rms).map_or(f64::NAN, |state| state.contact_radius_m),
+        FrictionLaw::Empirical(_) => f64::NAN,
     }
 }
 
@@ -103,6 +153,13 @@ mod tests {
 
     use super::*;
 
+    use frixel_model::LoadedContact;
+
+    fn finger() -> FrictionLaw {
+        let finger: LoadedContact<f64> = frixel_hil_sim::example_finger().unwrap();
+        finger.into()
+    }
+
     /// Ticks of a world in which a finger rests from tick 100 on.
     fn records() -> Vec<TickRecord> {
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).unwrap();
@@ -128,7 +185,7 @@ mod tests {
         let mut recorder = FeltSampler::new(40_000);
         let (mut next_tick, mut sound) = (1, 0);
         for (count, record) in (1..).zip(&records()) {
-            recorder.add(record);
+            recorder.add(record, TouchedPlaces::default(), &finger());
             if count % 97 == 0 {
                 let samples = recorder.take();
                 let len = samples.columns[0].len() as u64;
@@ -145,7 +202,7 @@ mod tests {
     fn a_touch_makes_no_sound_by_itself() {
         let mut recorder = FeltSampler::new(40_000);
         for record in &records() {
-            recorder.add(record);
+            recorder.add(record, TouchedPlaces::default(), &finger());
         }
         let samples = recorder.take();
         assert!(samples.sound_n.iter().all(|change_n| change_n.abs() < 1e-9), "a resting finger on a bare screen");

@@ -30,6 +30,7 @@ mod request;
 mod rig_stream;
 mod seeded;
 mod simulator;
+mod touched;
 mod used_files;
 
 pub use check::check;

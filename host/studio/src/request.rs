@@ -21,6 +21,8 @@ pub struct Request {
     pub screen: Option<String>,
     /// The simulated touch source: the name of a bundled one or the text of one; `None` for 100 reports a second.
     pub touch: Option<String>,
+    /// Whether the simulator in the page plays the scene without prediction, whatever the scene says.
+    pub without_prediction: bool,
     /// Numbers of the request.
     pub numbers: Numbers,
 }
@@ -62,12 +64,15 @@ pub enum RequestError {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
 struct Head {
     entry: String,
     files: Vec<FileHead>,
     finger: Option<String>,
     screen: Option<String>,
     touch: Option<String>,
+    #[serde(default)]
+    without_prediction: bool,
     #[serde(flatten)]
     numbers: Numbers,
 }
@@ -94,8 +99,8 @@ impl Request {
             rest = behind;
         }
         let entry = head.entry.strip_prefix(folder).unwrap_or(&head.entry).to_owned();
-        let Head { finger, screen, touch, numbers, .. } = head;
-        Ok(Self { entry, files, finger, screen, touch, numbers })
+        let Head { finger, screen, touch, without_prediction, numbers, .. } = head;
+        Ok(Self { entry, files, finger, screen, touch, without_prediction, numbers })
     }
 
     /// The bytes of the scene file.

@@ -11,6 +11,7 @@ use frixel_wire::fault::{Fault, State};
 use crate::felt::FeltSampler;
 use crate::host_error::HostError;
 use crate::pointer::{Finger, Pointer};
+use crate::touched::{TouchFollower, TouchedPlaces};
 
 /// The line to a simulated board. Each tick of virtual time passes in [`Self::step`].
 pub(crate) struct RigStream<'a> {
@@ -19,6 +20,9 @@ pub(crate) struct RigStream<'a> {
     pub(crate) pointer: Pointer,
     /// What it felt.
     pub(crate) felt: FeltSampler,
+    touch: TouchFollower,
+    /// Where the finger was to the board in the last tick.
+    touched: TouchedPlaces,
     /// The record of the last tick.
     last: Option<TickRecord>,
 }
@@ -29,7 +33,9 @@ impl<'a> RigStream<'a> {
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
         let rig = Rig::new(memory, config, stroke, seed).map_err(HostError::World)?;
         let felt = FeltSampler::new(rig.tick_hz());
-        Ok(Self { rig, pointer: Pointer::default(), felt, last: None })
+        let touch = TouchFollower::new(&config.board);
+        let touched = TouchedPlaces::default();
+        Ok(Self { rig, pointer: Pointer::default(), felt, touch, touched, last: None })
     }
 
     /// The world, to change its touch source or to inject faults.
@@ -54,6 +60,12 @@ impl<'a> RigStream<'a> {
         (state, status.fault.map(|(fault, _)| fault).filter(|_| state == State::Faulted))
     }
 
+    /// Where the finger was to the board in the last tick.
+    #[cfg(test)]
+    pub(crate) fn touched(&self) -> TouchedPlaces {
+        self.touched
+    }
+
     /// Passes one tick.
     pub(crate) fn step(&mut self) -> TickRecord {
         let tick_hz = f64::from(self.rig.tick_hz());
@@ -69,8 +81,10 @@ impl<'a> RigStream<'a> {
                 }
             }
         }
+        let touch = world.touch();
         let record = self.rig.step();
-        self.felt.add(&record);
+        self.touched = self.touch.advance(touch, record.status.telemetry.tick);
+        self.felt.add(&record, self.touched, self.rig.world_mut().finger_law());
         self.last = Some(record);
         record
     }

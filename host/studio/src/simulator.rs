@@ -67,7 +67,8 @@ impl Simulator {
     /// Compiles a scene and plays it under the touch source of the request, as a draft if a board would refuse it. If one
     /// of both cannot be read, the scene before plays on.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
-        let (_, program) = drafted(request)?;
+        let (_, mut program) = drafted(request)?;
+        program.header.prediction &= !request.without_prediction;
         let touch = touch_source(request)?;
         if touch != self.touch {
             let world = stream_mut(&mut self.host).world_mut();
@@ -212,6 +213,69 @@ mod tests {
         let wrong = Request { touch: Some("reports_per_s = 0\n".to_owned()), ..request() };
         let error = simulator.play(&wrong).unwrap_err().to_string();
         assert!(error.contains("reports_per_s") && error.contains("touch source:1"), "{error}");
+    }
+
+    /// Slides at 100 mm/s, and returns how far on average the board had the finger from where it was, from where the
+    /// firmware predicts it, and from the newest report, mm.
+    fn distances_mm(without_prediction: bool) -> [f32; 3] {
+        let mut simulator = Simulator::new(1).unwrap();
+        simulator.play(&Request { without_prediction, ..request() }).unwrap();
+        let begin_tick = simulator.tick();
+        for sample in 0..100_u32 {
+            let tick = begin_tick as f64 + 320.0 * f64::from(sample + 1);
+            let place_m = [0.01 + 0.8e-3 * f64::from(sample), 0.03];
+            simulator.add_pointer_sample(PointerSample { tick, place_m, is_down: true, normal_load_n: None });
+        }
+        let mut sums_mm = [0.0; 3];
+        let mut count = 0.0;
+        let stream = stream_mut(&mut simulator.host);
+        for tick in 0..100 * 320 {
+            let record = stream.step();
+            let places = stream.touched();
+            let (Some(predicted_m), Some(reported_m)) = (places.predicted_m, places.reported_m) else { continue };
+            // The first reports say no speed.
+            if tick < 8_000 {
+                continue;
+            }
+            let board_m = record.status.telemetry.finger_x_m;
+            let true_m = record.felt.finger.unwrap().x_m as f32;
+            for (sum_mm, x_m) in sums_mm.iter_mut().zip([true_m, predicted_m[0], reported_m[0]]) {
+                *sum_mm += 1e3 * (board_m - x_m).abs();
+            }
+            count += 1.0;
+        }
+        assert!(count > 20_000.0, "{count} ticks with a finger");
+        sums_mm.map(|sum_mm| sum_mm / count)
+    }
+
+    /// Where the page says that the firmware predicts the finger is where the firmware has it; without prediction, the
+    /// firmware has it where it was reported, but for the noise that its filter takes away.
+    #[test]
+    fn the_board_has_the_finger_where_it_is_predicted_or_where_it_was_reported() {
+        let [from_finger_mm, from_prediction_mm, from_report_mm] = distances_mm(false);
+        assert!(from_prediction_mm < 1e-3, "{from_prediction_mm} mm");
+        assert!(from_finger_mm < 0.3 && from_report_mm > 1.0, "{from_finger_mm} mm, {from_report_mm} mm");
+        let [from_finger_mm, from_prediction_mm, from_report_mm] = distances_mm(true);
+        assert!(from_report_mm < 0.3, "{from_report_mm} mm");
+        // 10 ms late, and a report in 10 ms: 1 to 2 mm, and more after a report that is lost.
+        assert!((1.0..3.0).contains(&from_finger_mm), "{from_finger_mm} mm");
+        assert!(from_prediction_mm > 1.0, "{from_prediction_mm} mm");
+    }
+
+    /// The contact of the example finger at no voltage, by hand from the load: `F_N = pi k a^4 / 4 R`, and larger with it.
+    #[test]
+    fn the_contact_is_that_of_the_model() {
+        let mut simulator = Simulator::new(1).unwrap();
+        simulator.play(&request()).unwrap();
+        let place_m = [0.03, 0.03];
+        let sample = PointerSample { tick: 0.0, place_m, is_down: true, normal_load_n: Some(0.5) };
+        simulator.add_pointer_sample(sample);
+        simulator.run(4_000, true).unwrap();
+        let samples = simulator.take_felt();
+        let [contact_mm, voltage_v] = [10, 5].map(|column| *samples.columns[column].last().unwrap());
+        let still_mm = 1e3 * (4.0 * 8e-3 * 0.5 / (std::f32::consts::PI * 1.8e7)).powf(0.25);
+        assert!(voltage_v > 50.0, "{voltage_v} V");
+        assert!(contact_mm > 1.02 * still_mm && contact_mm < 1.2 * still_mm, "{contact_mm} mm, {still_mm} mm");
     }
 
     #[test]

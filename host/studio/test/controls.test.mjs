@@ -56,3 +56,24 @@ test("another finger ends a blind comparison", async () => {
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("on the full screen the map has the size that a bank card says, and before and after that of its box", async () => {
+  const { page, errors, close } = await openStudio();
+  const scale = () => page.evaluate(() => studioPage.map.scale);
+  const fitted = await scale();
+  await page.click("#options summary");
+  await page.click("#full-screen");
+  await page.getByLabel("Width of the card").fill("3.2");
+  await page.getByText("Show in real size", { exact: true }).click();
+  await page.waitForFunction(() => document.fullscreenElement?.id === "map" && studioPage.map.scale === 3.2);
+  // Nothing else of the page is there: the finger's canvas is what a press meets, a centimetre from the map's corner.
+  const met = await page.evaluate(() => {
+    const { left, top } = document.getElementById("map-finger").getBoundingClientRect();
+    return document.elementFromPoint(left + 32, top + 32)?.id;
+  });
+  assert.equal(met, "map-finger");
+  await page.evaluate(() => document.exitFullscreen());
+  await page.waitForFunction((fitted) => Math.abs(studioPage.map.scale - fitted) < 0.01, fitted);
+  assert.deepEqual(errors, []);
+  await close();
+});

@@ -9,14 +9,16 @@ import { openPage, pageUrl } from "./harness.mjs";
 /**
  * Opens the page, as `openPage` does, and waits until its first scene plays. Its time is simulated, unless the options
  * say otherwise: nothing that the tests of the page look at depends on the speed of the machine. Text and tools are
- * open, as a person has left them, unless it is the first visit.
+ * open, and the ghost finger is dismissed, as a person has left them, unless it is the first visit.
  */
 export async function openStudio(url = pageUrl, { isFirstVisit = false, ...options } = {}) {
   const opened = await openPage(url, { isSimulated: true, ...options });
   await opened.page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
   await opened.page.waitForFunction(() => document.getElementById("check").textContent === "plays");
   await opened.page.evaluate(addHelpers);
-  if (!isFirstVisit) await showDrawer(opened.page);
+  if (isFirstVisit) return opened;
+  await opened.page.evaluate(() => document.getElementById("first-dismiss").click());
+  await showDrawer(opened.page);
   return opened;
 }
 

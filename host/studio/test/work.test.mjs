@@ -36,7 +36,7 @@ test("another scene has a history of its own, and the changed one before can be 
   assert.ok(await page.isDisabled("#undo"), "nothing to undo");
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   assert.ok(await page.isEnabled("#undo"));
-  await page.click("#new");
+  await openEmpty(page);
   await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
   assert.ok(await page.isDisabled("#undo"), "undo does not lead into the scene before");
   assert.match(await page.evaluate(() => studioPage.editor.text), /^version = 2\n\n# Type/);
@@ -46,6 +46,12 @@ test("another scene has a history of its own, and the changed one before can be 
   assert.deepEqual(errors, []);
   await close();
 });
+
+/** Opens an empty scene. */
+async function openEmpty(page) {
+  await page.click("#new");
+  await page.click("#new-scene >> text=Empty scene");
+}
 
 /** Changes the scene to this text, and waits until it plays. */
 const change = (page, text) => page.evaluate((text) => played(text), text);
@@ -74,7 +80,7 @@ test("what was changed is in Open after New, the gallery, a link and a closed ta
   await page.fill("#scene-name", "mine");
   await page.press("#scene-name", "Enter");
   await change(page, GRATING_OF_3_MM);
-  await page.click("#new");
+  await openEmpty(page);
   await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
   assert.deepEqual(await recent(page), ["mine"]);
   await page.click("#open-gallery");
@@ -178,7 +184,7 @@ test("a piece of work with more files than a zip may have comes back", async () 
   await page.locator("#notice", { hasText: "p100.png" }).waitFor();
   await page.click("#save");
   await page.locator("#notice", { hasText: /unpacks to 10\d files/ }).waitFor();
-  await page.click("#new");
+  await openEmpty(page);
   await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
   await reopen(page, "brick");
   await page.waitForFunction(() => document.getElementById("scene-name").value === "brick");
@@ -195,7 +201,7 @@ test("a browser that keeps nothing says so at the first change of each scene", a
   assert.equal(await notice.count(), 0, "nothing is lost yet");
   await change(page, WHOLE_SCREEN_GRATING);
   await notice.filter({ hasText: /does not keep brick: its store is full\. Save it before you close/ }).waitFor();
-  await page.click("#new");
+  await openEmpty(page);
   await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
   await change(page, GRATING_OF_3_MM);
   await notice.filter({ hasText: "does not keep untitled" }).waitFor();

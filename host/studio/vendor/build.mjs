@@ -1,4 +1,4 @@
-// Joins what the page uses of others into studio-vendor.js, and their licences into LICENCES.txt.
+// Joins what the page uses of others into studio-vendor.js and chart-vendor.js, and their licences into LICENCES.txt.
 // With --check it writes nothing and fails where a committed file differs from what it would write.
 
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
@@ -9,7 +9,8 @@ const folder = new URL(".", import.meta.url);
 
 const { outputFiles, metafile } = await build({
   absWorkingDir: folder.pathname,
-  entryPoints: ["entry.js"],
+  entryPoints: { "studio-vendor": "entry.js", "chart-vendor": "chart_entry.js" },
+  outdir: ".",
   bundle: true,
   format: "esm",
   minify: true,
@@ -21,14 +22,16 @@ const { outputFiles, metafile } = await build({
   write: false,
 });
 
-const made = { "studio-vendor.js": outputFiles[0].text, "LICENCES.txt": licences(Object.keys(metafile.inputs)) };
+const scripts = outputFiles.map(({ path, text }) => [path.slice(folder.pathname.length), text]);
+const made = { ...Object.fromEntries(scripts), "LICENCES.txt": licences(Object.keys(metafile.inputs)) };
 const stale = Object.keys(made).filter((name) => made[name] !== committed(name));
 if (isCheck && stale.length > 0) {
   console.error(`${stale.join(" and ")}: not what \`npm run build\` makes of package-lock.json; run it, commit both`);
   process.exit(1);
 }
 if (!isCheck) for (const [name, text] of Object.entries(made)) writeFileSync(new URL(name, folder), text);
-console.log(`${made["studio-vendor.js"].length} bytes, ${isCheck ? "as committed" : "written"}`);
+const sizes = scripts.map(([name, text]) => `${name} ${text.length} bytes`);
+console.log(`${sizes.join(", ")}, ${isCheck ? "as committed" : "written"}`);
 
 function committed(name) {
   try {

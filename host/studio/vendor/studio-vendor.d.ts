@@ -3,5 +3,6 @@
 export * from "./entry.js";
 export type { Completion, CompletionContext, CompletionResult } from "@codemirror/autocomplete";
 export type { Diagnostic } from "@codemirror/lint";
-export type { Extension, StateCommand, Text } from "@codemirror/state";
+export type { ChangeSet, ChangeSpec, Extension, StateCommand, Text } from "@codemirror/state";
 export type { UnzipFileInfo } from "fflate";
+export type { AST } from "toml-eslint-parser";

@@ -1,12 +1,13 @@
 // The first script of the page: unpacks the files that the page carries, and starts its module.
 //
-// `cargo xtask studio` puts them into one HTML file, and into the script of <frixel-scene>. Both call
+// `cargo xtask studio` puts them into one HTML file, and into the scripts of <frixel-scene>. All call
 // `boot(packed, entry)` with the files, each compressed by gzip and in base64, and the name of the module to start.
+// The module of <frixel-scene> on a web server carries no pictures: it also gives the address of a folder that has them.
 // `studio` gives the rest of the page their contents:
 //
-//   await studio.bytes("engine.wasm")          Uint8Array
+//   await studio.bytes("engine.wasm")          Uint8Array; of a file that is not carried, from that folder
 //   await studio.text("scenes/brick.toml")     string
-//   studio.names("scenes/")                    the names that begin so, sorted
+//   studio.names("scenes/")                    the names of carried files that begin so, sorted
 //
 // Modules import each other by relative paths; here they become blob URLs, because a page from a file has no others.
 // @ts-check
@@ -15,17 +16,26 @@
 /**
  * @param {Record<string, string>} packed
  * @param {string} entry
+ * @param {string} [folder]
  */
-function boot(packed, entry) {
+function boot(packed, entry, folder) {
   /** @type {Map<string, Promise<string>>} */
   const urls = new Map();
 
   /** @param {string} name */
   async function bytes(name) {
-    if (!(name in packed)) throw new Error(`this page carries no file ${name}`);
+    if (!(name in packed)) return fetched(name);
     const zipped = Uint8Array.from(atob(packed[name]), (character) => character.charCodeAt(0));
     const stream = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+
+  /** @param {string} name */
+  async function fetched(name) {
+    if (folder === undefined) throw new Error(`this page carries no file ${name}`);
+    const answer = await fetch(new URL(name, folder));
+    if (!answer.ok) throw new Error(`${answer.url}: ${answer.status} ${answer.statusText}`);
+    return new Uint8Array(await answer.arrayBuffer());
   }
 
   /** @param {string} name */

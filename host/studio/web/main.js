@@ -14,9 +14,14 @@ import { showFelt } from "./page/felt.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
+import { Ghost } from "./page/ghost.js";
+import { Hands } from "./page/hands.js";
 import { Incoming } from "./page/incoming.js";
+import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
+import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
+import { NewScene } from "./page/new_scene.js";
 import { followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
@@ -27,6 +32,7 @@ import { Project } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
+import { keepSite } from "./page/site.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -58,7 +64,8 @@ async function start() {
   const [navigation] = performance.getEntriesByType("navigation");
   const isReload = navigation instanceof PerformanceNavigationTiming && navigation.type === "reload";
   if (!(isReload && last)) openLink(scene);
-  const { editor, sound, samples, map, player } = parts;
+  const { editor, sound, samples, map, player, ghost } = parts;
+  ghost.start();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
@@ -67,13 +74,15 @@ async function start() {
 async function makeParts(engine) {
   const project = new Project(engine);
   const player = new Player(engine, project);
-  const editor = new Editor(byId("editor"), await schema());
+  const sceneSchema = await schema();
+  const editor = new Editor(byId("editor"), sceneSchema);
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   /** @type {HTMLElement | null} */
   const grid = document.querySelector(".feel-grid");
   map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
   const samples = new Samples();
   const sound = new Sound();
+  const finger = new Finger(engine, map, byId("map-finger"));
   return {
     engine,
     project,
@@ -83,7 +92,11 @@ async function makeParts(engine) {
     samples,
     sound,
     works: new Works(),
-    finger: new Finger(engine, map, byId("map-finger")),
+    finger,
+    lag: new Lag({ engine, map, finger, player }),
+    lens: new Lens({ map, finger }),
+    ghost: new Ghost({ engine, map, finger, sound }),
+    hands: new Hands({ map, editor, player, project }, sceneSchema),
     scope: new Scope(samples, byId("scope")),
     numbers: new Numbers(),
     layers: new Layers(engine, editor),
@@ -102,7 +115,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, editor, map, finger, scope, compare }) {
+function makeControls({ engine, project, player, editor, map, finger, scope, compare, ghost, lag, hands }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -114,7 +127,16 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
     scope.restyle();
   });
   makeView({ map, finger, scope, engine });
-  compare.onChange = () => map.draw();
+  compare.onChange = () => {
+    // Outlines and numbers would say which version is felt.
+    hands.setEditing(false);
+    map.draw();
+  };
+  lag.onChange = () => player.now(editor.text);
+  hands.onEdit = () => {
+    ghost.end();
+    byId("first-words").hidden = true;
+  };
 }
 
 /**
@@ -123,11 +145,11 @@ function makeControls({ engine, project, editor, map, finger, scope, compare }) 
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Checked | undefined} */
   let shown;
-  player.onCheck = (check) => {
+  player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
     if (isPlayable(check)) {
@@ -136,10 +158,12 @@ function showWhatPlays(parts, scene) {
       showFelt(check);
       scope.isDraft = check.isDraft;
       shown = check;
+      hands.show(check, files);
     } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
   };
   player.onPlay = () => {
     layers.reset();
+    lag.played();
     if (!compare.isRunning && shown) layers.show(shown.layers, shown);
   };
   layers.onLive = (changes) => {
@@ -149,9 +173,13 @@ function showWhatPlays(parts, scene) {
   };
   player.onMap = (picture, check) => {
     if (!parts.hasSlid) hint.textContent = "press and slide: the trail is thick where friction is high";
+    // The words of the first visit say the same.
+    hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
     if (player.status === "loaded") map.markStale(undefined);
+    // While a hand moves layers, the next map is about to come.
+    if (player.isHeld) return;
     const { opened } = project;
     map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
   };
@@ -175,23 +203,28 @@ function showWhatPlays(parts, scene) {
  * @param {Parts} parts
  */
 function showWhatIsFelt(parts) {
-  const { engine, samples, scope, numbers, finger, sound, board } = parts;
+  const { engine, samples, scope, numbers, finger, ghost, lag, lens, sound, board } = parts;
   const hint = byId("map-hint");
   engine.onFrames = (frame) => {
     samples.add(frame);
     scope.feel(frame);
     numbers.feel(frame, parts.reach.naturalN);
     finger.feel(frame, parts.reach);
+    ghost.feel(frame);
+    lag.feel(frame);
+    lens.feel(frame, parts.reach);
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
     parts.hasSlid = true;
+    lag.hasStroke = true;
     hint.hidden = board.isPlaying;
     hint.textContent = "nothing plays: press Play or Arm, at the top";
     byId("replay").disabled = false;
   };
   board.onState = () => {
     showOutcome();
+    lag.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
 }
@@ -203,6 +236,7 @@ function showWhatIsFelt(parts) {
  */
 function takeScenes({ engine, project, editor, gallery }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
+  new NewScene(engine).onScene = gallery.onScene;
   gallery.onLayer = (text) => scene.append(text);
   const incoming = new Incoming(async (files, entry) =>
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
@@ -210,6 +244,7 @@ function takeScenes({ engine, project, editor, gallery }, scene) {
   incoming.onFiles = (found) => scene.take(found);
 }
 
+keepSite();
 start().catch((error) => {
   const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
   document.querySelector("main")?.replaceChildren(why);

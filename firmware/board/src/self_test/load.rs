@@ -5,6 +5,7 @@ use frixel_layers::{Beat, Blend, Burst, Constant, Grating, Layer, Noise, Record,
 use frixel_wire::message::TickTimes;
 use heapless::Vec;
 
+use super::script::refuse_inputs;
 use super::{LoopedBoard, Round, Stop};
 use crate::local_host::{LocalHost, Progress};
 use crate::local_scene::{header, stored, stored_len};
@@ -76,8 +77,10 @@ impl Load {
         Ok(())
     }
 
-    /// One round of the main loop; returns whether the scene plays.
+    /// One round of the main loop; returns whether the scene plays. The enable is low, but an input that is high says that
+    /// something was plugged in meanwhile.
     pub(super) fn round(&mut self, board: &mut impl LoopedBoard) -> Result<bool, Stop> {
+        refuse_inputs(board)?;
         let released_ticks = board.board().ticks(RELEASED_S);
         let description = *board.board();
         let Round { status, now_tick, session } = board.round(!matches!(self.stage, Stage::Released));

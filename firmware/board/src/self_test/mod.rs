@@ -5,13 +5,15 @@
 //! each [`Measurement`] in a line that a program can read: `frixel selftest --wires` writes them to a report. These hold
 //! whatever board and person do:
 //!
-//! - It ends at once while the amplifier's ready is high, or while the monitor's pin is driven or not at zero volts.
+//! - It ends at once when the amplifier's ready is high or the arm switch is closed, during a pulse of the enable, too,
+//!   and while the monitor's pin is driven or not at zero volts.
 //! - The enable is pulsed only after its wire was found with the enable low, and the person has said that the amplifier is
 //!   unplugged. It is low whenever the tick runs: [`LoopedBoard::round`] kicks nothing and sends zeros to the DAC.
 //! - A missing wire ends it. A measurement out of its range does not: the rest is measured, and all of it is reported.
 //!
 //! The board resets meanwhile: what [`LoopedBoard::reset`] keeps says where the script goes on.
 
+mod enable;
 mod line;
 mod load;
 mod measurement;
@@ -25,7 +27,7 @@ use frixel_session::Session;
 use frixel_session::store::{Flash, Slot};
 use frixel_wire::message::TickTimes;
 
-pub use crate::bring_up::{Line, LineReader, Typed};
+pub use crate::bring_up::{Inputs, Line, LineReader, Typed};
 pub use line::LineTest;
 pub use measurement::{Measurement, Said};
 pub use script::{GREETING, LINE_TEST, SKIP, Stop, UNPLUGGED, run};
@@ -75,15 +77,13 @@ pub struct Clocks {
     pub after: u16,
 }
 
-/// A pulse of the enable, as it was captured.
+/// A fall of the enable, as it was captured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pulse {
-    /// From the first kick until it rose, us; `None` if it did not.
-    pub rise_us: Option<u32>,
-    /// From the last kick until it fell, us; `None` if it did not within 10 ms. It was then disabled.
-    pub fall_us: Option<u32>,
-    /// It fell more than once.
-    pub fell_again: bool,
+pub struct Fall {
+    /// Its cycle.
+    pub at: u32,
+    /// It is not the first one since [`LoopedBoard::forget_edges`].
+    pub had_fallen_before: bool,
 }
 
 /// What the script needs of a round of the main loop.
@@ -106,6 +106,8 @@ pub trait LoopedBoard {
     const LATCH_CYCLES: u32;
     /// Time from the last kick until the enable falls, us.
     const ONE_SHOT_US: u32;
+    /// Cycles of [`LoopedBoard::cycles`] in a microsecond.
+    const CYCLES_PER_US: u32;
     /// Voltage of the monitor's pin for 0 V at the amplifier, mV.
     const MONITOR_ZERO_MV: u32;
     /// Voltage of the monitor's pin for one volt at the amplifier, mV.
@@ -123,8 +125,8 @@ pub trait LoopedBoard {
     /// What has to go on while the script waits, before [`LoopedBoard::start_ticks`].
     fn idle(&mut self);
 
-    /// Whether the amplifier's ready is high.
-    fn amplifier_is_ready(&mut self) -> bool;
+    /// The inputs now, as the pins show them. Called all the while that the enable may be high: it does not wait.
+    fn inputs(&mut self) -> Inputs;
 
     /// The levels at the end of a wire, with the pins at its beginning at rest. That of the monitor is driven by nothing.
     fn levels(&mut self, wire: Wire) -> Levels;
@@ -142,11 +144,23 @@ pub trait LoopedBoard {
     /// Cycle of the period at which SYNC has risen: of a frame that this sends, and while the tick runs of its last frame.
     fn latch_cycles(&mut self) -> Option<u32>;
 
-    /// Kicks the enable so many times, 0.5 ms apart, with the DAC at zero.
-    fn pulse(&mut self, kicks: u32) -> Pulse;
+    /// The time, in cycles modulo 2^32.
+    fn cycles(&mut self) -> u32;
 
-    /// Kicks the enable, disables it again, and returns the time from that until it fell, us.
-    fn cut_pulse(&mut self) -> Option<u32>;
+    /// Forgets the edges of the enable that were captured, and returns the time.
+    fn forget_edges(&mut self) -> u32;
+
+    /// Kicks the enable, with the DAC at zero. It falls by itself [`Self::ONE_SHOT_US`] after the last kick.
+    fn kick(&mut self);
+
+    /// Disables the enable at once.
+    fn disable(&mut self);
+
+    /// The cycle at which the enable rose since the last call; `None` if it did not.
+    fn enable_rose(&mut self) -> Option<u32>;
+
+    /// The last fall of the enable since the last call; `None` if it did not fall.
+    fn enable_fell(&mut self) -> Option<Fall>;
 
     /// Starts the tick and the main loop, with the enable at rest. Called once.
     fn start_ticks(&mut self);

@@ -2,9 +2,10 @@
 
 use core::fmt;
 
+use super::enable::measure_enable;
 use super::load::{Load, counted_since};
 use super::store::{self, Content};
-use super::{Clocks, Levels, LineTest, LoopedBoard, Measurement, Pulse, Said, VERSION, Wire};
+use super::{Clocks, Inputs, Levels, LineTest, LoopedBoard, Measurement, Said, VERSION, Wire};
 use crate::bring_up::DriveError;
 
 /// What is typed first, which shows that the board receives.
@@ -26,15 +27,8 @@ const FRAME_CLOCKS: u32 = 24;
 const CAPTURE_CYCLES: u32 = 8;
 /// Cycles by which the instant of a latch may move: the synchroniser's one.
 const JITTER_CYCLES: u32 = 2;
-/// Kicks of the pulse that shows that the one-shot is retriggered.
-const KICKS: u32 = 5;
-/// Longest time from a kick until the enable is high, us.
-const RISE_MAX_US: u32 = 10;
-/// Longest time from the last kick until the enable is low, us, and from disabling it.
-const FALL_MAX_US: u32 = 1_000;
-const CUT_MAX_US: u32 = 2;
 /// Stands for an edge that was not seen.
-const NEVER_US: u32 = 99_999;
+pub(super) const NEVER_US: u32 = 99_999;
 /// Largest voltage at the amplifier that counts as zero, V: the offset that bring-up allows.
 const MONITOR_ZERO_V: f32 = 4.0;
 /// Voltages of the ADC's loop, mV, and how much they may be off: 1 % of either side.
@@ -53,6 +47,8 @@ const CHUNK_LEN: usize = 256;
 pub enum Stop {
     /// The amplifier's ready is high.
     Ready,
+    /// The arm switch is closed, and so is its second pole in the enable's wire.
+    Switch,
     /// Something drives the monitor's pin.
     MonitorDriven(Levels),
     /// The monitor does not show zero while the loop puts zero there: mV.
@@ -79,6 +75,9 @@ impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Ready => f.write_str("ready is high: switch the amplifier's supply off, and unplug the amplifier"),
+            Self::Switch => f.write_str(
+                "the arm switch is closed: let it go, and if nobody holds it, unplug it, for its contact is welded",
+            ),
             Self::MonitorDriven(levels) => {
                 write!(f, "something drives the monitor's pin ({levels}): unplug the amplifier and its monitor")
             }
@@ -127,13 +126,13 @@ impl fmt::Display for Levels {
 
 /// Numbers of measurements so far.
 #[derive(Clone, Copy, Debug, Default)]
-struct Counts {
+pub(super) struct Counts {
     measured: u32,
     failed: u32,
 }
 
 impl Counts {
-    fn say(&mut self, board: &mut impl LoopedBoard, name: &str, found: u32, range: Option<(u32, u32)>) {
+    pub(super) fn say(&mut self, board: &mut impl LoopedBoard, name: &str, found: u32, range: Option<(u32, u32)>) {
         let measurement = Measurement { name, found, range };
         self.measured += 1;
         self.failed += u32::from(!measurement.passes());
@@ -192,22 +191,27 @@ fn confirm(board: &mut impl LoopedBoard, what: fmt::Arguments<'_>, word: &str) {
     }
 }
 
+/// Ends the script if ready is high or the arm switch is closed.
+pub(super) fn refuse_inputs(board: &mut impl LoopedBoard) -> Result<(), Stop> {
+    match board.inputs() {
+        Inputs { amplifier_ready: true, .. } => Err(Stop::Ready),
+        Inputs { switch_closed: true, .. } => Err(Stop::Switch),
+        Inputs { amplifier_ready: false, switch_closed: false } => Ok(()),
+    }
+}
+
 /// Ends the script if an amplifier is there, before anything drives the monitor's wire.
 fn refuse_amplifier(board: &mut impl LoopedBoard) -> Result<(), Stop> {
-    if board.amplifier_is_ready() {
-        return Err(Stop::Ready);
-    }
+    refuse_inputs(board)?;
     match board.levels(Wire::Monitor) {
         Levels::FREE => Ok(()),
         driven => Err(Stop::MonitorDriven(driven)),
     }
 }
 
-/// Ends the script if ready is high, or if the monitor does not show zero while the loop puts zero there.
-fn refuse_ready_or_voltage<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
-    if board.amplifier_is_ready() {
-        return Err(Stop::Ready);
-    }
+/// Ends the script if an input is high, or if the monitor does not show zero while the loop puts zero there.
+pub(super) fn refuse_inputs_or_voltage<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
+    refuse_inputs(board)?;
     let found_mv = board.loop_mv(B::MONITOR_ZERO_MV);
     let most_mv = (MONITOR_ZERO_V * B::MONITOR_MV_PER_V) as u32;
     if found_mv.abs_diff(B::MONITOR_ZERO_MV) <= most_mv { Ok(()) } else { Err(Stop::MonitorNotZero(found_mv)) }
@@ -217,7 +221,7 @@ fn refuse_ready_or_voltage<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
 fn check_store<B: LoopedBoard>(board: &mut B, kept: u32, counts: &mut Counts) -> Result<(), Stop> {
     let idle = |board: &mut B| {
         board.idle();
-        Ok(())
+        refuse_inputs(board)
     };
     let done = (kept as usize).min(store::RESETS.len());
     if done == 0 {
@@ -267,7 +271,7 @@ fn find_wires<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     if !received || wrong > 0 {
         return Err(Stop::Data(wrong));
     }
-    refuse_ready_or_voltage(board)?;
+    refuse_inputs_or_voltage(board)?;
     board.say(format_args!("All wires are there."));
     Ok(())
 }
@@ -277,6 +281,7 @@ fn measure_frames<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<
     let (mut before, mut after, mut unseen) = (0, 0, 0);
     let mut inside = (u32::MAX, 0);
     for _ in 0..FRAMES {
+        refuse_inputs(board)?;
         match board.clocks() {
             Some(clocks) => {
                 let Clocks { before: early, inside: clocks, after: late } = clocks;
@@ -292,7 +297,7 @@ fn measure_frames<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<
     counts.say(board, "clocks_in_sync_at_least", inside.0, Some((FRAME_CLOCKS, FRAME_CLOCKS)));
     counts.say(board, "clocks_in_sync_at_most", inside.1, Some((FRAME_CLOCKS, FRAME_CLOCKS)));
     counts.say(board, "clocks_after_sync_at_most", after, Some((0, 0)));
-    measure_latch(board, ["latch_earliest_cycles", "latch_spread_cycles"], counts, |_| Ok(()))
+    measure_latch(board, ["latch_earliest_cycles", "latch_spread_cycles"], counts, refuse_inputs)
 }
 
 /// Measures when frames are latched; `meanwhile` is called between two of them.
@@ -313,23 +318,6 @@ fn measure_latch<B: LoopedBoard>(
     counts.say(board, earliest, latched.0, Some(expected));
     counts.say(board, spread, latched.1.saturating_sub(latched.0), Some((0, JITTER_CYCLES)));
     Ok(())
-}
-
-/// Pulses the enable. Nothing that it could switch on is there, as far as ready and monitor show.
-fn measure_enable<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<(), Stop> {
-    refuse_ready_or_voltage(board)?;
-    let Pulse { rise_us, fall_us, fell_again } = board.pulse(KICKS);
-    counts.say(board, "enable_rises_us", rise_us.unwrap_or(NEVER_US), Some((0, RISE_MAX_US)));
-    let least_us = B::ONE_SHOT_US - B::ONE_SHOT_US / 50;
-    counts.say(board, "enable_falls_us", fall_us.unwrap_or(NEVER_US), Some((least_us, FALL_MAX_US)));
-    counts.say(board, "enable_falls_between_kicks", u32::from(fell_again), Some((0, 0)));
-    if rise_us.is_some() && fall_us.is_none() {
-        return Err(Stop::EnableStaysHigh);
-    }
-    refuse_ready_or_voltage(board)?;
-    let cut_us = board.cut_pulse();
-    counts.say(board, "enable_is_cut_within_us", cut_us.unwrap_or(NEVER_US), Some((0, CUT_MAX_US)));
-    if rise_us.is_some() && cut_us.is_none() { Err(Stop::EnableStaysHigh) } else { Ok(()) }
 }
 
 fn measure_adc<B: LoopedBoard>(board: &mut B, counts: &mut Counts) {

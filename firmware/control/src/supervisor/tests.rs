@@ -12,7 +12,7 @@ const BOARD: Board = Board::SIMULATOR;
 const FLOOR_V: f32 = 10.0;
 const FULL_SCALE_V: f32 = 250.0;
 /// Wrong ticks that are a fault.
-const WRONG_TICKS: u32 = 20;
+const WRONG_TICKS: u32 = 16;
 
 /// A monitor voltage, with nothing else to remark.
 fn reading(monitor_v: f32) -> Sense {

@@ -20,7 +20,7 @@ use frixel_wire::message::{Accepted, ConfigField, ConfigRefusal, Refusal};
 use frixel_wire::touch::Touch;
 
 use fingers::Fingers;
-use tracker::Tracker;
+pub use tracker::Tracker;
 
 /// Number of the finger if the host reports only one.
 pub(crate) const ONLY_FINGER: u8 = 0;

@@ -46,7 +46,7 @@ struct Sample {
 ///
 /// Reports wait until [`Self::next_order`] takes them. A newer position replaces a waiting one, but never a waiting
 /// lift: the lift and the touch-down after it are two orders.
-pub(crate) struct Tracker {
+pub struct Tracker {
     timing: Timing,
     /// A lift waits for [`Self::next_order`].
     lift: bool,
@@ -72,7 +72,7 @@ pub(crate) struct Tracker {
 
 impl Tracker {
     /// A tracker without a finger.
-    pub(crate) fn new(board: &Board) -> Self {
+    pub fn new(board: &Board) -> Self {
         Self {
             timing: Timing {
                 tick_period_s: board.tick_period_s(),
@@ -96,7 +96,7 @@ impl Tracker {
 
     /// Takes a report that arrived at `now_tick`. A position that is too old, not newer than the last one, or outside
     /// any screen is ignored: the source may be stuck, and repeated reports must not keep the output enabled.
-    pub(crate) fn report(&mut self, touch: Touch, now_tick: u32) {
+    pub fn report(&mut self, touch: Touch, now_tick: u32) {
         match touch {
             Touch::Up => {
                 self.lift = true;
@@ -117,7 +117,7 @@ impl Tracker {
 
     /// Drops a finger whose last track has ended: the next report begins another contact. Must be called at least once
     /// before the tick counter wraps.
-    pub(crate) fn expire(&mut self, now_tick: u32) {
+    pub fn expire(&mut self, now_tick: u32) {
         if self.track.is_some_and(|track| is_past(track.until_tick, now_tick)) {
             self.track = None;
         }
@@ -127,7 +127,7 @@ impl Tracker {
     /// now if the scene `predicts`, and stays where the finger was measured otherwise.
     // Not inlined into the main loop, whose stack would then hold its values all the time.
     #[inline(never)]
-    pub(crate) fn next_order<'a>(&mut self, predicts: bool) -> Option<Order<'a>> {
+    pub fn next_order<'a>(&mut self, predicts: bool) -> Option<Order<'a>> {
         if core::mem::take(&mut self.lift) {
             self.track = None;
             return Some(Order::Lift);

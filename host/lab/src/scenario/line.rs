@@ -197,7 +197,13 @@ impl Inner<'_> {
             let checks = &mut self.checks;
             let ran = self.rig.run(until, &mut received, &mut |tick| checks.see(tick));
             self.keep(ran, None)?;
-            self.to_host.take(&received, self.rig.tick());
+            let tick = self.rig.tick();
+            self.to_host.take(&received, tick);
+            let touches = self.rig.take_touch_frames();
+            // A host that hangs or is gone does not pass them on.
+            if reads {
+                self.to_board.take(&touches, tick);
+            }
         }
     }
 

@@ -50,6 +50,39 @@ function engineOfAll() {
   return shared;
 }
 
+/**
+ * A file of the bundled scenes, by the name that they use.
+ * @param {string} name
+ */
+const bundled = (name) => studio.bytes(`scenes/${name}`);
+
+/**
+ * The scene with every file that it names: `read(name)` gives those that are not here yet.
+ * @param {Engine} engine
+ * @param {Files} found
+ * @param {string} entry
+ * @param {(name: string) => Promise<Uint8Array<ArrayBuffer>>} read
+ * @returns {Promise<Source>}
+ */
+async function whole(engine, found, entry, read) {
+  const files = { ...found };
+  /** @type {Set<string>} */
+  const sought = new Set();
+  for (;;) {
+    const { names } = await engine.usedFiles(files, entry);
+    const missing = names.filter((name) => !sought.has(name) && !(name in files));
+    if (missing.length === 0) return { files, entry };
+    for (const name of missing) {
+      sought.add(name);
+      // Of a file that is not there, the compiler says so.
+      await read(name).then(
+        (bytes) => (files[name] = bytes),
+        () => {},
+      );
+    }
+  }
+}
+
 class FrixelScene extends HTMLElement {
   static observedAttributes = ["scene", "src", "finger", "screen", "touch"];
 
@@ -165,11 +198,11 @@ class FrixelScene extends HTMLElement {
     const carried = await carriedFiles();
     const [name, src, text] = [this.getAttribute("scene"), this.getAttribute("src"), this.textContent.trim()];
     if (name !== null) {
-      if (`${name}.toml` in carried) return { files: carried, entry: `${name}.toml` };
+      if (`${name}.toml` in carried) return whole(engine, carried, `${name}.toml`, bundled);
       throw new Error(`scene="${name}": no bundled scene has this name`);
     }
     if (src !== null) return this.#fetched(engine, new URL(src, document.baseURI), carried);
-    if (text !== "") return { files: { ...carried, ...this.files, "scene.toml": text }, entry: "scene.toml" };
+    if (text !== "") return whole(engine, { ...carried, ...this.files, "scene.toml": text }, "scene.toml", bundled);
     throw new Error('<frixel-scene> has no scene: give it scene="brick", src="my.toml", or a scene\'s text inside');
   }
 
@@ -187,29 +220,14 @@ class FrixelScene extends HTMLElement {
       if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
       return new Uint8Array(await answer.arrayBuffer());
     };
+    const beside = (/** @type {string} */ file) => content(new URL(file, url)).catch(() => bundled(file));
     if (url.protocol === "file:") {
       throw new Error(
         `src="${this.getAttribute("src")}": a document that was opened from a file can read no other file; ` +
           "put the scene's text inside of the element",
       );
     }
-    /** @type {Files} */
-    const files = { ...carried, [entry]: await content(url) };
-    /** @type {Set<string>} */
-    const sought = new Set();
-    for (;;) {
-      const { names } = await engine.usedFiles(files, entry);
-      const missing = names.filter((name) => !sought.has(name) && !(name in files));
-      if (missing.length === 0) return { files, entry };
-      for (const name of missing) {
-        sought.add(name);
-        // Of a file that is not there, the compiler says so.
-        await content(new URL(name, url)).then(
-          (bytes) => (files[name] = bytes),
-          () => {},
-        );
-      }
-    }
+    return whole(engine, { ...carried, [entry]: await content(url) }, entry, beside);
   }
 
   /** @param {Parts} parts */

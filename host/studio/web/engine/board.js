@@ -176,6 +176,12 @@ serve({
     addSample(sample, tickAt(sample.epochMs + DELAY_MS));
   },
 
+  lift() {
+    if (replay) return;
+    engine.plain("simulator_lift");
+    stroke.isOver = true;
+  },
+
   /** Plays the samples of the last stroke again while time passes slowly. */
   replay({ slowness }) {
     const { samples } = stroke;

@@ -204,7 +204,7 @@ export class Engine {
   /**
    * @param {T.Files} files
    * @param {string} entry
-   * @param {T.Profiles} profiles
+   * @param {T.Profiles & T.PlayOptions} profiles
    */
   play(files, entry, profiles) {
     return this.#player.ask({ type: "play", scene: { files, entry, ...profiles } });
@@ -246,6 +246,11 @@ export class Engine {
   pointer({ timeMs, xMm, yMm, down, loadN }) {
     const sample = { epochMs: clock.startMs() + timeMs, xMm, yMm, down, loadN };
     this.#board.send({ type: "pointer", sample });
+  }
+
+  /** Lifts the finger at once, and forgets what is still to be played of it. */
+  lift() {
+    this.#board.send({ type: "lift" });
   }
 
   replay({ slowness = 10 } = {}) {

@@ -398,12 +398,13 @@ class Board {
 /** @typedef {Record<Told | "tick", number> & { isTouched: boolean }} Telemetry */
 
 /**
- * Telemetry as a frame of samples. What the finger feels, a board cannot know.
+ * Telemetry as a frame of samples. What the finger feels and where it is, a board cannot know.
  * @param {Telemetry[]} telemetry
  * @returns {T.WorkerFrame}
  */
 function frameOf(telemetry) {
   const column = (/** @type {Told} */ name) => Float32Array.from(telemetry, (sample) => sample[name]);
+  const unknown = () => new Float32Array(telemetry.length).fill(NaN);
   const [first, second] = telemetry;
   return {
     firstTick: first.tick,
@@ -413,8 +414,13 @@ function frameOf(telemetry) {
     yMm: column("yMm"),
     speedMmPerS: column("speedMmPerS"),
     referenceN: column("referenceN"),
-    feltN: new Float32Array(telemetry.length).fill(NaN),
+    feltN: unknown(),
     voltageV: column("voltageV"),
+    predictedXMm: unknown(),
+    predictedYMm: unknown(),
+    reportedXMm: unknown(),
+    reportedYMm: unknown(),
+    contactRadiusMm: unknown(),
     contact: telemetry[telemetry.length - 1].isTouched,
     delayMs: 0,
     slowness: 1,

@@ -4,8 +4,10 @@
 export type Files = Record<string, string | Uint8Array<ArrayBuffer>>;
 /** A name or TOML text each. */
 export type Profiles = { finger?: string; screen?: string; touch?: string };
+/** How the simulator in the page plays a scene; a board outside of it plays as the scene says. */
+export type PlayOptions = { withoutPrediction?: boolean };
 /** What identifies a scene for the engine. */
-export type Scene = { files: Files; entry: string } & Profiles;
+export type Scene = { files: Files; entry: string } & Profiles & PlayOptions;
 export type MapSize = { widthPx: number; heightPx: number };
 /** A scene, and the numbers that some requests have besides. */
 export type Request = Scene & Partial<MapSize> & { speedMmPerS?: number; seed?: number; durationMs?: number };
@@ -88,7 +90,18 @@ export type FrictionField = MapSize & {
 };
 
 /** The columns of a frame, which the module names (host/studio/src/felt.rs): one value for each sample. */
-export type Column = "xMm" | "yMm" | "speedMmPerS" | "referenceN" | "feltN" | "voltageV";
+export type Column =
+  | "xMm"
+  | "yMm"
+  | "speedMmPerS"
+  | "referenceN"
+  | "feltN"
+  | "voltageV"
+  | "predictedXMm"
+  | "predictedYMm"
+  | "reportedXMm"
+  | "reportedYMm"
+  | "contactRadiusMm";
 export type Columns = Record<Column, Float32Array>;
 /** What a worker reports of some time of the board. */
 export type WorkerFrame = Columns & {
@@ -146,7 +159,7 @@ export type Questions = {
 export type Question = { [Type in keyof Questions]: { type: Type } & Questions[Type]["asked"] }[keyof Questions];
 
 /** What needs no answer. */
-export type Note = { type: "alive" | "gone" } | { type: "pointer"; sample: PointerSample };
+export type Note = { type: "alive" | "gone" | "lift" } | { type: "pointer"; sample: PointerSample };
 /** A scene on its way to a worker: with the files that have changed, and the names of those that it has. */
 export type SentScene = Request & { kept: string[] };
 /** What the page sends to a worker; `id` is that of the answer, and a scene is a `SentScene`. */
@@ -181,7 +194,7 @@ export type Actions = {
   [Type in keyof Questions]?: (
     message: Questions[Type]["asked"],
   ) => Questions[Type]["answer"] | Promise<Questions[Type]["answer"]>;
-} & { alive?: () => void; gone?: () => void; pointer?: (message: { sample: PointerSample }) => void };
+} & { alive?: () => void; gone?: () => void; lift?: () => void; pointer?: (message: { sample: PointerSample }) => void };
 
 /** A line to a board outside of the page. */
 export type Line = {

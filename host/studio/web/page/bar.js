@@ -13,18 +13,12 @@ import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 /** @import { Project } from "./project.js" */
 /** @import { Works } from "./works.js" */
 
-const NEW_SCENE = `version = 2
-
-# Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
-`;
-
 /** @param {{ scene: OpenScene, gallery: Gallery, works: Works, editor: Editor, project: Project }} parts */
 export function makeBar({ scene, gallery, works, editor, project }) {
   const dialog = new Open(works, () => byId("files").click());
   dialog.onWork = async (id) => scene.open(await scene.work(id));
   makeMenu();
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
-  byId("new").onclick = () => attempt(() => scene.open({ name: "untitled", text: NEW_SCENE, files: [] }));
   byId("undo").onclick = () => editor.undo();
   byId("redo").onclick = () => editor.redo();
   editor.onHistory = () => {

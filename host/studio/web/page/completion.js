@@ -1,6 +1,8 @@
 // Completion of scene texts from the JSON schema of scenes.
 // @ts-check
 
+import { missingLines } from "./needs.js";
+
 /** @import { Completion, CompletionContext, CompletionResult, Text } from "../vendor/studio-vendor.js" */
 
 /**
@@ -16,6 +18,8 @@
  * @property {Schema} [items]
  * @property {Schema[]} [oneOf]
  * @property {Schema[]} [anyOf]
+ * @property {Schema[]} [allOf]
+ * @property {string[]} [required]
  * @property {Record<string, Schema>} [properties]
  */
 /** @typedef {Schema & { properties: Record<string, Schema> }} Table */
@@ -92,10 +96,14 @@ function keys(schema, place) {
  * @returns {Completion[]}
  */
 function values(schema, place, name) {
-  const { all } = tableAt(schema, place);
+  const { all, outer, present } = tableAt(schema, place);
   const property = all[name];
   if (!property) return [];
-  const words = property.words.map((word) => ({ label: JSON.stringify(word), type: "enum" }));
+  const words = property.words.map((word) => ({
+    label: JSON.stringify(word),
+    type: "enum",
+    ...(name === "kind" && withNeeds(schema, outer, { ...present, kind: String(word) })),
+  }));
   return property.type === "boolean"
     ? [
         { label: "true", type: "keyword" },
@@ -105,7 +113,34 @@ function values(schema, place, name) {
 }
 
 /**
- * The table that the cursor is in: fields that fit to what stands in it, all its fields, and what stands in it.
+ * How the completion of a kind is applied: with what a layer of it needs and does not have.
+ * @param {Schema} schema
+ * @param {Schema[]} alternatives
+ * @param {Record<string, string>} present
+ * @returns {Partial<Completion>}
+ */
+function withNeeds(schema, alternatives, present) {
+  const table = fitting(schema, alternatives, present).find(({ required }) => required?.includes("kind"));
+  const lines = table ? missingLines(table, present) : [];
+  if (lines.length === 0) return {};
+  return {
+    detail: `with ${lines.map((line) => line.split(" ")[0]).join(", ")}`,
+    apply: (view, { label }, from, to) => {
+      // The quotation mark that the editor has closed by itself is that of the label.
+      const end = view.state.sliceDoc(to, to + 1) === '"' ? to + 1 : to;
+      const insert = [label, ...lines].join("\n");
+      view.dispatch({
+        changes: { from, to: end, insert },
+        selection: { anchor: from + insert.length },
+        userEvent: "input.complete",
+      });
+    },
+  };
+}
+
+/**
+ * The table that the cursor is in: fields that fit to what stands in it, all its fields, its alternatives, and what stands
+ * in it.
  * @param {Schema} schema
  * @param {Place} place
  */
@@ -116,7 +151,8 @@ function tableAt(schema, { doc, line, before }) {
   const inline = /(\w+)\s*=\s*\{[^}]*$/.exec(before);
   const alternatives = inline ? (merged(schema, outer, {})[inline[1]]?.schemas ?? []) : outer;
   const present = pairs(inline ? before.slice(inline.index + inline[1].length).replace(/^\s*=\s*\{/, "") : block.text);
-  return { properties: merged(schema, alternatives, present), all: merged(schema, alternatives, {}), present };
+  const [properties, all] = [merged(schema, alternatives, present), merged(schema, alternatives, {})];
+  return { properties, all, outer: inline ? [] : outer, present };
 }
 
 /**
@@ -189,20 +225,30 @@ function wordsOf(property) {
 }
 
 /**
+ * The alternatives that do not contradict what stands there.
+ * @param {Schema} root
+ * @param {Schema[]} schemas
+ * @param {Record<string, string>} present
+ */
+function fitting(root, schemas, present) {
+  const fits = (/** @type {Table} */ table) =>
+    Object.entries(present).every(([name, value]) => {
+      const words = wordsOf(resolve(root, table.properties[name] ?? {})).map(String);
+      return words.length === 0 || words.includes(value);
+    });
+  return schemas.flatMap((schema) => tables(root, schema)).filter(fits);
+}
+
+/**
  * Fields of the alternatives that do not contradict what stands there.
  * @param {Schema} root
  * @param {Schema[]} schemas
  * @param {Record<string, string>} present
  */
 function merged(root, schemas, present) {
-  const fits = (/** @type {Table} */ table) =>
-    Object.entries(present).every(([name, value]) => {
-      const words = wordsOf(resolve(root, table.properties[name] ?? {})).map(String);
-      return words.length === 0 || words.includes(value);
-    });
   /** @type {Record<string, Field>} */
   const fields = {};
-  for (const table of schemas.flatMap((schema) => tables(root, schema)).filter(fits)) {
+  for (const table of fitting(root, schemas, present)) {
     for (const [name, raw] of Object.entries(table.properties)) {
       const property = resolve(root, raw);
       fields[name] ??= { ...property, description: raw.description ?? property.description, words: [], schemas: [] };
@@ -220,4 +266,14 @@ function merged(root, schemas, present) {
 function kindOf(root, { schemas }) {
   if (schemas.some((schema) => resolve(root, schema).items)) return "array";
   return schemas.some((schema) => tables(root, schema).length > 0) ? "table" : "plain";
+}
+
+/**
+ * The fields that a layer with these words may have.
+ * @param {Schema} schema
+ * @param {Record<string, string>} words
+ */
+export function layerFields(schema, words) {
+  const { layer } = propertiesOf(schema, schema, { version: "2" });
+  return merged(schema, layer.schemas, words);
 }

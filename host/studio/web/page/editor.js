@@ -29,6 +29,7 @@ import {
   undo,
 } from "../vendor/studio-vendor.js";
 import { completeFrom } from "./completion.js";
+import { HeldChange, joinHeld } from "./held_change.js";
 
 /** @import { StateCommand } from "../vendor/studio-vendor.js" */
 /** @import { Problem } from "../engine/types" */
@@ -89,7 +90,7 @@ export class Editor {
       lintGutter(),
       highlightActiveLineGutter(),
       highlightSpecialChars(),
-      history(),
+      history({ joinToEvent: joinHeld }),
       drawSelection(),
       bracketMatching(),
       closeBrackets(),
@@ -212,6 +213,24 @@ export class Editor {
   isTable(file, [first]) {
     const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
     return state !== undefined && first <= state.doc.lines && /^\s*\[\[/.test(state.doc.line(first).text);
+  }
+
+  /**
+   * The text of a file, if it is here.
+   * @param {string | undefined} file
+   */
+  textOf(file) {
+    const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
+    return state?.doc.toString();
+  }
+
+  /**
+   * Shows a file that a hand changes on the map: all that the hand does is one step of undo.
+   * @param {string | undefined} file
+   */
+  hold(file) {
+    this.show(file);
+    return new HeldChange(this.#view);
   }
 
   /** @param {string} text */

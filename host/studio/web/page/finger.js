@@ -7,6 +7,10 @@ import { colour, contextOf } from "./dom.js";
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame, Reach } from "../engine/types" */
 /** @import { Area, FrictionMap } from "./map.js" */
+/**
+ * What others draw between the trail and the finger. While `isActive`, it is drawn at each picture of the screen.
+ * @typedef {{ isActive: boolean, draw: (context: CanvasRenderingContext2D) => void }} Overlay
+ */
 /** @typedef {{ xMm: number, yMm: number, friction: number, ms: number }} TrailPoint */
 
 /** How long a trail stays, s. */
@@ -48,6 +52,12 @@ export class Finger {
   #replayed;
   /** Part of the reach that is felt now, 0 to 1. */
   #friction = 0;
+  /** Others have drawn something new: one more picture. */
+  #isStale = false;
+  /** @type {Overlay[]} */
+  overlays = [];
+  /** Something else slides, so a pointer that is not pressed lifts nothing. */
+  isGuided = false;
   usesPressure = false;
   drags = true;
   /** A stroke begins. */
@@ -78,6 +88,7 @@ export class Finger {
   /** @param {Area} area */
   #place({ left, top, width, height }) {
     this.#area = { width, height };
+    this.#isStale = true;
     Object.assign(this.#canvas, {
       width: Math.round(width * devicePixelRatio),
       height: Math.round(height * devicePixelRatio),
@@ -90,17 +101,27 @@ export class Finger {
     });
   }
 
-  /**
-   * @param {PointerEvent} event
-   * @param {boolean} down
-   */
-  #send(event, down) {
+  /** Draws once more: an overlay has changed. */
+  redraw() {
+    this.#isStale = true;
+  }
+
+  /** @param {PointerEvent} event */
+  #aim(event) {
     const box = this.#canvas.getBoundingClientRect();
     const { widthMm, heightMm } = this.#map.screen;
     this.#target = {
       xMm: ((event.clientX - box.left) / box.width) * widthMm,
       yMm: ((event.clientY - box.top) / box.height) * heightMm,
     };
+  }
+
+  /**
+   * @param {PointerEvent} event
+   * @param {boolean} down
+   */
+  #send(event, down) {
+    this.#aim(event);
     const loadN = this.usesPressure && event.pressure > 0 ? LOAD_AT_FULL_PRESSURE_N * event.pressure : undefined;
     this.#engine.pointer({ timeMs: event.timeStamp, ...this.#target, down, loadN });
   }
@@ -120,7 +141,8 @@ export class Finger {
   /** @param {PointerEvent} event */
   #move(event) {
     this.#isInside = true;
-    if (!this.#isDown) this.#send(event, false);
+    if (!this.#isDown && this.isGuided) this.#aim(event);
+    else if (!this.#isDown) this.#send(event, false);
     else if (event.pointerId === this.#pointerId) {
       const events = event.getCoalescedEvents?.() ?? [];
       for (const each of events.length > 0 ? events : [event]) this.#send(each, true);
@@ -208,10 +230,11 @@ export class Finger {
     this.#lastMs = ms;
     this.#trail = this.#trail.filter((point) => point === null || ms - point.ms < TRAIL_S * 1000);
     if (!this.#trail.some((point) => point !== null)) this.#trail = [];
-    const shown = this.#trail.length > 0 ? "" : JSON.stringify([this.#finger, this.#isDown, this.#area, this.#hasFocus]);
+    const isMoving = this.#trail.length > 0 || this.#isStale || this.overlays.some(({ isActive }) => isActive);
+    const shown = isMoving ? "" : JSON.stringify([this.#finger, this.#isDown, this.#area, this.#hasFocus]);
     // A finger that rests is drawn once.
     if (shown === "" || shown !== this.#shown) this.#draw();
-    this.#shown = shown;
+    [this.#shown, this.#isStale] = [shown, false];
     clock.nextFrame((next) => this.#frame(next));
   }
 
@@ -235,6 +258,7 @@ export class Finger {
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#area.width, this.#area.height);
     this.#drawTrail(context);
+    if (!this.#isBlind) for (const overlay of this.overlays) overlay.draw(context);
     const finger = this.#finger;
     if (!finger) return;
     const { scale } = this.#map;

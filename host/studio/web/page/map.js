@@ -103,6 +103,33 @@ export class FrictionMap {
     this.layout();
   }
 
+  /**
+   * The target friction at a place, N; undefined outside of the map, or before there is one.
+   * @param {number} xMm
+   * @param {number} yMm
+   */
+  frictionAt(xMm, yMm) {
+    const map = this.#map;
+    if (!map) return undefined;
+    const column = Math.floor((xMm / this.screen.widthMm) * map.widthPx);
+    const row = Math.floor((yMm / this.screen.heightMm) * map.heightPx);
+    const isInside = column >= 0 && row >= 0 && column < map.widthPx && row < map.heightPx;
+    return isInside ? map.frictionN[row * map.widthPx + column] : undefined;
+  }
+
+  /** The friction of each pixel, N. */
+  get frictionN() {
+    return this.#map?.frictionN ?? new Float32Array();
+  }
+
+  /**
+   * Draws the friction alone on another canvas, whose unit is a mm.
+   * @param {CanvasRenderingContext2D} context
+   */
+  drawOn(context) {
+    if (this.#picture) context.drawImage(this.#picture, 0, 0, this.screen.widthMm, this.screen.heightMm);
+  }
+
   /** A small picture of the friction alone, as a PNG. */
   thumbnail() {
     if (!this.#picture) throw new Error("there is no map yet");

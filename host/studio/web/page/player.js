@@ -6,7 +6,7 @@ import { sentenceOf } from "./dom.js";
 import { mapSizePx } from "./map.js";
 
 /** @import { Engine } from "../engine/engine.js" */
-/** @import { Check, Checked, EngineFailure, FrictionField } from "../engine/types" */
+/** @import { Check, Checked, EngineFailure, Files, FrictionField } from "../engine/types" */
 /** @import { Project } from "./project.js" */
 /** @typedef {"loading" | "loaded" | "mistaken" | "failed"} Status */
 
@@ -14,6 +14,8 @@ import { mapSizePx } from "./map.js";
 const PAUSE_MS = 60;
 /** Longer side of the map's picture, pixels. */
 const MAP_LONG_SIDE_PX = 960;
+/** The same while a hand changes the scene, and the next map is about to come. */
+const HELD_LONG_SIDE_PX = 480;
 
 export class Player {
   #engine;
@@ -23,6 +25,8 @@ export class Player {
   #isBusy = false;
   /** @type {string | undefined} */
   #next;
+  /** Whether a hand is changing the scene. */
+  isHeld = false;
   /** How many actions that bring another text are under way. */
   #expected = 0;
   /**
@@ -32,10 +36,12 @@ export class Player {
   #outcome = "loading";
   /** @type {Status} */
   #status = "loading";
+  /** Whether the simulator in the page plays without prediction, whatever the scene says. */
+  withoutPrediction = false;
 
   /**
-   * The check has an answer: `onCheck(check)`.
-   * @type {(check: Check) => void}
+   * The check has an answer: `onCheck(check, files)`.
+   * @type {(check: Check, files: Files) => void}
    */
   onCheck = () => {};
   /**
@@ -90,9 +96,28 @@ export class Player {
    * @param {string} text
    */
   later(text) {
+    if (this.isHeld) {
+      this.now(text);
+      return;
+    }
     clock.cancel(this.#timer);
     this.#timer = clock.later(PAUSE_MS, () => this.now(text));
     this.#report();
+  }
+
+  /** A hand begins to change the scene: until it lets go, the texts are checked and drawn, and none is played. */
+  hold() {
+    this.isHeld = true;
+    this.#report();
+  }
+
+  /**
+   * The hand lets go: this text is played.
+   * @param {string} text
+   */
+  release(text) {
+    this.isHeld = false;
+    return this.now(text);
   }
 
   /**
@@ -127,7 +152,7 @@ export class Player {
 
   /** Whether a newer text is there, or about to come. */
   get #isOutdated() {
-    return this.#next !== undefined || this.#timer !== undefined || this.#expected > 0;
+    return this.isHeld || this.#next !== undefined || this.#timer !== undefined || this.#expected > 0;
   }
 
   /** @param {Status} outcome */
@@ -150,18 +175,28 @@ export class Player {
     /** @type {Parameters<Engine["play"]>} */
     const scene = [files, entry, { ...profiles }];
     const check = await this.#engine.check(...scene);
-    this.onCheck(check);
+    this.onCheck(check, files);
     if (!isPlayable(check)) this.#settle("mistaken");
+    else if (this.isHeld) await this.#draw(scene, check, HELD_LONG_SIDE_PX, opened);
     // A board that was disarmed for another scene gets none but that.
     else if (!this.#isOutdated && (await this.#load(scene, check))) {
       this.onPlay(text);
       this.#settle("loaded");
-      if (this.#next !== undefined) return;
-      const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
-      const size = { ...sizePx, speedMmPerS: 100 };
-      const map = await this.#engine.map(...scene, size).catch((error) => this.onFailure(sentenceOf(error)));
-      if (map && this.#project.opened === opened) this.onMap(map, check);
+      if (this.#next === undefined) await this.#draw(scene, check, MAP_LONG_SIDE_PX, opened);
     }
+  }
+
+  /**
+   * Draws the map of a scene, unless another one is open then.
+   * @param {Parameters<Engine["play"]>} scene
+   * @param {Checked} check
+   * @param {number} longSidePx
+   * @param {number} opened
+   */
+  async #draw(scene, check, longSidePx, opened) {
+    const size = { ...mapSizePx(check.screen, longSidePx), speedMmPerS: 100 };
+    const map = await this.#engine.map(...scene, size).catch((error) => this.onFailure(sentenceOf(error)));
+    if (map && this.#project.opened === opened) this.onMap(map, check);
   }
 
   /**
@@ -169,10 +204,11 @@ export class Player {
    * @param {Parameters<Engine["play"]>} scene
    * @param {Checked} check
    */
-  async #load(scene, { isDraft }) {
+  async #load([files, entry, profiles], { isDraft }) {
+    const options = this.withoutPrediction ? { withoutPrediction: true } : {};
     for (;;) {
       try {
-        await this.#engine.play(...scene);
+        await this.#engine.play(files, entry, { ...profiles, ...options });
         return true;
       } catch (error) {
         const { message, canLoadAgain } = /** @type {EngineFailure} */ (error);

@@ -1,7 +1,8 @@
-// Real size: a bank card held to the screen says how many pixels a millimetre has.
+// Real size, also on the full screen: a bank card held to the screen says how many pixels a millimetre has.
 // @ts-check
 
 import { byId, element, settings } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { FrictionMap } from "./map.js" */
 
@@ -23,7 +24,27 @@ export class RealSize {
     this.#button.setAttribute("aria-pressed", "false");
     this.#button.onclick = () => {
       if (this.#map.realSize) this.#show(undefined);
-      else this.#ask();
+      else this.#ask((scale) => this.#show(scale));
+    };
+    const fullScreen = byId("full-screen");
+    // A telephone may have none.
+    fullScreen.hidden = !document.fullscreenEnabled;
+    fullScreen.onclick = () => {
+      if (this.#pixelsPerMm) attempt(() => this.#fillScreen(this.#pixelsPerMm));
+      else this.#ask((scale) => attempt(() => this.#fillScreen(scale)));
+    };
+  }
+
+  /**
+   * Shows the map alone on the full screen, in real size, until a person leaves it.
+   * @param {number | undefined} pixelsPerMm
+   */
+  async #fillScreen(pixelsPerMm) {
+    const before = this.#map.realSize;
+    await this.#map.box.requestFullscreen();
+    this.#show(pixelsPerMm);
+    this.#map.box.onfullscreenchange = () => {
+      if (!document.fullscreenElement) this.#show(before);
     };
   }
 
@@ -35,7 +56,11 @@ export class RealSize {
     this.#map.layout();
   }
 
-  #ask() {
+  /**
+   * Asks for the size of a bank card, and calls `show(pixelsPerMm)` once a person has given it.
+   * @param {(pixelsPerMm: number) => void} show
+   */
+  #ask(show) {
     let scale = this.#pixelsPerMm ?? NOMINAL_PX_PER_MM;
     const card = element("div", { className: "bank-card" }, "bank card");
     const size = element("input", {
@@ -63,7 +88,7 @@ export class RealSize {
       this.#pixelsPerMm = scale;
       settings.set("pixelsPerMm", String(scale));
       this.#dialog.close();
-      this.#show(scale);
+      show(scale);
     };
     const cancel = element("button", { onclick: () => this.#dialog.close() }, "Cancel");
     this.#dialog.replaceChildren(

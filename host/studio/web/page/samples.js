@@ -11,7 +11,22 @@ const IDLE_S = 1;
  * The columns of a frame that are kept.
  * @type {Column[]}
  */
-const COLUMNS = ["xMm", "yMm", "speedMmPerS", "referenceN", "feltN", "voltageV"];
+const COLUMNS = [
+  "xMm",
+  "yMm",
+  "speedMmPerS",
+  "referenceN",
+  "feltN",
+  "voltageV",
+  "predictedXMm",
+  "predictedYMm",
+  "reportedXMm",
+  "reportedYMm",
+  "contactRadiusMm",
+];
+const CSV_HEAD =
+  "time_s,x_mm,y_mm,speed_mm_per_s,reference_n,felt_n,voltage_v_rms," +
+  "predicted_x_mm,predicted_y_mm,reported_x_mm,reported_y_mm,contact_radius_mm";
 
 /**
  * Something for the time of samples and for each column of frames.
@@ -83,7 +98,7 @@ export class Samples {
    */
   csv(fromS, toS) {
     const columns = this.since(fromS);
-    const rows = ["time_s,x_mm,y_mm,speed_mm_per_s,reference_n,felt_n,voltage_v_rms"];
+    const rows = [CSV_HEAD];
     for (let at = 0; at < columns.timeS.length && columns.timeS[at] <= toS; at += 1) {
       const row = Object.values(columns).map((values) => values[at]);
       rows.push(row.map((value) => (Number.isFinite(value) ? Number(value.toFixed(6)) : "")).join(","));

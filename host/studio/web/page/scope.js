@@ -2,7 +2,7 @@
 // @ts-check
 
 import { clock } from "../clock.js";
-import { uPlot, uPlotStyle } from "../vendor/studio-vendor.js";
+import { uPlot, uPlotStyle } from "../vendor/chart-vendor.js";
 import { colour, contextOf, download, element } from "./dom.js";
 
 /** @import { Frame } from "../engine/types" */

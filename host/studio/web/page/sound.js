@@ -25,6 +25,8 @@ export class Sound {
    * @type {AnalyserNode | undefined}
    */
   analyser;
+  /** It goes on or off. */
+  onChange = () => {};
 
   constructor() {
     if (!(this.#mode in MODES)) this.#mode = "headphones";
@@ -79,6 +81,7 @@ export class Sound {
   #label() {
     this.#toggle.textContent = this.isOn ? "Sound off" : "Sound on";
     this.#toggle.setAttribute("aria-pressed", String(this.isOn));
+    this.onChange();
   }
 
   /** @param {string} mode */

@@ -13,7 +13,7 @@ use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::period::{self, PERIOD_CYCLES};
 use board_nucleo_g474re::pins;
 use cortex_m::asm;
-use frixel_board::self_test::{Levels, Wire};
+use frixel_board::self_test::{Fall, Levels, Wire};
 use stm32_metapac::timer::vals::{CcmrInputCcs, Sms, Ts};
 use stm32_metapac::{ADC1, DAC1, GPIOA, GPIOB, GPIOC, RCC, TIM1, TIM2};
 
@@ -142,7 +142,7 @@ impl Captures {
     }
 
     /// Forgets what was captured of the enable, and returns the time, in cycles.
-    pub(crate) fn begin_pulse(&mut self) -> u32 {
+    pub(crate) fn forget_edges(&mut self) -> u32 {
         TIM2.sr().write(|w| w.0 = 0);
         Self::now()
     }
@@ -157,10 +157,12 @@ impl Captures {
         TIM2.sr().read().ccif(ENABLE_ROSE).then(|| TIM2.ccr(ENABLE_ROSE).read())
     }
 
-    /// When the enable has fallen, in cycles, and whether it had fallen before that.
-    pub(crate) fn enable_fell(&mut self) -> Option<(u32, bool)> {
+    /// The last fall of the enable since this was called last.
+    pub(crate) fn enable_fell(&mut self) -> Option<Fall> {
         let status = TIM2.sr().read();
-        status.ccif(ENABLE_FELL).then(|| (TIM2.ccr(ENABLE_FELL).read(), status.ccof(ENABLE_FELL)))
+        status
+            .ccif(ENABLE_FELL)
+            .then(|| Fall { at: TIM2.ccr(ENABLE_FELL).read(), had_fallen_before: status.ccof(ENABLE_FELL) })
     }
 
     /// Drives a voltage into the monitor's wire, and returns what ADC1 reads.
@@ -198,14 +200,4 @@ fn connect() {
     pins::alternate(GPIOC, SYNC_IN, TIM1_FUNCTION);
     pins::alternate(GPIOB, ENABLE_IN, TIM2_FUNCTION);
     pins::analog(GPIOA, MONITOR);
-}
-
-/// Waits.
-pub(crate) fn delay_us(us: u32) {
-    asm::delay(us * CYCLES_PER_US);
-}
-
-/// Microseconds from one time to another, rounded up.
-pub(crate) fn us_between(from_cycles: u32, to_cycles: u32) -> u32 {
-    to_cycles.wrapping_sub(from_cycles).div_ceil(CYCLES_PER_US)
 }

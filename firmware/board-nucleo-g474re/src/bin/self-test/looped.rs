@@ -6,6 +6,7 @@ use core::sync::atomic::Ordering;
 
 use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::board::SCENE_SLOT;
+use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{DacBus, Frames};
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::{LIFE_US, Output};
@@ -15,21 +16,15 @@ use board_nucleo_g474re::{fault, period, tick, watchdog};
 use embedded_hal::spi::SpiDevice as _;
 use frixel_board::hardware::DacFrames as _;
 use frixel_board::main_loop::MainLoop;
-use frixel_board::self_test::{Clocks, Levels, Line, LoopedBoard, Pulse, Round, Wire};
+use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
 use frixel_session::store::Slot;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::TickTimes;
 
-use crate::captures::{Captures, Counted, delay_us, us_between};
+use crate::captures::{Captures, Counted};
 use crate::hardware::{SWITCH_HELD, Wired};
 use crate::{reset, start};
-
-/// Time between two kicks, us, and the longest wait for the enable to fall.
-const KICK_US: u32 = 500;
-const FALL_WAIT_US: u32 = 10_000;
-/// Time for the enable to rise before it is disabled again, us.
-const RISE_WAIT_US: u32 = 20;
 
 /// The board.
 pub(crate) struct Looped {
@@ -67,45 +62,6 @@ impl Still {
         let is_sent = self.frames.send(DacCode::ZERO).is_ok();
         next_period();
         is_sent
-    }
-
-    fn pulse(&mut self, kicks: u32) -> Pulse {
-        let first = self.captures.begin_pulse();
-        let mut last = first;
-        let (mut rose, mut fell_again) = (None, false);
-        for _ in 0..kicks {
-            last = Captures::now();
-            self.output.kick();
-            delay_us(KICK_US);
-            rose = rose.or(self.captures.enable_rose());
-            // It may fall only after the last kick, and that takes longer than the time between two of them.
-            fell_again |= self.captures.enable_fell().is_some();
-        }
-        let mut fell = None;
-        while fell.is_none() && us_between(last, Captures::now()) < FALL_WAIT_US {
-            watchdog::feed();
-            fell = self.captures.enable_fell();
-        }
-        self.output.zero();
-        let fell_at = fell.map(|(at, before)| {
-            fell_again |= before;
-            at
-        });
-        Pulse {
-            rise_us: rose.map(|at| us_between(first, at)),
-            fall_us: fell_at.map(|at| us_between(last, at)),
-            fell_again,
-        }
-    }
-
-    fn cut_pulse(&mut self) -> Option<u32> {
-        self.captures.begin_pulse();
-        self.output.kick();
-        delay_us(RISE_WAIT_US);
-        let cut_at = self.captures.begin_pulse();
-        self.output.zero();
-        delay_us(FALL_WAIT_US);
-        self.captures.enable_fell().map(|(at, _)| us_between(cut_at, at))
     }
 }
 
@@ -151,6 +107,7 @@ impl LoopedBoard for Looped {
     const SLOT: Slot = SCENE_SLOT;
     const LATCH_CYCLES: u32 = LATCH_CYCLES;
     const ONE_SHOT_US: u32 = LIFE_US as u32;
+    const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
     const MONITOR_ZERO_MV: u32 = 1_650;
     // The level shifter's 0.75, of 1 V for 100 V.
     const MONITOR_MV_PER_V: f32 = 7.5;
@@ -177,8 +134,9 @@ impl LoopedBoard for Looped {
         self.turn(false);
     }
 
-    fn amplifier_is_ready(&mut self) -> bool {
-        tick::inputs().0
+    fn inputs(&mut self) -> Inputs {
+        let (amplifier_ready, switch_closed) = tick::inputs();
+        Inputs { amplifier_ready, switch_closed }
     }
 
     fn levels(&mut self, wire: Wire) -> Levels {
@@ -213,12 +171,28 @@ impl LoopedBoard for Looped {
         }
     }
 
-    fn pulse(&mut self, kicks: u32) -> Pulse {
-        self.still().pulse(kicks)
+    fn cycles(&mut self) -> u32 {
+        Captures::now()
     }
 
-    fn cut_pulse(&mut self) -> Option<u32> {
-        self.still().cut_pulse()
+    fn forget_edges(&mut self) -> u32 {
+        self.captures().forget_edges()
+    }
+
+    fn kick(&mut self) {
+        self.still().output.kick();
+    }
+
+    fn disable(&mut self) {
+        self.still().output.zero();
+    }
+
+    fn enable_rose(&mut self) -> Option<u32> {
+        self.captures().enable_rose()
+    }
+
+    fn enable_fell(&mut self) -> Option<Fall> {
+        self.captures().enable_fell()
     }
 
     fn start_ticks(&mut self) {

@@ -1,0 +1,91 @@
+//! The one-shot of the enable and the captures of its edges, in virtual time.
+
+use frixel_board::self_test::Fall;
+
+use super::wrong::Wrong;
+
+/// Cycles in a microsecond. Each look at the time takes one.
+pub(super) const CYCLES_PER_US: u32 = 2;
+/// Time from the last kick until the enable falls, us, and that of a board whose one-shot is too long.
+pub(super) const ONE_SHOT_US: u32 = 900;
+const LONG_US: u32 = 1_200;
+/// Time from a kick to the rise of the enable, and from disabling it to its fall, us.
+const EDGE_US: u32 = 1;
+/// Time from the rise of the enable until an amplifier reports that it is ready, us.
+const TURN_ON_US: u32 = 300;
+
+/// The timer.
+#[derive(Debug, Default)]
+pub(super) struct OneShot {
+    now: u32,
+    rises_at: Option<u32>,
+    falls_at: Option<u32>,
+    /// Since when the enable has been high.
+    high_since: Option<u32>,
+    refused_cycles: u32,
+    rose: Option<u32>,
+    fell: Option<Fall>,
+}
+
+impl OneShot {
+    /// Lets a cycle pass in which the enable must be low if it `is_refused`, and returns the time.
+    pub(super) fn pass(&mut self, is_refused: bool) -> u32 {
+        self.now += 1;
+        self.refused_cycles += u32::from(is_refused && self.high_since.is_some());
+        if self.rises_at == Some(self.now) {
+            self.high_since = self.high_since.or(Some(self.now));
+            self.rose = self.rose.or(Some(self.now));
+        }
+        if self.falls_at == Some(self.now) {
+            self.high_since = None;
+            self.falls_at = None;
+            self.fell = Some(Fall { at: self.now, had_fallen_before: self.fell.is_some() });
+        }
+        self.now
+    }
+
+    pub(super) fn kick(&mut self, wrong: Wrong) {
+        if wrong == Wrong::EnableDead {
+            return;
+        }
+        if self.high_since.is_none() {
+            self.rises_at = Some(self.now + EDGE_US * CYCLES_PER_US);
+        }
+        let life_us = if wrong == Wrong::OneShotLong { LONG_US } else { ONE_SHOT_US };
+        let falls_at = Some(self.now + life_us * CYCLES_PER_US);
+        self.falls_at = match wrong {
+            Wrong::EnableStaysHigh => None,
+            Wrong::NotRetriggered => self.falls_at.or(falls_at),
+            _ => falls_at,
+        };
+    }
+
+    pub(super) fn disable(&mut self, wrong: Wrong) {
+        if self.falls_at.is_some() && wrong != Wrong::NotCut {
+            self.falls_at = Some(self.now + EDGE_US * CYCLES_PER_US);
+        }
+    }
+
+    pub(super) fn forget_edges(&mut self) -> u32 {
+        (self.rose, self.fell) = (None, None);
+        self.now
+    }
+
+    pub(super) fn rose(&mut self) -> Option<u32> {
+        self.rose.take()
+    }
+
+    pub(super) fn fell(&mut self) -> Option<Fall> {
+        self.fell.take()
+    }
+
+    /// Time for which the enable has been high although it was refused, us.
+    pub(super) fn refused_us(&self) -> u32 {
+        self.refused_cycles / CYCLES_PER_US
+    }
+
+    /// Whether an amplifier on this enable has turned on.
+    pub(super) fn amplifier_has_turned_on(&self) -> bool {
+        self.high_since.is_some_and(|since| self.now - since > TURN_ON_US * CYCLES_PER_US)
+    }
+}

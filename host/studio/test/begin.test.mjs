@@ -1,0 +1,69 @@
+// The page in a browser: what a scene of one's own begins with.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { openStudio } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** What the engine says of the scene that stands in the editor. */
+const problems = (page, text) =>
+  page.evaluate(async (text) => {
+    const files = { "new.toml": text };
+    for (const name of studio.names("scenes/textures/")) files[name.slice("scenes/".length)] = await studio.bytes(name);
+    const check = await studioPage.engine.check(files, "new.toml", {});
+    return { isDraft: check.isDraft, layers: check.layers?.length, said: check.problems.map(({ message }) => message) };
+  }, text);
+
+test("New offers four scenes, each with a picture and one sentence, and each plays", async () => {
+  const { page, errors, close } = await openStudio();
+  for (const name of ["stripes", "button", "picture", "noise"]) {
+    await page.click("#new");
+    const card = page.locator("#new-scene article", { has: page.locator(`h3:text-is("${name}")`) });
+    await page.waitForFunction(() => [...document.querySelectorAll("#new-scene canvas")].every(({ width }) => width === 240));
+    const words = await card.locator("p").innerText();
+    assert.ok(words.length <= 100 && /^[A-Z][^.!?]*\.$/.test(words), words);
+    await card.locator("button").click();
+    await page.waitForFunction((name) => document.getElementById("scene-name").value === name, name);
+    await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+    const text = await page.evaluate(() => studioPage.editor.text);
+    assert.deepEqual(await problems(page, text), { isDraft: false, layers: 1, said: [] }, name);
+    assert.ok(await page.isHidden("#new-scene"));
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("completion of a kind inserts what a layer of it needs, and the scene plays", async () => {
+  const { page, errors, close } = await openStudio();
+  const completed = async (kind, more = "") => {
+    const before = `version = 2\n[[layer]]\n${more}`;
+    await page.evaluate((text) => (studioPage.editor.text = text), before);
+    await page.evaluate(() => studioPage.editor.goTo(undefined, 99));
+    await page.locator(".cm-content").press("Control+End");
+    // The editor closes the quotation mark by itself.
+    await page.keyboard.type('kind = "');
+    await page.keyboard.type(kind.slice(0, 3));
+    const option = page.locator(".cm-tooltip-autocomplete li", { hasText: `"${kind}"` });
+    await option.waitFor();
+    await page.evaluate(() => wait(200));
+    await option.click();
+    return page.evaluate(() => studioPage.editor.text);
+  };
+  const kinds = await page.evaluate(async () => {
+    const schema = JSON.parse(await studio.text("docs/scene.schema.json"));
+    return schema.definitions.shared_layer.properties.kind.enum;
+  });
+  assert.equal(kinds.length, 12);
+  for (const kind of kinds) {
+    const text = await completed(kind);
+    const found = await problems(page, text);
+    assert.deepEqual([found.layers, found.isDraft], [1, false], `${text}\n${found.said.join("\n")}`);
+  }
+  const kept = await completed("grating", "wavelength_mm = 3\nlow_n = 0.0\n");
+  assert.match(kept, /^version = 2\n\[\[layer\]\]\nwavelength_mm = 3\nlow_n = 0\.0\nkind = "grating"\nhigh_fraction = 0\.8$/);
+  assert.deepEqual(errors, []);
+  await close();
+});

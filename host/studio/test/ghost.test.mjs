@@ -1,0 +1,189 @@
+// The page in a browser, as a stranger meets it: a ghost finger slides until someone presses, and only in the simulator.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers, setVisibility } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio, showDrawer } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** Opens the page as a stranger does. In it, `sent` is what goes to the board as touch. */
+async function openAsStranger(options = {}) {
+  const opened = await openStudio(undefined, { isFirstVisit: true, ...options });
+  await opened.page.evaluate(() => {
+    globalThis.sent = [];
+    const { engine } = studioPage;
+    const send = engine.pointer.bind(engine);
+    engine.pointer = (sample) => {
+      sent.push(sample);
+      send(sample);
+    };
+    const lift = engine.lift.bind(engine);
+    engine.lift = () => {
+      sent.push({ down: false });
+      lift();
+    };
+  });
+  return opened;
+}
+
+/** What is sent in this time, ms. */
+const sentIn = (page, ms) =>
+  page.evaluate(async (ms) => {
+    const before = sent.length;
+    await wait(ms);
+    return sent.slice(before);
+  }, ms);
+
+const scope = () => document.querySelector("#scope canvas").toDataURL();
+
+test("after ten seconds without input: one sentence, a scope that moves, and sound", async () => {
+  const { page, errors, close } = await openAsStranger();
+  await page.evaluate(() => wait(10_000));
+  const sentences = (await page.locator("#first-sentence").innerText()).match(/[^.!?]+[.!?]/g);
+  assert.equal(sentences?.length, 1, `${sentences}`);
+  assert.match(await page.innerText("#first-hint"), /ghost finger is sliding: press to take over/);
+  const pictures = [];
+  for (let count = 0; count < 3; count += 1) {
+    pictures.push(await page.evaluate(scope));
+    await page.evaluate(() => wait(500));
+  }
+  assert.equal(new Set(pictures).size, 3, "the scope moves");
+  const isHeardAt = await page.evaluate(() => {
+    const box = document.getElementById("hear").getBoundingClientRect();
+    return document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2).id;
+  });
+  assert.equal(isHeardAt, "hear", "the sound button can be pressed");
+  const felt = await page.evaluate(() => {
+    const { samples } = studioPage;
+    return samples.since(samples.nowS - 3).feltN.filter(Number.isFinite);
+  });
+  assert.ok(Math.max(...felt) - Math.min(...felt) > 0.05, "the wall is felt");
+  assert.ok(await page.isDisabled("#replay"), "there is no stroke of one's own");
+  await page.click("#hear");
+  await page.locator("#hear", { hasText: "Sound off" }).waitFor();
+  assert.ok((await sentIn(page, 3000)).some(({ down }) => down), "the ghost slides on while it is heard");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a press takes over for good: the ghost lifts first, then the press plays", async () => {
+  const { page, errors, close } = await openAsStranger();
+  await page.evaluate(() => wait(800));
+  const pressed = await page.evaluate(async () => {
+    const before = sent.length;
+    await slide(20, 60, 55, 100);
+    return { sent: sent.slice(before), wasDown: sent[before - 1].down };
+  });
+  assert.ok(pressed.wasDown, "the ghost was sliding");
+  const [lift, ...own] = pressed.sent;
+  assert.deepEqual([lift.down, own.every(({ down }) => down)], [false, true]);
+  assert.ok(own.every(({ yMm }) => Math.abs(yMm - 55) < 0.2), JSON.stringify(own.slice(0, 3)));
+  const came = await page.evaluate(async () => {
+    await wait(200);
+    const { samples } = studioPage;
+    const { xMm, yMm } = samples.since(samples.nowS - 0.7);
+    return { ups: xMm.filter(Number.isNaN).length, firstYMm: yMm[xMm.findLastIndex(Number.isNaN) + 1] };
+  });
+  assert.ok(came.ups > 20 && Math.abs(came.firstYMm - 55) < 0.2, `no way leads from ghost to press: ${JSON.stringify(came)}`);
+  // The board's finger is the person's, and nobody moves it away.
+  const places = await page.evaluate(async () => {
+    await wait(200);
+    const { samples } = studioPage;
+    const { xMm, yMm } = samples.since(samples.nowS - 0.1);
+    lift(60, 55);
+    return { xMm, yMm };
+  });
+  assert.ok(places.xMm.length > 80 && places.xMm.every((xMm) => Math.abs(xMm - 60) < 1), `${places.xMm.slice(0, 5)}`);
+  assert.ok(places.yMm.every((yMm) => Math.abs(yMm - 55) < 0.2), `${places.yMm.slice(0, 5)}`);
+  assert.ok((await sentIn(page, 5000)).length <= 1, "but for the lift");
+  assert.ok(await page.isHidden("#first-sentence"));
+  assert.ok(await page.isVisible("#hear"), "sound is still offered");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a key and a click take over, too; a pointer that only passes and Tab do not", async () => {
+  for (const act of [
+    (page) => page.keyboard.press("ArrowRight"),
+    (page) => page.evaluate(() => document.getElementById("map-finger").click()),
+  ]) {
+    const { page, close } = await openAsStranger();
+    await page.locator("#map-finger").hover({ position: { x: 30, y: 30 } });
+    await page.focus("#map-finger");
+    await page.keyboard.press("Shift");
+    const passed = await sentIn(page, 1200);
+    assert.ok(passed.filter(({ down }) => down).length > 50, "the ghost goes on");
+    await act(page);
+    await page.evaluate(() => wait(100));
+    assert.deepEqual(await sentIn(page, 3000), []);
+    await close();
+  }
+});
+
+test("hidden, in a blind comparison and stopped, it lifts and sends nothing; it goes on when the page is back", async () => {
+  const { page, errors, close } = await openAsStranger();
+  const isLifted = async (what) => {
+    assert.equal(await page.evaluate(() => sent.at(-1).down), false, what);
+    assert.deepEqual(await sentIn(page, 3000), [], what);
+  };
+  await page.evaluate(() => wait(800));
+  await setVisibility(page, "hidden");
+  await isLifted("hidden");
+  await setVisibility(page, "visible");
+  await page.waitForFunction(() => document.documentElement.dataset.state === "active");
+  assert.ok((await sentIn(page, 2000)).some(({ down }) => down), "it goes on");
+  await page.click("#stop");
+  await page.waitForFunction(() => document.documentElement.dataset.state === "disarmed");
+  await page.evaluate(() => wait(100));
+  await isLifted("stopped");
+  await page.click("#stop");
+  assert.ok((await sentIn(page, 2000)).some(({ down }) => down), "it goes on");
+  await showDrawer(page);
+  await page.click("#tab-compare");
+  await page.click("text=Keep this scene as A");
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("text=Compare A with the scene now");
+  await page.evaluate(() => wait(100));
+  await isLifted("blind");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("after a minute it rests, and its pictures end", async () => {
+  const { page, errors, close } = await openAsStranger();
+  assert.ok((await sentIn(page, 55_000)).some(({ down }) => down));
+  await page.evaluate(() => wait(12_000));
+  assert.deepEqual(await sentIn(page, 5000), []);
+  assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
+  const drawn = await page.evaluate(async () => {
+    let count = 0;
+    const clear = CanvasRenderingContext2D.prototype.clearRect;
+    CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+      count += 1;
+      clear.apply(this, box);
+    };
+    await wait(2000);
+    return count;
+  });
+  assert.equal(drawn, 0, "nothing is drawn in an idle page");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("who asks for less motion sees none before a press, but the words and the sound", async () => {
+  const { page, close } = await openAsStranger();
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  const touched = await page.evaluate(async () => {
+    await wait(5000);
+    const { samples } = studioPage;
+    return samples.since(0).xMm.filter(Number.isFinite).length;
+  });
+  assert.equal(touched, 0);
+  assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
+  assert.ok(await page.isVisible("#hear"));
+  await close();
+});

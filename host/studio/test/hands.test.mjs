@@ -1,0 +1,354 @@
+// The page in a browser: layers are edited on the map, by mouse, touch and keys, and their text changes with them.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openIncluding, openStudio } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+const PLATES = `# Two plates.
+version = 2
+
+# The lower one.
+[[layer]]
+name = "left"     # its name
+kind = "constant"
+region = {x_mm = 10.0, y_mm = 20, width_mm = 30, height_mm = 30} # a box
+friction_fraction = 0.5
+
+# The upper one.
+[[layer]]
+name = "right"
+kind = "rings"
+region.x_mm = 70
+region.y_mm = 20 # from above
+region.width_mm = 40
+region.height_mm = 40
+x_mm = 90
+y_mm = 40.0
+wavelength_mm = 4
+low_fraction = 0
+high_fraction = 0.9
+`;
+
+/** Opens the page with a scene, in the mode Edit. */
+async function openEditing(text = PLATES) {
+  const opened = await openStudio();
+  await opened.page.evaluate((text) => played(text), text);
+  // The screen has another size than that of the first scene: a press has to wait for its map.
+  await opened.page.waitForFunction(() => studioPage.map.screen.heightMm === 80);
+  await opened.page.getByRole("button", { name: "Edit", exact: true }).click();
+  return opened;
+}
+
+/** Where a place of the screen is in the window, CSS pixels. */
+function onPage(page, xMm, yMm) {
+  return page.evaluate(
+    ([xMm, yMm]) => {
+      const { left, top } = document.querySelector(".hands").getBoundingClientRect();
+      const { scale } = studioPage.map;
+      return [left + xMm * scale, top + yMm * scale];
+    },
+    [xMm, yMm],
+  );
+}
+
+/** Drags with the mouse from one place to another, mm, and lifts. */
+async function drag(page, from, to) {
+  await page.mouse.move(...(await onPage(page, ...from)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, ...to)), { steps: 6 });
+  await page.mouse.up();
+}
+
+/** Drags a handle of the layer that is selected by so many mm. */
+async function dragHandle(page, side, dx, dy) {
+  const { x, y, width, height } = await page.locator(`.layer-handle[data-side=${side}]`).boundingBox();
+  assert.ok(width >= 24 && height >= 24, `a handle of ${width} x ${height} pixels`);
+  const [left, top] = await onPage(page, 0, 0);
+  const [right, bottom] = await onPage(page, dx, dy);
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + right - left, y + height / 2 + bottom - top, { steps: 6 });
+  await page.mouse.up();
+}
+
+const textOf = (page) => page.evaluate(() => studioPage.editor.text);
+const plays = (page) =>
+  page.waitForFunction(() => !studioPage.player.isHeld && document.getElementById("check").textContent === "plays");
+const selected = (page) => page.locator(".layer-box[aria-current=true]").getAttribute("aria-label");
+const press = async (page, ...keys) => {
+  for (const key of keys) await page.keyboard.press(key);
+};
+
+test("a drag moves a layer, all else in the text stays, and one undo takes it back", async () => {
+  const { page, errors } = await openEditing();
+  await drag(page, [20, 30], [32.6, 25]);
+  const moved = PLATES.replace("x_mm = 10.0, y_mm = 20", "x_mm = 22.5, y_mm = 15");
+  assert.equal(await textOf(page), moved);
+  await plays(page);
+  assert.equal(await selected(page), "left, constant, 30 by 30 mm at 22.5, 15");
+  await drag(page, [100, 50], [95, 55]);
+  const both = moved
+    .replace("x_mm = 70", "x_mm = 65")
+    .replace("y_mm = 20 # from", "y_mm = 25 # from")
+    .replace("x_mm = 90", "x_mm = 85")
+    .replace("y_mm = 40.0", "y_mm = 45.0");
+  assert.equal(await textOf(page), both);
+  // Undo on the map, one step for each drag; then redo.
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), moved);
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  await press(page, "Control+Shift+z", "Control+y");
+  assert.equal(await textOf(page), both);
+  await plays(page);
+  assert.equal(await selected(page), "right, rings, 40 by 40 mm at 65, 25");
+  assert.deepEqual(errors, []);
+});
+
+test("a drag that comes back on its way is still one step, and no other step is lost", async () => {
+  const { page, errors } = await openEditing();
+  await drag(page, [20, 30], [25, 30]);
+  const before = await textOf(page);
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  for (const place of [[25, 30], [20, 30], [20, 40], [30, 45]]) await page.mouse.move(...(await onPage(page, ...place)));
+  await page.mouse.up();
+  assert.match(await textOf(page), /x_mm = 25\.0, y_mm = 35,/);
+  await page.evaluate(() => studioPage.editor.undo());
+  assert.equal(await textOf(page), before);
+  await page.evaluate(() => studioPage.editor.undo());
+  assert.equal(await textOf(page), PLATES);
+  assert.deepEqual(errors, []);
+});
+
+test("a layer stays on the screen, and Escape takes a drag back", async () => {
+  const { page, errors } = await openEditing();
+  await drag(page, [20, 30], [119, 79]);
+  assert.match(await textOf(page), /\{x_mm = 90\.0, y_mm = 50, width/);
+  await page.mouse.move(...(await onPage(page, 100, 60)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, 80, 60)));
+  assert.match(await textOf(page), /\{x_mm = 70\.0, y_mm = 50, width/);
+  await press(page, "Escape");
+  await page.mouse.move(...(await onPage(page, 60, 60)));
+  await page.mouse.up();
+  assert.match(await textOf(page), /\{x_mm = 90\.0, y_mm = 50, width/);
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("handles resize, and a layer of the whole screen gets a region", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await dragHandle(page, "se", 10, -5);
+  await dragHandle(page, "w", 4, 9);
+  assert.equal(
+    await textOf(page),
+    PLATES.replace("{x_mm = 10.0, y_mm = 20, width_mm = 30, height_mm = 30}", "{x_mm = 14.0, y_mm = 20, width_mm = 36, height_mm = 25}"),
+  );
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  await drag(page, [60, 40], [70, 40]);
+  assert.match(await page.locator(".layer-panel [role=status]").textContent(), /covers the whole screen: drag a corner/);
+  assert.equal(await textOf(page), WHOLE_SCREEN_GRATING);
+  await dragHandle(page, "nw", 20, 10);
+  const region = 'kind = "grating"\nregion = { x_mm = 20, y_mm = 10, width_mm = 100, height_mm = 70 }';
+  assert.equal(await textOf(page), WHOLE_SCREEN_GRATING.replace('kind = "grating"', region));
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("while a hand moves a layer, check and map follow, and nothing is played until it lets go", async () => {
+  const { page, errors } = await openEditing();
+  await page.evaluate(() => {
+    globalThis.calls = [];
+    const { engine, player } = studioPage;
+    for (const name of ["check", "map", "play"]) {
+      const call = engine[name].bind(engine);
+      engine[name] = (...args) => {
+        calls.push(name);
+        return call(...args);
+      };
+    }
+    globalThis.statuses = [];
+    const before = player.onStatus;
+    player.onStatus = (status) => {
+      statuses.push(status);
+      before(status);
+    };
+  });
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  for (let mm = 2; mm <= 20; mm += 2) {
+    await page.mouse.move(...(await onPage(page, 20 + mm, 30)));
+    // The outline is where the hand is, whatever the worker does.
+    assert.equal(await selected(page), `left, constant, 30 by 30 mm at ${10 + mm}, 20`);
+  }
+  await page.waitForFunction(() => calls.filter((name) => name === "map").length >= 2);
+  const { calls, statuses } = await page.evaluate(() => ({ calls, statuses }));
+  assert.ok(!calls.includes("play"), `${calls}`);
+  assert.ok(calls.filter((name) => name === "check").length <= 10, `no check but the newest waits: ${calls}`);
+  assert.deepEqual(statuses, ["loading"], "Arm waits for the scene as it is in the end");
+  await page.mouse.up();
+  await plays(page);
+  assert.deepEqual(await page.evaluate(() => statuses), ["loading", "loaded"]);
+  assert.equal((await page.evaluate(() => calls)).filter((name) => name === "play").length, 1);
+  assert.deepEqual(errors, []);
+});
+
+test("a click selects the smallest layer, the next click what lies below", async () => {
+  const { page, errors } = await openEditing(`${PLATES}\n[[layer]]\nname = "all"\nkind = "speed"\nspeeds_mm_per_s = [1, 9]\nfactors = [1, 1]\n`);
+  const names = [];
+  for (let times = 0; times < 3; times += 1) {
+    await page.mouse.click(...(await onPage(page, 20, 30)));
+    names.push((await selected(page)).split(",")[0]);
+  }
+  assert.deepEqual(names, ["left", "all", "left"]);
+  await press(page, "Escape");
+  assert.equal(await page.locator(".layer-box[aria-current=true]").count(), 0);
+  assert.ok(await page.locator(".layer-panel").isHidden());
+  assert.deepEqual(errors, []);
+});
+
+test("a finger on a touch screen moves a layer", async () => {
+  const { page, errors } = await openEditing();
+  const client = await page.context().newCDPSession(page);
+  await client.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  const touch = async (type, ...places) => {
+    const points = await Promise.all(places.map(([x, y]) => onPage(page, x, y)));
+    await client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y]) => ({ x, y })) });
+  };
+  await touch("touchStart", [20, 30]);
+  for (let mm = 2; mm <= 20; mm += 2) await touch("touchMove", [20 + mm, 30]);
+  await touch("touchEnd");
+  assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 30.0"));
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("everything works by keys alone", async () => {
+  const { page, errors } = await openStudio();
+  await page.evaluate((text) => played(text), PLATES);
+  await page.getByRole("button", { name: "Edit", exact: true }).focus();
+  await press(page, "Enter");
+  // The map follows what stands above it.
+  await page.evaluate(() => document.getElementById("options").querySelector("summary").focus());
+  await press(page, "Tab");
+  assert.equal(await selected(page), "left, constant, 30 by 30 mm at 10, 20");
+  await press(page, "ArrowRight", "ArrowDown", "Shift+ArrowLeft");
+  assert.match(await textOf(page), /\{x_mm = 10\.9, y_mm = 21,/);
+  await press(page, "Tab");
+  assert.equal(await selected(page), "right, rings, 40 by 40 mm at 70, 20");
+  await press(page, "Shift+Tab");
+  await press(page, "Control+z");
+  assert.match(await textOf(page), /\{x_mm = 11\.0, y_mm = 21,/);
+  await press(page, "Control+z", "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  await plays(page);
+  // The numbers, and back.
+  await press(page, "Space");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "left of left, mm");
+  await press(page, "Tab", "Tab", "Tab", "Tab", "ArrowRight", "ArrowRight");
+  assert.match(await textOf(page), /friction_fraction = 0\.52\n/);
+  await press(page, "Escape");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), await selected(page));
+  // Out of the scene, and back again.
+  await press(page, "Delete");
+  const without = PLATES.slice(0, PLATES.indexOf("# The lower")) + PLATES.slice(PLATES.indexOf("# The upper"));
+  assert.equal(await textOf(page), without);
+  await press(page, "Control+z");
+  assert.match(await textOf(page), /friction_fraction = 0\.52\n/);
+  await plays(page);
+  await page.evaluate(() => document.getElementById("options").querySelector("summary").focus());
+  await press(page, "Tab", "Tab", "Enter");
+  await page.waitForFunction(() => document.activeElement.classList.contains("cm-content"));
+  assert.equal(await page.locator(".cm-activeLine").textContent(), "[[layer]]");
+  await page.keyboard.type("# ");
+  assert.match(await textOf(page), /# The upper one\.\n# \[\[layer\]\]\n/);
+  assert.deepEqual(errors, []);
+});
+
+test("an arrow key that is held is one step of undo", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  for (let times = 0; times < 5; times += 1) await page.keyboard.down("ArrowRight");
+  await page.keyboard.up("ArrowRight");
+  assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 15.0"));
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  assert.deepEqual(errors, []);
+});
+
+test("numbers of a layer are tuned in the panel", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const slider = page.getByLabel("wavelength of right, mm", { exact: true });
+  assert.deepEqual(await slider.evaluate(({ min, max, value }) => [min, max, value]), ["0.5", "20", "4"]);
+  const { x, y, width, height } = await slider.boundingBox();
+  await page.mouse.move(x + width * 0.2, y + height / 2);
+  await page.mouse.down();
+  for (const part of [0.3, 0.5, 0.7]) await page.mouse.move(x + width * part, y + height / 2);
+  await page.mouse.up();
+  const [, mm] = /wavelength_mm = (\d+(?:\.\d)?)\n/.exec(await textOf(page));
+  assert.ok(mm > 10 && mm < 18, mm);
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES, "a slider's drag is one step");
+  await plays(page);
+  await page.getByLabel("gain of right, ×, as a number").fill("0.75");
+  await press(page, "Enter");
+  assert.equal(await textOf(page), `${PLATES}gain = 0.75\n`);
+  await page.getByLabel("width of right, mm").fill("30");
+  await page.getByLabel("left of right, mm").fill("60.25");
+  await press(page, "Enter");
+  assert.match(await textOf(page), /region\.x_mm = 60\.25\n.*\nregion\.width_mm = 30\n.*\nx_mm = 80\.25\n/);
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("a layer of another file is moved there, and one whose file is not here says why it is not", async () => {
+  const { page, errors } = await openIncluding();
+  await page.click("text=Edit");
+  const keys = () => page.evaluate(() => studioPage.editor.textOf("keys.toml"));
+  const before = await keys();
+  // The third copy of the key: all of them move.
+  await drag(page, [82, 40], [82, 50]);
+  assert.equal(await keys(), before.replace("y_mm = 20", "y_mm = 30").replace(/y_mm = 30(?=\nwidth)/, "y_mm = 20"));
+  assert.match(await selected(page), /^key, constant, 10 by 40 mm at 20, 30, 3 copies$/);
+  await plays(page);
+  await page.evaluate((text) => played(text), 'version = 2\ninclude = ["constant.toml"]\n');
+  await page.mouse.click(...(await onPage(page, 100, 40)));
+  const note = page.locator(".layer-panel [role=status]");
+  assert.match(await note.textContent(), /^This layer comes from constant\.toml: open that file/);
+  assert.equal(await page.locator(".layer-panel input").count(), 0);
+  assert.deepEqual(errors, []);
+});
+
+test("a blind comparison shows no outlines", async () => {
+  const { page, errors } = await openEditing();
+  await page.evaluate(() => document.getElementById("tab-compare").click());
+  await page.evaluate(() => [...document.querySelectorAll("#panel-compare button")][0].click());
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.evaluate(() => [...document.querySelectorAll("#panel-compare button")][1].click());
+  await page.locator("body.blind").waitFor();
+  assert.ok(await page.locator(".hands").isHidden());
+  assert.ok(await page.getByRole("button", { name: "Edit", exact: true }).isHidden());
+  assert.deepEqual(errors, []);
+});
+
+test("in the mode Feel a press slides the finger, also after the mode Edit", async () => {
+  const { page, errors } = await openEditing();
+  await drag(page, [20, 30], [25, 30]);
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  const text = await textOf(page);
+  const count = () => page.evaluate(() => studioPage.samples.nowS);
+  await plays(page);
+  await drag(page, [20, 30], [60, 30]);
+  await page.waitForFunction((before) => studioPage.samples.nowS > before, await count());
+  assert.equal(await textOf(page), text);
+  assert.ok(await page.locator(".hands").isHidden());
+  assert.deepEqual(errors, []);
+});

@@ -1,0 +1,202 @@
+// The page in a browser: how late friction comes with prediction and without, and the lens of a slow replay.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** Smooth stripes: friction is the mean of both where their cosine is zero, every 10 mm upwards. */
+const STRIPES_MM = 20;
+const STRIPES = WHOLE_SCREEN_GRATING.replace("wavelength_mm = 2", `wave = "sine"\nwavelength_mm = ${STRIPES_MM}`);
+const INKS = { predicted: "--good", reported: "--felt" };
+
+const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+const rms = (values) => Math.sqrt(mean(values.map((value) => value * value)));
+
+/** The lags that the page says, mm. */
+async function said(page) {
+  const texts = await page.locator("#lag-predicted, #lag-reported").allInnerTexts();
+  const [predicted, reported] = texts.map((text) => Number(/^(\d\.\d) mm$/.exec(text)?.[1]));
+  return { predicted, reported };
+}
+
+/** How many pixels of the map are in the inks of the bands. */
+function bands(page) {
+  return page.evaluate((inks) => {
+    const canvas = document.getElementById("map-finger");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const count = (ink) => {
+      const probe = document.getElementById("map").appendChild(document.createElement("span"));
+      probe.style.color = `var(${ink})`;
+      const wanted = getComputedStyle(probe).color.match(/\d+/g).map(Number);
+      probe.remove();
+      let found = 0;
+      for (let at = 0; at < data.length; at += 4) {
+        const isThere = data[at + 3] > 150 && data[at + 3] < 250;
+        if (isThere && wanted.every((value, index) => Math.abs(data[at + index] - value) < 6)) found += 1;
+      }
+      return found;
+    };
+    return Object.fromEntries(Object.entries(inks).map(([name, ink]) => [name, count(ink)]));
+  }, INKS);
+}
+
+/** The lags of a stroke, from its samples alone: how far the finger goes until the board has crossed, too, mm. */
+function lagsOf({ xMm, predictedXMm, reportedXMm }) {
+  const lags = { predicted: [], reported: [] };
+  const crossing = (places, borderMm) => places.findIndex((place, at) => places[at - 1] < borderMm && place >= borderMm);
+  for (let borderMm = 0; borderMm < 120; borderMm += STRIPES_MM / 4) {
+    // Friction is between least and largest at every other quarter of a stripe.
+    if ((borderMm / (STRIPES_MM / 4)) % 2 === 0) continue;
+    const at = crossing(xMm, borderMm);
+    if (at < 0) continue;
+    for (const [by, places] of [["predicted", predictedXMm], ["reported", reportedXMm]]) {
+      const then = crossing(places, borderMm);
+      if (then >= 0) lags[by].push(xMm[then] - borderMm);
+    }
+  }
+  return Object.fromEntries(Object.entries(lags).map(([by, all]) => [by, mean(all.map(Math.abs))]));
+}
+
+/** The samples of the stroke that comes next by itself. */
+const nextStroke = (page) =>
+  page.evaluate(async () => {
+    const { samples } = studioPage;
+    const beginS = samples.nowS;
+    const isOver = () => {
+      const { xMm } = samples.since(beginS);
+      return xMm.some(Number.isFinite) && Number.isNaN(xMm.at(-1));
+    };
+    while (!isOver()) await wait(50);
+    return samples.since(beginS);
+  });
+
+/** Felt friction beside its reference, from a while after the touch on, over the reference's own swing. */
+function errorOf({ xMm, feltN, referenceN }) {
+  const isOnTheWay = (_, at) => xMm[at] > 30 && xMm[at] < 100;
+  const [felt, reference] = [feltN.filter(isOnTheWay), referenceN.filter(isOnTheWay)];
+  const middle = mean(reference);
+  return rms(felt.map((value, at) => value - reference[at])) / rms(reference.map((value) => value - middle));
+}
+
+test("the lag of a stroke is a band at each border, with prediction and without, and as long as it is", async (context) => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), STRIPES);
+  assert.deepEqual(await bands(page), { predicted: 0, reported: 0 }, "no band before one asks");
+  await page.click("#open-lag");
+  const stroke = await wholeStroke(page, 40);
+  const lags = lagsOf(stroke);
+  const shown = await said(page);
+  context.diagnostic(`off by ${shown.predicted} mm with prediction, ${shown.reported} mm without`);
+  for (const by of ["predicted", "reported"]) assert.ok(Math.abs(shown[by] - lags[by]) < 0.2, JSON.stringify({ shown, lags }));
+  assert.ok(shown.predicted < 0.6 && shown.reported > 1, JSON.stringify(shown));
+  await page.evaluate(() => wait(3000));
+  const drawn = await bands(page);
+  assert.ok(drawn.reported > 1.5 * drawn.predicted && drawn.predicted > 0, `${JSON.stringify(drawn)} pixels stay after the trail`);
+  await page.click("#open-lag");
+  await page.evaluate(() => wait(100));
+  assert.deepEqual(await bands(page), { predicted: 0, reported: 0 });
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the switch slides the same stroke again without prediction, which is felt and heard late", async (context) => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), STRIPES);
+  await page.click("#open-lag");
+  const own = await wholeStroke(page, 40);
+  await page.evaluate(() => {
+    const { engine } = studioPage;
+    const feel = engine.onAudio;
+    globalThis.heard = 0;
+    engine.onAudio = (change, ...rest) => {
+      heard += change.filter((each) => Math.abs(each) > 1e-3).length;
+      feel(change, ...rest);
+    };
+  });
+  const again = nextStroke(page);
+  await page.locator("#prediction").uncheck();
+  const without = await again;
+  const way = ({ xMm }) => xMm.filter(Number.isFinite);
+  assert.ok(Math.abs(way(own).length - way(without).length) < 30, "the same stroke");
+  assert.ok((await page.evaluate(() => heard)) > 10_000, "it is heard");
+  const [late, before] = [errorOf(without), errorOf(own)];
+  context.diagnostic(`felt is off by ${before.toFixed(2)} of the reference's swing with prediction, ${late.toFixed(2)} without`);
+  assert.ok(late > 1.4 * before, `${late}, ${before}`);
+  const shown = await said(page);
+  assert.ok(shown.predicted < 0.6 && shown.reported > 1, `both are known of each stroke: ${JSON.stringify(shown)}`);
+  const back = nextStroke(page);
+  await page.locator("#prediction").check();
+  assert.ok(errorOf(await back) < late / 1.4, "and with it again");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a faster touch source slides the same stroke again, and its bands are shorter", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), STRIPES);
+  await page.click("#open-lag");
+  await wholeStroke(page, 40);
+  const [slow, slowDrawn] = [await said(page), await bands(page)];
+  const again = nextStroke(page);
+  await page.selectOption("#touch", "500");
+  await again;
+  await page.evaluate(() => wait(3000));
+  const [fast, fastDrawn] = [await said(page), await bands(page)];
+  assert.ok(fast.reported < 0.6 * slow.reported, JSON.stringify({ slow, fast }));
+  assert.ok(fastDrawn.reported < 0.8 * slowDrawn.reported, JSON.stringify({ slowDrawn, fastDrawn }));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** Where the lens's ring and the inks of its parts are on the map, as boxes in mm; none where it is not. */
+function lensParts(page) {
+  return page.evaluate(() => {
+    const canvas = document.getElementById("map-finger");
+    const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const perMm = studioPage.map.scale * devicePixelRatio;
+    const inks = { reports: [0xff, 0xd2, 0x3f], predicted: [0x7d, 0xff, 0xb0] };
+    const boxes = {};
+    for (const [name, ink] of Object.entries(inks)) {
+      const found = [];
+      for (let at = 0; at < data.length; at += 4) {
+        if (data[at + 3] > 250 && ink.every((value, index) => Math.abs(data[at + index] - value) < 8)) found.push(at / 4);
+      }
+      const [xs, ys] = [found.map((at) => (at % width) / perMm), found.map((at) => Math.floor(at / width) / perMm)];
+      const middle = (values) => (Math.min(...values) + Math.max(...values)) / 2;
+      boxes[name] = found.length > 0 ? { xMm: middle(xs), yMm: middle(ys), leftMm: Math.min(...xs) } : null;
+    }
+    const { samples } = studioPage;
+    const last = samples.since(samples.nowS);
+    return { ...boxes, words: document.getElementById("lens-words").innerText, last };
+  });
+}
+
+test("a slow replay has a lens at the finger: contact, reports, predicted place, voltage and force", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), STRIPES);
+  await wholeStroke(page, 40);
+  assert.ok(await page.isHidden("#lens-words"), "not while one slides");
+  await page.click("#replay");
+  await page.evaluate(() => wait(5000));
+  const { reports, predicted, words, last } = await lensParts(page);
+  const [xMm, contactMm, feltN, voltageV] = ["xMm", "contactRadiusMm", "feltN", "voltageV"].map((name) => last[name][0]);
+  assert.ok(xMm > 30 && xMm < 90, `${xMm} mm`);
+  assert.ok(predicted && Math.hypot(predicted.xMm - xMm, predicted.yMm - 40) < 2, JSON.stringify({ predicted, xMm }));
+  assert.ok(reports && reports.leftMm < xMm - 2, `reports trail behind: ${JSON.stringify({ reports, xMm })}`);
+  const [, contact, force, voltage] = /contact\s*([\d.]+) mm[\s\S]*force\s*(\d+) mN[\s\S]*voltage\s*(\d+) V rms/.exec(words) ?? [];
+  // The words are of a picture at most two samples older.
+  assert.ok(Math.abs(contact - 2 * contactMm) < 0.2 && contact > 7 && contact < 11, words);
+  assert.ok(Math.abs(force - 1000 * feltN) < 25 && force > 150, words);
+  assert.ok(Math.abs(voltage - voltageV) < 15, words);
+  await page.click("#replay");
+  await page.evaluate(() => wait(300));
+  assert.ok(await page.isHidden("#lens-words"), "the replay is over");
+  const gone = await lensParts(page);
+  assert.deepEqual([gone.reports, gone.predicted], [null, null]);
+  assert.deepEqual(errors, []);
+  await close();
+});

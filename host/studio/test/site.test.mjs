@@ -1,0 +1,79 @@
+// The site that `cargo xtask studio --site` makes, on a web server: kept for use without a network, and installable.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import { after, afterEach, test } from "node:test";
+import { gzipSync } from "node:zlib";
+import { assertFelt, lineOf, slideOver } from "./element.mjs";
+import { cleanUp, endLeftovers, openPage, required } from "./harness.mjs";
+import { serve } from "./web_server.mjs";
+
+const SITE = required("STUDIO_SITE");
+/** Largest module of <frixel-scene>, as a web server sends it, bytes. */
+const MODULE_MAX_BYTES = 900_000;
+afterEach(endLeftovers);
+after(cleanUp);
+
+const plays = (page) =>
+  page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
+
+/** The site keeps all of its files. */
+const isKept = (page) => page.evaluate(async () => void (await navigator.serviceWorker.ready));
+
+test("from the second visit on, page and gallery open without the server", async (context) => {
+  const { address, end } = await serve(SITE);
+  context.after(end);
+  const { page, errors } = await openPage(address, { isSimulated: true });
+  await plays(page);
+  await isKept(page);
+  end();
+  await page.goto(address);
+  await plays(page);
+  await page.goto(`${address}gallery/`);
+  // Its picture comes from beside the module.
+  assert.equal(await lineOf(page, 'frixel-scene[scene="brick"]'), "brick.toml");
+  assertFelt(await slideOver(page, 'frixel-scene[scene="brick"]'));
+  assert.deepEqual(errors, []);
+});
+
+test("a link opens its scene, also without the server", async (context) => {
+  const { address, end } = await serve(SITE);
+  context.after(end);
+  const { page, errors } = await openPage(address, { isSimulated: true });
+  await plays(page);
+  await isKept(page);
+  const link = await page.evaluate(async () => {
+    const { linkOf } = await import(await studio.moduleUrl("page/share.js"));
+    return linkOf("mine", 'version = 2\n[[layer]]\nkind = "constant"\nfriction_fraction = 0.5\n', []);
+  });
+  assert.ok(link.startsWith(`${address}#`), link);
+  end();
+  await page.goto("about:blank");
+  await page.goto(link);
+  await page.waitForFunction(() => document.getElementById("scene-name")?.value === "mine");
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("Chromium would install it", async (context) => {
+  const { address, end } = await serve(SITE);
+  context.after(end);
+  const { page } = await openPage(address, { isSimulated: true });
+  await plays(page);
+  await isKept(page);
+  const devTools = await page.context().newCDPSession(page);
+  const { errors, data } = await devTools.send("Page.getAppManifest");
+  assert.deepEqual(errors, []);
+  assert.equal(JSON.parse(data).display, "standalone");
+  const { installabilityErrors } = await devTools.send("Page.getInstallabilityErrors");
+  // The tests have windows that keep nothing, in which nothing is installed.
+  const others = installabilityErrors.filter(({ errorId }) => errorId !== "in-incognito");
+  assert.deepEqual(others, []);
+});
+
+test("the element's module is small enough for a document of others", (context) => {
+  const { length } = gzipSync(fs.readFileSync(path.join(SITE, "frixel-scene.module.js")), { level: 9 });
+  context.diagnostic(`${length} bytes`);
+  assert.ok(length <= MODULE_MAX_BYTES, `${length} bytes`);
+});

@@ -1,0 +1,233 @@
+// The ghost finger: slides over the scene by itself in the simulator, until a person touches the map.
+// @ts-check
+
+import { clock } from "../clock.js";
+import { byId } from "./dom.js";
+import { attempt } from "./notices.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Frame, Screen } from "../engine/types" */
+/** @import { Finger } from "./finger.js" */
+/** @import { FrictionMap } from "./map.js" */
+/** @import { Sound } from "./sound.js" */
+
+/** The ghost rests for good after it has slid for this long, ms. */
+const REST_AFTER_MS = 60_000;
+/** One stroke and the pause after it, ms. */
+const STROKE_MS = 1500;
+const PAUSE_MS = 350;
+/** Part of a stroke in which the finger speeds up, and in which it slows down. */
+const RAMP_PART = 0.15;
+/** A stroke's longest way, and the part of the screen that it crosses at most, and along which lines lie. */
+const LENGTH_MAX_MM = 130;
+const SCREEN_PART = 0.84;
+/** How far a stroke bends to the side, in its length. */
+const BEND = 0.06;
+/** Lines follow each other by the golden ratio: no two near each other, and none twice. */
+const GOLDEN = 0.618_034;
+/** Smallest radius at which the fingertip is drawn, CSS pixels, and its radius on the screen, mm. */
+const RADIUS_MIN_PX = 11;
+const RADIUS_MM = 4;
+/** Keys that only help to reach others. */
+const PASSIVE_KEYS = ["Tab", "Shift", "Control", "Alt", "Meta"];
+
+const SLIDES = "A ghost finger is sliding: press to take over.";
+const RESTS = "Press and slide to feel it.";
+
+export class Ghost {
+  #engine;
+  #map;
+  #finger;
+  #note = byId("first-words");
+  #isEnded = false;
+  #isDown = false;
+  /** Time that it has slid, and the time of the last picture, ms. */
+  #slidMs = 0;
+  #lastMs = 0;
+  /**
+   * Where the finger is felt, or was last.
+   * @type {{ xMm: number, yMm: number } | undefined}
+   */
+  #felt;
+
+  /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, sound: Sound }} parts */
+  constructor({ engine, map, finger, sound }) {
+    this.#engine = engine;
+    this.#map = map;
+    this.#finger = finger;
+    finger.overlays.push(this);
+    this.#offerSound(sound);
+    byId("first-dismiss").onclick = () => {
+      this.end();
+      this.#note.hidden = true;
+    };
+    for (const type of /** @type {const} */ (["pointerdown", "click", "keydown"]))
+      map.box.addEventListener(type, (event) => this.#touched(event), { capture: true });
+    document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
+  }
+
+  /** Whether it may slide now: never with a board, unseen, while layers are edited, or in a blind comparison. */
+  get #maySlide() {
+    const { link, state } = this.#engine.state;
+    const isOthers = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
+    return link === "simulator" && state === "active" && !isOthers && document.visibilityState === "visible";
+  }
+
+  /** Whether it is drawn. */
+  get isActive() {
+    return !this.#isEnded;
+  }
+
+  /** Begins, where a person has not asked for less motion: then nothing moves before a press. */
+  start() {
+    this.#note.hidden = false;
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.end();
+    if (this.#isEnded) return;
+    this.#finger.isGuided = true;
+    this.#say(SLIDES);
+    clock.nextFrame((ms) => this.#frame(ms));
+  }
+
+  /** Ends for good: the finger lifts. */
+  end() {
+    this.#lift();
+    this.#isEnded = true;
+    this.#finger.isGuided = false;
+    this.#finger.redraw();
+    this.#say(RESTS);
+  }
+
+  /** @param {string} words */
+  #say(words) {
+    byId("first-hint").textContent = words;
+  }
+
+  /** @param {Sound} sound */
+  #offerSound(sound) {
+    const hear = byId("hear");
+    hear.onclick = () => attempt(() => (sound.isOn ? sound.stop() : sound.start()));
+    sound.onChange = () => {
+      hear.textContent = sound.isOn ? "Sound off" : "♪ Hear it";
+      hear.setAttribute("aria-pressed", String(sound.isOn));
+    };
+    sound.onChange();
+  }
+
+  /**
+   * A person touches the map: it is theirs, and the words go.
+   * @param {Event} event
+   */
+  #touched(event) {
+    const isInNote = event.target instanceof Node && this.#note.contains(event.target);
+    if (isInNote || (event instanceof KeyboardEvent && PASSIVE_KEYS.includes(event.key))) return;
+    if (!this.#isEnded) this.end();
+    this.#note.classList.add("taken");
+  }
+
+  /** @param {number} ms */
+  #frame(ms) {
+    if (this.#isEnded) return;
+    const { link } = this.#engine.state;
+    if (link !== "simulator" || this.#slidMs >= REST_AFTER_MS) {
+      this.end();
+      // What the words say is of the simulator.
+      if (link !== "simulator") this.#note.hidden = true;
+      return;
+    }
+    if (this.#maySlide) this.#slide(ms);
+    else this.#lift();
+    this.#lastMs = ms;
+    clock.nextFrame((next) => this.#frame(next));
+  }
+
+  /** @param {number} ms */
+  #slide(ms) {
+    this.#slidMs += Math.min(ms - this.#lastMs, 50);
+    const stroke = Math.floor(this.#slidMs / (STROKE_MS + PAUSE_MS));
+    const part = (this.#slidMs % (STROKE_MS + PAUSE_MS)) / STROKE_MS;
+    if (part > 1) {
+      this.#lift();
+      return;
+    }
+    this.#isDown = true;
+    this.#engine.pointer({ timeMs: ms, ...placeAt(stroke, part, this.#map.screen), down: true });
+  }
+
+  /** At once: whoever takes over comes to a screen without a finger. */
+  #lift() {
+    if (this.#isDown) this.#engine.lift();
+    this.#isDown = false;
+  }
+
+  /** @param {Frame} frame */
+  feel({ xMm, yMm }) {
+    const at = xMm.findLastIndex(Number.isFinite);
+    if (at >= 0) this.#felt = { xMm: xMm[at], yMm: yMm[at] };
+  }
+
+  /**
+   * A fingertip that no pointer looks like: pale, with a dashed outline and a nail.
+   * @param {CanvasRenderingContext2D} context
+   */
+  draw(context) {
+    if (this.#isEnded || !this.#felt) return;
+    const { scale } = this.#map;
+    const radius = Math.max(RADIUS_MIN_PX, RADIUS_MM * scale);
+    context.save();
+    context.translate(this.#felt.xMm * scale, this.#felt.yMm * scale);
+    context.rotate(-0.35);
+    context.globalAlpha = this.#isDown ? 1 : 0.45;
+    const skin = context.createLinearGradient(0, -radius, 0, 4 * radius);
+    skin.addColorStop(0, "#ffffffb0");
+    skin.addColorStop(1, "#ffffff00");
+    context.beginPath();
+    context.moveTo(-radius, 4 * radius);
+    context.lineTo(-radius, 0);
+    context.arc(0, 0, radius, Math.PI, 2 * Math.PI);
+    context.lineTo(radius, 4 * radius);
+    context.fillStyle = skin;
+    context.fill();
+    context.setLineDash([5, 4]);
+    context.lineWidth = 3;
+    context.strokeStyle = "#000a";
+    context.stroke();
+    context.lineWidth = 1.5;
+    context.strokeStyle = "#fff";
+    context.stroke();
+    context.setLineDash([]);
+    context.beginPath();
+    context.ellipse(0, -0.15 * radius, 0.5 * radius, 0.62 * radius, 0, 0, 2 * Math.PI);
+    context.stroke();
+    context.restore();
+  }
+}
+
+/**
+ * The place in a stroke, from 0 at its begin to 1 at its end.
+ * @param {number} stroke Its number.
+ * @param {number} part
+ * @param {Screen} screen
+ */
+function placeAt(stroke, part, { widthMm, heightMm }) {
+  const isWide = widthMm >= heightMm;
+  const [long, short] = isWide ? [widthMm, heightMm] : [heightMm, widthMm];
+  const length = Math.min(SCREEN_PART * long, LENGTH_MAX_MM);
+  const passed = eased(part) - 0.5;
+  const along = long / 2 + (stroke % 2 === 0 ? 1 : -1) * length * passed;
+  const line = 0.5 + SCREEN_PART * (((0.5 + stroke * GOLDEN) % 1) - 0.5);
+  const bend = Math.min(BEND * length, 0.5 * (1 - SCREEN_PART) * short);
+  const across = line * short + bend * (1 - 4 * passed * passed) - bend / 2;
+  return isWide ? { xMm: along, yMm: across } : { xMm: across, yMm: along };
+}
+
+/**
+ * The part of the way at a part of the time: even speed between two ramps.
+ * @param {number} part
+ */
+function eased(part) {
+  const speed = 1 / (1 - RAMP_PART);
+  const ramp = (/** @type {number} */ time) => (speed * time * time) / (2 * RAMP_PART);
+  if (part < RAMP_PART) return ramp(part);
+  if (part > 1 - RAMP_PART) return 1 - ramp(1 - part);
+  return speed * (part - RAMP_PART / 2);
+}

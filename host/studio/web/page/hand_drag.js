@@ -1,0 +1,213 @@
+// Presses and drags on the map while it is edited: which layer they select, and where they move or resize it to.
+// @ts-check
+
+import { SIDE_MIN_MM, bounds, clamp } from "./place.js";
+
+/** @import { Screen } from "../engine/types" */
+/** @import { EditedLayer } from "./edited_layers.js" */
+/** @import { Hands } from "./hands.js" */
+/** @import { FrictionMap } from "./map.js" */
+/** @import { Box, Place, Side } from "./place.js" */
+/** @typedef {{ xMm: number, yMm: number }} Point */
+/**
+ * A press that has not been lifted: where it began, what it dragged from there, and which layer a click would select.
+ * @typedef {{ pointerId: number, start: Point, clientX: number, clientY: number, handle: string | undefined,
+ *   place: Place | undefined, hasMoved: boolean, next: EditedLayer | undefined }} Press
+ */
+
+/** A press that moves less is a click, CSS pixels. */
+const CLICK_PX = 4;
+/** How far from a layer's edge a press still selects it, CSS pixels. */
+const NEAR_PX = 8;
+/** Sides that a hand drags come to rest on multiples of this, mm. */
+const GRID_MM = 0.5;
+const FINE_GRID_MM = 0.1;
+const TYPED_GRID_MM = 0.01;
+
+export class HandDrag {
+  #surface;
+  #hands;
+  #map;
+  /** @type {Press | undefined} */
+  #press;
+
+  /**
+   * @param {HTMLElement} surface
+   * @param {Hands} hands
+   * @param {FrictionMap} map
+   */
+  constructor(surface, hands, map) {
+    this.#surface = surface;
+    this.#hands = hands;
+    this.#map = map;
+    surface.addEventListener("pointerdown", (event) => this.#down(event));
+    surface.addEventListener("pointermove", (event) => this.#move(event));
+    surface.addEventListener("pointerup", (event) => this.#up(event));
+    surface.addEventListener("pointercancel", (event) => this.#up(event));
+    surface.addEventListener("pointerleave", () => hands.mark(undefined));
+  }
+
+  /**
+   * @param {PointerEvent} event
+   * @returns {Point}
+   */
+  #at({ clientX, clientY }) {
+    const { left, top } = this.#surface.getBoundingClientRect();
+    return { xMm: (clientX - left) / this.#map.scale, yMm: (clientY - top) / this.#map.scale };
+  }
+
+  /** @param {Point} point */
+  #under({ xMm, yMm }) {
+    return this.#hands.under(xMm, yMm, NEAR_PX / this.#map.scale);
+  }
+
+  /** @param {PointerEvent} event */
+  #down(event) {
+    if (event.button !== 0 || this.#press) return;
+    // The focus goes to the layer, below.
+    event.preventDefault();
+    const { clientX, clientY, pointerId, target } = event;
+    // A pointer that a test makes cannot be captured.
+    if (event.isTrusted) this.#surface.setPointerCapture(pointerId);
+    const handle = target instanceof HTMLElement ? target.dataset.side : undefined;
+    const start = this.#at(event);
+    const found = this.#under(start);
+    const selected = this.#hands.selected;
+    const at = found.findIndex((each) => each.key === selected?.key);
+    // A second click selects what lies below.
+    const next = handle || at < 0 ? undefined : found[(at + 1) % found.length];
+    if (!handle && at < 0) this.#hands.focus(found[0]?.key);
+    else if (selected) this.#hands.focus(selected.key);
+    this.#press = { pointerId, start, clientX, clientY, handle, place: undefined, hasMoved: false, next };
+  }
+
+  /** @param {PointerEvent} event */
+  #move(event) {
+    const press = this.#press;
+    if (!press) {
+      this.#hands.mark(this.#under(this.#at(event))[0]);
+      return;
+    }
+    if (event.pointerId !== press.pointerId) return;
+    const isFar = Math.hypot(event.clientX - press.clientX, event.clientY - press.clientY) >= CLICK_PX;
+    if (!press.hasMoved && !isFar) return;
+    if (!press.hasMoved) press.place = this.#hands.grip()?.place;
+    press.hasMoved = true;
+    // What was taken back by a key, or whose text has gone, is not dragged on.
+    if (this.#hands.isHolding) this.#drag(press, this.#at(event), event.shiftKey ? FINE_GRID_MM : GRID_MM);
+  }
+
+  /**
+   * @param {Press} press
+   * @param {Point} point
+   * @param {number} grid
+   */
+  #drag({ place, start, handle }, { xMm, yMm }, grid) {
+    if (!place) return;
+    const [dx, dy] = [xMm - start.xMm, yMm - start.yMm];
+    const { box } = place;
+    if (handle) this.#hands.resize(resized(place, handle, dx, dy, this.#hands.screen, grid));
+    else if (place.isWholeScreen) this.#hands.move(snapped(dx, grid), snapped(dy, grid));
+    else {
+      const { widthMm, heightMm } = this.#hands.screen;
+      const all = bounds(box, place.copies);
+      const left = clamp(snapped(box.x + dx, grid), box.x - all.x, widthMm - all.x - all.width + box.x);
+      const top = clamp(snapped(box.y + dy, grid), box.y - all.y, heightMm - all.y - all.height + box.y);
+      this.#hands.move(left - box.x, top - box.y);
+    }
+  }
+
+  /** @param {PointerEvent} event */
+  #up(event) {
+    const press = this.#press;
+    if (!press || event.pointerId !== press.pointerId) return;
+    this.#press = undefined;
+    if (event.type === "pointercancel") this.#hands.cancel();
+    else if (!press.hasMoved && press.next) this.#hands.focus(press.next.key);
+    this.#hands.end();
+  }
+}
+
+/**
+ * @param {number} mm
+ * @param {number} grid
+ */
+function snapped(mm, grid) {
+  return Math.round(mm / grid) * grid;
+}
+
+/**
+ * The box of a layer whose handle was dragged: the other sides stay, all copies stay on the screen.
+ * @param {Place} place
+ * @param {string} handle
+ * @param {number} dx
+ * @param {number} dy
+ * @param {Screen} screen
+ * @param {number} grid
+ */
+export function resized({ box, copies, keepsRatio }, handle, dx, dy, screen, grid) {
+  const all = bounds({ ...box, width: 0, height: 0 }, copies);
+  const [left, right] = dragged(
+    [box.x, box.x + box.width],
+    [handle.includes("w"), handle.includes("e")],
+    dx,
+    [box.x - all.x, screen.widthMm - (all.x + all.width - box.x)],
+    grid,
+  );
+  const [top, bottom] = dragged(
+    [box.y, box.y + box.height],
+    [handle.includes("n"), handle.includes("s")],
+    dy,
+    [box.y - all.y, screen.heightMm - (all.y + all.height - box.y)],
+    grid,
+  );
+  const made = { x: left, y: top, width: right - left, height: bottom - top };
+  return keepsRatio ? inRatio(box, made, handle, screen) : made;
+}
+
+/**
+ * One side of a box, or the other, dragged along an axis.
+ * @param {[number, number]} ends
+ * @param {[boolean, boolean]} isDragged
+ * @param {number} by
+ * @param {[number, number]} room
+ * @param {number} grid
+ * @returns {[number, number]}
+ */
+function dragged([low, high], [isLow, isHigh], by, [least, most], grid) {
+  if (isLow) return [clamp(snapped(low + by, grid), least, high - SIDE_MIN_MM), high];
+  if (isHigh) return [low, clamp(snapped(high + by, grid), low + SIDE_MIN_MM, most)];
+  return [low, high];
+}
+
+/**
+ * A picture's box, whose height follows from its width.
+ * @param {Box} before
+ * @param {Box} made
+ * @param {string} handle
+ * @param {Screen} screen
+ * @returns {Box}
+ */
+function inRatio(before, made, handle, screen) {
+  const ratio = before.height / before.width;
+  const room = handle.includes("n") ? before.y + before.height : screen.heightMm - before.y;
+  const width = Math.min(made.width, room / ratio);
+  const height = width * ratio;
+  const x = handle.includes("w") ? before.x + before.width - width : before.x;
+  const y = handle.includes("n") ? before.y + before.height - height : before.y;
+  return { x, y, width, height };
+}
+
+/**
+ * A box with one side as typed, as far as the screen goes.
+ * @param {Place} place
+ * @param {Side} side
+ * @param {number} mm
+ * @param {Screen} screen
+ */
+export function withSide(place, side, mm, screen) {
+  const { box } = place;
+  const handle = { x: "w", y: "n", width: "e", height: "s" }[side];
+  const by = mm - box[side];
+  return resized(place, handle, by, by, screen, TYPED_GRID_MM);
+}

@@ -1,0 +1,370 @@
+// Hands on the map: in the mode *Edit* layers are selected, moved, resized and tuned, and their text changes with them.
+// @ts-check
+
+import { byId, element } from "./dom.js";
+import { EditedLayers } from "./edited_layers.js";
+import { HandDrag, withSide } from "./hand_drag.js";
+import { LayerBoxes } from "./layer_boxes.js";
+import { layerNumbers } from "./layer_numbers.js";
+import { LayerPanel } from "./layer_panel.js";
+
+/** @import { Checked, Files } from "../engine/types" */
+/** @import { Schema } from "./completion.js" */
+/** @import { EditedLayer } from "./edited_layers.js" */
+/** @import { Editor } from "./editor.js" */
+/** @import { HeldChange } from "./held_change.js" */
+/** @import { Most } from "./layer_numbers.js" */
+/** @import { Area, FrictionMap } from "./map.js" */
+/** @import { Box } from "./place.js" */
+/** @import { Player } from "./player.js" */
+/** @import { Project } from "./project.js" */
+/** @import { Change } from "./toml_text.js" */
+/** @typedef {{ map: FrictionMap, editor: Editor, player: Player, project: Project }} Parts */
+/**
+ * A change that a hand is making: of which layer, as it was before.
+ * @typedef {{ held: HeldChange, from: EditedLayer }} Grip
+ */
+
+const KEYS =
+  "Arrow keys move it by 1 mm, with Shift by 0.1 mm. Tab: next layer. Space: its numbers. Enter: its text. Delete removes it. Escape deselects it.";
+/** @type {Record<string, [number, number]>} */
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const STEP_MM = 1;
+const FINE_STEP_MM = 0.1;
+const ELSEWHERE = "The text has changed: its layers are read again in a moment.";
+
+export class Hands {
+  #parts;
+  #schema;
+  #layers;
+  #boxes;
+  #panel = new LayerPanel();
+  #surface = element("div", { className: "hands", role: "group", tabIndex: -1, hidden: true, "aria-label": "Layers" });
+  #buttons = ["Feel", "Edit"].map((words) => element("button", { type: "button", "aria-pressed": "false" }, words));
+  /** @type {string | undefined} */
+  #selected;
+  /** @type {Grip | undefined} */
+  #grip;
+  /** How far the arrow keys have moved a layer since they are held. */
+  #byKeysMm = [0, 0];
+  #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
+  isEditing = false;
+  /** The mode Edit begins: the map is no longer for sliding. */
+  onEdit = () => {};
+
+  /**
+   * @param {Parts} parts
+   * @param {Schema} schema
+   */
+  constructor(parts, schema) {
+    this.#parts = parts;
+    this.#schema = schema;
+    this.#layers = new EditedLayers(parts.editor);
+    this.#boxes = new LayerBoxes(this.#surface);
+    const { box, onLayout } = parts.map;
+    const keys = element("p", { id: "hands-keys", hidden: true }, KEYS);
+    box.append(this.#surface, keys, makeHint());
+    document.body.append(this.#panel.element);
+    this.#makeSwitch();
+    new HandDrag(this.#surface, this, parts.map);
+    this.#listen(box);
+    parts.map.onLayout = (area) => {
+      onLayout(area);
+      this.#lay(area);
+    };
+  }
+
+  #makeSwitch() {
+    const [feel, edit] = this.#buttons;
+    edit.title = "Select, move and resize the layers on the map";
+    feel.onclick = () => this.setEditing(false);
+    edit.onclick = () => this.setEditing(true);
+    const words = "What a press on the map does";
+    byId("options").before(element("div", { className: "mode", role: "group", "aria-label": words }, feel, edit));
+    this.setEditing(false);
+  }
+
+  /** @param {HTMLElement} box */
+  #listen(box) {
+    for (const part of [box, this.#panel.element])
+      part.addEventListener("keydown", (event) => this.#undoByKey(event), { capture: true });
+    this.#surface.addEventListener("keydown", (event) => this.#key(event));
+    this.#surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.end());
+    this.#surface.addEventListener("focusout", () => this.end());
+    this.#panel.element.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      this.end();
+      this.#boxes.focus(this.#selected);
+    });
+    this.#boxes.onFocus = (key) => this.select(key);
+    this.#panel.onNumber = ({ path, decimals }, value) => this.change([{ path, value, decimals }]);
+    this.#panel.onSide = (side, mm) => this.#toSide(side, mm);
+    this.#panel.onEnd = () => this.end();
+    this.#panel.onText = () => this.#toText();
+    this.#panel.onDelete = () => this.#delete();
+    this.#panel.onClose = () => this.#deselect();
+  }
+
+  /** @param {boolean} isEditing */
+  setEditing(isEditing) {
+    this.end();
+    this.isEditing = isEditing;
+    const [feel, edit] = this.#buttons;
+    feel.setAttribute("aria-pressed", String(!isEditing));
+    edit.setAttribute("aria-pressed", String(isEditing));
+    this.#surface.hidden = !isEditing;
+    byId("map").classList.toggle("editing", isEditing);
+    byId("map-finger").inert = isEditing;
+    if (isEditing) this.onEdit();
+    else this.#selected = undefined;
+    this.#draw(true);
+  }
+
+  /**
+   * Takes the layers of a scene that was checked.
+   * @param {Checked} check
+   * @param {Files} files That were checked.
+   */
+  show(check, files) {
+    const { editor, project } = this.#parts;
+    if (this.isHolding) return;
+    this.#reach = check;
+    if (!this.#layers.take(check, files, project.entry)) return;
+    if (!this.#layers.find(this.#selected)) this.#selected = undefined;
+    this.#draw(false);
+    // What is selected stands in the text that is shown.
+    if (!editor.has(this.selected?.layer.file)) this.#panel.hide();
+  }
+
+  get selected() {
+    return this.#layers.find(this.#selected);
+  }
+
+  /** @param {string | undefined} key */
+  select(key) {
+    if (key === this.#selected) return;
+    this.end();
+    this.#selected = key;
+    this.#draw(true);
+  }
+
+  /**
+   * Selects a layer and gives it the focus, so that the keys act on it.
+   * @param {string | undefined} key
+   */
+  focus(key) {
+    this.select(key);
+    if (key === undefined) this.#surface.focus({ preventScroll: true });
+    else this.#boxes.focus(key);
+  }
+
+  #deselect() {
+    this.focus(undefined);
+  }
+
+  /**
+   * The layers under a place, that which a press selects first.
+   * @param {number} xMm
+   * @param {number} yMm
+   * @param {number} nearMm
+   */
+  under(xMm, yMm, nearMm) {
+    return this.#layers.under(xMm, yMm, nearMm);
+  }
+
+  /** @param {EditedLayer | undefined} edited */
+  mark(edited) {
+    this.#boxes.mark(edited?.key);
+  }
+
+  /** @param {string} sentence */
+  say(sentence) {
+    this.#panel.note = sentence;
+  }
+
+  get isHolding() {
+    return this.#grip !== undefined && !this.#grip.held.isOver;
+  }
+
+  /**
+   * Begins a change of the layer that is selected, or goes on with it; returns what it was before. Where it cannot be
+   * changed now, says why.
+   */
+  grip() {
+    if (this.#grip && this.isHolding) return this.#grip.from;
+    if (this.#grip) this.end();
+    const from = this.selected;
+    if (!from || from.at === undefined) return undefined;
+    if (!this.#layers.isCurrent) {
+      this.say(ELSEWHERE);
+      return undefined;
+    }
+    this.#grip = { from, held: this.#parts.editor.hold(from.layer.file) };
+    return from;
+  }
+
+  /**
+   * Makes changes of the layer as it was before, in place of those that this hand made last.
+   * @param {Change[]} changes
+   * @param {Box} [box] Where its first copy is then, where its text does not say that.
+   */
+  change(changes, box) {
+    const from = this.grip();
+    if (!from?.toml || !this.#grip) return;
+    const { player } = this.#parts;
+    const replacements = from.toml.replacements(changes);
+    if (replacements.length === 0 && !player.isHeld) return;
+    player.hold();
+    this.#grip.held.make(replacements);
+    this.#layers.reread(from, box);
+    this.#draw(false);
+  }
+
+  /** Takes back what this hand has changed since it began. */
+  cancel() {
+    if (this.#grip && this.#parts.player.isHeld) this.change([], this.#grip.from.place.box);
+    this.end();
+  }
+
+  /** The hand lets go: the scene plays as it is now. */
+  end() {
+    this.#byKeysMm = [0, 0];
+    const grip = this.#grip;
+    if (!grip) return;
+    this.#grip = undefined;
+    grip.held.end();
+    const { player, editor } = this.#parts;
+    if (player.isHeld) player.release(editor.text);
+  }
+
+  /**
+   * Moves the selected layer from where it was when the change began.
+   * @param {number} dxMm
+   * @param {number} dyMm
+   */
+  move(dxMm, dyMm) {
+    const place = this.grip()?.place;
+    if (!place) return;
+    if (place.whyNotMoved) {
+      this.say(place.whyNotMoved);
+      return;
+    }
+    const { x, y, width, height } = place.box;
+    this.change(place.move(dxMm, dyMm), place.isWholeScreen ? undefined : { x: x + dxMm, y: y + dyMm, width, height });
+  }
+
+  /** @param {Box} box */
+  resize(box) {
+    const place = this.grip()?.place;
+    if (!place) return;
+    if (place.whyNotResized) this.say(place.whyNotResized);
+    else this.change(place.resize(box), box);
+  }
+
+  get screen() {
+    return this.#layers.screen;
+  }
+
+  /**
+   * @param {keyof Box} side
+   * @param {number} mm
+   */
+  #toSide(side, mm) {
+    const place = this.grip()?.place;
+    if (!place) return;
+    const isMove = (side === "x" || side === "y") && !place.isWholeScreen;
+    if (isMove) this.move(side === "x" ? mm - place.box.x : 0, side === "y" ? mm - place.box.y : 0);
+    else this.resize(withSide(place, side, mm, this.screen));
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    const { key, shiftKey } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (key in ARROWS && this.selected) {
+      const step = shiftKey ? FINE_STEP_MM : STEP_MM;
+      this.#byKeysMm = this.#byKeysMm.map((mm, along) => mm + step * ARROWS[key][along]);
+      const [dx, dy] = this.#byKeysMm;
+      this.move(dx, dy);
+    } else if (key === "Tab") {
+      const next = this.#selected && this.#boxes.neighbour(this.#selected, shiftKey ? -1 : 1);
+      if (!next) return;
+      this.focus(next);
+    } else if (key === "Enter") this.#toText();
+    else if (key === " ") this.#panel.focus();
+    else if (key === "Delete" || key === "Backspace") this.#delete();
+    else if (key === "Escape") {
+      if (this.#parts.player.isHeld) this.cancel();
+      else this.#deselect();
+    } else return;
+    event.preventDefault();
+  }
+
+  /** @param {KeyboardEvent} event */
+  #undoByKey(event) {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || (key !== "z" && key !== "y")) return;
+    event.preventDefault();
+    this.end();
+    const { editor } = this.#parts;
+    if (key === "y" || event.shiftKey) editor.redo();
+    else editor.undo();
+  }
+
+  #toText() {
+    const { editor } = this.#parts;
+    const { selected } = this;
+    if (!selected || !editor.has(selected.layer.file)) return;
+    this.end();
+    const [first] = selected.at === undefined ? selected.layer.from : (selected.toml?.layerLines(selected.at) ?? [1]);
+    editor.goTo(selected.layer.file, first);
+  }
+
+  #delete() {
+    this.end();
+    const from = this.grip();
+    const grip = this.#grip;
+    if (!from?.toml || from.at === undefined || !grip) return;
+    this.#grip = undefined;
+    grip.held.make([from.toml.removal(from.at)]);
+    grip.held.end();
+    this.#layers.all = this.#layers.all.filter((each) => each !== from);
+    this.#deselect();
+  }
+
+  /** @param {Area} area */
+  #lay({ left, top, width, height }) {
+    Object.assign(this.#surface.style, {
+      left: `${left}px`,
+      top: `${top}px`,
+      width: `${width}px`,
+      height: `${height}px`,
+    });
+    this.#draw(false);
+  }
+
+  /** @param {boolean} isNew Whether another layer is selected. */
+  #draw(isNew) {
+    if (!this.isEditing) {
+      this.#panel.hide();
+      return;
+    }
+    const { scale, box } = this.#parts.map;
+    this.#boxes.show(this.#layers.all, this.#selected, scale);
+    const { selected } = this;
+    box.classList.toggle("has-selection", selected !== undefined);
+    if (!selected) {
+      this.#panel.hide();
+      return;
+    }
+    const { toml, at, layer } = selected;
+    const numbers = toml && at !== undefined ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
+    this.#panel.show(selected, numbers, isNew);
+    this.#panel.place([byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect()));
+  }
+}
+
+function makeHint() {
+  const words = "Press a layer to select it. Drag it to move it, its handles to resize it.";
+  return element("p", { className: "hint hands-hint" }, words);
+}

@@ -1,0 +1,72 @@
+// A change of a text that goes on as long as a hand holds something: one step of undo, however often the hand moves.
+// @ts-check
+
+import { Annotation, Transaction, isolateHistory } from "../vendor/studio-vendor.js";
+
+/** @import { ChangeSet, EditorView } from "../vendor/studio-vendor.js" */
+/** @import { Replacement } from "./toml_text.js" */
+
+/** Marks changes that go on with the step of undo before. */
+const goesOn = Annotation.define();
+
+/**
+ * For CodeMirror's history: whether a change joins the step before, which is not long ago.
+ * @param {Transaction} transaction
+ * @param {boolean} isAdjacent
+ */
+export function joinHeld(transaction, isAdjacent) {
+  return isAdjacent || transaction.annotation(goesOn) === true;
+}
+
+export class HeldChange {
+  #view;
+  #start;
+  #now;
+  /** @type {ChangeSet} */
+  #made;
+  /** @type {number | undefined} */
+  #beganMs;
+
+  /** @param {EditorView} view */
+  constructor(view) {
+    this.#view = view;
+    this.#start = view.state;
+    this.#now = view.state.doc;
+    this.#made = view.state.changes([]);
+  }
+
+  /** Whether the text is another than this change has left: it must not go on. */
+  get isOver() {
+    return this.#view.state.doc !== this.#now;
+  }
+
+  /** The text before. */
+  get startText() {
+    return this.#start.doc.toString();
+  }
+
+  /**
+   * Makes these replacements of the text before, in place of those that were made last.
+   * @param {Replacement[]} replacements
+   */
+  make(replacements) {
+    if (this.isOver) return;
+    const next = this.#start.changes(replacements);
+    const changes = this.#made.invert(this.#start.doc).compose(next);
+    if (changes.empty) return;
+    // The history joins changes of one time: the hand may rest as long as it likes.
+    const annotations = this.#beganMs === undefined
+      ? [isolateHistory.of("before")]
+      : [goesOn.of(true), Transaction.time.of(this.#beganMs)];
+    this.#beganMs ??= Date.now();
+    if (annotations.length === 1) annotations.push(Transaction.time.of(this.#beganMs));
+    this.#view.dispatch({ changes, annotations });
+    this.#made = next;
+    this.#now = this.#view.state.doc;
+  }
+
+  /** The hand lets go: what comes next is another step. */
+  end() {
+    if (this.#beganMs !== undefined && !this.isOver) this.#view.dispatch({ annotations: isolateHistory.of("full") });
+  }
+}

@@ -1,0 +1,155 @@
+// How late friction comes: prediction on and off, the touch source, and the lag of both as bands on the map.
+// @ts-check
+
+import { byId, colour } from "./dom.js";
+import { Borders } from "./borders.js";
+import { attempt } from "./notices.js";
+
+/** @import { Engine } from "../engine/engine.js" */
+/** @import { Frame } from "../engine/types" */
+/** @import { By } from "./borders.js" */
+/** @import { Finger } from "./finger.js" */
+/** @import { FrictionMap } from "./map.js" */
+/** @import { Player } from "./player.js" */
+
+/** How far a band reaches to its side of the stroke, CSS pixels; that with prediction and that without lie side by side. */
+const WIDE_PX = 15;
+/** A band is drawn at least this long, CSS pixels, so that a lag of nothing is seen. */
+const LONG_MIN_PX = 3;
+/** @type {Record<By, { ink: string, side: number }>} */
+const BANDS = { predicted: { ink: "good", side: -1 }, reported: { ink: "felt", side: 1 } };
+
+export class Lag {
+  #engine;
+  #map;
+  #finger;
+  /** @type {Borders | undefined} */
+  #borders;
+  #isStroke = false;
+  #isOpen = false;
+  /** Another setting is on its way: the last stroke is slid again once it plays. */
+  #isChanging = false;
+  /** Whether there is a stroke of a person's that can be slid again. */
+  hasStroke = false;
+  /** Another way to play was chosen. */
+  onChange = () => {};
+  /** Drawn anew only when a band comes or goes. */
+  isActive = false;
+
+  /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, player: Player }} parts */
+  constructor({ engine, map, finger, player }) {
+    this.#engine = engine;
+    this.#map = map;
+    this.#finger = finger;
+    finger.overlays.push(this);
+    byId("open-lag").onclick = () => this.#open(!this.isOpen);
+    byId("touch").addEventListener("change", () => (this.#isChanging = true));
+    byId("prediction").onchange = () => {
+      player.withoutPrediction = !byId("prediction").checked;
+      this.#isChanging = true;
+      this.#say();
+      this.onChange();
+    };
+  }
+
+  get isOpen() {
+    return this.#isOpen;
+  }
+
+  /** @param {boolean} isOpen */
+  #open(isOpen) {
+    this.#isOpen = isOpen;
+    byId("lag").hidden = !isOpen;
+    byId("open-lag").setAttribute("aria-expanded", String(isOpen));
+    this.#forget();
+    this.#say();
+  }
+
+  #forget() {
+    this.#borders = undefined;
+    this.#isStroke = false;
+    this.#finger.redraw();
+  }
+
+  /** The scene plays, maybe in another way: the last stroke again shows what that changes. */
+  played() {
+    this.#forget();
+    const isChanging = this.#isChanging;
+    this.#isChanging = false;
+    if (!isChanging || !this.isOpen || !this.hasStroke || this.#engine.state.link !== "simulator") return;
+    attempt(() => this.#engine.replay({ slowness: 1 }));
+  }
+
+  /** A board plays as its scene says: it has no switch. */
+  showBoard() {
+    byId("open-lag").disabled = this.#engine.state.link !== "simulator";
+    if (byId("open-lag").disabled) this.#open(false);
+  }
+
+  /** @param {Frame} frame */
+  feel(frame) {
+    if (!this.isOpen || !frame.simulated) return;
+    const wasStroke = this.#isStroke;
+    for (let at = 0; at < frame.xMm.length; at += 1) this.#add(frame, at);
+    if (wasStroke || this.#isStroke) {
+      this.#finger.redraw();
+      this.#say();
+    }
+  }
+
+  /**
+   * @param {Frame} frame
+   * @param {number} at
+   */
+  #add({ xMm, yMm, predictedXMm, predictedYMm, reportedXMm, reportedYMm, firstTick, ticksPerSample }, at) {
+    const isDown = Number.isFinite(xMm[at]);
+    if (isDown && !this.#isStroke) {
+      this.#borders = new Borders((x, y) => this.#map.frictionAt(x, y), this.#map.frictionN);
+    }
+    if (this.#isStroke && !isDown) this.#borders?.end();
+    this.#isStroke = isDown;
+    if (!isDown || !Number.isFinite(predictedXMm[at]) || !Number.isFinite(reportedXMm[at])) return;
+    this.#borders?.add(
+      (firstTick + at * ticksPerSample) / 40,
+      { xMm: xMm[at], yMm: yMm[at] },
+      {
+        predicted: { xMm: predictedXMm[at], yMm: predictedYMm[at] },
+        reported: { xMm: reportedXMm[at], yMm: reportedYMm[at] },
+      },
+    );
+  }
+
+  #say() {
+    const [predicted, reported] = /** @type {By[]} */ (["predicted", "reported"]).map((by) => this.#borders?.meanMm(by));
+    const mm = (/** @type {number | undefined} */ value) => (value === undefined ? "–" : `${value.toFixed(1)} mm`);
+    byId("lag-predicted").textContent = mm(predicted);
+    byId("lag-reported").textContent = mm(reported);
+    const isOn = byId("prediction").checked;
+    byId("lag-predicted").parentElement?.classList.toggle("plays", isOn);
+    byId("lag-reported").parentElement?.classList.toggle("plays", !isOn);
+  }
+
+  /** @param {CanvasRenderingContext2D} context */
+  draw(context) {
+    if (!this.isOpen || !this.#borders) return;
+    const { scale, box } = this.#map;
+    // Both sides of a line are borders: the band stands where friction rises.
+    for (const border of this.#borders.found.filter(({ isUp }) => isUp)) {
+      context.save();
+      context.translate(border.xMm * scale, border.yMm * scale);
+      context.rotate(Math.atan2(border.uy, border.ux));
+      for (const [by, { ink, side }] of Object.entries(BANDS)) {
+        const lagMm = border[/** @type {By} */ (by)];
+        if (lagMm === undefined) continue;
+        const long = Math.sign(lagMm || 1) * Math.max(LONG_MIN_PX, Math.abs(lagMm) * scale);
+        context.fillStyle = colour(ink, box);
+        context.globalAlpha = 0.85;
+        context.fillRect(0, 0, long, side * WIDE_PX);
+        context.globalAlpha = 1;
+      }
+      context.fillStyle = "#fff";
+      context.fillRect(-0.5, -WIDE_PX, 1, 2 * WIDE_PX);
+      context.restore();
+    }
+  }
+}

@@ -1,0 +1,147 @@
+// The outlines of the layers on the map, and the handles of the one that is selected.
+// @ts-check
+
+import { element } from "./dom.js";
+import { numberText } from "./toml_text.js";
+
+/** @import { EditedLayer } from "./edited_layers.js" */
+/** @import { Box, Place } from "./place.js" */
+/** @typedef {"nw" | "n" | "ne" | "e" | "se" | "s" | "sw" | "w"} Handle */
+
+/** @type {Record<Handle, [number, number]>} Of each handle, the part of the box's width and height. */
+const HANDLES = {
+  nw: [0, 0], n: [0.5, 0], ne: [1, 0], e: [1, 0.5], se: [1, 1], s: [0.5, 1], sw: [0, 1], w: [0, 0.5],
+};
+/** A side shorter than this has no handle of its own, and handles stand outside of a box that is as small, CSS pixels. */
+const LONG_SIDE_PX = 80;
+const OUTSIDE_PX = 8;
+
+export class LayerBoxes {
+  #parent;
+  /** Buttons, by the layers' keys. */
+  #buttons = /** @type {Map<string, HTMLButtonElement>} */ (new Map());
+  #copies = element("div");
+  #handles = /** @type {Handle[]} */ (Object.keys(HANDLES)).map((side) => {
+    const handle = element("span", { className: "layer-handle", hidden: true });
+    handle.dataset.side = side;
+    return handle;
+  });
+  /**
+   * A layer has got the focus.
+   * @type {(key: string) => void}
+   */
+  onFocus = () => {};
+
+  /** @param {HTMLElement} parent */
+  constructor(parent) {
+    this.#parent = parent;
+    parent.append(this.#copies, ...this.#handles);
+  }
+
+  /** @param {string | undefined} key */
+  focus(key) {
+    const button = key === undefined ? undefined : this.#buttons.get(key);
+    button?.focus({ preventScroll: true });
+  }
+
+  /**
+   * The key of the next layer, or that before.
+   * @param {string} key
+   * @param {number} by
+   */
+  neighbour(key, by) {
+    const keys = [...this.#buttons.keys()];
+    return keys[keys.indexOf(key) + by];
+  }
+
+  /**
+   * @param {EditedLayer[]} layers
+   * @param {string | undefined} selected
+   * @param {number} scale CSS pixels of a millimetre.
+   */
+  show(layers, selected, scale) {
+    for (const [key, button] of this.#buttons) {
+      if (layers.some((each) => each.key === key)) continue;
+      this.#buttons.delete(key);
+      button.remove();
+    }
+    /** @type {HTMLElement[]} */
+    const copies = [];
+    const buttons = layers.map(({ key }) => this.#buttons.get(key) ?? this.#newButton(key));
+    this.#buttons = new Map(layers.map(({ key }, at) => [key, buttons[at]]));
+    for (const [at, button] of buttons.entries()) {
+      // Tab goes from layer to layer as the text does. A button that stays where it is keeps the focus.
+      if (this.#parent.children[at] !== button) this.#parent.insertBefore(button, this.#parent.children[at]);
+      const each = layers[at];
+      const { key, place } = each;
+      const isSelected = key === selected;
+      button.classList.toggle("is-selected", isSelected);
+      button.setAttribute("aria-current", String(isSelected));
+      button.setAttribute("aria-label", labelOf(each));
+      lay(button, place.box, scale);
+      for (const [dx, dy] of place.copies) {
+        if (dx === 0 && dy === 0) continue;
+        const copy = element("div", { className: isSelected ? "layer-copy is-selected" : "layer-copy" });
+        lay(copy, { ...place.box, x: place.box.x + dx, y: place.box.y + dy }, scale);
+        copies.push(copy);
+      }
+    }
+    this.#copies.replaceChildren(...copies);
+    this.#showHandles(layers.find(({ key }) => key === selected)?.place, scale);
+  }
+
+  /**
+   * @param {Place | undefined} place
+   * @param {number} scale
+   */
+  #showHandles(place, scale) {
+    const [width, height] = place ? [place.box.width * scale, place.box.height * scale] : [0, 0];
+    const out = Math.min(width, height) < LONG_SIDE_PX ? OUTSIDE_PX : 0;
+    for (const handle of this.#handles) {
+      const side = /** @type {Handle} */ (handle.dataset.side);
+      const [x, y] = HANDLES[side];
+      const isCorner = side.length === 2;
+      const isLong = (y === 0.5 ? height : width) >= LONG_SIDE_PX;
+      handle.hidden = place?.whyNotResized !== "" || (!isCorner && (place.keepsRatio || !isLong));
+      if (!place) continue;
+      handle.style.left = `${place.box.x * scale + x * width + (2 * x - 1) * out}px`;
+      handle.style.top = `${place.box.y * scale + y * height + (2 * y - 1) * out}px`;
+    }
+  }
+
+  /**
+   * Marks the layer that a press would select.
+   * @param {string | undefined} key
+   */
+  mark(key) {
+    for (const [each, button] of this.#buttons) button.classList.toggle("is-hot", each === key);
+  }
+
+  /** @param {string} key */
+  #newButton(key) {
+    const button = element("button", { className: "layer-box", type: "button", "aria-describedby": "hands-keys" });
+    button.onfocus = () => this.onFocus(key);
+    return button;
+  }
+}
+
+/**
+ * @param {HTMLElement} made
+ * @param {Box} box
+ * @param {number} scale
+ */
+function lay(made, { x, y, width, height }, scale) {
+  Object.assign(made.style, {
+    left: `${x * scale}px`,
+    top: `${y * scale}px`,
+    width: `${width * scale}px`,
+    height: `${height * scale}px`,
+  });
+}
+
+/** @param {EditedLayer} edited */
+function labelOf({ layer: { name, kind }, place: { box, copies, isWholeScreen } }) {
+  const [x, y, width, height] = [box.x, box.y, box.width, box.height].map((mm) => numberText(mm, 2));
+  const where = isWholeScreen ? "the whole screen" : `${width} by ${height} mm at ${x}, ${y}`;
+  return [name, ...(name === kind ? [] : [kind]), where, ...(copies.length > 1 ? [`${copies.length} copies`] : [])].join(", ");
+}

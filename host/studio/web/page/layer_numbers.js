@@ -1,0 +1,106 @@
+// The numbers of a layer that a hand tunes: which they are, what they are called, and how far a slider goes.
+// @ts-check
+
+import { layerFields } from "./completion.js";
+
+/** @import { Reach } from "../engine/types" */
+/** @import { Schema } from "./completion.js" */
+/** @import { Path, TomlText } from "./toml_text.js" */
+/** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
+/**
+ * A number of a layer. `least` and `most` are the ends of a slider; `min` and `max` what a scene may have.
+ * @typedef {{ field: string, label: string, unit: string, value: number, path: Path, decimals: number, step: number,
+ *   least: number, most: number, min: number, max: number }} LayerNumber
+ */
+
+/** What a place is made of, which a hand drags. */
+const PLACE = ["x", "y", "height"];
+/** Fields that count without being written, with their defaults. */
+const DEFAULTS = { angle_deg: 0, gain: 1 };
+/** @type {[ending: string, unit: string, decimals: number, step: number][]} */
+const UNITS = [
+  ["_mm_per_s", "mm/s", 1, 1],
+  ["_mm", "mm", 2, 0.1],
+  ["_n", "N", 4, 0.001],
+  ["_fraction", "of reach", 3, 0.01],
+  ["_factor", "×", 3, 0.01],
+  ["_deg", "°", 1, 1],
+  ["_hz", "Hz", 1, 1],
+  ["_ms", "ms", 1, 1],
+];
+
+/**
+ * The numbers of a layer of the file: those that it has, in the order of the text, and those of use that it may have.
+ * @param {Schema} schema
+ * @param {TomlText} toml
+ * @param {number} at Number of the layer among those of the file.
+ * @param {string} kind
+ * @param {Most} reach
+ * @returns {LayerNumber[]}
+ */
+export function layerNumbers(schema, toml, at, kind, reach) {
+  const own = (/** @type {string} */ field) => toml.value(["layer", at, field]) ?? toml.value(["defaults", field]);
+  const blend = own("blend");
+  const fields = layerFields(schema, { kind, ...(typeof blend === "string" ? { blend } : {}) });
+  const isTotal = kind === "constant" && (blend ?? "replace") === "replace" && own("above") !== "natural";
+  const written = [["layer", at], ["defaults"]].flatMap((path) => Object.keys(toml.value(path) ?? {}));
+  const names = [...new Set([...written, ...Object.keys(DEFAULTS)])].filter((field) => field in fields);
+  return names.flatMap((field) => {
+    const about = fields[field];
+    const [ending, unit, decimals, step] = UNITS.find(([each]) => field.endsWith(each)) ?? ["", "", 2, 0.01];
+    const label = field.slice(0, field.length - ending.length);
+    const isPlace = PLACE.includes(label) || field.endsWith("_px") || (kind === "bitmap" && label === "width");
+    const value = own(field) ?? DEFAULTS[/** @type {keyof typeof DEFAULTS} */ (field)];
+    if (typeof value !== "number" || isPlace || (about.type !== "number" && about.type !== "integer")) return [];
+    const isWhole = about.type === "integer" || field === "number" || field === "seed";
+    const { minimum: min = -1e6, maximum: max = 1e6 } = about;
+    const [least, most] = ends(field, unit, value, isTotal, reach);
+    return {
+      field,
+      label: field === "gain" ? "gain" : label.replaceAll("_", " "),
+      unit: field === "gain" ? "×" : unit,
+      value,
+      path: ["layer", at, field],
+      decimals: isWhole ? 0 : decimals,
+      step: isWhole ? 1 : step,
+      least: Math.max(min, Math.min(least, value)),
+      most: Math.min(max, Math.max(most, value)),
+      min,
+      max,
+    };
+  });
+}
+
+/**
+ * The ends of a slider: what is used every day, and no more friction than the drive can add.
+ * @param {string} field
+ * @param {string} unit
+ * @param {number} value
+ * @param {boolean} isTotal Whether newtons count from zero, not from natural friction.
+ * @param {Most} reach
+ * @returns {[number, number]}
+ */
+function ends(field, unit, value, isTotal, { naturalN, reachN }) {
+  const twice = 2 * Math.abs(value);
+  switch (unit) {
+    case "N":
+      return isTotal ? [naturalN, reachN] : [value < 0 ? naturalN - reachN : 0, reachN - naturalN];
+    case "of reach":
+      return [value < 0 ? -1 : 0, 1];
+    case "×":
+      return [0, Math.max(2, twice)];
+    case "°":
+      return [-180, 180];
+    case "mm":
+      return [0.5, Math.max(20, twice)];
+    case "mm/s":
+      return [-100, 100];
+    case "Hz":
+      return [1, Math.max(300, twice)];
+    case "ms":
+      return [1, Math.max(100, twice)];
+    default:
+      if (field === "duty") return [0, 1];
+      return [0, field === "gain" ? Math.max(2, twice) : Math.max(40, twice)];
+  }
+}
