@@ -230,8 +230,8 @@ export class Finger {
     this.#lastMs = ms;
     this.#trail = this.#trail.filter((point) => point === null || ms - point.ms < TRAIL_S * 1000);
     if (!this.#trail.some((point) => point !== null)) this.#trail = [];
-    const changes = this.#isStale || this.#trail.length > 0 || this.overlays.some(({ isActive }) => isActive);
-    const shown = changes ? "" : JSON.stringify([this.#finger, this.#isDown, this.#area, this.#hasFocus]);
+    const isMoving = this.#trail.length > 0 || this.#isStale || this.overlays.some(({ isActive }) => isActive);
+    const shown = isMoving ? "" : JSON.stringify([this.#finger, this.#isDown, this.#area, this.#hasFocus]);
     // A finger that rests is drawn once.
     if (shown === "" || shown !== this.#shown) this.#draw();
     [this.#shown, this.#isStale] = [shown, false];
