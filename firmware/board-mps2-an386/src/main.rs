@@ -1,12 +1,12 @@
 //! The firmware on an emulated Cortex-M4F: `qemu-system-arm -M mps2-an386`.
 //!
-//! Tick, main loop and fault handling are those of every board (`frixel-board`). [`tick`] runs in the `SysTick` interrupt,
-//! above everything. Amplifier and touch source are words of memory that it shares with the simulator ([`shared`]).
-//! Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`] causes faults on
-//! demand.
+//! Tick, main loop and fault handling are those of every board (`frixel-board`). [`tick`] runs in the `SysTick`
+//! interrupt, above everything. Amplifier and touch source are words of memory that it shares with the simulator
+//! ([`shared`]). Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`]
+//! causes faults on demand.
 //!
-//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep: timer,
-//! serial port and memory are others there.
+//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep:
+//! timer, serial port and memory are others there.
 #![no_std]
 #![no_main]
 

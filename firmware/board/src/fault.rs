@@ -62,8 +62,8 @@ impl LastReset {
 pub struct Ending<P> {
     processor: P,
     record: &'static FaultRecord,
-    /// Faults since the start, at most 1. A number, because with an `AtomicBool` the compiler keeps the messages of panics
-    /// that nobody reads, 200 bytes of the smallest image.
+    /// Faults since the start, at most 1. A number, because with an `AtomicBool` the compiler keeps the messages of
+    /// panics that nobody reads, 200 bytes of the smallest image.
     faults: AtomicU32,
 }
 

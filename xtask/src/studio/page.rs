@@ -51,8 +51,8 @@ fn joined(index: &str, web: &Path, files: &Files, place: &Place) -> Result<Strin
     Ok(format!("{before}<head>\n    {policy}{behind}"))
 }
 
-/// What the page may load: what it carries, the bridge of `frixel studio` where it was served by it, and manifest, icons
-/// and service worker of its site.
+/// What the page may load: what it carries, the bridge of `frixel studio` where it was served by it, and manifest,
+/// icons and service worker of its site.
 fn policy(boot: &str, of_site: &str) -> String {
     let boot = STANDARD.encode(Sha256::digest(boot.as_bytes()));
     let manifest = if of_site.is_empty() { " 'none'" } else { of_site };

@@ -20,8 +20,8 @@ use crate::hardware::{AlwaysHigh, NoDac, NoEnable, ScriptedSwitch, Wired, ZeroFr
 
 tick_interrupt!(Wired);
 
-/// Starts the tick and the watchdog, and returns the main loop, whose turns feed it. Called once. The enable is low from
-/// here on.
+/// Starts the tick and the watchdog, and returns the main loop, whose turns feed it. Called once. The enable is low
+/// from here on.
 pub(crate) fn tick(board: Board, mut output: Output, frames: Frames, adc: Adc) -> MainLoop<Wired> {
     let Some(memory) = singleton!(: Memory = Memory::new()) else { fault::never() };
     let (ticker, session, session_ends, tick_ends) = memory.make(board);
