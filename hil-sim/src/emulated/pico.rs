@@ -290,8 +290,8 @@ impl PicoRig {
         let mut buffer = [0; FRAME_MAX_LEN];
         if let Ok(frame) = payload::request_frame(&HostRequest { sequence: TOUCH_SEQUENCE, command }, &mut buffer) {
             match &mut self.touch_frames {
-                Some(frames) => frames.extend(&*frame),
-                None => self.to_board.extend(&*frame),
+                Some(frames) => frames.extend(frame),
+                None => self.to_board.extend(frame),
             }
         }
     }
