@@ -1,4 +1,4 @@
-//! Puts the linker script where the linker looks for it.
+//! Puts the linker script where the linker looks for it, and says which board the target stands for.
 
 use std::env;
 use std::error::Error;
@@ -7,11 +7,17 @@ use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    fs::copy("memory.x", out.join("memory.x"))?;
+    println!("cargo:rustc-check-cfg=cfg(an505)");
+    let is_an505 = env::var("TARGET")?.starts_with("thumbv8m.main");
+    if is_an505 {
+        println!("cargo:rustc-cfg=an505");
+    }
+    fs::copy(if is_an505 { "an505.x" } else { "an386.x" }, out.join("memory.x"))?;
     // cortex-m-rt wants names of interrupt handlers that may be left out; there are none.
     fs::write(out.join("device.x"), "")?;
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
-    println!("cargo:rerun-if-changed=memory.x");
+    println!("cargo:rerun-if-changed=an386.x");
+    println!("cargo:rerun-if-changed=an505.x");
     Ok(())
 }

@@ -7,6 +7,8 @@ import { Pins } from "./pins.mjs";
 import { PioStepper } from "./pio.mjs";
 import { CAUSE, ENDED, EVENT } from "./protocol.mjs";
 import { UartLine } from "./uart.mjs";
+import { watchUseBeforeReset } from "./use_before_reset.mjs";
+import { patchWatchdog } from "./watchdog.mjs";
 
 /** Cycles of the entry into an exception, and of the return (Cortex-M0+ technical reference manual, 3.6.1), which
  *  rp2040js does not count. */
@@ -18,7 +20,6 @@ const HARD_FAULT = 3;
 const WATCHDOG = 0x40058;
 const CHIP_RESET = 0x40064;
 const SSI = 0x18000;
-const PSM = 0x40010;
 /** Offset of SSIENR, and of CHIP_RESET. */
 const SSIENR = 0x08;
 const CHIP_RESET_AT = 0x08;
@@ -41,6 +42,7 @@ export class Board {
   #uart;
   #chipReset;
   #isHung = false;
+  #isCrystalStopped = false;
   #hasFrame = false;
   /** The run ends after this instruction. */
   #hasStopped = false;
@@ -70,6 +72,7 @@ export class Board {
     this.#flash = new Flash(rp2040, this);
     this.#pins = new Pins(rp2040, this);
     this.#uart = new UartLine(rp2040);
+    watchUseBeforeReset(rp2040, (what) => this.fail(what));
     rp2040.onBreak = (number) => {
       if (!this.#flash.isCalled(number)) {
         this.#core.PC -= this.#core.breakRewind;
@@ -114,19 +117,13 @@ export class Board {
   }
 
   /** Resets: by the watchdog, by software, and what a start reads of them. @param {Remains} remains */
-  #patchResets({ scratch, reason }) {
+  #patchResets(remains) {
     const rp2040 = this.#rp2040;
-    const watchdog = rp2040.peripherals[WATCHDOG];
-    watchdog.scratchData.set(scratch ?? []);
-    watchdog.reason = reason;
-    watchdog.onWatchdogTrigger = () => {
-      // rp2040js would trigger again at the same instant for ever.
-      watchdog.alarm.enable = false;
-      if (rp2040.peripherals[PSM].wdsel === 0) {
-        this.fail("the watchdog has fired, and PSM.WDSEL says that it resets nothing");
-      }
-      this.#end(CAUSE.WATCHDOG);
-    };
+    patchWatchdog(rp2040, remains, {
+      isCrystalStopped: () => this.#isCrystalStopped,
+      reset: () => this.#end(CAUSE.WATCHDOG),
+      fail: (what) => this.fail(what),
+    });
     const vreg = rp2040.peripherals[CHIP_RESET];
     vreg.readUint32 = (offset) => (offset === CHIP_RESET_AT ? this.#chipReset : 0);
     vreg.writeUint32 = () => {};
@@ -251,6 +248,24 @@ export class Board {
 
   hang() {
     this.#isHung = true;
+  }
+
+  /** Core and state machines, whose clock comes from the crystal, stand still; what the ring oscillator drives goes on. */
+  stopCrystal() {
+    this.#isHung = true;
+    this.#isCrystalStopped = true;
+    this.stopPio(0);
+    this.stopPio(1);
+  }
+
+  /** @param {number} offset @param {number[]} bytes */
+  writeFlash(offset, bytes) {
+    this.#rp2040.flash.set(bytes, offset);
+  }
+
+  /** @param {number} number */
+  stopPio(number) {
+    this.#pio.stop(this.#rp2040.pio[number]);
   }
 
   /** The main loop goes into an endless loop once it runs. */

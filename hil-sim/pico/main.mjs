@@ -91,6 +91,15 @@ class Rig {
         return [];
       case REQUEST.ADDRESS_OF:
         return [this.#image.addressOf(String.fromCharCode(...values)) ?? 0];
+      case REQUEST.STOP_CRYSTAL:
+        this.#board.stopCrystal();
+        return [];
+      case REQUEST.STOP_PIO:
+        this.#board.stopPio(values[0]);
+        return [];
+      case REQUEST.WRITE_FLASH:
+        this.#board.writeFlash(values[0], values.slice(1));
+        return [];
       default:
         throw new Error(`unknown request ${kind}`);
     }

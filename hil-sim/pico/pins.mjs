@@ -26,8 +26,9 @@ const WATCHED = new Map([
   [GPIO.CLEAR, EVENT.CLEAR],
   [GPIO.LED, EVENT.LED],
 ]);
-/** ADC channel of the amplifier's monitor, GP26. */
+/** ADC channel of the amplifier's monitor, GP26, and the offset of the ADC's register RESULT. */
 const MONITOR_CHANNEL = 0;
+const ADC_RESULT = 0x04;
 /** Pads after a reset (RP2040 datasheet, 2.19.6.3, GPIO0): input enabled, pulled down, 4 mA. rp2040js has no input enable. */
 const PAD_AFTER_RESET = 0x56;
 /** Clocks of a frame of the DAC. */
@@ -44,6 +45,7 @@ export class Pins {
   #clocks = 0;
   #bits = 0;
   #syncFellAt = 0;
+  #syncRoseAt = 0;
   /** Bits that the DAC shifts out during the next frame. */
   shiftingOut = 0;
 
@@ -58,6 +60,13 @@ export class Pins {
     for (const number of [GPIO.SYNC, GPIO.SCLK, GPIO.SDI, GPIO.ENABLE, GPIO.CLEAR, GPIO.LED]) {
       this.#follow(number);
     }
+    const read = rp2040.adc.readUint32.bind(rp2040.adc);
+    rp2040.adc.readUint32 = (offset) => {
+      if (offset === ADC_RESULT) {
+        board.record(EVENT.MONITOR_READ, Math.round(board.instant - this.#syncRoseAt));
+      }
+      return read(offset);
+    };
   }
 
   #follow(number) {
@@ -111,6 +120,7 @@ export class Pins {
 
   #sync(high) {
     if (high) {
+      this.#syncRoseAt = this.#board.instant;
       this.#board.record(EVENT.FRAME, this.#bits, (this.#clocks << 24) | Math.round(this.#board.instant - this.#syncFellAt));
       this.#input(GPIO.SDO, true);
       this.#board.frameEnded();

@@ -29,6 +29,8 @@ export class PioStepper {
   /** Cycles of the core by which it is ahead of the machine that is being stepped: an instruction takes several. */
   ahead = 0;
   #hasResumed = false;
+  /** Those that are broken. @type {Set<any>} */
+  #stopped = new Set();
 
   /** @param {any} rp2040 */
   constructor(rp2040) {
@@ -76,7 +78,7 @@ export class PioStepper {
       }
       timed.isOn = machine.enabled;
     }
-    this.#on = this.#all.filter((timed) => timed.isOn);
+    this.#on = this.#all.filter((timed) => timed.isOn && !this.#stopped.has(timed.pio));
     this.#hasResumed = true;
     this.#plan();
   }
@@ -89,6 +91,12 @@ export class PioStepper {
       }
     }
     this.next = next;
+  }
+
+  /** Stops the machines of a PIO for ever, whatever the firmware does. @param {any} pio */
+  stop(pio) {
+    this.#stopped.add(pio);
+    this.#refresh();
   }
 
   /** Tells that something outside of the machines has changed that one may have waited for. */

@@ -20,6 +20,12 @@ export const REQUEST = {
   CUT_AT_FLASH_OPERATION: 7,
   /** The address of a function: bytes of its name. */
   ADDRESS_OF: 8,
+  /** Stop the crystal for ever: core and state machines stand still, pins stay as they are. */
+  STOP_CRYSTAL: 9,
+  /** Stop the state machines of a PIO for ever: its number. */
+  STOP_PIO: 10,
+  /** Write the flash, as another image has before: offset, and bytes. */
+  WRITE_FLASH: 11,
 };
 
 /** Bits of the inputs. */
@@ -51,6 +57,8 @@ export const EVENT = {
   START: 5,
   /** A flash operation begins: address, and bytes that are erased (0) or programmed. */
   FLASH: 6,
+  /** The firmware reads the amplifier's monitor: ns since SYNC rose last. */
+  MONITOR_READ: 7,
 };
 
 /** Why a board starts. */

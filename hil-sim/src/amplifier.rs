@@ -133,6 +133,12 @@ impl Amplifier {
         self.config.monitor_gain * self.monitor_v
     }
 
+    /// What the monitor shows at the end of the last tick.
+    #[cfg(unix)]
+    pub(crate) fn monitor_now_v(&self) -> f64 {
+        self.config.monitor_gain * self.voltages.output_v
+    }
+
     /// Moves the output stage on by a tick.
     fn switch(&mut self, enable: bool) {
         self.stage = match (self.stage, enable) {

@@ -80,10 +80,16 @@ pub trait BoardRig {
     /// Sends bytes from the host.
     fn send(&mut self, bytes: &[u8]) -> Result<(), RigError>;
 
-    /// Lets the rig run until bytes have arrived at the host, which it appends to `received`, or until `until_tick`.
-    /// Passes each tick to `watch`.
+    /// Lets the rig run until bytes have arrived at the host, which it appends to `received`, until there are
+    /// [touch frames](Self::take_touch_frames), or until `until_tick`. Passes each tick to `watch`.
     fn run(&mut self, until_tick: u64, received: &mut Vec<u8>, watch: &mut dyn FnMut(&RigTick))
     -> Result<(), RigError>;
+
+    /// Frames with reports of the touch source that the host has to send. A board with a touch source of its own has
+    /// none.
+    fn take_touch_frames(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
 
     /// Causes a fault from now on, for so many ticks if it lasts.
     fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError>;
@@ -91,8 +97,8 @@ pub trait BoardRig {
     /// Starts the finger's stroke.
     fn start_stroke(&mut self);
 
-    /// Lets the person at the arm switch let go of it and press it again, and returns the ticks until the board has seen
-    /// it. Without a person who waits to be asked, this does nothing.
+    /// Lets the person at the arm switch let go of it and press it again, and returns the ticks until the board has
+    /// seen it. Without a person who waits to be asked, this does nothing.
     fn press_switch(&mut self) -> u64 {
         0
     }

@@ -1,4 +1,4 @@
-//! The emulated board does what the in-process board does, bit for bit: drives and bytes on the serial line.
+//! The emulated boards do what the in-process board does, bit for bit: drives and bytes on the serial line.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
@@ -10,7 +10,7 @@ use crate::script;
 
 use frixel_control::Board;
 use frixel_exchange::BOARD;
-use frixel_hil_sim::emulated::{Image, ReplayError, replay};
+use frixel_hil_sim::emulated::{ReplayError, replay};
 use frixel_hil_sim::{Journal, LineFault, Point, RigConfig, Stroke, WorldFault};
 use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
@@ -34,10 +34,13 @@ fn journal(board: Board, stroke: Stroke, seed: u64, play: impl FnOnce(&mut Scrip
     journal
 }
 
-fn assert_same(image: &Image, journal: &Journal) {
+/// On a Cortex-M4F and on a Cortex-M33.
+fn assert_same(journal: &Journal) {
     assert!(journal.ticks() as u64 >= TICKS);
-    if let Err(error) = replay(image, journal) {
-        panic!("{error}");
+    for image in emulator::lockstep_images() {
+        if let Err(error) = replay(&image, journal) {
+            panic!("{image:?}: {error}");
+        }
     }
 }
 
@@ -66,13 +69,11 @@ fn stripes(board: Board) -> Journal {
 
 #[test]
 fn stripes_are_the_same() {
-    let Some(image) = emulator::image() else { return };
-    assert_same(&image, &stripes(BOARD));
+    assert_same(&stripes(BOARD));
 }
 
 #[test]
 fn a_picture_on_a_sine_carrier_is_the_same() {
-    let Some(image) = emulator::image() else { return };
     let stroke = Stroke::minimum_jerk(Point { x_m: 0.0, y_m: 0.01 }, Point { x_m: 0.1, y_m: 0.07 }, 0.8).unwrap();
     let journal = journal(BOARD, stroke.looped(0.05).unwrap(), 2, |script| {
         script.hello();
@@ -93,14 +94,13 @@ fn a_picture_on_a_sine_carrier_is_the_same() {
         script.play(&scene(&header, &[record(layer)]));
         script.run(TICKS);
     });
-    assert_same(&image, &journal);
+    assert_same(&journal);
 }
 
 /// Everything at once: every kind of layer, some changed while they play, no prediction, telemetry, a bad line, a fault
 /// and its end, a second scene.
 #[test]
 fn a_bad_day_is_the_same() {
-    let Some(image) = emulator::image() else { return };
     let path = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.02 }, Point { x_m: 0.11, y_m: 0.06 }, 0.12).unwrap();
     let journal = journal(BOARD, path.looped(0.02).unwrap(), 3, |script| {
         script.hello();
@@ -172,13 +172,12 @@ fn a_bad_day_is_the_same() {
         script.play(&scene(&HEADER, &records));
         script.run(TICKS);
     });
-    assert_same(&image, &journal);
+    assert_same(&journal);
 }
 
 /// One layer of each kind, each region and each blend, under a finger that crosses them.
 #[test]
 fn every_kind_of_layer_is_the_same() {
-    let Some(image) = emulator::image() else { return };
     let path = Stroke::minimum_jerk(Point { x_m: 0.005, y_m: 0.02 }, Point { x_m: 0.115, y_m: 0.06 }, 0.9).unwrap();
     let journal = journal(BOARD, path.looped(0.02).unwrap(), 4, |script| {
         script.hello();
@@ -191,7 +190,7 @@ fn every_kind_of_layer_is_the_same() {
             script.run(TICKS / 13);
         }
     });
-    assert_same(&image, &journal);
+    assert_same(&journal);
 }
 
 /// A ground, and the samples of all kinds with each region and each blend.
@@ -217,7 +216,6 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
 /// The board computes the table of an empirical law of 16 points in `f32` pairs, as the in-process board does.
 #[test]
 fn the_law_of_a_finger_is_the_same() {
-    let Some(image) = emulator::image() else { return };
     let path = Stroke::minimum_jerk(Point { x_m: 0.005, y_m: 0.02 }, Point { x_m: 0.115, y_m: 0.06 }, 0.9).unwrap();
     let journal = journal(BOARD, path.looped(0.02).unwrap(), 5, |script| {
         script.hello();
@@ -240,19 +238,21 @@ fn the_law_of_a_finger_is_the_same() {
             }
         }
     });
-    assert_same(&image, &journal);
+    assert_same(&journal);
 }
 
 #[test]
 fn one_changed_constant_is_seen() {
-    let Some(image) = emulator::image() else { return };
     let mut board = BOARD;
     board.limits.edge_time_constant_s *= 1.0 + 1e-4;
-    match replay(&image, &stripes(board)) {
-        Err(ReplayError::Mismatch(mismatch)) => {
-            assert_eq!(mismatch.expected.tick, mismatch.found.tick);
-            assert_ne!(mismatch.expected.drive, mismatch.found.drive);
+    let journal = stripes(board);
+    for image in emulator::lockstep_images() {
+        match replay(&image, &journal) {
+            Err(ReplayError::Mismatch(mismatch)) => {
+                assert_eq!(mismatch.expected.tick, mismatch.found.tick);
+                assert_ne!(mismatch.expected.drive, mismatch.found.drive);
+            }
+            other => panic!("{image:?}: a changed edge time constant was not seen: {other:?}"),
         }
-        other => panic!("a changed edge time constant was not seen: {other:?}"),
     }
 }

@@ -14,7 +14,7 @@ mod thumb;
 use std::fs;
 use std::process::Command;
 
-use crate::command::{M0_PLUS, M3, M4F, root};
+use crate::command::{M0_PLUS, M3, M4F, M33, root};
 pub(crate) use figures::Figures;
 use image::Image;
 
@@ -30,6 +30,8 @@ const M4F_CORE: Core = Core { name: "m4f", target: M4F, machine: "mps2-an386" };
 const M3_CORE: Core = Core { name: "m3", target: M3, machine: "mps2-an385" };
 /// Code for a Cortex-M0+, which a Cortex-M3 executes, too, with as many instructions.
 const M0_PLUS_CORE: Core = Core { name: "m0plus", target: M0_PLUS, machine: "mps2-an385" };
+/// The RP2350's instruction set. Cycles are not estimated: the estimate is a Cortex-M4's.
+const M33_CORE: Core = Core { name: "m33", target: M33, machine: "mps2-an505" };
 
 /// Name of the emulator's executable.
 const EMULATOR: &str = "qemu-system-arm";
@@ -43,7 +45,9 @@ pub(crate) fn bench() -> Result<Figures, String> {
     for core in [&M4F_CORE, &M3_CORE] {
         Image::build(core, false)?.measure(&mut figures)?;
     }
-    Image::build(&M0_PLUS_CORE, false)?.count(&mut figures)?;
+    for core in [&M0_PLUS_CORE, &M33_CORE] {
+        Image::build(core, false)?.count(&mut figures)?;
+    }
     size::measure(&mut figures)?;
     let folder = root().join("target/bench");
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;

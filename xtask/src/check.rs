@@ -78,7 +78,7 @@ const STAGES: [Stage; 16] = [
     Stage {
         name: "tests on emulators",
         tier: Tier::All,
-        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
+        needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator, Need::Node, Need::Npm, Need::Git],
         run: tests_on_emulators,
     },
     Stage {
@@ -246,8 +246,8 @@ pub(crate) const IMAGES: [Image; 5] = [
             &["--target", M0_PLUS, "--no-default-features", "--features", "rp2040,grating,optical-frame,log"],
         ],
     },
-    Image { folder: "firmware/board-mps2-an386", more: &[] },
-    Image { folder: "firmware/bench", more: &[] },
+    Image { folder: "firmware/board-mps2-an386", more: &[&["--target", M33]] },
+    Image { folder: "firmware/bench", more: &[&["--target", M33]] },
     Image { folder: "firmware/table-cortex-m3", more: &[] },
 ];
 
@@ -327,8 +327,8 @@ mod tests {
         }
     }
 
-    /// Version 2.7 of `half` takes `zerocopy` with its derive macro, half of an image's compile time. Other packages may
-    /// take `zerocopy` without it.
+    /// Version 2.7 of `half` takes `zerocopy` with its derive macro, half of an image's compile time. Other packages
+    /// may take `zerocopy` without it.
     #[test]
     fn no_lock_file_has_half_with_zerocopy() {
         for folder in IMAGES.iter().map(|image| image.folder).chain(["."]) {

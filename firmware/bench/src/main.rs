@@ -37,7 +37,7 @@ fn main() -> ! {
             debug::exit(debug::EXIT_SUCCESS);
         }
         inverse::run(&mut counter);
-        // The Cortex-M4F, and the Cortex-M0+, which has no atomic exchange.
+        // The Cortex-M4F and M33, and the Cortex-M0+, which has no atomic exchange.
         if cfg!(any(target_abi = "eabihf", not(target_has_atomic = "32"))) {
             angle::run(&mut counter);
             tick::run(&mut counter);

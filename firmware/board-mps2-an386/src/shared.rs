@@ -7,8 +7,8 @@ use frixel_control::Drive;
 use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, layout, word_of};
 use frixel_session::Touch;
 
-/// Where the PSRAM is mapped (Arm DAI0386, MPS2 FPGA image AN386).
-const BASE: *mut u32 = 0x2100_0000 as *mut u32;
+/// Where the PSRAM is mapped (Arm DAI0386, MPS2 FPGA image AN386; AN505 as the emulator has it, `hw/arm/mps2-tz.c`).
+const BASE: *mut u32 = if cfg!(an505) { 0x8000_0000_usize } else { 0x2100_0000 } as *mut u32;
 const WORDS: usize = layout::SHARED_LEN / 4;
 
 /// A word of the shared memory.

@@ -21,8 +21,10 @@ mod rp2350 {
     pub(crate) const PLL: crate::clock::PllSettings = crate::clock::PllSettings { multiply: 125, divide: [5, 2] };
     /// Interrupts of the chip.
     pub(crate) const INTERRUPTS: usize = 52;
-    /// Counts of the watchdog in a microsecond.
-    pub(crate) const WATCHDOG_COUNTS_PER_US: u32 = 1;
+    /// Largest frequency of the ring oscillator: 4.6 to 19.6 MHz are guaranteed (RP2350, 8.1.2.2, "Ring oscillator").
+    pub(crate) const RING_OSCILLATOR_MAX_HZ: u32 = 20_000_000;
+    /// Counts of the watchdog in a tick.
+    pub(crate) const WATCHDOG_COUNTS_PER_TICK: u32 = 1;
 }
 
 #[cfg(feature = "rp2040")]
@@ -37,8 +39,10 @@ mod rp2040 {
     pub(crate) const PLL: crate::clock::PllSettings = crate::clock::PllSettings { multiply: 100, divide: [6, 1] };
     /// Interrupts of the chip.
     pub(crate) const INTERRUPTS: usize = 26;
-    /// Counts of the watchdog in a microsecond: it decrements twice (erratum RP2040-E1).
-    pub(crate) const WATCHDOG_COUNTS_PER_US: u32 = 2;
+    /// Largest frequency of the ring oscillator: 1.8 to 12 MHz, typically 6.5 (RP2040, 2.17.2, "Frequency Variation").
+    pub(crate) const RING_OSCILLATOR_MAX_HZ: u32 = 12_000_000;
+    /// Counts of the watchdog in a tick: it decrements twice (erratum RP2040-E1).
+    pub(crate) const WATCHDOG_COUNTS_PER_TICK: u32 = 2;
 }
 
 /// Kind of this board.

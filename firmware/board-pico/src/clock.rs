@@ -1,4 +1,5 @@
-//! The clocks, from the crystal of 12 MHz: core and peripherals at [`CORE_HZ`], the ADC at 48 MHz.
+//! The clocks: core and peripherals at [`CORE_HZ`] and the ADC at 48 MHz, from the crystal of 12 MHz, and the watchdog
+//! from the chip's ring oscillator.
 
 use cortex_m::asm;
 use embedded_hal::delay::DelayNs;
@@ -40,7 +41,6 @@ pub fn start() {
     wait_until(|| selected_sys() == 1, "the reference as clock of the core");
     CLOCKS.clk_ref_ctrl().modify(|w| w.set_src(ClkRefCtrlSrc::XOSC_CLKSRC));
     wait_until(|| selected_ref() == 1 << ClkRefCtrlSrc::XOSC_CLKSRC as u32, "the crystal as reference");
-    start_microseconds();
 
     start_pll(PLL_SYS, Peripherals::set_pll_sys, &chip::PLL);
     start_pll(PLL_USB, Peripherals::set_pll_usb, &PLL_ADC);
@@ -56,17 +56,25 @@ pub fn start() {
         w.set_auxsrc(ClkAdcCtrlAuxsrc::CLKSRC_PLL_USB);
         w.set_enable(true);
     });
+    start_watchdog_ticks();
 }
 
-/// Enables the peripherals that the board uses, except the pins.
+/// Enables the peripherals that the board uses, except the pins, in the state after a reset: one that does not reset the
+/// whole chip, such as a debugger's, has left them running.
 pub fn start_peripherals() {
-    release(|w| {
-        w.set_adc(false);
-        w.set_pio0(false);
-        w.set_pio1(false);
-        w.set_pwm(false);
-        w.set_uart0(false);
+    restart(|w, is_reset| {
+        w.set_adc(is_reset);
+        w.set_pio0(is_reset);
+        w.set_pio1(is_reset);
+        w.set_pwm(is_reset);
+        w.set_uart0(is_reset);
     });
+}
+
+/// Resets peripherals, and takes them out of reset again; `set` sets their bits.
+pub(crate) fn restart(set: impl Fn(&mut Peripherals, bool)) {
+    RESETS.reset().modify(|w| set(w, true));
+    release(|w| set(w, false));
 }
 
 /// Takes peripherals out of reset, which `select` sets to `false`.
@@ -87,8 +95,7 @@ fn start_crystal() {
 }
 
 fn start_pll(pll: Pll, set_reset: fn(&mut Peripherals, bool), settings: &PllSettings) {
-    RESETS.reset().modify(|w| set_reset(w, true));
-    release(|w| set_reset(w, false));
+    restart(set_reset);
     pll.cs().modify(|w| w.set_refdiv(1));
     pll.fbdiv_int().write(|w| w.set_fbdiv_int(settings.multiply));
     pll.pwr().modify(|w| {
@@ -104,9 +111,13 @@ fn start_pll(pll: Pll, set_reset: fn(&mut Peripherals, bool), settings: &PllSett
     pll.pwr().modify(|w| w.set_postdivpd(false));
 }
 
-/// Divides the reference into microseconds, for the watchdog.
-fn start_microseconds() {
-    const CYCLES: u16 = (CRYSTAL_HZ / 1_000_000) as u16;
+/// Gives the reference back to the ring oscillator, and divides it into ticks for the watchdog, which nothing else uses:
+/// so the watchdog counts on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators").
+/// The boot ROM has run from the ring oscillator, so it is on.
+fn start_watchdog_ticks() {
+    const CYCLES: u16 = (chip::RING_OSCILLATOR_MAX_HZ / 1_000_000) as u16;
+    CLOCKS.clk_ref_ctrl().modify(|w| w.set_src(ClkRefCtrlSrc::ROSC_CLKSRC_PH));
+    wait_until(|| selected_ref() == 1 << ClkRefCtrlSrc::ROSC_CLKSRC_PH as u32, "the ring oscillator as reference");
     #[cfg(feature = "rp2040")]
     rp_pac::WATCHDOG.tick().write(|w| {
         w.set_cycles(CYCLES);

@@ -35,6 +35,8 @@ const LOW: u32 = PERIOD * 3 / 5;
 const FIFO_LEN: usize = 16;
 /// Time limit of a transfer: the longest message takes 2.9 ms on the bus, and the module may stretch the clock.
 const TRANSFER_TICKS: u32 = TICK_HZ / 1000 * 6;
+/// Time limit of the end of a byte, after which the peripheral is idle.
+const DISABLE_TICKS: u32 = TICK_HZ / 1000;
 /// Age of a place when it is read: two scans at 200 Hz, one that sees the finger and one that is reported. Must be
 /// measured at bring-up.
 const AGE_TICKS: u32 = TICK_HZ / 100;
@@ -70,7 +72,8 @@ pub enum Error {
     ArbitrationLoss,
     /// The transfer took longer than 6 ms.
     Timeout,
-    /// SDA is low before the transfer, and nine clocks have not freed it: a short, or a module without supply.
+    /// SDA is low before the transfer, and nine clocks have not freed it, or the peripheral waits for the last transfer to
+    /// end: a short, a module without supply, or one that holds SCL.
     BusHeld,
     /// A transaction of several transfers, or of none or more than 127 bytes, which the module never needs.
     Unsupported,
@@ -103,12 +106,14 @@ impl I2c for Bus {
         if !pins::is_high(SDA) && !clear().await {
             return Err(Error::BusHeld);
         }
+        if !disable().await {
+            return Err(Error::BusHeld);
+        }
         enable(address);
         let from_tick = tick::SHARED.count();
         let mut transfer = Transfer { operation, sent: 0, received: 0 };
         let result = poll_fn(|_| transfer.poll(from_tick)).await;
-        // Clears FIFOs and flags.
-        I2C0.ic_enable().write(|w| w.set_enable(false));
+        disable().await;
         result
     }
 }
@@ -130,9 +135,25 @@ async fn clear() -> bool {
     is_free
 }
 
+/// Disables the peripheral, which clears its FIFOs, and clears its flags: those of a transfer that was given up must not end
+/// the next one. Returns whether it is idle; until then, it takes no configuration (RP2040, 4.3.10,
+/// "Disabling").
+async fn disable() -> bool {
+    I2C0.ic_enable().write(|w| w.set_enable(false));
+    let from_tick = tick::SHARED.count();
+    let is_idle = poll_fn(|_| {
+        let is_idle = !I2C0.ic_enable_status().read().ic_en();
+        let is_late = tick::SHARED.count().wrapping_sub(from_tick) > DISABLE_TICKS;
+        if is_idle || is_late { Poll::Ready(is_idle) } else { Poll::Pending }
+    })
+    .await;
+    // Reading it clears them.
+    let _ = I2C0.ic_clr_intr().read();
+    is_idle
+}
+
 /// Configures the peripheral, which is disabled, as controller for this target, and enables it.
 fn enable(address: u8) {
-    I2C0.ic_enable().write(|w| w.set_enable(false));
     I2C0.ic_con().write(|w| {
         w.set_master_mode(true);
         w.set_speed(Speed::FAST);

@@ -13,7 +13,8 @@
 use frixel_drivers::ad5761r::zero_output;
 use frixel_drivers::amplifier::KickedEnable;
 use frixel_drivers::pio::{Condition, Destination, Instruction, PULL_BLOCKING, Source, copy, jump, set, shift_out};
-use rp_pac::PIO1;
+use rp_pac::io::vals::Outover;
+use rp_pac::{IO_BANK0, PIO1};
 
 use crate::dac::SYNC;
 use crate::pins::{self, ForcedPin, Function};
@@ -72,19 +73,32 @@ impl Output {
         for pin in [AMPLIFIER_ENABLE, DAC_CLEAR] {
             pins::connect(pin, Function::Pio1);
         }
+        override_enable(Outover::LOW);
         Self(())
     }
+}
+
+/// Lets the enable follow the one-shot, or be low whatever that does (RP2040, 2.19.6.1, `GPIO0_CTRL`).
+#[inline]
+fn override_enable(over: Outover) {
+    IO_BANK0.gpio(AMPLIFIER_ENABLE).ctrl().write(|w| {
+        w.set_funcsel(Function::Pio1 as u8);
+        w.set_outover(over);
+    });
 }
 
 impl KickedEnable for Output {
     #[inline]
     fn kick(&mut self) {
         ONE_SHOT.transmit(BOTH | ROUNDS << 2);
+        override_enable(Outover::NORMAL);
     }
 
-    /// Both pins are low within 1.1 us: a kick without pins and without rounds.
+    /// The enable is low at once, and stays low until the next kick even if the state machine stands still. Both pins of
+    /// the one-shot are low within 1.1 us: a kick without pins and without rounds.
     #[inline]
     fn disable(&mut self) {
+        override_enable(Outover::LOW);
         ONE_SHOT.transmit(0);
     }
 }

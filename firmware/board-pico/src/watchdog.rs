@@ -5,12 +5,12 @@ use cortex_m::asm;
 use frixel_board::hardware;
 use rp_pac::{PSM, WATCHDOG};
 
-use crate::chip::WATCHDOG_COUNTS_PER_US;
+use crate::chip::WATCHDOG_COUNTS_PER_TICK;
 
-/// Time in which the main loop and the tick must both have run. The longest operation of the main loop, but for those of
-/// the flash, which feed the watchdog themselves, is the check of a written scene: 85 KiB through a CRC without a table,
-/// some 25 ms on an RP2040 (estimated), and three times that under ticks of the longest scene. No limit of the output
-/// depends on this time.
+/// Time in which the main loop and the tick must both have run, if the ring oscillator is as fast as it may be; a slow one
+/// makes it up to seven times as long. The longest operation is an erasure of the flash, before which the watchdog is fed:
+/// 400 ms at most. The check of a written scene, 85 KiB through a CRC without a table, takes some 25 ms on an RP2040
+/// (estimated), and three times that under ticks of the longest scene. No limit of the output depends on this time.
 const LIFE_US: u32 = 500_000;
 
 /// The watchdog.
@@ -20,7 +20,7 @@ impl Watchdog {
     /// Starts the watchdog.
     pub fn start() -> Self {
         reset_all_but_oscillators();
-        feed_for(LIFE_US);
+        feed();
         WATCHDOG.ctrl().write(|w| w.set_enable(true));
         Self(())
     }
@@ -28,7 +28,7 @@ impl Watchdog {
 
 impl hardware::Watchdog for Watchdog {
     fn feed(&mut self) {
-        feed_for(LIFE_US);
+        feed();
     }
 
     fn let_debugger_stop_it(&mut self, may_stop: bool) {
@@ -40,9 +40,9 @@ impl hardware::Watchdog for Watchdog {
     }
 }
 
-/// Feeds the watchdog for a time, at most 8 s.
-pub(crate) fn feed_for(us: u32) {
-    WATCHDOG.load().write(|w| w.set_load(us * WATCHDOG_COUNTS_PER_US));
+/// Feeds the watchdog for [`LIFE_US`].
+pub(crate) fn feed() {
+    WATCHDOG.load().write(|w| w.set_load(LIFE_US * WATCHDOG_COUNTS_PER_TICK));
 }
 
 /// Resets the chip.

@@ -88,6 +88,8 @@ impl<H: Hardware> Tick<H> {
     pub fn run(&mut self) {
         // Acknowledges the interrupt.
         let _ = self.period.has_begun();
+        // Before anything whose time varies: the DAC has put out a code just now, which soon moves the monitor.
+        let sense = self.sense();
         let shared = self.shared;
         shared.count.store(shared.count().wrapping_add(1), Ordering::Relaxed);
         self.queues.apply_order(&mut self.ticker);
@@ -95,7 +97,6 @@ impl<H: Hardware> Tick<H> {
         if found != 0 {
             self.raise_found(found);
         }
-        let sense = self.sense();
         let drive = self.ticker.tick(&sense);
         let cycles = self.period.cycles();
         let output_is_zero = !drive.amplifier_enable && !self.queues.has_order();

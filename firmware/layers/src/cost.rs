@@ -20,6 +20,10 @@ use crate::point::Point;
 use crate::record::Record;
 use frixel_model::Waveform;
 
+// A core without compare-and-swap is a Cortex-M0 or M0+.
+#[cfg(all(target_arch = "arm", not(target_has_atomic = "32"), not(feature = "every-core")))]
+compile_error!("this core has no costs without the feature `every-core` of `frixel-layers`");
+
 /// Core cycles on each core.
 ///
 /// Without the feature `every-core`, which images for a Cortex-M4F leave out, they are those of that core alone.
@@ -43,12 +47,14 @@ impl Cost {
         }
     }
 
-    /// Core cycles on this core.
+    /// Core cycles on this core; [`u32::MAX`], more than any board takes, for one whose costs were left out.
     pub const fn on(self, core: Core) -> u32 {
         match core {
+            Core::CortexM4f => self.cortex_m4f,
             #[cfg(feature = "every-core")]
             Core::CortexM0Plus => self.cortex_m0_plus,
-            _ => self.cortex_m4f,
+            #[cfg(not(feature = "every-core"))]
+            Core::CortexM0Plus => u32::MAX,
         }
     }
 }
@@ -117,9 +123,8 @@ pub const MEASURED_LAYERS: &[(&str, Cost)] = measured::LAYERS;
 /// Cortex-M0+.
 pub const fn cycles(core: Core, core_cycles: u32) -> u32 {
     match core {
-        #[cfg(feature = "every-core")]
         Core::CortexM0Plus => core_cycles,
-        _ => core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100),
+        Core::CortexM4f => core_cycles.saturating_mul(FLASH_WAIT_PERCENT).div_ceil(100),
     }
 }
 
@@ -152,7 +157,8 @@ impl LayerCosts {
     /// Core cycles of a tick that evaluates these layers.
     pub fn of_tick(&self, layers: LayerSet) -> u32 {
         let near = layer_numbers(layers).filter_map(|number| self.layers.get(number));
-        self.empty + self.elsewhere + near.map(|cost| u32::from(*cost)).sum::<u32>()
+        let layers = near.map(|cost| u32::from(*cost)).sum::<u32>();
+        self.empty.saturating_add(self.elsewhere).saturating_add(layers)
     }
 
     /// Finds the cell in which a tick takes the longest; `so_far` is the result for the cells before these.

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use super::EmulatorError;
 
-/// Name of the emulator of [`EmulatedBoard::Mps2An386`].
+/// Name of the emulator of the MPS2 boards.
 pub(super) const EMULATOR: &str = "qemu-system-arm";
 /// Name of the program that runs the emulator of [`EmulatedBoard::Pico`].
 pub(super) const NODE: &str = "node";
@@ -23,16 +23,27 @@ pub(super) const IMAGES: &str = "images";
 pub enum EmulatedBoard {
     /// A Cortex-M4F with a firmware of its own.
     Mps2An386,
+    /// A Cortex-M33 with an FPU, as the RP2350 has them, with the same firmware, for [`replay`](super::replay) alone.
+    Mps2An505,
     /// A Raspberry Pi Pico, with the image that is flashed.
     Pico,
 }
 
 impl EmulatedBoard {
-    /// The folder of its firmware, and the name of its image.
+    /// The folder of its firmware, and the name of its image in there.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Mps2An386 => "board-mps2-an386",
+            Self::Mps2An386 | Self::Mps2An505 => "board-mps2-an386",
             Self::Pico => "board-pico",
+        }
+    }
+
+    /// The emulator's name for it.
+    pub(super) fn machine(self) -> &'static str {
+        match self {
+            Self::Mps2An386 => "mps2-an386",
+            Self::Mps2An505 => "mps2-an505",
+            Self::Pico => "pico",
         }
     }
 
@@ -40,6 +51,7 @@ impl EmulatedBoard {
     pub fn target(self) -> &'static str {
         match self {
             Self::Mps2An386 => "thumbv7em-none-eabihf",
+            Self::Mps2An505 => "thumbv8m.main-none-eabihf",
             Self::Pico => "thumbv6m-none-eabi",
         }
     }
@@ -48,6 +60,7 @@ impl EmulatedBoard {
     pub fn build_arguments(self) -> &'static [&'static str] {
         match self {
             Self::Mps2An386 => &[],
+            Self::Mps2An505 => &["--target", "thumbv8m.main-none-eabihf"],
             Self::Pico => {
                 &["--target", "thumbv6m-none-eabi", "--no-default-features", "--features", "rp2040,everything"]
             }
@@ -57,7 +70,7 @@ impl EmulatedBoard {
     /// Returns an error if its emulator is not installed.
     fn emulator(self) -> Result<(), EmulatorError> {
         let (program, missing) = match self {
-            Self::Mps2An386 => (EMULATOR, EmulatorError::NoEmulator),
+            Self::Mps2An386 | Self::Mps2An505 => (EMULATOR, EmulatorError::NoEmulator),
             Self::Pico => (NODE, EmulatorError::NoNode),
         };
         match Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
@@ -82,14 +95,17 @@ impl EmulatedBoard {
 
 /// An image to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Image(PathBuf);
+pub struct Image {
+    board: EmulatedBoard,
+    path: PathBuf,
+}
 
 impl Image {
     /// The image `images/BOARD.elf` beside this program, if it has come with one (`cargo xtask dist`), or else as
     /// [`Self::build`], which is what happens where the environment has `FRIXEL_CHECKOUT`.
     pub fn find(board: EmulatedBoard) -> Result<Self, EmulatorError> {
-        match beside_program(&format!("{}.elf", board.name())) {
-            Some(image) => board.emulator().map(|()| Self(image)),
+        match beside_program(&format!("board-{}.elf", board.machine())) {
+            Some(path) => board.emulator().map(|()| Self { board, path }),
             None => Self::build(board),
         }
     }
@@ -114,12 +130,17 @@ impl Image {
         if !output.status.success() {
             return Err(EmulatorError::NotBuilt { output: String::from_utf8_lossy(&output.stderr).into_owned() });
         }
-        Ok(Self(target.join(board.target()).join("release").join(board.name())))
+        Ok(Self { board, path: target.join(board.target()).join("release").join(board.name()) })
     }
 
     /// Where the image is.
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.path
+    }
+
+    /// The board that it is for.
+    pub(super) fn board(&self) -> EmulatedBoard {
+        self.board
     }
 }
 

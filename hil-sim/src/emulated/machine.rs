@@ -39,8 +39,9 @@ impl Machine {
         let errors = file.try_clone().map_err(EmulatorError::system("sharing the emulator's output"))?;
         let size = layout::SHARED_LEN;
         let backend = format!("memory-backend-file,id=psram,size={size},mem-path={},share=on", shared.display());
+        let machine = format!("{},memory-backend=psram", image.board().machine());
         let process = Command::new(EMULATOR)
-            .args(["-M", "mps2-an386,memory-backend=psram", "-object", &backend])
+            .args(["-M", &machine, "-object", &backend])
             .args(["-display", "none", "-monitor", "none", "-kernel"])
             .arg(image.path())
             .args(arguments)

@@ -1,6 +1,8 @@
 //! The image of the Pico board on an emulated RP2040, wired to its chips and its world.
 
 mod board_rig;
+mod injection;
+mod limits;
 mod process;
 mod protocol;
 
@@ -8,7 +10,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
-use frixel_control::Drive;
+use frixel_control::{Board, Drive};
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -70,6 +72,8 @@ pub struct PicoRig {
     /// Since when the amplifier has been disabled and the DAC's output zero.
     zero_since: Option<Duration>,
     to_board: VecDeque<u8>,
+    /// Frames of the touch source that wait for the host to send them; `None` while the rig sends them itself.
+    touch_frames: Option<Vec<u8>>,
     at_host: Vec<u8>,
     events: Option<Vec<Stamped>>,
     starts: u32,
@@ -77,8 +81,17 @@ pub struct PicoRig {
 }
 
 impl PicoRig {
-    /// Switches the board on in a world whose finger is up, and which has the board's tick rate.
+    /// Switches a board on that has stored the limits of [`Board::PICO`], in a world whose finger is up, and which has the
+    /// board's tick rate.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
+        let mut rig = Self::factory_new(image, world)?;
+        let words = [&[limits::OFFSET][..], &limits::stored(&Board::PICO.limits)].concat();
+        rig.process.request(Request::WriteFlash, &words)?;
+        Ok(rig)
+    }
+
+    /// Switches a board on that has stored nothing yet: its limits are those that are built in.
+    pub fn factory_new(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let tick_period = Duration::from_secs_f64(1.0 / f64::from(world.tick_hz()));
         Ok(Self {
             process: Process::start(image)?,
@@ -92,6 +105,7 @@ impl PicoRig {
             amplifier_enable: false,
             zero_since: Some(Duration::ZERO),
             to_board: VecDeque::new(),
+            touch_frames: None,
             at_host: Vec::new(),
             events: None,
             starts: 0,
@@ -161,6 +175,22 @@ impl PicoRig {
         self.events.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
+    /// Leaves the touch source's frames to the caller from now on, who takes them after every step and sends them on the
+    /// line that carries its own.
+    pub(crate) fn hand_over_touch_frames(&mut self) {
+        self.touch_frames = Some(Vec::new());
+    }
+
+    /// The frames of the touch source that wait for the caller.
+    pub(crate) fn take_touch_frames(&mut self) -> Vec<u8> {
+        self.touch_frames.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Whether frames of the touch source wait for the caller.
+    pub(crate) fn has_touch_frames(&self) -> bool {
+        self.touch_frames.as_ref().is_some_and(|frames| !frames.is_empty())
+    }
+
     /// Sends bytes from the host: whole frames, so that those of the touch source go between them.
     pub fn send(&mut self, bytes: &[u8]) {
         self.to_board.extend(bytes);
@@ -214,7 +244,8 @@ impl PicoRig {
     /// Runs for a time, or until a frame ends.
     fn run(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
         let sense = self.world.sense();
-        let monitor_v = self.broken.monitor_v.unwrap_or_else(|| f64::from(sense.monitor_v));
+        // The board has latched its last code just now, and reads the monitor before that has moved it.
+        let monitor_v = self.broken.monitor_v.unwrap_or_else(|| self.world.monitor_now_v());
         let monitor_code = (MONITOR_ZERO_CODE + monitor_v * MONITOR_CODES_PER_V).round().clamp(0.0, 4095.0);
         let is_held = self.broken.arm_switch.unwrap_or(sense.arm_switch && self.now >= PRESSED_AT);
         let mut inputs = 0;
@@ -258,7 +289,10 @@ impl PicoRig {
         };
         let mut buffer = [0; FRAME_MAX_LEN];
         if let Ok(frame) = payload::request_frame(&HostRequest { sequence: TOUCH_SEQUENCE, command }, &mut buffer) {
-            self.to_board.extend(frame);
+            match &mut self.touch_frames {
+                Some(frames) => frames.extend(frame),
+                None => self.to_board.extend(frame),
+            }
         }
     }
 
@@ -293,53 +327,8 @@ impl PicoRig {
                 self.dac.set_clear(false);
                 self.starts += 1;
             }
-            WireEvent::Light(_) | WireEvent::Flash { .. } => {}
+            WireEvent::Light(_) | WireEvent::Flash { .. } | WireEvent::MonitorRead { .. } => {}
         }
-    }
-}
-
-/// What a test does to the board.
-impl PicoRig {
-    /// Cuts the power of the processor, and switches it on again. `seed` is that of what its RAM holds then. The DAC keeps
-    /// its own supply.
-    pub fn power_cycle(&mut self, seed: u32) -> Result<(), EmulatorError> {
-        self.process.request(Request::PowerCycle, &[seed]).map(drop)
-    }
-
-    /// Pulls the RUN pin low and lets it go.
-    pub fn pull_run_pin(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::RunPin, &[]).map(drop)
-    }
-
-    /// Stops the core for ever, as a loop without interrupts does.
-    pub fn hang(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::Hang, &[]).map(drop)
-    }
-
-    /// Lets the main loop hang, while interrupts go on.
-    pub fn hang_main_loop(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::HangMainLoop, &[]).map(drop)
-    }
-
-    /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction asked
-    /// for. `false` if there is no such function.
-    pub fn jump_to(&mut self, name: &str) -> Result<bool, EmulatorError> {
-        let bytes: Vec<u32> = name.bytes().map(u32::from).collect();
-        match self.process.request(Request::AddressOf, &bytes)?.first() {
-            Some(address) if *address != 0 => self.process.request(Request::Jump, &[*address]).map(|_| true),
-            _ => Ok(false),
-        }
-    }
-
-    /// Lets the core go on at an address.
-    pub fn jump(&mut self, address: u32) -> Result<(), EmulatorError> {
-        self.process.request(Request::Jump, &[address]).map(drop)
-    }
-
-    /// Cuts the power in the flash operation after `operations` more of them, when `fraction` of it is done, 0 to 1.
-    pub fn cut_at_flash_operation(&mut self, operations: u32, fraction: f64) -> Result<(), EmulatorError> {
-        let fraction = (fraction * f64::from(u32::MAX)) as u32;
-        self.process.request(Request::CutAtFlashOperation, &[operations, fraction]).map(drop)
     }
 }
 

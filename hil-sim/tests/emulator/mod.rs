@@ -10,6 +10,11 @@ pub fn image() -> Option<Image> {
     built(EmulatedBoard::Mps2An386)
 }
 
+/// The images that tick in lockstep, likewise.
+pub fn lockstep_images() -> impl Iterator<Item = Image> {
+    [EmulatedBoard::Mps2An386, EmulatedBoard::Mps2An505].into_iter().filter_map(built)
+}
+
 /// The image of the Pico, likewise.
 pub fn pico_image() -> Option<Image> {
     built(EmulatedBoard::Pico)

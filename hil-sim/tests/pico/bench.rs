@@ -10,7 +10,7 @@ use frixel_control::Board;
 use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
 use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
-use frixel_scene::{Program, Scene, compile};
+use frixel_scene::{CompileError, Program, Scene, compile};
 
 pub(super) const BOARD: Board = Board::PICO;
 pub(super) const TICK: Duration = Duration::from_micros(1_000_000 / BOARD.tick_hz as u64);
@@ -27,8 +27,22 @@ pub(super) type Host = Device<PollingLink<Cable>>;
 
 /// A scene, compiled for the board.
 pub(super) fn program(text: &str) -> Program {
-    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
-    compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
+    compiled(text).unwrap()
+}
+
+/// A scene, compiled for the board, if that takes it.
+pub(super) fn compiled(text: &str) -> Result<Program, CompileError> {
+    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new())?;
+    compile(&scene, &BOARD.limits, BOARD.tick_hz)
+}
+
+/// A finger that slides again and again.
+fn world() -> World {
+    let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
+    let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
+    let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
+    world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+    world
 }
 
 /// The board, which tests and hosts share.
@@ -48,11 +62,15 @@ impl Bench {
 
     /// Switches the board on.
     pub(super) fn just_on(image: &Image) -> Self {
-        let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
-        let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
-        let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
-        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
-        let mut rig = PicoRig::start(image, world).unwrap();
+        Self::of(PicoRig::start(image, world()).unwrap())
+    }
+
+    /// Switches a board on that has stored nothing yet.
+    pub(super) fn factory_new(image: &Image) -> Self {
+        Self::of(PicoRig::factory_new(image, world()).unwrap())
+    }
+
+    fn of(mut rig: PicoRig) -> Self {
         rig.record_events();
         Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default() }
     }

@@ -8,7 +8,7 @@ use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Refusal;
 
-use super::bench::{Bench, CONSTANT, Host, program};
+use super::bench::{Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
 /// From a broken part to zero: the 0.4 ms after which the monitor or the ready line counts as wrong, and what the tick, the
@@ -45,9 +45,37 @@ fn a_monitor_that_shows_nothing_stops_the_output() {
     breaks(BrokenInputs { monitor_v: Some(0.0), ..BrokenInputs::default() }, Fault::Monitor);
 }
 
+/// A single reading that is disturbed makes up for itself in the next ticks, so that many of them do not add up. With a
+/// monitor that is a tick late, no tick would be left to make up for them.
+#[test]
+fn a_monitor_that_is_disturbed_now_and_then_does_not_stop_the_output() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    let mut host = bench.play(CONSTANT);
+    for _ in 0..10 {
+        bench.with(|rig| rig.broken.monitor_v = Some(0.0));
+        bench.step();
+        bench.with(|rig| rig.broken.monitor_v = None);
+        host.wait(Duration::from_millis(5), &mut |_| ()).unwrap();
+    }
+    assert_eq!(bench.with(|rig| rig.zero_since()), None, "the board drives");
+}
+
 #[test]
 fn a_switch_that_is_let_go_stops_the_output() {
     breaks(BrokenInputs { arm_switch: Some(false), ..BrokenInputs::default() }, Fault::ArmSwitch);
+}
+
+/// The firmware disables the amplifier by its pin, too.
+#[test]
+fn a_one_shot_that_hangs_does_not_hold_the_enable() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    let mut host = bench.play(CONSTANT);
+    bench.with(|rig| rig.stop_one_shot().unwrap());
+    host.stop().unwrap();
+    bench.pass(4 * TICK);
+    assert!(bench.with(|rig| rig.zero_since()).is_some(), "the enable is low, and the code zero");
 }
 
 #[test]

@@ -14,8 +14,10 @@ use crate::emulator;
 const ONE_SHOT_MAX: Duration = Duration::from_millis(1);
 /// From a panic to the pins.
 const PANIC_MAX: Duration = Duration::from_micros(100);
+/// The watchdog's time: half a second by the fastest ring oscillator, 12 MHz; the emulator's has 6.5.
+const WATCHDOG_MAX: Duration = Duration::from_millis(930);
 /// The watchdog's time, and a start.
-const RESTART_MAX: Duration = Duration::from_millis(700);
+const RESTART_MAX: Duration = Duration::from_millis(1_130);
 /// Cycles of the core between two ticks: the RP2040 has 200 MHz here.
 const TICK_CYCLES: u32 = 200_000_000 / BOARD.tick_hz;
 /// Instructions between a frame and the next, at least: one takes 25 / 16 cycles at most, as an average over a tick.
@@ -32,6 +34,8 @@ enum Ending {
     Hang,
     /// The main loop does nothing any more.
     HangingMainLoop,
+    /// The crystal stops, and with it the core and the one-shot.
+    CrystalStops,
     /// A person presses the reset button.
     RunPin,
     /// The power is cut, and comes again.
@@ -39,8 +43,15 @@ enum Ending {
 }
 
 impl Ending {
-    const ALL: [Self; 6] =
-        [Self::Panic, Self::HardFault, Self::Hang, Self::HangingMainLoop, Self::RunPin, Self::PowerCut];
+    const ALL: [Self; 7] = [
+        Self::CrystalStops,
+        Self::Panic,
+        Self::HardFault,
+        Self::Hang,
+        Self::HangingMainLoop,
+        Self::RunPin,
+        Self::PowerCut,
+    ];
 
     /// Lets it happen now.
     fn happen(self, rig: &mut PicoRig, seed: u32) {
@@ -49,6 +60,7 @@ impl Ending {
             Self::HardFault => rig.jump(0x3000_0000).unwrap(),
             Self::Hang => rig.hang().unwrap(),
             Self::HangingMainLoop => rig.hang_main_loop().unwrap(),
+            Self::CrystalStops => rig.stop_crystal().unwrap(),
             Self::RunPin => rig.pull_run_pin().unwrap(),
             Self::PowerCut => rig.power_cycle(seed).unwrap(),
         }
@@ -61,6 +73,8 @@ impl Ending {
             Self::Hang => ONE_SHOT_MAX,
             // The tick goes on, and hears no host: its timeout, 250 ms, and 1 ms to act.
             Self::HangingMainLoop => Duration::from_millis(251),
+            // Without the external one-shot that the carrier has for it.
+            Self::CrystalStops => WATCHDOG_MAX,
             // As soon as the board runs again, for which the rig needs no time.
             Self::RunPin | Self::PowerCut => TICK,
         }
@@ -71,7 +85,7 @@ impl Ending {
         match self {
             Self::Panic => (ResetCause::Software, Some(Fault::Panic)),
             Self::HardFault => (ResetCause::Software, Some(Fault::HardFault)),
-            Self::Hang | Self::HangingMainLoop => (ResetCause::Watchdog, Some(Fault::Watchdog)),
+            Self::Hang | Self::HangingMainLoop | Self::CrystalStops => (ResetCause::Watchdog, Some(Fault::Watchdog)),
             Self::RunPin => (ResetCause::Pin, None),
             Self::PowerCut => (ResetCause::PowerOn, None),
         }

@@ -1,19 +1,35 @@
 //! From power-on to a play: the hello, what is on the wires, and what the finger feels.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_control::Drive;
+use frixel_driver::DeviceError;
 use frixel_hil_sim::emulated::{Stamped, StartCause, WireEvent};
 use frixel_wire::fault::State;
-use frixel_wire::hello::{BoardKind, ResetCause};
+use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
+use frixel_wire::message::Refusal;
 
-use super::bench::{BOARD, Bench, CONSTANT, TICK};
+use super::bench::{BOARD, Bench, CONSTANT, TICK, compiled, program};
 use crate::emulator;
 
 /// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.
 const FRAME_MAX: Duration = Duration::from_micros(5);
 /// How far the distance of two frames may be from a tick: two cycles of the core.
 const JITTER_MAX: Duration = Duration::from_nanos(10);
+/// Longest time from a new code to the reading of the monitor. The ADC has sampled it 2 us before, or 4; the supervisor
+/// bears 2 us of the newest code.
+const MONITOR_READ_MAX: Duration = Duration::from_micros(4);
+/// Cycles of the core between two ticks.
+const TICK_CYCLES: u32 = 200_000_000 / BOARD.tick_hz;
+/// Scenes of the gallery by what they cost, the costliest first that the board may take.
+const GALLERY: [&str; 3] = [
+    include_str!("../../../scenes/warning.toml"),
+    include_str!("../../../scenes/grating.toml"),
+    include_str!("../../../scenes/constant.toml"),
+];
+/// Friction that 50 V do not reach is cut off.
+const SATURATE: &str = "[drive]\nsaturate = true\n\n[[layer]]";
 
 /// The ends of the frames among events. Each has 24 clocks.
 fn frames(events: &[Stamped]) -> Vec<Duration> {
@@ -35,13 +51,27 @@ fn after_power_on_the_board_says_hello_and_its_output_is_zero() {
     let hello = *bench.connect().hello();
     assert_eq!((hello.board, hello.tick_hz), (BoardKind::Pico, BOARD.tick_hz));
     assert_eq!((hello.reset_cause, hello.last_fault, hello.state), (ResetCause::PowerOn, None, State::Disarmed));
-    assert_eq!(hello.limits, BOARD.limits);
+    assert_eq!(hello.limits, BOARD.limits, "those that are stored");
     bench.pass(Duration::from_millis(100));
     assert!(bench.take_records().iter().all(|record| record.drive == Drive::default()));
     let events = bench.take_events();
     assert_eq!(events[0].event, WireEvent::Start(StartCause::Power));
     assert!(!events.iter().any(|stamped| stamped.event == WireEvent::Enable(true)), "the enable stays low");
     assert!(frames(&events).len() > 1000);
+}
+
+/// Nothing has measured a board that has stored no limits.
+#[test]
+fn a_board_that_was_never_brought_up_drives_ten_volts_at_most() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::factory_new(&image);
+    bench.pass(Duration::from_millis(50));
+    let mut host = bench.connect();
+    let built_in = BoardLimits { voltage_max_v_peak: 10.0, ..BOARD.limits };
+    assert_eq!(host.hello().limits, built_in);
+    let refused = frixel_play::start(&mut host, &program(CONSTANT), &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::Config(_), .. }), "{refused:?}");
+    assert!(bench.with(|rig| rig.zero_since()).is_some());
 }
 
 #[test]
@@ -69,17 +99,52 @@ fn frames_come_at_every_beat_and_the_enable_is_high_from_the_first_kick_to_the_s
     assert!(bench.with(|rig| rig.zero_since()).is_some());
 }
 
+/// The monitor is compared with the code before the newest one, and the amplifier follows that within some 8 us. So it is
+/// read soon after the newest code is out, whatever else the tick has to do.
+#[test]
+fn the_monitor_is_read_before_the_newest_code_has_moved_it() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    let mut host = bench.play(CONSTANT);
+    bench.take_events();
+    host.wait(Duration::from_millis(200), &mut |_| ()).unwrap();
+    host.stop().unwrap();
+    let late =
+        |event: &WireEvent| if let WireEvent::MonitorRead { since_frame } = event { Some(*since_frame) } else { None };
+    let reads: Vec<Duration> = bench.take_events().iter().filter_map(|stamped| late(&stamped.event)).collect();
+    assert!(reads.len() >= 1_600, "{} reads", reads.len());
+    let latest = reads.iter().max().unwrap();
+    assert!(*latest <= MONITOR_READ_MAX, "the monitor is read {latest:?} after a code was latched");
+}
+
+/// What is outside of the estimate, by which scenes are taken, has room too: until the drive is given to the DAC, which
+/// may be as late as after 23,700 cycles.
+#[test]
+fn the_costliest_scene_of_the_gallery_that_is_taken_leaves_a_fifth_of_the_tick() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    let mut host = bench.connect();
+    let costliest = GALLERY.iter().find_map(|text| compiled(&text.replacen("[[layer]]", SATURATE, 1)).ok()).unwrap();
+    frixel_play::start(&mut host, &costliest, &mut |_| ControlFlow::Continue(())).unwrap();
+    bench.with(|rig| rig.world_mut().start_stroke());
+    host.wait(Duration::from_millis(650), &mut |_| ()).unwrap();
+    assert_eq!(bench.with(|rig| rig.zero_since()), None, "the board drives");
+    let times = host.tick_times().unwrap().unwrap();
+    assert!(times.worst_cycles <= TICK_CYCLES * 4 / 5, "{times:?}");
+    assert!(times.worst_cycles >= TICK_CYCLES * 3 / 5, "the finger was in the layer: {times:?}");
+}
+
 #[test]
 fn a_finger_feels_the_friction_that_the_scene_asks_for() {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
     let mut host = bench.play(CONSTANT);
-    let law = super::bench::program(CONSTANT).header.friction_law().unwrap();
+    let law = program(CONSTANT).header.friction_law().unwrap();
     bench.take_records();
     host.wait(Duration::from_millis(200), &mut |_| ()).unwrap();
     let records = bench.take_records();
     let mean_n = records.iter().map(|record| record.felt.electric_friction_n).sum::<f64>() / records.len() as f64;
-    let reach_n = law.electric_friction_n(f64::from(super::bench::program(CONSTANT).header.voltage_max_v_rms));
+    let reach_n = law.electric_friction_n(f64::from(program(CONSTANT).header.voltage_max_v_rms));
     let error = mean_n / (0.9 * reach_n) - 1.0;
     // The edges of the carrier take a part of the mean square that varies with the tick rate's rounding.
     assert!(error.abs() < 0.02, "{mean_n} N is {error} from what was asked for");

@@ -1,18 +1,22 @@
 //! The power is cut while a scene is stored: the next start has the old scene or the new one.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_hil_sim::emulated::{Image, WireEvent};
+use frixel_scene::{Program, Scene, compile};
 use frixel_testkit::Random;
 use frixel_wire::fault::State;
 use frixel_wire::frame::crc32;
 
-use super::bench::{Bench, CONSTANT, WEAKER, program};
+use super::bench::{BOARD, Bench, CONSTANT, WEAKER, program};
 use crate::emulator;
 
 /// A scene is stored 2 s after its commit on a board that is disarmed, and erasing a sector takes 45 ms.
 const STORED_AFTER: Duration = Duration::from_millis(2_800);
+/// The watchdog's time, by the emulator's ring oscillator.
+const WATCHDOG_MAX: Duration = Duration::from_millis(930);
 /// Time to start.
 const START: Duration = Duration::from_millis(30);
 
@@ -22,6 +26,16 @@ fn store(bench: &Bench, text: &str) {
     frixel_play::load(&mut host, &program(text), &mut |_| ControlFlow::Continue(())).unwrap();
     drop(host);
     bench.pass(STORED_AFTER);
+}
+
+/// A scene that takes half a second to store.
+fn large() -> Program {
+    let picture = include_bytes!("../../../scenes/textures/brick.png").to_vec();
+    let text = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 10\ny_mm = 10\n\
+                width_mm = 40\npitch_mm = 0.4\nwhite_n = 0.01\n";
+    let files = BTreeMap::from([("brick.png".to_owned(), picture)]);
+    let scene = Scene::parse(text, "scene.toml", &files).unwrap();
+    compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
 }
 
 fn crc32_of(text: &str) -> u32 {
@@ -81,6 +95,36 @@ fn a_power_cut_while_a_scene_is_stored_leaves_the_old_scene_or_the_new_one() {
 fn a_power_cut_at_any_operation_of_the_flash_leaves_the_old_scene_or_the_new_one() {
     let Some(image) = emulator::pico_image() else { return };
     cut_at(&image, |operations| (0..operations).collect());
+}
+
+/// A store takes longer than the watchdog has time, so that each operation feeds it. Without ticks, none does.
+#[test]
+fn a_tick_that_stands_still_while_a_scene_is_stored_resets_the_board() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::just_on(&image);
+    bench.pass(START);
+    let mut host = bench.connect();
+    frixel_play::load(&mut host, &large(), &mut |_| ControlFlow::Continue(())).unwrap();
+    drop(host);
+    let operations = || {
+        let events = bench.take_events();
+        events.iter().filter(|stamped| matches!(stamped.event, WireEvent::Flash { .. })).count()
+    };
+    bench.pass(Duration::from_millis(100));
+    operations();
+    while operations() == 0 {
+        bench.step();
+    }
+    let (begin, starts) = bench.with(|rig| {
+        rig.stop_beat().unwrap();
+        (rig.now(), rig.starts())
+    });
+    while bench.with(|rig| rig.starts()) == starts {
+        bench.step();
+        let late = bench.now().saturating_sub(begin);
+        assert!(late < WATCHDOG_MAX, "the board was not reset for {late:?}");
+    }
+    assert!(operations() > 100, "the main loop went on to store");
 }
 
 #[test]

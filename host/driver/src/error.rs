@@ -9,9 +9,9 @@ use thiserror::Error;
 
 /// An open link has closed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("the port {port} vanished ({reason})")]
+#[error("{port} vanished ({reason})")]
 pub struct LinkClosed {
-    /// Path of the port.
+    /// Name of the link: the path of a port, or words.
     pub port: String,
     /// The reason, in the operating system's words.
     pub reason: String,

@@ -11,7 +11,7 @@ use frixel_hil_sim::RigConfig;
 use frixel_scene::{CompileError, Program, Scene, compile};
 
 /// Counts of the shape that `cargo xtask bench` writes.
-const BENCH: &str = r#"{ "m3.inverse_table": 415, "m3.inverse_table_fixed": 61, "m4f.inverse_closed_form": 185, "m4f.inverse_closed_form_cycles": 277,
+const BENCH: &str = r#"{ "m0plus.inverse_table": 803, "m33.inverse_table": 15, "m3.inverse_table": 415, "m3.inverse_table_fixed": 61, "m4f.inverse_closed_form": 185, "m4f.inverse_closed_form_cycles": 277,
     "m4f.inverse_table": 16, "m4f.inverse_table_cycles": 27, "m4f.tick_idle": 209,
     "m4f.tick_1_of_1": 331, "m4f.tick_1_of_1_mean": 301, "m4f.tick_1_of_8": 335, "m4f.tick_1_of_8_mean": 302,
     "m4f.tick_1_of_64": 329, "m4f.tick_1_of_64_mean": 303, "m4f.tick_8_of_8": 517, "m4f.tick_8_of_8_mean": 481,
@@ -129,7 +129,7 @@ fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
 fn counts_are_asked_for_and_shown() {
     let counts = rows("error-against-instructions");
     let found: Vec<_> = counts.iter().map(|row| (row["core"].as_str(), row["instructions"].as_str())).collect();
-    assert_eq!(found, [("m4f", "185"), ("m4f", "16"), ("m3", "415"), ("m3", "61")]);
+    assert_eq!(found, [("m4f", "185"), ("m4f", "16"), ("m33", "15"), ("m0plus", "803"), ("m3", "415"), ("m3", "61")]);
     assert!(report()["index.html"].contains("16 (about 27 cycles)"));
     assert!(report()["index.html"].contains("takes on a board is in the figure before this one"));
     let folder = tempfile::tempdir().unwrap();

@@ -1,9 +1,9 @@
 //! The layers of a scene's files, for a page that lists them beside the text.
 
 use frixel_felt::check::feel;
-use frixel_felt::perception::Perception;
+use frixel_felt::perception::{LayerPerception, Perception, Texture};
 use frixel_layers::range;
-use frixel_scene::{LayerTable, Program, Scene};
+use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
 use serde::Serialize;
 
 /// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
@@ -18,6 +18,8 @@ pub(crate) struct FileLayer {
     kind: &'static str,
     /// What a person will feel of it, or of its first copy, one sentence; empty for a layer that is not felt anywhere.
     felt: String,
+    /// The same as numbers; `null` for a layer that is not felt anywhere.
+    perceived: Option<Perceived>,
     /// The numbers of its layers in control lines.
     controls: Vec<String>,
     /// Whether they can be changed while they play.
@@ -30,6 +32,9 @@ pub(crate) struct FileLayer {
     gain: f64,
     gain_min: f64,
     gain_max: f64,
+    /// The least and the largest gain with which the drive can give what the layer asks for when it is on; `null` where
+    /// it cannot be changed, or with no gain.
+    gain_reach: Option<(f64, f64)>,
     /// The file that it stands in, if that is not the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
@@ -39,16 +44,67 @@ pub(crate) struct FileLayer {
     box_mm: Option<[f64; 4]>,
 }
 
+/// What is felt of a layer, or of its first copy.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Perceived {
+    /// Whether it is felt, as the command says it.
+    verdict: &'static str,
+    /// The friction before and after its step, N: that within it or that at its border, whichever is larger.
+    from_n: f64,
+    to_n: f64,
+    /// The step in Weber steps.
+    weber_steps: f64,
+    /// The vibration that is felt most surely when it is slid over; `null` for a layer without one.
+    texture: Option<PerceivedTexture>,
+}
+
+/// A vibration under a sliding finger.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct PerceivedTexture {
+    verdict: &'static str,
+    speed_mm_per_s: f64,
+    frequency_hz: f64,
+    amplitude_n: f64,
+    /// The smallest amplitude that is felt at this frequency, N; `null` where none is known.
+    threshold_n: Option<f64>,
+}
+
+impl Perceived {
+    fn of(layer: &LayerPerception) -> Self {
+        let steps = layer.border.iter().map(|border| border.step).chain([layer.contrast]);
+        let largest = steps.max_by(|one, other| one.weber_steps.abs().total_cmp(&other.weber_steps.abs()));
+        let step = largest.unwrap_or(layer.contrast);
+        Self {
+            verdict: layer.verdict.words(),
+            from_n: step.from_n,
+            to_n: step.to_n,
+            weber_steps: step.weber_steps,
+            texture: layer.surest_texture().map(PerceivedTexture::of),
+        }
+    }
+}
+
+impl PerceivedTexture {
+    fn of(texture: &Texture) -> Self {
+        let Texture { speed_mm_per_s, frequency_hz, amplitude_n, threshold_n, verdict, .. } = *texture;
+        Self { verdict: verdict.words(), speed_mm_per_s, frequency_hz, amplitude_n, threshold_n }
+    }
+}
+
 /// The layers of a scene, called `entry`, that was compiled to `program`.
 pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
-        let live = layers.iter().try_for_each(|layer| program.layers.records(layer).map(drop));
+        let live: Result<Vec<Vec<u8>>, _> = layers.iter().map(|layer| program.layers.records(layer)).collect();
+        let gain_reach = live.as_ref().ok().and_then(|records| gain_reach(program, &records.concat()));
         FileLayer {
             index: number,
             name: name.unwrap_or_else(|| kind.to_owned()),
             kind,
-            felt: felt(number, perception),
+            felt: perceived(number, perception).map_or_else(String::new, feel::sentence),
+            perceived: perceived(number, perception).map(Perceived::of),
             controls: layers,
             is_live: live.is_ok(),
             why_not_live: live.err().map_or(String::new(), |error| error.to_string()),
@@ -56,6 +112,7 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
             gain,
             gain_min: range::GAIN.min,
             gain_max: range::GAIN.max,
+            gain_reach,
             file: (file != entry).then_some(file),
             from: lines,
             box_mm: bounds_mm,
@@ -64,8 +121,18 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
     scene.layer_tables().into_iter().map(describe).collect()
 }
 
-/// The sentence on the layer of the table with this number, or on its first copy.
-fn felt(table: usize, perception: &Perception) -> String {
-    let layer = perception.layers.iter().find(|layer| layer.layer.number().table == table);
-    layer.map_or(String::new(), feel::sentence)
+/// What is felt of the layer of the table with this number, or of its first copy.
+fn perceived(table: usize, perception: &Perception) -> Option<&LayerPerception> {
+    perception.layers.iter().find(|layer| layer.layer.number().table == table)
+}
+
+/// The gains in reach of some records together, once they are on and all others as the scene starts.
+fn gain_reach(program: &Program, records: &[u8]) -> Option<(f64, f64)> {
+    let is_meant = |record: usize| records.iter().any(|meant| usize::from(*meant) == record);
+    let settings = program.start.iter().enumerate();
+    let settings: Vec<LayerSetting> =
+        settings.map(|(at, setting)| LayerSetting { on: setting.on || is_meant(at), ..*setting }).collect();
+    // They are hundredths, and so not the nearest f32 to them.
+    let hundredths = |gain: f32| (100.0 * f64::from(gain)).round() / 100.0;
+    program.gains_in_reach(records, &settings).map(|(least, most)| (hundredths(least), hundredths(most)))
 }

@@ -107,3 +107,77 @@ test("text and tools are closed at the first visit, and later as they were left"
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("values in the legend are whole, and neither they nor a tab change the size of anything", async () => {
+  const { page, errors, close } = await openStudio();
+  const parts = ["#scope .u-wrap", "#scope .u-legend", "#numbers", "#map-finger", "#editor", ".side", "#drawer"];
+  for (const size of WINDOWS.filter(([width]) => width > PHONE_MAX_PX)) {
+    await resize(page, size);
+    const before = await boxes(page, parts);
+    await page.evaluate(async () => {
+      await slide(15, 60, 40, 90);
+      await wait(100);
+      lift(60, 40);
+    });
+    const { left, top, width, height } = await page.evaluate(boxOf, "#scope .u-over");
+    // Somewhere on the stroke, which is in the last second of the chart.
+    const hasValues = () => /felt.*mN/.test(document.querySelector(".u-legend").textContent);
+    for (let part = 0.75; part < 1 && !(await page.evaluate(hasValues)); part += 0.01)
+      await page.mouse.move(left + part * width, top + 0.4 * height);
+    assert.ok(await page.evaluate(hasValues), "the legend has values");
+    const cut = await page.evaluate(() => {
+      const rows = [...document.querySelectorAll(".u-legend tr")];
+      const isCut = (row) => row.scrollWidth > row.clientWidth + 1 || row.lastChild.getBoundingClientRect().right > row.getBoundingClientRect().right + 1;
+      return rows.filter(isCut).map((row) => row.textContent);
+    });
+    assert.deepEqual(cut, [], `${size}`);
+    for (const tab of ["sound", "compare", "pictures", "report", "layers"]) {
+      await page.click(`#tab-${tab}`);
+      assert.deepEqual(await boxes(page, parts), before, `${size}: ${tab}`);
+    }
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("Arm has its place, and Stop is red and stays where it is", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const parts = ["#stop", "#toggle-drawer", "#open-gallery", "#map-finger", "#numbers"];
+  for (const size of WINDOWS) {
+    await resize(page, size);
+    await page.waitForFunction(() => document.documentElement.dataset.state === "active");
+    const before = await boxes(page, parts);
+    const shown = await page.evaluate(async () => {
+      const { engine } = studioPage;
+      const show = engine.onState;
+      engine.onState = () => {};
+      const driving = "board NUCLEO-G474RE with an electrode, up to 220 V peak";
+      const seen = [];
+      for (const state of ["disarmed", "faulted", "active"]) {
+        const fault = state === "faulted" ? "the amplifier reported a fault while it was driven" : undefined;
+        show({ link: "serial", state, fault, needsArm: state === "disarmed", driving });
+        const button = document.getElementById(state === "disarmed" ? "arm" : "clear-fault");
+        const box = ({ left, top, right, bottom }) => [left, top, right, bottom];
+        seen.push({ state, isShown: button.checkVisibility(), box: box(button.getBoundingClientRect()) });
+        seen.at(-1).parts = Object.fromEntries(
+          ["#stop", "#toggle-drawer", "#open-gallery", "#map-finger", "#numbers"].map((selector) => {
+            const { left, top, right, bottom, width, height } = document.querySelector(selector).getBoundingClientRect();
+            return [selector, { left, top, right, bottom, width, height }];
+          }),
+        );
+      }
+      const [red, green, blue] = getComputedStyle(document.getElementById("stop")).backgroundColor.match(/\d+/g).map(Number);
+      show(engine.state);
+      engine.onState = show;
+      return { seen, isRed: red > 150 && green < 80 && blue < 80 };
+    });
+    assert.ok(shown.isRed, "Stop is red");
+    for (const { state, isShown, box, parts: found } of shown.seen) {
+      assert.deepEqual(found, before, `${size}: ${state} moves the page`);
+      assert.equal(isShown, state !== "active", `${size}: ${state}`);
+      if (isShown) assert.ok(box[2] <= before["#stop"].left && box[0] >= 0, `${size}: ${state} ${box}`);
+    }
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});

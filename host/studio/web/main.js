@@ -7,9 +7,10 @@ import { followLinks, makeBar, openLink } from "./page/bar.js";
 import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
-import { byId, element, notify, sentenceOf } from "./page/dom.js";
+import { byId, element, sentenceOf } from "./page/dom.js";
 import { Drawer } from "./page/drawer.js";
 import { Editor } from "./page/editor.js";
+import { showFelt } from "./page/felt.js";
 import { FileTabs } from "./page/file_tabs.js";
 import { Finger } from "./page/finger.js";
 import { Gallery } from "./page/gallery.js";
@@ -21,6 +22,7 @@ import { Layers } from "./page/layers.js";
 import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
 import { NewScene } from "./page/new_scene.js";
+import { followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
 import { Player, isPlayable } from "./page/player.js";
@@ -38,7 +40,7 @@ import { makeView } from "./page/view.js";
 import { Works } from "./page/works.js";
 
 /** @import { Engine } from "./engine/engine.js" */
-/** @import { Layer, Reach } from "./engine/types" */
+/** @import { Checked, Reach } from "./engine/types" */
 /** @typedef {Awaited<ReturnType<typeof makeParts>>} Parts */
 
 const FIRST_SCENE = "brick";
@@ -47,6 +49,7 @@ async function start() {
   const engine = await createEngine();
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
+  followPresses();
   const parts = await makeParts(engine);
   const scene = new OpenScene(parts);
   makeControls(parts);
@@ -63,6 +66,7 @@ async function start() {
   if (!(isReload && last)) openLink(scene);
   const { editor, sound, samples, map, player, ghost } = parts;
   ghost.start();
+  keepSite();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
@@ -144,22 +148,24 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
 function showWhatPlays(parts, scene) {
   const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
   const hint = byId("map-hint");
-  /** @type {Layer[] | undefined} */
+  /** @type {Checked | undefined} */
   let shown;
   player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
     if (isPlayable(check)) {
       parts.reach = check;
+      project.screen = check.screen;
+      showFelt(check);
       scope.isDraft = check.isDraft;
-      shown = check.layers;
+      shown = check;
       hands.show(check, files);
     } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
   };
   player.onPlay = () => {
     layers.reset();
     lag.played();
-    if (!compare.isRunning && shown) layers.show(shown);
+    if (!compare.isRunning && shown) layers.show(shown.layers, shown);
   };
   layers.onLive = (changes) => {
     const note = byId("map-note");
@@ -172,16 +178,23 @@ function showWhatPlays(parts, scene) {
     hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
+    if (player.status === "loaded") map.markStale(undefined);
     // While a hand moves layers, the next map is about to come.
     if (player.isHeld) return;
     const { opened } = project;
     map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
   };
-  player.onFailure = notify;
+  player.onFailure = (sentence) => {
+    map.markStale("older");
+    notify(sentence, undefined, { beside: byId("check") });
+  };
   player.onStatus = (status) => {
     board.allowArm(status);
     layers.isSceneLoading = status === "loading";
     showStatus(status);
+    // A blind comparison shows no map. What is loaded has its map once that is drawn.
+    if (compare.isRunning || status === "loaded") return;
+    map.markStale(status === "loading" ? "drawing" : "older");
   };
   board.onBoard = () => scene.replay();
 }
@@ -232,7 +245,6 @@ function takeScenes({ engine, project, editor, gallery }, scene) {
   incoming.onFiles = (found) => scene.take(found);
 }
 
-keepSite();
 start().catch((error) => {
   const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
   document.querySelector("main")?.replaceChildren(why);

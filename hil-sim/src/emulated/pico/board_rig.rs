@@ -30,6 +30,7 @@ impl PicoBoardRig {
         while rig.now() < SWITCH_TIME {
             rig.step()?;
         }
+        rig.hand_over_touch_frames();
         Ok(Self { rig, switch_open_until: None })
     }
 
@@ -71,11 +72,15 @@ impl BoardRig for PicoBoardRig {
         received: &mut Vec<u8>,
         watch: &mut dyn FnMut(&RigTick),
     ) -> Result<(), RigError> {
-        while !self.rig.has_received() && self.tick() < until_tick {
+        while !(self.rig.has_received() || self.rig.has_touch_frames()) && self.tick() < until_tick {
             watch(&self.step()?);
         }
         self.rig.receive(received);
         Ok(())
+    }
+
+    fn take_touch_frames(&mut self) -> Vec<u8> {
+        self.rig.take_touch_frames()
     }
 
     fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {

@@ -13,6 +13,9 @@ pub(super) enum Request {
     Jump = 6,
     CutAtFlashOperation = 7,
     AddressOf = 8,
+    StopCrystal = 9,
+    StopPio = 10,
+    WriteFlash = 11,
 }
 
 /// Bits of the inputs in a [`Request::Run`].
@@ -71,6 +74,11 @@ pub enum WireEvent {
         offset: u32,
         /// Bytes that are programmed; 0 when they are erased.
         programmed_len: u32,
+    },
+    /// The firmware reads the amplifier's monitor.
+    MonitorRead {
+        /// Time since SYNC rose last, which latches a code.
+        since_frame: Duration,
     },
 }
 
@@ -135,6 +143,7 @@ fn stamped(&[kind, at_ns, first, second]: &[u32; 4]) -> Option<Stamped> {
             _ => return None,
         }),
         6 => WireEvent::Flash { offset: first, programmed_len: second },
+        7 => WireEvent::MonitorRead { since_frame: Duration::from_nanos(first.into()) },
         _ => return None,
     };
     Some(Stamped { at: Duration::from_nanos(at_ns.into()), event })

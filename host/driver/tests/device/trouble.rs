@@ -200,7 +200,7 @@ fn a_pulled_cable_ends_every_call_at_once() {
     let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
     let error = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::Vanished { command: "upload of a bitmap", .. }), "{error}");
-    assert!(error.to_string().starts_with("the port the virtual line vanished (pulled) during: upload of a bitmap; "));
+    assert!(error.to_string().starts_with("the virtual line vanished (pulled) during: upload of a bitmap; "));
     let line = line_of(&mut device);
     assert!(!line.board.commands.contains(&Command::UploadEnd));
 }

@@ -173,12 +173,9 @@ fn reasons(layer: &LayerPerception) -> String {
             told = vec![format!("{} mN throughout, without a border that is felt", millinewtons(contrast.from_n))];
         }
     }
-    let surest = textures.iter().max_by(|one, other| {
-        let by_verdict = one.verdict.sureness().cmp(&other.verdict.sureness());
-        by_verdict.then(one.salience().total_cmp(&other.salience()))
-    });
     told.extend(
-        surest
+        layer
+            .surest_texture()
             .filter(|texture| is_told(texture.verdict, Verdict::of_texture(texture.amplitude_n, texture.frequency_hz)))
             .map(texture_text),
     );

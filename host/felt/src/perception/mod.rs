@@ -97,6 +97,16 @@ pub struct LayerPerception {
     pub is_click_cut_off: bool,
 }
 
+impl LayerPerception {
+    /// The texture that is felt most surely, and of several that which is felt most.
+    pub fn surest_texture(&self) -> Option<&Texture> {
+        self.textures.iter().max_by(|one, other| {
+            let by_verdict = one.verdict.sureness().cmp(&other.verdict.sureness());
+            by_verdict.then(one.salience().total_cmp(&other.salience()))
+        })
+    }
+}
+
 /// What friction changes with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

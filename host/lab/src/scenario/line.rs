@@ -9,7 +9,7 @@ use std::time::Duration;
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_hil_sim::{BoardRig, RigError};
 use frixel_play::Recorded;
-use frixel_scene::{Cause, Scenario};
+use frixel_scene::{At, Cause, Scenario};
 
 use super::checks::Checks;
 use super::direction::Direction;
@@ -59,7 +59,7 @@ struct PlannedFault {
 impl<'r> ScenarioLine<'r> {
     pub(super) fn new(scenario: &Scenario, rig: &'r mut dyn BoardRig) -> Self {
         let (tick_hz, first_tick) = (rig.board().tick_hz, rig.tick());
-        let ticks = |ms: f64| (1e-3 * ms * f64::from(tick_hz)).round() as u64;
+        let ticks = |ms: f64| At::Ms(ms).tick(tick_hz);
         let mut faults: Vec<_> = scenario
             .faults
             .iter()
@@ -197,7 +197,13 @@ impl Inner<'_> {
             let checks = &mut self.checks;
             let ran = self.rig.run(until, &mut received, &mut |tick| checks.see(tick));
             self.keep(ran, None)?;
-            self.to_host.take(&received, self.rig.tick());
+            let tick = self.rig.tick();
+            self.to_host.take(&received, tick);
+            let touches = self.rig.take_touch_frames();
+            // A host that hangs or is gone does not pass them on.
+            if reads {
+                self.to_board.take(&touches, tick);
+            }
         }
     }
 

@@ -8,8 +8,11 @@
 const TICKS_PER_MS = 40;
 /** Delay between the pointer and the finger, ms: two samples of a 60 Hz display, and a step of this worker. */
 const DELAY_MS = 40;
-/** Time between two steps of this worker, ms. */
+/** Time between two steps of this worker, ms: while something happens, and while no finger is on the board. */
 const STEP_MS = 8;
+const IDLE_STEP_MS = 96;
+/** After a touch or a message the worker goes on with short steps for this long, ms. */
+const IDLE_AFTER_MS = 1000;
 /** A worker that was held up longer than this, ms, skips the time in place of running after it. */
 const LAG_MAX_MS = 100;
 /** Without a sign of life the board is stepped on for this long, ms, so that its host timeout acts; then it rests. */
@@ -32,6 +35,16 @@ let stroke = { samples: [], isOver: true };
  */
 let replay = null;
 let reported = "";
+/** Until then steps are short, and when the last one was, since 1970, ms. */
+let busyUntilMs = 0;
+let steppedMs = 0;
+
+/** Something happens: the board is brought up to now, and steps are short for a while. */
+function wake() {
+  const isIdle = epochMs() > busyUntilMs;
+  busyUntilMs = epochMs() + IDLE_AFTER_MS;
+  if (isIdle) step();
+}
 
 /** @param {number} ms */
 function tickAt(ms) {
@@ -45,6 +58,8 @@ function setClock(rate) {
 
 function step() {
   const now = epochMs();
+  if (now > busyUntilMs && !replay && now - steppedMs < IDLE_STEP_MS) return;
+  steppedMs = now;
   const sinceLifeMs = now - lastLifeMs;
   if (sinceLifeMs > REST_AFTER_MS) {
     setClock(clock.rate);
@@ -82,6 +97,7 @@ function run(ticks, isAlive) {
     delayMs: DELAY_MS,
   };
   reportState(head.state, head.fault);
+  if (frame.contact) busyUntilMs = epochMs() + IDLE_AFTER_MS;
   tell({ type: "frame", frame, sound, soundTick: tick - soundSamples + 1 }, [buffer]);
 }
 
@@ -134,12 +150,25 @@ serve({
     return {};
   },
 
-  play: ({ scene }) => engine.call("simulator_play", requestOf(scene)),
-  stop: () => engine.call("simulator_stop"),
-  resume: () => engine.call("simulator_resume"),
-  control: ({ line }) => engine.call("simulator_control", new TextEncoder().encode(line)),
+  play({ scene }) {
+    wake();
+    return engine.call("simulator_play", requestOf(scene));
+  },
+  stop() {
+    wake();
+    return engine.call("simulator_stop");
+  },
+  resume() {
+    wake();
+    return engine.call("simulator_resume");
+  },
+  control({ line }) {
+    wake();
+    return engine.call("simulator_control", new TextEncoder().encode(line));
+  },
 
   pointer({ sample }) {
+    if (sample.down) wake();
     // A press takes the finger back from a replay.
     if (replay && sample.down) endReplay(false);
     if (replay) return;

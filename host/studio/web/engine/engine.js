@@ -85,7 +85,7 @@ export class Engine {
     await Promise.all([board, this.#host.start({ module }), this.#checker.start({ module })]);
     keepAlive((type) => {
       this.#board.send({ type });
-      this.#host.send({ type });
+      if (this.#line) this.#host.send({ type });
     });
   }
 
@@ -364,6 +364,11 @@ class WorkerClient {
   #asked = new Map();
   #lastId = 0;
   /**
+   * The files of the last scene that the worker was sent.
+   * @type {T.Files}
+   */
+  #known = {};
+  /**
    * Why the worker answers no more, once it has failed or was ended.
    * @type {string | undefined}
    */
@@ -415,8 +420,22 @@ class WorkerClient {
     const id = ++this.#lastId;
     return new Promise((resolve, reject) => {
       this.#asked.set(id, { resolve, reject });
-      worker.postMessage({ ...message, id }, transfer);
+      const scene = "scene" in message ? { scene: this.#sent(message.scene) } : {};
+      worker.postMessage({ ...message, ...scene, id }, transfer);
     });
+  }
+
+  /**
+   * A scene with only those files that have changed since the last one: a check needs not copy all pictures.
+   * @param {T.Request} scene
+   * @returns {T.SentScene}
+   */
+  #sent({ files, ...rest }) {
+    const isKnown = (/** @type {string} */ name) => name in this.#known && this.#known[name] === files[name];
+    const kept = Object.keys(files).filter(isKnown);
+    const changed = Object.entries(files).filter(([name]) => !isKnown(name));
+    this.#known = { ...files };
+    return { ...rest, files: Object.fromEntries(changed), kept };
   }
 
   /** @param {T.Answer} answer */

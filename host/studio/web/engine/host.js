@@ -15,6 +15,8 @@ const WAIT_MS = 10;
 const PAUSE_MAX_MS = 250;
 /** Bytes that wait to be read at most, for example while the page is hidden; the oldest are dropped first. */
 const ARRIVED_MAX_BYTES = 1_000_000;
+/** A simulated board that refuses to play is asked again after this time, ms. */
+const ASK_AGAIN_MS = 250;
 /** What the imports of the module return when the stream is closed. */
 const CLOSED = -1;
 const STOPPED = "stopped: the board was disarmed meanwhile";
@@ -137,6 +139,8 @@ class Board {
   #newest = 0;
   /** @type {string | null} */
   #fault = null;
+  /** Until then a simulated board that has refused to play is not asked again, on the worker's clock, ms. */
+  #refusedUntilMs = 0;
   isSimulated = true;
   isWanted = false;
   /** Whether the board has the newest scene: nothing else can be armed. */
@@ -263,12 +267,23 @@ class Board {
       this.#stream.hasDropped = false;
       await this.#disarm();
     }
-    if (this.isSimulated && this.isWanted && this.state === "disarmed") await this.#call("host_play");
+    const isAsked = this.isSimulated && this.isWanted && this.state === "disarmed";
+    if (isAsked && performance.now() >= this.#refusedUntilMs) await this.#playAgain();
     const { state, fault, telemetry } = await this.#call("host_wait", null, WAIT_MS);
     this.state = state;
     this.#fault = fault;
     this.report();
     if (telemetry.length > 0) tell({ type: "frame", frame: frameOf(telemetry) });
+  }
+
+  /** A simulated board that was disarmed plays on. One that refuses is there: its state, which is read next, says why. */
+  async #playAgain() {
+    try {
+      await this.#call("host_play");
+    } catch (error) {
+      if (!(error instanceof EngineError) || error.isLinkLost) throw error;
+      this.#refusedUntilMs = performance.now() + ASK_AGAIN_MS;
+    }
   }
 
   report() {

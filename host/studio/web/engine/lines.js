@@ -12,6 +12,8 @@ const NO_BRIDGE =
   "other page connected to it?";
 /** Longest wait for each step of closing a port, ms: a port that is stuck is left. */
 const CLOSE_MAX_MS = 500;
+/** Where the tab remembers the token of its bridge. */
+const BRIDGE = "frixel.bridge";
 /** Longest wait for the bridge to accept a connection, ms. */
 const OPEN_MAX_MS = 5000;
 
@@ -72,10 +74,21 @@ function ended(promise) {
   return Promise.race([promise.catch(() => {}), after(CLOSE_MAX_MS)]);
 }
 
-/** The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. */
+/**
+ * The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. The tab remembers its
+ * token, since a shared scene takes the token's place in the page's address.
+ */
 export function bridgeUrl({ protocol, host, hash } = location) {
-  const token = new URLSearchParams(hash.slice(1)).get("bridge");
-  return protocol === "http:" && token ? `ws://${host}/serial?token=${token}` : null;
+  if (protocol !== "http:") return null;
+  const given = new URLSearchParams(hash.slice(1)).get("bridge");
+  try {
+    if (given) sessionStorage.setItem(BRIDGE, given);
+    const token = given ?? sessionStorage.getItem(BRIDGE);
+    return token ? `ws://${host}/serial?token=${token}` : null;
+  } catch {
+    // Without a session's store, the bridge is known as long as the address has its token.
+    return given ? `ws://${host}/serial?token=${given}` : null;
+  }
 }
 
 /**

@@ -23,12 +23,29 @@ export type Problem = {
   help?: string;
 };
 
+/** What is felt of a layer: its verdict in words, its largest step of friction, and its surest vibration. */
+export type Perceived = {
+  verdict: string;
+  fromN: number;
+  toN: number;
+  weberSteps: number;
+  texture: {
+    verdict: string;
+    speedMmPerS: number;
+    frequencyHz: number;
+    amplitudeN: number;
+    thresholdN: number | null;
+  } | null;
+};
+
 export type Layer = {
   index: number;
   name: string;
   kind: string;
   /** A sentence, or "". */
   felt: string;
+  /** Null for a layer that is not felt anywhere. */
+  perceived: Perceived | null;
   isLive: boolean;
   whyNotLive: string;
   /** Whether it is on when the scene begins to play. */
@@ -36,6 +53,8 @@ export type Layer = {
   gain: number;
   gainMin: number;
   gainMax: number;
+  /** The gains with which the drive can give all that the layer asks for; null where it is not live, or with none. */
+  gainReach: [number, number] | null;
   /** Names of its copies in control lines. */
   controls: string[];
   file?: string;
@@ -141,7 +160,9 @@ export type Question = { [Type in keyof Questions]: { type: Type } & Questions[T
 
 /** What needs no answer. */
 export type Note = { type: "alive" | "gone" | "lift" } | { type: "pointer"; sample: PointerSample };
-/** What the page sends to a worker; `id` is that of the answer. */
+/** A scene on its way to a worker: with the files that have changed, and the names of those that it has. */
+export type SentScene = Request & { kept: string[] };
+/** What the page sends to a worker; `id` is that of the answer, and a scene is a `SentScene`. */
 export type ToWorker = (Question & { id: number }) | Note;
 
 export type Answer = {

@@ -242,6 +242,22 @@ let compiled;
 let lastLifeMs = -Infinity;
 
 /**
+ * The files of the last scene: those that have not changed are not sent again.
+ * @type {T.Files}
+ */
+let known = {};
+
+/**
+ * A scene with all of its files, of which the message has those that the worker does not know.
+ * @param {T.SentScene} sent
+ * @returns {T.Request}
+ */
+function wholeScene({ kept, files, ...rest }) {
+  known = { ...Object.fromEntries(kept.map((name) => [name, known[name]])), ...files };
+  return { ...rest, files: known };
+}
+
+/**
  * Answers the requests of the page with `actions[type](message)`; messages without `id` get no answer.
  * @param {T.Actions} actions
  */
@@ -250,6 +266,7 @@ function serve(actions) {
   const all = { ...actions, time: takeTime };
   self.onmessage = async ({ data: message }) => {
     const { type, id } = message;
+    if (message.scene) message.scene = wholeScene(message.scene);
     try {
       const value = await all[type]?.(/** @type {never} */ (message));
       if (id !== undefined) tell({ type: "answer", id, value });

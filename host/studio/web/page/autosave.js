@@ -3,7 +3,8 @@
 
 import { clock } from "../clock.js";
 import { projectOf, zipOf } from "./archive.js";
-import { notify } from "./dom.js";
+import { byId } from "./dom.js";
+import { notify } from "./notices.js";
 
 /** @import { OpenWork, SavedScene, SceneToOpen } from "./project.js" */
 /** @import { Work, Works } from "./works.js" */
@@ -171,7 +172,8 @@ export class Autosave {
     const why = isFull ? "its store is full" : "it keeps nothing for this page";
     if (this.isEdited && this.#problem !== why) {
       const cure = "Save it before you close the page; Open deletes pieces of work that you no longer need.";
-      notify(`The browser does not keep ${this.#current().name}: ${why}. ${cure}`);
+      const said = `The browser does not keep ${this.#current().name}: ${why}. ${cure}`;
+      notify(said, undefined, { beside: byId("save") });
       this.#problem = why;
     }
   }

@@ -2,7 +2,8 @@
 // @ts-check
 
 import { projectOf, zipOf } from "./archive.js";
-import { attempt, byId, download, notify } from "./dom.js";
+import { byId, download } from "./dom.js";
+import { attempt, notify } from "./notices.js";
 import { Open } from "./open.js";
 import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 
@@ -26,6 +27,11 @@ export function makeBar({ scene, gallery, works, editor, project }) {
   };
   byId("save").onclick = () => attempt(() => save(scene, project, editor));
   byId("share").onclick = () => attempt(() => share(project, editor));
+  addEventListener("keydown", (event) => {
+    if (event.key.toLowerCase() !== "s" || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return;
+    event.preventDefault();
+    byId("save").click();
+  });
 }
 
 /** In a narrow window most of the buttons are in a menu, which closes at a press anywhere, and at Escape. */
@@ -70,7 +76,8 @@ async function share(project, editor) {
     () => "The link is copied.",
     () => "The link stands in the address line: copy it from there.",
   );
-  notify(`${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`);
+  const said = `${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`;
+  notify(said, undefined, { isGood: true, beside: byId("share") });
 }
 
 /**

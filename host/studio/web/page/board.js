@@ -3,7 +3,8 @@
 
 import { clock } from "../clock.js";
 import { bridgeUrl } from "../engine/engine.js";
-import { attempt, byId, element, notify } from "./dom.js";
+import { byId, element } from "./dom.js";
+import { attempt, notify } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { BoardState, State } from "../engine/types" */
@@ -92,7 +93,7 @@ export class Board {
 
   /** @param {State} state */
   #show({ link, state, fault, needsArm, driving }) {
-    if (link === "none" && this.#link !== "none" && fault) notify(fault);
+    if (link === "none" && this.#link !== "none" && fault) notify(fault, undefined, { beside: byId("board") });
     this.#link = link;
     const board = byId("board");
     board.dataset.state = state;
@@ -100,6 +101,7 @@ export class Board {
     const name = link === "simulator" ? "Simulator" : driving;
     const details = fault && link !== "none" ? `, ${fault}` : "";
     board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state]}${details}`;
+    board.title = board.textContent;
     this.#showArm(needsArm);
     const arm = byId("arm");
     arm.lastElementChild?.replaceChildren(`: drive ${driving}`);

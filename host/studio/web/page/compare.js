@@ -1,7 +1,8 @@
 // Two versions of a scene, compared blind: neither text nor map says which one is felt.
 // @ts-check
 
-import { attempt, byId, element } from "./dom.js";
+import { byId, element } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { Editor } from "./editor.js" */
 /** @import { Player } from "./player.js" */

@@ -52,29 +52,16 @@ export function download(name, content, type) {
   clock.later(10_000, () => URL.revokeObjectURL(url));
 }
 
-/**
- * Shows one sentence above the page until it is dismissed or another one comes; with `{ words, action }`, also a button
- * that does something about it.
- * @param {string} sentence
- * @param {{ words: string, action: () => unknown }} [offer]
- */
-export function notify(sentence, offer) {
-  const notice = byId("notice");
-  const [said, offered, dismiss] = /** @type {HTMLCollectionOf<HTMLElement>} */ (notice.children);
-  said.textContent = sentence;
-  offered.hidden = offer === undefined;
-  offered.textContent = offer?.words ?? "";
-  offered.onclick = () => {
-    forgetNotice();
-    if (offer) attempt(offer.action);
-  };
-  dismiss.onclick = forgetNotice;
-  notice.hidden = false;
-}
+/** Longest name of a scene, and most of a longer name that is shown, characters. */
+export const NAME_MAX = 64;
 
-/** Removes the sentence: what it says is over. */
-export function forgetNotice() {
-  byId("notice").hidden = true;
+/**
+ * A name, cut where it is longer than a person reads.
+ * @param {string} name
+ */
+export function shortName(name) {
+  const characters = [...name];
+  return characters.length > NAME_MAX ? `${characters.slice(0, NAME_MAX - 1).join("")}…` : name;
 }
 
 /**
@@ -83,21 +70,6 @@ export function forgetNotice() {
  */
 export function sentenceOf(error) {
   return error instanceof Error ? error.message : String(error);
-}
-
-/**
- * Runs what a person asked for; where it fails, says why.
- * @template Value
- * @param {() => Value | Promise<Value>} action
- * @returns {Promise<Value | undefined>}
- */
-export async function attempt(action) {
-  try {
-    return await action();
-  } catch (error) {
-    notify(sentenceOf(error));
-    return undefined;
-  }
 }
 
 /** @type {WeakMap<Element, Map<string, string>>} */

@@ -1,7 +1,7 @@
 // The files of a scene above the editor: a tab for each, where there is more than one.
 // @ts-check
 
-import { byId, element } from "./dom.js";
+import { byId, element, shortName } from "./dom.js";
 import { stepOf } from "./tabs.js";
 
 /** @import { Editor, FileOfScene } from "./editor.js" */
@@ -48,7 +48,7 @@ export class FileTabs {
         tabIndex: isShown ? 0 : -1,
         onclick: () => this.#editor.show(name),
       },
-      name ?? this.#project.entry,
+      shortName(name ?? this.#project.entry),
       ...(mistakes > 0 ? [element("span", { className: "count", "aria-label": count }, `${mistakes}`)] : []),
     );
   }

@@ -43,7 +43,13 @@ export class Finger {
   /** @type {(TrailPoint | null)[]} */
   #trail = [];
   #lastMs = 0;
-  #isShown = false;
+  /** What was drawn last, without a trail; empty where a trail was. */
+  #shown = "";
+  /**
+   * Where a replay has the finger, mm.
+   * @type {{ xMm: number, yMm: number } | undefined}
+   */
+  #replayed;
   /** Part of the reach that is felt now, 0 to 1. */
   #friction = 0;
   /** Others have drawn something new: one more picture. */
@@ -205,6 +211,9 @@ export class Finger {
         this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: clock.nowMs() });
       }
     }
+    const last = frame.xMm.length - 1;
+    if (frame.slowness === 1 || !frame.contact) this.#replayed = undefined;
+    else if (Number.isFinite(frame.xMm[last])) this.#replayed = { xMm: frame.xMm[last], yMm: frame.yMm[last] };
     const oldest = clock.nowMs() - TRAIL_S * 1000;
     const first = this.#trail.findIndex((point) => point !== null && point.ms >= oldest);
     this.#trail = first < 0 ? [] : this.#trail.slice(first);
@@ -219,16 +228,25 @@ export class Finger {
     this.#drawn.xMm += part * (this.#target.xMm - this.#drawn.xMm);
     this.#drawn.yMm += part * (this.#target.yMm - this.#drawn.yMm);
     this.#lastMs = ms;
-    const isAlone = this.#isInside || this.#isDown || this.#trail.length > 0 || this.#hasFocus;
-    const isShown = isAlone || this.overlays.some(({ isActive }) => isActive);
-    if (isShown || this.#isShown || this.#isStale) this.#draw();
-    [this.#isShown, this.#isStale] = [isShown, false];
+    this.#trail = this.#trail.filter((point) => point === null || ms - point.ms < TRAIL_S * 1000);
+    if (!this.#trail.some((point) => point !== null)) this.#trail = [];
+    const isMoving = this.#trail.length > 0 || this.#isStale || this.overlays.some(({ isActive }) => isActive);
+    const shown = isMoving ? "" : JSON.stringify([this.#finger, this.#isDown, this.#area, this.#hasFocus]);
+    // A finger that rests is drawn once.
+    if (shown === "" || shown !== this.#shown) this.#draw();
+    [this.#shown, this.#isStale] = [shown, false];
     clock.nextFrame((next) => this.#frame(next));
   }
 
   /** A blind comparison shows nothing of the friction. */
   get #isBlind() {
     return this.#canvas.closest(".blind") !== null;
+  }
+
+  /** Where the finger is drawn, mm: that of a replay, or the person's, if there is one. */
+  get #finger() {
+    if (this.#replayed) return this.#replayed;
+    return this.#isInside || this.#isDown || this.#hasFocus ? this.#drawn : undefined;
   }
 
   get #hasFocus() {
@@ -241,15 +259,17 @@ export class Finger {
     context.clearRect(0, 0, this.#area.width, this.#area.height);
     this.#drawTrail(context);
     if (!this.#isBlind) for (const overlay of this.overlays) overlay.draw(context);
-    if (!this.#isInside && !this.#isDown && !this.#hasFocus) return;
+    const finger = this.#finger;
+    if (!finger) return;
     const { scale } = this.#map;
-    const [x, y] = [this.#drawn.xMm * scale, this.#drawn.yMm * scale];
+    const [x, y] = [finger.xMm * scale, finger.yMm * scale];
+    const isDown = this.#isDown || this.#replayed !== undefined;
     context.beginPath();
     context.arc(x, y, Math.max(9, 4 * scale), 0, 2 * Math.PI);
-    context.fillStyle = this.#isDown ? "#ffffff59" : "#ffffff1f";
+    context.fillStyle = isDown ? "#ffffff59" : "#ffffff1f";
     context.fill();
-    context.lineWidth = this.#isDown && !this.#isBlind ? 2 + 5 * this.#friction : 2;
-    context.strokeStyle = this.#isDown ? colour("felt", this.#map.box) : "#fff";
+    context.lineWidth = isDown && !this.#isBlind ? 2 + 5 * this.#friction : 2;
+    context.strokeStyle = isDown ? colour("felt", this.#map.box) : "#fff";
     context.stroke();
     context.lineWidth = 1;
     context.strokeStyle = "#000b";

@@ -3,8 +3,9 @@
 
 import { carriedFiles, sceneNames } from "./bundled.js";
 import { imageOf } from "./colors.js";
-import { attempt, byId, contextOf, element } from "./dom.js";
+import { byId, contextOf, element, shortName } from "./dom.js";
 import { mapSizePx } from "./map.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Layer } from "../engine/types" */
@@ -95,7 +96,7 @@ export class Gallery {
         attempt(() => this.onLayer(layerText(text, from)));
         take.textContent = "Taken ✓";
       };
-      return element("li", {}, title, take);
+      return element("li", {}, shortName(title), take);
     });
   }
 }

@@ -2,7 +2,8 @@
 // @ts-check
 
 import { clock } from "../clock.js";
-import { attempt, byId } from "./dom.js";
+import { byId } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame, Screen } from "../engine/types" */

@@ -2,7 +2,8 @@
 // @ts-check
 
 import { projectOf, UNPACKED_MAX_BYTES } from "./archive.js";
-import { byId, forgetNotice, notify, sentenceOf } from "./dom.js";
+import { byId, sentenceOf, shortName } from "./dom.js";
+import { forgetNotice, notify } from "./notices.js";
 import { isPicture } from "./project.js";
 
 /** @import { Files } from "../engine/types" */
@@ -96,10 +97,11 @@ export class Incoming {
     } catch (error) {
       refused.push(sentenceOf(error));
     }
-    if (refused.length > 0) notify(refused.join("\n"));
+    if (refused.length > 0) notify(refused.join("\n"), undefined, { beside: byId("open-files") });
     else if (!found.scene) {
       const profiles = found.profiles.map(([, { name }]) => name);
-      notify(`Added: ${[...found.files.map(([name]) => name), ...profiles].join(", ")}.`);
+      const added = [...found.files.map(([name]) => name), ...profiles].map(shortName);
+      notify(`Added: ${added.join(", ")}.`, undefined, { isGood: true, beside: byId("open-files") });
     }
   }
 

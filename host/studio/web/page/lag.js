@@ -1,8 +1,9 @@
 // How late friction comes: prediction on and off, the touch source, and the lag of both as bands on the map.
 // @ts-check
 
-import { attempt, byId } from "./dom.js";
+import { byId } from "./dom.js";
 import { Borders } from "./borders.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame } from "../engine/types" */

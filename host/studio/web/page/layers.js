@@ -1,10 +1,13 @@
 // The layers of the scene: what is felt of each, and live switches and gains.
 // @ts-check
 
-import { attempt, byId, element, notify } from "./dom.js";
+import { byId, element, shortName } from "./dom.js";
+import { feltLine } from "./felt.js";
+import { attempt, notify } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Layer } from "../engine/types" */
+/** @import { Scale } from "./felt.js" */
 /** @import { Editor } from "./editor.js" */
 /** @typedef {{ on: boolean, gain: number }} Live */
 
@@ -35,13 +38,16 @@ export class Layers {
     this.#editor = editor;
   }
 
-  /** @param {Layer[]} layers */
-  show(layers) {
+  /**
+   * @param {Layer[]} layers
+   * @param {Scale} scale
+   */
+  show(layers, scale) {
     const panel = byId("panel-layers");
     const active = document.activeElement;
     const focused = panel.contains(active) ? active?.getAttribute("aria-label") : undefined;
     this.#shown = layers;
-    panel.replaceChildren(...layers.map((layer) => this.#row(layer)));
+    panel.replaceChildren(...layers.map((layer) => this.#row(layer, scale)));
     if (layers.length === 0) panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
     if (!focused) return;
     /** @type {HTMLElement | null} */
@@ -55,9 +61,13 @@ export class Layers {
     this.onLive([]);
   }
 
-  /** @param {Layer} layer */
-  #row(layer) {
-    const { name, kind, felt, file, from, controls } = layer;
+  /**
+   * @param {Layer} layer
+   * @param {Scale} scale
+   */
+  #row(layer, scale) {
+    const { kind, file, from, controls } = layer;
+    const name = shortName(layer.name);
     const copies = controls.length > 1 ? ` × ${controls.length}` : "";
     const shown = { className: "link", title: file ?? "" };
     const goTo = () => this.#editor.goTo(file, from[0]);
@@ -71,7 +81,7 @@ export class Layers {
     );
     const note = element("p", { className: "fine live-note", hidden: true });
     const row = element("div", { className: "layer" }, title, this.#controls(layer, note), note);
-    if (felt) row.append(element("p", { className: "fine" }, felt));
+    row.append(feltLine(layer, scale));
     return row;
   }
 
@@ -80,7 +90,8 @@ export class Layers {
    * @param {HTMLElement} note
    */
   #controls(layer, note) {
-    const { index, name: label, isLive, whyNotLive, file, from } = layer;
+    const { index, isLive, whyNotLive, file, from } = layer;
+    const label = shortName(layer.name);
     if (!isLive) {
       const isPossible = this.#editor.isTable(file, from);
       const button = element("button", { title: whyNotLive, disabled: !isPossible }, "Make live: switch, gain");
@@ -89,13 +100,15 @@ export class Layers {
     }
     const state = this.#live.get(index) ?? { on: layer.startsOn, gain: layer.gain };
     const isOn = element("input", { type: "checkbox", checked: state.on, "aria-label": `${label} on` });
-    // The slider has the gains of every day, the number all that a board takes.
-    const most = Math.min(layer.gainMax, Math.max(2, 2 * layer.gain));
+    // The slider has the gains of every day, as far as the drive can give them; the number all that a board takes.
+    const [reachMin, reachMax] = layer.gainReach ?? [layer.gainMin, layer.gainMax];
+    const most = Math.min(reachMax, Math.max(2, 2 * layer.gain));
+    const least = Math.max(reachMin, Math.min(0, 2 * layer.gain));
     /** @type {(type: string, min: number, max: number, name: string) => HTMLInputElement} */
     const input = (type, min, max, name) =>
       element("input", { type, min, max, step: "any", value: state.gain, "aria-label": name });
-    const slider = input("range", Math.min(0, 2 * layer.gain), most, `gain of ${label}`);
-    slider.step = `${most / 40}`;
+    const slider = input("range", least, most, `gain of ${label}`);
+    slider.step = "any";
     slider.value = `${state.gain}`;
     const number = input("number", layer.gainMin, layer.gainMax, `gain of ${label}, as a number`);
     isOn.onchange = async () => {
@@ -105,7 +118,7 @@ export class Layers {
     };
     const change = (/** @type {HTMLInputElement} */ from, /** @type {HTMLInputElement} */ to) => async () => {
       const gain = Number(from.value);
-      if (from.value === "" || !from.checkValidity()) return;
+      if (from.value === "" || (from === number && !from.checkValidity())) return;
       to.value = `${gain}`;
       if (!(await this.#change(layer, { gain }, `gain ${gain}`, state))) from.value = to.value = `${state.gain}`;
       this.#note(layer, state, note);
@@ -114,7 +127,8 @@ export class Layers {
     number.oninput = change(number, slider);
     number.onchange = () => {
       if (number.value !== "" && number.checkValidity()) return;
-      notify(`A gain of ${label} is a number from ${layer.gainMin} to ${layer.gainMax}: it stays ${state.gain}.`);
+      const range = `from ${layer.gainMin} to ${layer.gainMax}`;
+      notify(`A gain of ${label} is a number ${range}: it stays ${state.gain}.`, undefined, { beside: number });
       number.value = `${state.gain}`;
     };
     const times = element("label", {}, "× ", number);

@@ -2,7 +2,7 @@
 // @ts-check
 
 import { SCALE, imageOf } from "./colors.js";
-import { colour, contextOf } from "./dom.js";
+import { colour, contextOf, shortName } from "./dom.js";
 import { MOCKUPS, drawMockup } from "./mockup.js";
 
 /** @import { Checked, FrictionField, Layer, MapSize, Screen } from "../engine/types" */
@@ -168,6 +168,15 @@ export class FrictionMap {
       width: widthMm * this.scale,
       height: heightMm * this.scale,
     });
+  }
+
+  /**
+   * Shows that the map is older than the scene: another one is being drawn, or none can be.
+   * @param {"drawing" | "older" | undefined} why
+   */
+  markStale(why) {
+    if (why) this.box.dataset.stale = why;
+    else delete this.box.dataset.stale;
   }
 
   draw() {
@@ -346,6 +355,6 @@ function drawDraft(context, { x, y, width, height }) {
 function namedBoxes(layers, screen) {
   return layers.map(({ name, boxMm }) => {
     const [x, y, width, height] = boxMm ?? [0, 0, screen.widthMm, screen.heightMm];
-    return { name, box: { x, y, width, height } };
+    return { name: shortName(name), box: { x, y, width, height } };
   });
 }

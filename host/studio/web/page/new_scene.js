@@ -3,8 +3,9 @@
 
 import { carriedFiles } from "./bundled.js";
 import { imageOf } from "./colors.js";
-import { attempt, byId, contextOf, element } from "./dom.js";
+import { byId, contextOf, element } from "./dom.js";
 import { mapSizePx } from "./map.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @typedef {{ name: string, text: string }} Beginning */

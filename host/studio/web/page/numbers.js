@@ -113,7 +113,10 @@ export class Numbers {
     const { value, unit } = this.#fields[name];
     // Where nothing is added, noise takes what is felt below bare glass: never below zero.
     const text = number !== undefined && Number.isFinite(number) ? Math.max(0, number).toFixed(digits) : "–";
-    value.textContent = isStill ? SLIDE_TO_FEEL : text;
+    const shown = isStill ? SLIDE_TO_FEEL : text;
+    // What has not changed is not drawn again.
+    if (value.textContent === shown) return;
+    value.textContent = shown;
     value.parentElement?.classList.toggle("words", isStill);
     unit.hidden = isStill;
   }

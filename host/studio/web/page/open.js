@@ -1,7 +1,8 @@
 // The dialog of Open: files, and the pieces of work that the browser keeps.
 // @ts-check
 
-import { attempt, byId, element } from "./dom.js";
+import { byId, element } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { Work, Works } from "./works.js" */
 

@@ -2,7 +2,8 @@
 // @ts-check
 
 import { Autosave } from "./autosave.js";
-import { byId, forgetNotice, notify } from "./dom.js";
+import { byId } from "./dom.js";
+import { forgetNotice, notify } from "./notices.js";
 import { showPictures } from "./pictures.js";
 import { isPicture, isToml } from "./project.js";
 
@@ -159,7 +160,11 @@ export class OpenScene {
     this.#showFiles();
     await autosave.opened(work);
     if (before.isEdited)
-      notify(`${project.name} is open.`, { words: `Back to ${before.name}`, action: () => this.open(before) });
+      notify(
+        `${project.name} is open.`,
+        { words: `Back to ${before.name}`, action: () => this.open(before) },
+        { isGood: true, beside: byId("scene-name") },
+      );
   }
 
   #showName() {
@@ -174,7 +179,8 @@ export class OpenScene {
     const before = project.name;
     project.name = name.trim();
     if (project.files.has(project.entry)) {
-      notify(`${project.entry} is a file of this scene already: choose another name.`);
+      const said = `${project.entry} is a file of this scene already: choose another name.`;
+      notify(said, undefined, { beside: byId("scene-name") });
       project.name = before;
     }
     this.#showName();

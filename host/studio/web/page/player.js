@@ -145,6 +145,11 @@ export class Player {
     this.#isBusy = false;
   }
 
+  /** Where the newest text is, as `onStatus` was told last. */
+  get status() {
+    return this.#status;
+  }
+
   /** Whether a newer text is there, or about to come. */
   get #isOutdated() {
     return this.isHeld || this.#next !== undefined || this.#timer !== undefined || this.#expected > 0;

@@ -1,4 +1,4 @@
-// What the check of the scene found: a list under the editor, and the report.
+// What the check of the scene found: a list under the editor, and how many mistakes.
 // @ts-check
 
 import { byId, element } from "./dom.js";
@@ -19,7 +19,7 @@ let status = "loading";
  * @param {Check} check
  * @param {Editor} editor
  */
-export function showCheck({ ok, isDraft, problems, report }, editor) {
+export function showCheck({ ok, isDraft, problems }, editor) {
   const errors = problems.filter(({ severity }) => severity === "error");
   byId("check").dataset.bad = String(!ok);
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
@@ -30,7 +30,6 @@ export function showCheck({ ok, isDraft, problems, report }, editor) {
   mistakes.textContent = `${errors.length}`;
   mistakes.setAttribute("aria-label", found.count);
   byId("problems").replaceChildren(...problems.map((problem) => item(problem, editor)));
-  if (report) byId("report").textContent = feltFirst(report);
   editor.mark(problems);
 }
 
@@ -52,22 +51,6 @@ export function showOutcome() {
   };
   if (found.isDraft) words.loaded = `${found.count}; draft: plays clamped, a board refuses it`;
   byId("check").textContent = words[status];
-}
-
-/**
- * The report with what a person feels before what a board needs.
- * @param {string} report
- */
-function feltFirst(report) {
-  const first = ["draft", "not felt", "unknown", "maybe", "felt", "more", "alike", "out of reach"];
-  const rank = (/** @type {string} */ line) => {
-    const at = first.findIndex((word) => line.trimStart().startsWith(`${word} `));
-    return at < 0 ? first.length : at;
-  };
-  return report
-    .split("\n")
-    .sort((a, b) => rank(a) - rank(b))
-    .join("\n");
 }
 
 /**

@@ -26,8 +26,8 @@ export class Profiles {
    */
   constructor(project, fingers) {
     this.#project = project;
-    fill("finger", ["scene's", ...fingers]);
-    fill("screen", ["scene's", "example"]);
+    fill("finger", ["from the scene", ...fingers]);
+    fill("screen", ["from the scene", "example"]);
     for (const kind of KINDS)
       byId(kind).onchange = () => {
         this.#apply(kind, byId(kind).value);

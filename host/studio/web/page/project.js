@@ -2,9 +2,10 @@
 // @ts-check
 
 import { carriedFiles } from "./bundled.js";
+import { NAME_MAX } from "./dom.js";
 
 /** @import { Engine } from "../engine/engine.js" */
-/** @import { Files, Profiles } from "../engine/types" */
+/** @import { Files, Profiles, Screen } from "../engine/types" */
 /**
  * Text of a TOML file, bytes of a picture.
  * @typedef {string | Uint8Array<ArrayBuffer>} Content
@@ -36,6 +37,11 @@ export class Project {
    * @type {Profiles}
    */
   profiles = {};
+  /**
+   * The screen of the scene that was checked last.
+   * @type {Screen}
+   */
+  screen = { widthMm: 120, heightMm: 80 };
   /** How many scenes were opened: what was begun for one may be ready when another is open. */
   opened = 0;
 
@@ -50,7 +56,7 @@ export class Project {
   }
 
   set name(name) {
-    this.#name = name.replaceAll(/[/\\]/g, "-").slice(0, 60) || "scene";
+    this.#name = [...name.replaceAll(/[/\\]/g, "-")].slice(0, NAME_MAX).join("") || "scene";
   }
 
   /** Name of the scene's file. */

@@ -1,7 +1,8 @@
 // Real size, also on the full screen: a bank card held to the screen says how many pixels a millimetre has.
 // @ts-check
 
-import { attempt, byId, element, settings } from "./dom.js";
+import { byId, element, settings } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @import { FrictionMap } from "./map.js" */
 
@@ -35,15 +36,18 @@ export class RealSize {
   }
 
   /**
-   * Shows the map alone on the full screen, in real size, until a person leaves it.
+   * Shows the map on the full screen, in real size, until a person leaves it; state, Stop and notices stay in sight.
    * @param {number | undefined} pixelsPerMm
    */
   async #fillScreen(pixelsPerMm) {
     const before = this.#map.realSize;
-    await this.#map.box.requestFullscreen();
+    await document.documentElement.requestFullscreen();
+    document.body.classList.add("full-screen");
     this.#show(pixelsPerMm);
-    this.#map.box.onfullscreenchange = () => {
-      if (!document.fullscreenElement) this.#show(before);
+    document.onfullscreenchange = () => {
+      if (document.fullscreenElement) return;
+      document.body.classList.remove("full-screen");
+      this.#show(before);
     };
   }
 

@@ -21,7 +21,7 @@ const HEAD_PX = 30;
 
 /** What time and series mean. */
 const MEANINGS = [
-  "time of the board, s",
+  "time before the newest sample, s",
   "reference: the friction that the scene asks for where the finger is, mN",
   "felt: the friction that the simulated finger feels; it wanders with the finger's load and noise, mN",
   "voltage: the drive on the electrode, V rms",
@@ -86,12 +86,12 @@ export class Scope {
       ...SIZE_MIN_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
-        { ...axis, values: (_, splits) => splits.map((value) => `${Number(value.toFixed(4))} s`) },
+        { ...axis, space: 64, values: (_, splits) => splits.map((value) => beforeNow(value)) },
         { ...axis, scale: "mN", label: "mN", size: 48 },
         { ...axis, scale: "V", label: "V rms", side: 1, size: 44, grid: { show: false } },
       ],
       series: [
-        { label: "time", value: digits("s", 3) },
+        { label: "time", value: (_, value) => (Number.isFinite(value) ? beforeNow(value, 3) : "–") },
         {
           label: "reference",
           scale: "mN",
@@ -148,17 +148,16 @@ export class Scope {
 
   #draw() {
     this.#shownS = this.#newestS;
-    // The board's first seconds fill the chart from its left edge on.
-    const nowS = Math.max(WINDOW_S, this.#shownS);
-    const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(nowS - WINDOW_S);
+    const { timeS, xMm, referenceN, feltN, voltageV } = this.#samples.since(this.#shownS - WINDOW_S);
     // No friction is drawn while the finger is up, comes down or leaves, so that the axis serves what is felt.
     const isTouch = (/** @type {number} */ at) => Number.isFinite(xMm[at]);
     const isDrawn = (/** @type {number} */ value, /** @type {number} */ at) =>
       Number.isFinite(value) && isTouch(at - 1) && isTouch(Math.min(at + 1, xMm.length - 1));
     const finite = (/** @type {number[]} */ values, /** @type {number} */ factor) =>
       values.map((value, at) => (isDrawn(value, at) ? value * factor : null));
-    this.#plot.setData([timeS, finite(referenceN, 1000), finite(feltN, 1000), voltageV], false);
-    this.#plot.setScale("x", { min: nowS - WINDOW_S, max: nowS });
+    const agoS = timeS.map((atS) => atS - this.#shownS);
+    this.#plot.setData([agoS, finite(referenceN, 1000), finite(feltN, 1000), voltageV], false);
+    this.#plot.setScale("x", { min: -WINDOW_S, max: 0 });
   }
 
   /** @param {boolean} isPaused */
@@ -174,7 +173,7 @@ export class Scope {
   /** What the chart shows, as numbers. */
   saveCsv() {
     const { min = 0, max = 0 } = this.#plot.scales.x;
-    download(`${this.#fileName}.csv`, this.#samples.csv(min, max), "text/csv");
+    download(`${this.#fileName}.csv`, this.#samples.csv(this.#shownS + min, this.#shownS + max), "text/csv");
   }
 
   /** The chart on the card's colour, as a picture. */
@@ -202,6 +201,15 @@ export class Scope {
     write("time in s", "ink");
     picture.toBlob((blob) => blob && download(`${this.#fileName}.png`, blob, "image/png"));
   }
+}
+
+/**
+ * A time before the newest sample, s, in words.
+ * @param {number} seconds
+ */
+function beforeNow(seconds, digits = 2) {
+  if (Math.abs(seconds) < 0.0005) return "now";
+  return `${Number(seconds.toFixed(digits))} s`.replace("-", "−");
 }
 
 /**

@@ -72,7 +72,7 @@ export function sceneOf(fragment) {
     if (typeof content.text !== "string" || typeof content.name !== "string") throw new Error(broken);
     /** @type {NamedFile[]} */
     const files = Object.entries(content.files ?? {}).map(([name, value]) => [name, fromBase64(value)]);
-    return { name: content.name.slice(0, 60), text: content.text, files };
+    return { name: content.name, text: content.text, files };
   } catch {
     throw new Error(broken);
   }

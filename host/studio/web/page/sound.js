@@ -1,7 +1,8 @@
 // Sound: the change of felt friction as audio.
 // @ts-check
 
-import { attempt, byId, element, settings } from "./dom.js";
+import { byId, element, settings } from "./dom.js";
+import { attempt } from "./notices.js";
 
 /** @type {Record<string, string>} */
 const MODES = {

@@ -1,8 +1,9 @@
 // The tools above map and scope.
 // @ts-check
 
-import { attempt, byId, element } from "./dom.js";
+import { byId, element } from "./dom.js";
 import { MOCKUPS, chooseOwnPicture } from "./mockup.js";
+import { attempt } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Finger } from "./finger.js" */

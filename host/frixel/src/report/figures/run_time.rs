@@ -29,7 +29,12 @@ const KINDS: [(Kind, &str, Look); 12] = [
 ];
 
 /// Processors on which instructions are counted: prefix in the counts, and display name.
-const CORES: [(&str, &str); 2] = [("m4f", "Cortex-M4F"), ("m3", "Cortex-M3, no FPU")];
+const CORES: [(&str, &str); 4] = [
+    ("m4f", "STM32G474: Cortex-M4F"),
+    ("m33", "RP2350: Cortex-M33, FPU"),
+    ("m0plus", "RP2040: Cortex-M0+, no FPU"),
+    ("m3", "Cortex-M3, no FPU"),
+];
 
 const ERROR: &str = "largest relative error in electric friction";
 
@@ -257,7 +262,7 @@ pub(super) fn against_instructions(
     if panels.is_empty() {
         return Ok(None);
     }
-    let columns = panels.len() as u32;
+    let columns = panels.len().min(2) as u32;
     Ok(Some(Figure {
         name: "error-against-instructions",
         title: "Error against instructions on a board".to_owned(),

@@ -1,0 +1,199 @@
+// The page in a browser: what it tells a person, where, and for how long; and what is kept over Share, Ctrl+S and a reload.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { fileURLToPath } from "node:url";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers, openPage, pageUrl } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, give, openStudio } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** Distance at which a notice stands beside its control at most, CSS pixels. */
+const BESIDE_MAX_PX = 16;
+/** Longer than any good news stays, ms. */
+const GONE_AFTER_MS = 30_000;
+
+const boxOf = (page, selector) =>
+  page.evaluate((selector) => {
+    const { left, top, right, bottom } = document.querySelector(selector).getBoundingClientRect();
+    return { left, top, right, bottom };
+  }, selector);
+
+/** Distance between two boxes, along x and y. */
+function distance(one, other) {
+  const along = (from, to) => Math.max(0, one[from] - other[to], other[from] - one[to]);
+  return Math.max(along("left", "right"), along("top", "bottom"));
+}
+
+const PARTS = ["#map-finger", "#numbers", "#scope", "#editor", "header"];
+const boxesOf = (page) => Promise.all(PARTS.map((part) => boxOf(page, part)));
+
+test("good news floats beside its control and goes, bad news stays", async () => {
+  const { page, errors, close } = await openStudio();
+  const notice = page.locator("#notice");
+  const before = await boxesOf(page);
+  await page.click("#share");
+  await notice.waitFor();
+  assert.deepEqual(await boxesOf(page), before, "nothing moves");
+  assert.equal(await notice.getAttribute("role"), "status");
+  const beside = distance(await boxOf(page, "#notice"), await boxOf(page, "#share"));
+  assert.ok(beside <= BESIDE_MAX_PX, `${beside} px from Share`);
+  await page.mouse.move(5, 400);
+  await page.evaluate((ms) => wait(ms), GONE_AFTER_MS);
+  assert.ok(await notice.isHidden(), "good news goes");
+
+  await page.evaluate(() => {
+    studioPage.engine.stop = () => Promise.reject(new Error("the board does not answer"));
+  });
+  await page.click("#stop");
+  await notice.waitFor();
+  assert.equal(await notice.getAttribute("role"), "alert");
+  assert.deepEqual(await boxesOf(page), before, "nothing moves");
+  const besideStop = distance(await boxOf(page, "#notice"), await boxOf(page, "#stop"));
+  assert.ok(besideStop <= BESIDE_MAX_PX, `${besideStop} px from Stop`);
+  const { right } = await boxOf(page, "#notice");
+  assert.ok(right <= (await page.evaluate(() => innerWidth)), "within the window");
+  await page.evaluate((ms) => wait(ms), GONE_AFTER_MS);
+  assert.ok(await notice.isVisible(), "bad news stays");
+  await page.click("#notice >> [aria-label=Dismiss]");
+  assert.ok(await notice.isHidden());
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a mistake is told while the text is closed, and the button leads to it", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const broken = WHOLE_SCREEN_GRATING.replace("grating", "gratin");
+  await page.evaluate((text) => (studioPage.editor.text = text), broken);
+  await page.locator("#mistakes", { hasText: "1" }).waitFor();
+  assert.ok(await page.locator("#drawer").isHidden());
+  assert.match(await page.textContent("#check"), /1 mistake; the version before plays on/);
+  assert.equal(await page.locator("#mistakes").getAttribute("aria-label"), "1 mistake");
+  await page.click("#toggle-drawer");
+  assert.ok(await page.locator("#problems li.error").isVisible());
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("Ctrl+S saves, wherever the focus is", async () => {
+  const { page, errors, close } = await openStudio();
+  for (const focused of ["#editor .cm-content", "#map-finger"]) {
+    await page.focus(focused);
+    const [saved] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Control+s")]);
+    assert.equal(saved.suggestedFilename(), "brick.zip");
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("Share and a reload keep the bridge of the command, and the link does not have its token", async () => {
+  const { page, close } = await openPage("about:blank", { isSimulated: true });
+  const body = fs.readFileSync(fileURLToPath(pageUrl));
+  await page.route("http://127.0.0.1:9/**", (route) => route.fulfill({ body, contentType: "text/html" }));
+  await page.goto("http://127.0.0.1:9/#bridge=0123abcd");
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  const bridge = page.locator("#board-dialog button", { hasText: "Board of frixel studio" });
+  const assertBridge = async (when) => {
+    await page.click("#open-board");
+    assert.equal(await bridge.count(), 1, when);
+    await page.click("#board-dialog >> text=Close");
+  };
+  await assertBridge("at the start");
+  await page.click("#share");
+  await page.waitForFunction(() => location.hash.startsWith("#scene="));
+  assert.ok(!page.url().includes("0123abcd"), page.url());
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  await assertBridge("after Share and a reload");
+  const url = await page.evaluate(async () => {
+    const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
+    return bridgeUrl();
+  });
+  assert.equal(url, "ws://127.0.0.1:9/serial?token=0123abcd");
+  await close();
+});
+
+test("names are cut at 64 characters", async () => {
+  const { page, errors, close } = await openStudio();
+  const long = "n".repeat(300);
+  const link = await page.evaluate(async ([name, text]) => {
+    const { linkOf } = await import(await studio.moduleUrl("page/share.js"));
+    return new URL(linkOf(name, text, [])).hash;
+  }, [long, WHOLE_SCREEN_GRATING]);
+  await page.evaluate((link) => (location.hash = link), link);
+  await page.waitForFunction(() => document.getElementById("scene-name").value.startsWith("nnn"));
+  assert.equal((await page.inputValue("#scene-name")).length, 64);
+  assert.equal(await page.title(), `${"n".repeat(64)} · frixel studio`);
+  await give(page, [`${"p".repeat(200)}.png`, await pngOf(page, 16, 16)]);
+  await page.locator(".picture").waitFor();
+  assert.equal(await page.textContent(".picture b"), `${"p".repeat(63)}…`);
+  assert.ok((await page.textContent("#notice span")).length < 100, "and in what is said of it");
+  const isWide = () => document.scrollingElement.scrollWidth > innerWidth;
+  assert.ok(!(await page.evaluate(isWide)));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the slider of a gain ends where the drive does, and is never refused", async () => {
+  const { page, errors, close } = await openStudio();
+  const strong = WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "ridges"\nkind = "grating"\nlive = true');
+  await page.evaluate((text) => played(text), strong);
+  const slider = page.getByLabel("gain of ridges", { exact: true });
+  const most = Number(await slider.getAttribute("max"));
+  assert.ok(most > 1 && most < 2, `the grating of 0.1 N takes a gain of ${most}`);
+  await slider.evaluate((input) => {
+    input.value = input.max;
+    input.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await page.waitForFunction(() => /ridges × 1/.test(document.getElementById("map-note").textContent));
+  assert.ok(await page.locator("#notice").isHidden(), await page.textContent("#notice"));
+  const refused = await page.evaluate((gain) => studioPage.engine.control(`layer 1 gain ${gain}`).then(
+    ({ notice }) => notice,
+    ({ message }) => message,
+  ), most + 0.05);
+  assert.match(refused ?? "", /can be reached/, "the end of the slider is that of the drive");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** A PNG of one grey, of this size, made by the page's browser. */
+async function pngOf(page, width, height) {
+  const bytes = await page.evaluate(async ([width, height]) => {
+    const canvas = new OffscreenCanvas(width, height);
+    const context = canvas.getContext("2d");
+    for (let at = 0; at < height; at += 8) {
+      context.fillStyle = at % 16 ? "#fff" : "#333";
+      context.fillRect(0, at, width, 8);
+    }
+    return [...new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer())];
+  }, [width, height]);
+  return Buffer.from(bytes);
+}
+
+test("Add as a layer writes what the board takes, whatever the shape of picture and screen", async () => {
+  const { page, errors, close } = await openStudio();
+  await give(page, ["tall.png", await pngOf(page, 100, 1600)], ["wide.png", await pngOf(page, 1600, 100)]);
+  const picture = (name) => page.locator(".picture", { hasText: name });
+  await picture("tall.png").waitFor();
+  for (const name of ["tall.png", "wide.png"]) {
+    await picture(name).locator("text=Add as a layer").click();
+    await page.waitForFunction((name) => studioPage.editor.text.includes(`picture = "${name}"`), name);
+    await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+    assert.equal(await page.locator("#problems li").count(), 0, await page.textContent("#problems"));
+  }
+  // The screen of brick.toml, mm.
+  const [widthMm, heightMm] = [120, 110];
+  const text = await page.evaluate(() => studioPage.editor.text);
+  const added = [...text.matchAll(/name = "(tall|wide)"[^[]*?x_mm = ([\d.]+)\ny_mm = ([\d.]+)\nwidth_mm = ([\d.]+)/g)];
+  assert.equal(added.length, 2, text);
+  for (const [, name, ...numbers] of added) {
+    const [x, y, width] = numbers.map(Number);
+    const height = name === "tall" ? 16 * width : width / 16;
+    assert.ok(x + width <= widthMm && y + height <= heightMm, `${name} is within the screen: ${numbers}`);
+    assert.ok(Math.max(width / widthMm, height / heightMm) > 0.5, `${name} is large: ${numbers}`);
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});

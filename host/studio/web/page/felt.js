@@ -1,0 +1,114 @@
+// What a person would feel of layers, as bars and small numbers. The sentences behind them are in the report.
+// @ts-check
+
+import { byId, element, shortName } from "./dom.js";
+
+/** @import { Checked, Layer, Perceived } from "../engine/types" */
+/** @typedef {{ naturalN: number, reachN: number }} Scale Friction of bare glass, and the most that can be reached, N. */
+
+/** Lines of a report that say what a scene as a whole is like, by their names, in the order in which they are shown. */
+const REMARKS = ["draft", "warning", "out of reach", "alike", "note"];
+/** Lines on single layers, which the table has. */
+const OF_LAYERS = ["not felt", "unknown", "maybe", "felt", "more"];
+
+/**
+ * Whether something is felt, in the words of the check.
+ * @param {string} verdict
+ */
+function chip(verdict) {
+  return element("span", { className: `verdict ${verdict.replaceAll(" ", "-")}` }, verdict);
+}
+
+/** @param {number} newtons */
+const millinewtons = (newtons) => `${Math.round(newtons * 1000)}`;
+
+/**
+ * A step of friction as a bar between bare glass and the most that can be reached.
+ * @param {Perceived} perceived
+ * @param {Scale} scale
+ */
+function stepBar({ fromN, toN }, { naturalN, reachN }) {
+  const part = (/** @type {number} */ n) => Math.max(0, Math.min(1, (n - naturalN) / Math.max(reachN - naturalN, 1e-9)));
+  const [low, high] = [Math.min(fromN, toN), Math.max(fromN, toN)].map(part);
+  const fill = element("span");
+  fill.style.left = `${100 * low}%`;
+  fill.style.width = `${100 * (high - low)}%`;
+  const words = `${millinewtons(fromN)} to ${millinewtons(toN)} mN`;
+  return element("span", { className: "step-bar", title: words, role: "img", "aria-label": words }, fill);
+}
+
+/** @param {Perceived} perceived */
+function weber({ weberSteps }) {
+  return `${Math.abs(weberSteps).toFixed(1)}`;
+}
+
+/**
+ * What is felt of a layer, in one line: whether, its step as a bar, and the frequency of its texture.
+ * @param {Layer} layer
+ * @param {Scale} scale
+ */
+export function feltLine({ perceived, felt }, scale) {
+  if (!perceived) return element("span", { className: "felt-line soft" }, "hidden by the layers above");
+  const line = element("span", { className: "felt-line", title: felt }, chip(perceived.verdict));
+  line.append(stepBar(perceived, scale), element("span", {}, weber(perceived), element("small", {}, " Weber steps")));
+  const { texture } = perceived;
+  if (texture) line.append(element("span", {}, `${Math.round(texture.frequencyHz)}`, element("small", {}, " Hz")));
+  return line;
+}
+
+/**
+ * The panel of what is felt: a table of layers, remarks on the scene, and the whole report, folded.
+ * @param {Checked} check
+ */
+export function showFelt({ layers, report, ...scale }) {
+  const lines = [...report.matchAll(/^ {2}(\S.{0,15}?)\s+(.*)$/gm)].map(([, name, text]) => ({ name, text }));
+  const named = lines.map(({ name, text }) => {
+    const whole = [...REMARKS, ...OF_LAYERS].find((each) => `${name} ${text}`.startsWith(`${each} `));
+    return whole ? { name: whole, text: `${name} ${text}`.slice(whole.length).trim() } : { name, text };
+  });
+  const remarks = named.filter(({ name, text }) => REMARKS.includes(name) && text !== "nothing");
+  remarks.sort((one, other) => REMARKS.indexOf(one.name) - REMARKS.indexOf(other.name));
+  const head = ["Layer", "Felt?", "Friction", "Weber steps", "Texture"].map((words) => element("th", { scope: "col" }, words));
+  const table = element(
+    "table",
+    { className: "felt-table" },
+    element("thead", {}, element("tr", {}, ...head)),
+    element("tbody", {}, ...layers.map((layer) => row(layer, scale))),
+  );
+  const board = named.filter(({ name }) => ![...REMARKS, ...OF_LAYERS].includes(name));
+  byId("felt").replaceChildren(
+    layers.length > 0 ? table : element("p", { className: "soft" }, "This scene has no layer yet."),
+    ...remarks.map(({ name, text }) => element("p", { className: "remark" }, element("b", {}, name), ` ${text}`)),
+    fold("What a board needs for it", pairs(board)),
+    fold("In words, as frixel scene check says it", pairs(named.filter(({ name }) => OF_LAYERS.includes(name)))),
+  );
+}
+
+/**
+ * @param {Layer} layer
+ * @param {Scale} scale
+ */
+function row({ name, perceived, felt }, scale) {
+  const title = element("th", { scope: "row", title: felt }, shortName(name));
+  if (!perceived) return element("tr", {}, title, element("td", { colSpan: 4, className: "soft" }, "hidden"));
+  const { texture } = perceived;
+  const hertz = texture ? `${Math.round(texture.frequencyHz)} Hz at ${texture.speedMmPerS} mm/s` : "–";
+  const friction = element("td", {}, stepBar(perceived, scale), ` ${millinewtons(perceived.toN)} mN`);
+  const cells = [chip(perceived.verdict), weber(perceived), hertz].map((content) => element("td", {}, content));
+  return element("tr", {}, title, cells[0], friction, cells[1], cells[2]);
+}
+
+/**
+ * @param {string} summary
+ * @param {HTMLElement} content
+ */
+function fold(summary, content) {
+  return element("details", { className: "report" }, element("summary", {}, summary), content);
+}
+
+/** @param {{ name: string, text: string }[]} lines */
+function pairs(lines) {
+  const row = (/** @type {{ name: string, text: string }} */ { name, text }) =>
+    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, text));
+  return element("table", { className: "felt-table" }, element("tbody", {}, ...lines.map(row)));
+}

@@ -1,0 +1,118 @@
+// Notices: one sentence at a time, which floats over the page beside the control that it is about.
+//
+// Good news goes by itself once it can have been read. All else stays until it is dismissed, or another one comes.
+// @ts-check
+
+import { clock } from "../clock.js";
+import { byId, sentenceOf } from "./dom.js";
+
+/** @typedef {{ words: string, action: () => unknown }} Offer Words of a button, and what it does. */
+/** @typedef {{ isGood?: boolean, beside?: Element }} Manner */
+
+/** How long good news stays, ms: to notice it, and for each of its characters. */
+const NOTICE_MS = 4000;
+const CHARACTER_MS = 50;
+/** Good news under the pointer or with the focus is looked at again after this time, ms. */
+const AGAIN_MS = 1000;
+/** Distance of a notice from its control and from the window, CSS pixels. */
+const GAP_PX = 8;
+const CONTROLS = "button, select, input, summary";
+
+/** @type {number | undefined} */
+let timer;
+/**
+ * The control that a person presses or changes, while its listeners run.
+ * @type {Element | undefined}
+ */
+let pressed;
+/** What the notice that is shown stands beside. @type {Element | undefined} */
+let besideWhat;
+
+/** Notices stand beside what was pressed, and stay there when the window changes. */
+export function followPresses() {
+  for (const type of ["click", "change", "input"]) {
+    addEventListener(
+      type,
+      ({ target }) => {
+        pressed = (target instanceof Element && target.closest(CONTROLS)) || undefined;
+        setTimeout(() => (pressed = undefined));
+      },
+      { capture: true },
+    );
+  }
+  addEventListener("resize", () => place(byId("notice"), besideWhat));
+}
+
+/**
+ * Shows a sentence; with `offer`, also a button that does something about it. `beside` is the control that caused it,
+ * the one that was just pressed if it is not given.
+ * @param {string} sentence
+ * @param {Offer} [offer]
+ * @param {Manner} manner
+ */
+export function notify(sentence, offer, { isGood = false, beside = pressed } = {}) {
+  const notice = byId("notice");
+  const [said, offered, dismiss] = /** @type {HTMLCollectionOf<HTMLElement>} */ (notice.children);
+  said.textContent = sentence;
+  offered.hidden = offer === undefined;
+  offered.textContent = offer?.words ?? "";
+  offered.onclick = () => {
+    forgetNotice();
+    if (offer) attempt(offer.action);
+  };
+  dismiss.onclick = forgetNotice;
+  notice.setAttribute("role", isGood ? "status" : "alert");
+  notice.classList.toggle("is-good", isGood);
+  notice.hidden = false;
+  besideWhat = beside;
+  place(notice, beside);
+  clock.cancel(timer);
+  timer = isGood ? clock.later(NOTICE_MS + CHARACTER_MS * sentence.length, () => expire(notice)) : undefined;
+}
+
+/** Removes the sentence: what it says is over. */
+export function forgetNotice() {
+  clock.cancel(timer);
+  timer = undefined;
+  byId("notice").hidden = true;
+}
+
+/** @param {HTMLElement} notice */
+function expire(notice) {
+  if (notice.matches(":hover, :focus-within")) timer = clock.later(AGAIN_MS, () => expire(notice));
+  else forgetNotice();
+}
+
+/**
+ * Puts a notice below its control, or above it where there is more room; without one, below the header.
+ * @param {HTMLElement} notice
+ * @param {Element | undefined} control
+ */
+function place(notice, control) {
+  if (notice.hidden) return;
+  const header = document.querySelector("header")?.getBoundingClientRect();
+  const { width, height } = notice.getBoundingClientRect();
+  const box = control?.isConnected && control.checkVisibility() ? control.getBoundingClientRect() : undefined;
+  const least = box ? GAP_PX : (header?.bottom ?? 0) + GAP_PX;
+  const left = box ? box.left : (innerWidth - width) / 2;
+  const below = (box?.bottom ?? 0) + GAP_PX;
+  const top = box && below + height > innerHeight ? box.top - GAP_PX - height : below;
+  notice.style.left = `${Math.max(GAP_PX, Math.min(left, innerWidth - width - GAP_PX))}px`;
+  notice.style.top = `${Math.max(least, Math.min(top, innerHeight - height - GAP_PX))}px`;
+}
+
+/**
+ * Runs what a person asked for; where it fails, says why beside the control.
+ * @template Value
+ * @param {() => Value | Promise<Value>} action
+ * @returns {Promise<Value | undefined>}
+ */
+export async function attempt(action) {
+  const beside = pressed;
+  try {
+    return await action();
+  } catch (error) {
+    notify(sentenceOf(error), undefined, { beside });
+    return undefined;
+  }
+}
