@@ -7,6 +7,8 @@ import { Pins } from "./pins.mjs";
 import { PioStepper } from "./pio.mjs";
 import { CAUSE, ENDED, EVENT } from "./protocol.mjs";
 import { UartLine } from "./uart.mjs";
+import { watchUseBeforeReset } from "./use_before_reset.mjs";
+import { patchWatchdog } from "./watchdog.mjs";
 
 /** Cycles of the entry into an exception, and of the return (Cortex-M0+ technical reference manual, 3.6.1), which
  *  rp2040js does not count. */
@@ -18,23 +20,6 @@ const HARD_FAULT = 3;
 const WATCHDOG = 0x40058;
 const CHIP_RESET = 0x40064;
 const SSI = 0x18000;
-const PSM = 0x40010;
-const RESETS = 0x4000c;
-/** Peripherals that a start must reset before it uses them, and their bits in RESETS.RESET. */
-const MUST_BE_RESET = [
-  { at: 0x40034, bit: 22, name: "UART 0" },
-  { at: 0x4004c, bit: 0, name: "the ADC" },
-  { at: 0x40050, bit: 14, name: "the PWM" },
-  { at: 0x50200, bit: 10, name: "PIO 0" },
-  { at: 0x50300, bit: 11, name: "PIO 1" },
-];
-/** Offset of the watchdog's TICK, its field CYCLES, and counts in a tick (erratum RP2040-E1). */
-const TICK = 0x2c;
-const TICK_CYCLES = 0x1ff;
-const COUNTS_PER_TICK = 2;
-/** CLK_REF_CTRL.SRC: the source of the reference clock is the ring oscillator. */
-const REFERENCE_SOURCE = 0x3;
-const RING_OSCILLATOR = 0;
 /** Offset of SSIENR, and of CHIP_RESET. */
 const SSIENR = 0x08;
 const CHIP_RESET_AT = 0x08;
@@ -87,7 +72,7 @@ export class Board {
     this.#flash = new Flash(rp2040, this);
     this.#pins = new Pins(rp2040, this);
     this.#uart = new UartLine(rp2040);
-    this.#watchUseBeforeReset();
+    watchUseBeforeReset(rp2040, (what) => this.fail(what));
     rp2040.onBreak = (number) => {
       if (!this.#flash.isCalled(number)) {
         this.#core.PC -= this.#core.breakRewind;
@@ -131,55 +116,14 @@ export class Board {
     }
   }
 
-  /** A start that leaves some of the chip running, such as a debugger's, finds peripherals as the last one has left
-   *  them. Here each is new, so one that the firmware does not reset itself is an error. */
-  #watchUseBeforeReset() {
-    const { peripherals } = this.#rp2040;
-    let wasReset = 0;
-    const watch = (at, hear) => {
-      const write = peripherals[at].writeUint32.bind(peripherals[at]);
-      peripherals[at].writeUint32 = (offset, value) => {
-        hear(offset, value);
-        write(offset, value);
-      };
-    };
-    watch(RESETS, (offset, value) => {
-      wasReset |= offset === 0 ? value : 0;
-    });
-    for (const { at, bit, name } of MUST_BE_RESET) {
-      watch(at, () => {
-        if ((wasReset & (1 << bit)) === 0) {
-          this.fail(`${name} is used before it was reset`);
-        }
-      });
-    }
-  }
-
   /** Resets: by the watchdog, by software, and what a start reads of them. @param {Remains} remains */
-  #patchResets({ scratch, reason }) {
+  #patchResets(remains) {
     const rp2040 = this.#rp2040;
-    const watchdog = rp2040.peripherals[WATCHDOG];
-    watchdog.scratchData.set(scratch ?? []);
-    watchdog.reason = reason;
-    const writeWatchdog = watchdog.writeUint32.bind(watchdog);
-    watchdog.writeUint32 = (offset, value) => {
-      writeWatchdog(offset, value);
-      if (offset === TICK) {
-        // rp2040js has ticks of 1 us, whatever clock and divider are.
-        watchdog.timer.frequency = (COUNTS_PER_TICK * rp2040.clocks.refFreq) / (value & TICK_CYCLES || 1);
-      }
-    };
-    watchdog.onWatchdogTrigger = () => {
-      // rp2040js would trigger again at the same instant for ever.
-      watchdog.alarm.enable = false;
-      if (this.#isCrystalStopped && (rp2040.clocks.refCtrl & REFERENCE_SOURCE) !== RING_OSCILLATOR) {
-        return;
-      }
-      if (rp2040.peripherals[PSM].wdsel === 0) {
-        this.fail("the watchdog has fired, and PSM.WDSEL says that it resets nothing");
-      }
-      this.#end(CAUSE.WATCHDOG);
-    };
+    patchWatchdog(rp2040, remains, {
+      isCrystalStopped: () => this.#isCrystalStopped,
+      reset: () => this.#end(CAUSE.WATCHDOG),
+      fail: (what) => this.fail(what),
+    });
     const vreg = rp2040.peripherals[CHIP_RESET];
     vreg.readUint32 = (offset) => (offset === CHIP_RESET_AT ? this.#chipReset : 0);
     vreg.writeUint32 = () => {};

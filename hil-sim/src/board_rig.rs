@@ -85,7 +85,8 @@ pub trait BoardRig {
     fn run(&mut self, until_tick: u64, received: &mut Vec<u8>, watch: &mut dyn FnMut(&RigTick))
     -> Result<(), RigError>;
 
-    /// Frames with reports of the touch source that the host has to send. A board with a touch source of its own has none.
+    /// Frames with reports of the touch source that the host has to send. A board with a touch source of its own has
+    /// none.
     fn take_touch_frames(&mut self) -> Vec<u8> {
         Vec::new()
     }
@@ -96,8 +97,8 @@ pub trait BoardRig {
     /// Starts the finger's stroke.
     fn start_stroke(&mut self);
 
-    /// Lets the person at the arm switch let go of it and press it again, and returns the ticks until the board has seen
-    /// it. Without a person who waits to be asked, this does nothing.
+    /// Lets the person at the arm switch let go of it and press it again, and returns the ticks until the board has
+    /// seen it. Without a person who waits to be asked, this does nothing.
     fn press_switch(&mut self) -> u64 {
         0
     }

@@ -18,8 +18,8 @@ pub struct InProcessRig<'a> {
 }
 
 impl<'a> InProcessRig<'a> {
-    /// A board after power-on, in a world whose finger will make `stroke`. It takes one of `memories` for each start, so
-    /// there must be one more than resets.
+    /// A board after power-on, in a world whose finger will make `stroke`. It takes one of `memories` for each start,
+    /// so there must be one more than resets.
     pub fn new(
         memories: &'a mut [Box<BoardMemory>],
         config: &RigConfig,

@@ -55,19 +55,14 @@ pub struct RigConfig {
 
 impl Default for RigConfig {
     fn default() -> Self {
-        Self::of(Board::SIMULATOR)
+        Self { world: WorldConfig::IDEAL, ..Self::of(Board::SIMULATOR) }
     }
 }
 
 impl RigConfig {
-    /// A rig of a board in the default world.
+    /// A rig of a board in the world that it expects.
     pub fn of(board: Board) -> Self {
-        let world = WorldConfig {
-            tick_hz: board.tick_hz,
-            full_scale_v_peak: f64::from(board.limits.full_scale_v_peak),
-            ..WorldConfig::default()
-        };
-        Self { board, world, baud: 2_000_000 }
+        Self { board, world: WorldConfig::of(&board), baud: 2_000_000 }
     }
 }
 

@@ -109,14 +109,14 @@ impl Stroke {
 
     /// Touches with the statistics of people recorded on a surface-haptic tablet, for `duration_s` seconds, 0.001 to
     /// 600: the finger lands, crosses a part of the screen with a speed and a heading that wander, lifts, and lands
-    /// again; few touches turn on the way. Without a median speed, above 0 and at most 10 m/s, the stroke has that of the
-    /// seed's person, 48 to 436 mm/s.
+    /// again; few touches turn on the way. Without a median speed, above 0 and at most 10 m/s, the stroke has that of
+    /// the seed's person, 48 to 436 mm/s.
     ///
     /// Acceleration below 8 Hz, 95th percentile of speed and duration of the touches at each median speed are those of
     /// about 1,300 strokes, whose recordings cannot be shipped, as they come out of a reconstruction that smooths
     /// ([`Self::human_rough`] has another). A touch ends at the margin of the screen, so on a small screen fast touches
-    /// are shorter than the recorded ones. Between milliseconds the finger goes straight. There is tremor at 8 to 12 Hz,
-    /// whose size is assumed.
+    /// are shorter than the recorded ones. Between milliseconds the finger goes straight. There is tremor at 8 to 12
+    /// Hz, whose size is assumed.
     ///
     /// Tests judge on [`HUMAN_TEST_SEEDS`], and constants are tuned on [`HUMAN_TUNING_SEEDS`].
     /// [`Self::sweep`] is an even stroke: it has no random part, and goes on for any time.

@@ -53,8 +53,8 @@ impl WorldConfig {
         }
     }
 
-    /// This world with every effect that was measured on real amplifiers, fingers and touch sources. The amplifier's and
-    /// the electrode's lag stay.
+    /// This world with every effect that was measured on real amplifiers, fingers and touch sources. The amplifier's
+    /// and the electrode's lag stay.
     #[must_use]
     pub fn realistic(self) -> Self {
         let AmplifierConfig { output_time_constant_s, electrode_time_constant_s, .. } = self.amplifier;
@@ -213,8 +213,8 @@ impl World {
         self.fingertip.set_law(law.into());
     }
 
-    /// Replaces the touch source from now on. Reports that are under way are lost, and the new source reports the finger
-    /// at its first sample.
+    /// Replaces the touch source from now on. Reports that are under way are lost, and the new source reports the
+    /// finger at its first sample.
     ///
     /// # Errors
     ///
@@ -326,8 +326,8 @@ impl World {
     }
 
     /// What the amplifier's monitor shows at the end of the last tick, in V: for a rig that advances the world when the
-    /// board has latched the next code. In [`Self::sense`] it is a tick behind, because a board latches the code of a tick
-    /// at the end of that tick.
+    /// board has latched the next code. In [`Self::sense`] it is a tick behind, because a board latches the code of a
+    /// tick at the end of that tick.
     #[cfg(unix)]
     pub(crate) fn monitor_now_v(&self) -> f64 {
         self.amplifier.monitor_now_v()

@@ -134,8 +134,8 @@ fn a_gain_out_of_reach_is_clamped_flagged_and_counted() {
     assert!(reach_n < 1.0);
 }
 
-/// The envelope steps up and down, to zero and back, at phases of the carrier that never repeat. The electrode is behind
-/// the lag, the offset and the current limit of a realistic amplifier.
+/// The envelope steps up and down, to zero and back, at phases of the carrier that never repeat. The electrode is
+/// behind the lag, the offset and the current limit of a realistic amplifier.
 #[test]
 fn the_electrode_has_the_voltage_asked_for_from_the_third_period_after_any_change() {
     const PERIOD_TICKS: usize = 40;

@@ -13,8 +13,8 @@ const LINE_TICKS: u32 = 20_000;
 /// Bytes that the line takes in a tick at 2 Mbaud.
 const LINE_BYTES: usize = 5;
 
-/// Longest time for which the enable may be high after ready has risen or the switch was closed, us: a look at the inputs,
-/// and the enable's own fall.
+/// Longest time for which the enable may be high after ready has risen or the switch was closed, us: a look at the
+/// inputs, and the enable's own fall.
 const REFUSED_MAX_US: u32 = 2;
 
 /// A person, or a host, at the other end of the line.

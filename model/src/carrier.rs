@@ -27,8 +27,8 @@ pub struct Carrier {
     pub half_period_ticks: u32,
     /// Time constant `tau` of the lag, in seconds; zero if there is no lag.
     ///
-    /// An amplifier's lag `a` and a series resistor's `b` in a row take as much of a square wave's mean square as one of
-    /// `a + b - a b/(a + b)`: within 0.5 % of the mean square from a half period of 6 `tau` on.
+    /// An amplifier's lag `a` and a series resistor's `b` in a row take as much of a square wave's mean square as one
+    /// of `a + b - a b/(a + b)`: within 0.5 % of the mean square from a half period of 6 `tau` on.
     pub edge_time_constant_s: f32,
 }
 
@@ -48,9 +48,9 @@ impl Carrier {
     /// minus to plus its peak along `1 - 2 exp(-t/tau)/(1 + exp(-T/tau))`.
     ///
     /// A sine is held for a tick at a time, so that it has harmonics: of its mean square the lag leaves
-    /// `1 - (1 - cos w) sinh(x)/(x (cosh x - cos w))`, with `x` the time constants in a tick and `w = pi/H` the angle of
-    /// a tick, a half period being `H` ticks. That is `(h^2 + t^2 (1 - h/(x/2)))/(h^2 + t^2)` with `h = tanh(x/2)` and
-    /// `t = tan(w/2)`. For many ticks it becomes the `1/(1 + (pi tau/T)^2)` of a smooth sine.
+    /// `1 - (1 - cos w) sinh(x)/(x (cosh x - cos w))`, with `x` the time constants in a tick and `w = pi/H` the angle
+    /// of a tick, a half period being `H` ticks. That is `(h^2 + t^2 (1 - h/(x/2)))/(h^2 + t^2)` with `h = tanh(x/2)`
+    /// and `t = tan(w/2)`. For many ticks it becomes the `1/(1 + (pi tau/T)^2)` of a smooth sine.
     ///
     /// ```
     /// use frixel_model::{Carrier, Waveform};
@@ -118,9 +118,9 @@ fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
     (tanh_squared + tan_squared * kept) / (tanh_squared + tan_squared)
 }
 
-/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4: by Lambert's continued
-/// fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for small `r` and is a tenth of the code
-/// of `tanh`.
+/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4: by Lambert's
+/// continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for small `r` and is a tenth
+/// of the code of `tanh`.
 fn tangent_deficit<T: Real>(r: T, square: T) -> T {
     /// From here on `tanh` is one to the last bit of `f64`.
     const STEEP: f32 = 20.0;

@@ -94,8 +94,8 @@ impl DoubleSingle {
     #[inline(never)]
     fn ln_1p_near_zero(self) -> Self {
         let s = self / (Self::TWO + self);
-        // Not doubled by a product: the compiler would call the third through a register when it builds for size, and the
-        // depth of the stack could not be computed from the image.
+        // Not doubled by a product: the compiler would call the third through a register when it builds for size, and
+        // the depth of the stack could not be computed from the image.
         let half = s * ATANH.at(s * s);
         half + half
     }
@@ -279,8 +279,8 @@ impl Real for DoubleSingle {
         let rest = ((self.high - square.high) - square.low) + self.low;
         fast_two_sum(root, 0.5 * inverse * rest)
     }
-    /// Within 2e-12 from 1e-37 to 1e38; zero and infinity outside of that. Zero for bases below the smallest normal number,
-    /// not-a-number for bases above 1e38.
+    /// Within 2e-12 from 1e-37 to 1e38; zero and infinity outside of that. Zero for bases below the smallest normal
+    /// number, not-a-number for bases above 1e38.
     #[inline(never)]
     fn pow(self, exponent: Self) -> Self {
         if self.high < f32::MIN_POSITIVE {

@@ -128,8 +128,8 @@ impl EmpiricalLaw {
     /// Least and greatest power of the voltage with which friction may grow: [`crate::InverseTable::RELATIVE_ERROR`]
     /// holds between them.
     pub const EXPONENTS: [f32; 2] = EXPONENTS;
-    /// Least and greatest friction at the largest voltage, N. Below, the coefficients of a table's rows overflow; above,
-    /// they underflow.
+    /// Least and greatest friction at the largest voltage, N. Below, the coefficients of a table's rows overflow;
+    /// above, they underflow.
     pub const FRICTIONS_N: [f32; 2] = FRICTIONS_N;
 
     /// The law of these points, with this exponent below the first, up to a largest voltage, which is at most that of
@@ -178,9 +178,9 @@ impl EmpiricalLaw {
         Ok(law)
     }
 
-    /// Electric friction in newtons at an rms voltage of zero or more. Above the last point the last power law continues:
-    /// within a carrier period the voltage on an electrode exceeds its rms value. Only the rms value stays at or below that
-    /// of the last point.
+    /// Electric friction in newtons at an rms voltage of zero or more. Above the last point the last power law
+    /// continues: within a carrier period the voltage on an electrode exceeds its rms value. Only the rms value stays
+    /// at or below that of the last point.
     pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
         if !(voltage_v_rms > 0.0) {
             return 0.0;

@@ -4,7 +4,8 @@
 //! The circuit is a series resistor, the coating (a capacitance, with a leak where it is scratched), a person, and the
 //! way back to the amplifier's common. The person is the network of IEC 60990, Fig. 4: 1.5 kOhm beside 0.22 uF for the
 //! skin, 500 Ohm for the body, and a low-pass of 10 kOhm and 22 nF across the body, whose output over 500 Ohm is the
-//! current **weighted** for perception and reaction. The amplifier's own lag, which makes currents smaller, is left out.
+//! current **weighted** for perception and reaction. The amplifier's own lag, which makes currents smaller, is left
+//! out.
 //!
 //! | number | source | read |
 //! |---|---|---|
@@ -12,8 +13,8 @@
 //! | 0.7 mA peak, weighted, in normal use | IEC 61010-1:2010, 6.3.1 b); the same in IEC 62368-1, Table 4, ES1 | no |
 //! | 5 mA peak, weighted, in a single-fault condition | IEC 61010-1:2010, 6.3.2 b) | no |
 //!
-//! A coating that is too thin to be an insulation is worse than none: its charge of one half period drives current in the
-//! next. So [`TouchBound`] holds for every coating, and counts none as protection.
+//! A coating that is too thin to be an insulation is worse than none: its charge of one half period drives current in
+//! the next. So [`TouchBound`] holds for every coating, and counts none as protection.
 
 /// Largest weighted touch current in normal use, A peak (IEC 61010-1, 6.3.1, unread).
 pub const TOUCH_CURRENT_MAX_A_PEAK: f64 = 0.7e-3;

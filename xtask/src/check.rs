@@ -327,8 +327,8 @@ mod tests {
         }
     }
 
-    /// Version 2.7 of `half` takes `zerocopy` with its derive macro, half of an image's compile time. Other packages may
-    /// take `zerocopy` without it.
+    /// Version 2.7 of `half` takes `zerocopy` with its derive macro, half of an image's compile time. Other packages
+    /// may take `zerocopy` without it.
     #[test]
     fn no_lock_file_has_half_with_zerocopy() {
         for folder in IMAGES.iter().map(|image| image.folder).chain(["."]) {

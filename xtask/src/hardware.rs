@@ -330,8 +330,8 @@ mod tests {
         }
     }
 
-    /// Of the amplifier's enable, only the switch's second pole and a resistor to the common know; before the pole, both
-    /// one-shots must agree, and the second is fed by SYNC.
+    /// Of the amplifier's enable, only the switch's second pole and a resistor to the common know; before the pole,
+    /// both one-shots must agree, and the second is fed by SYNC.
     #[test]
     fn the_enable_goes_through_both_one_shots_and_the_switch() {
         let carrier = read().unwrap();

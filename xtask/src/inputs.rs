@@ -179,8 +179,8 @@ pub(crate) mod tests {
         (!path.split('/').any(|name| name == "target")).then_some(path)
     }
 
-    /// Sources read files by paths relative to themselves (`include_str!`) or to their package's folder. A path to a folder
-    /// that the package lies in, such as the repository's root, says nothing and is not looked at.
+    /// Sources read files by paths relative to themselves (`include_str!`) or to their package's folder. A path to a
+    /// folder that the package lies in, such as the repository's root, says nothing and is not looked at.
     #[test]
     fn every_file_that_a_package_reads_by_a_relative_path_is_among_its_inputs() {
         let packages = packages().unwrap();

@@ -108,8 +108,8 @@ fn add_crates(program: &Program, names: &mut BTreeMap<String, BTreeSet<String>>)
     Ok(())
 }
 
-/// What is said of a crate without a licence file, if its licence is one of frixel's, whose texts stand above, or that of
-/// the crates by Raspberry Pi.
+/// What is said of a crate without a licence file, if its licence is one of frixel's, whose texts stand above, or that
+/// of the crates by Raspberry Pi.
 fn without_file(package: &serde_json::Value) -> Option<String> {
     let is_by_raspberry_pi = package["name"].as_str().is_some_and(|name| name.starts_with("rp"));
     if is_by_raspberry_pi && package["license"] == BSD {

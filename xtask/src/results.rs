@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 /// What the runners of this run have reported.
 static RESULTS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Runs a test runner, cargo's, node's or pytest: prints its output as it comes, without its results, which [`print()`] prints.
-/// Fails if it fails.
+/// Runs a test runner, cargo's, node's or pytest: prints its output as it comes, without its results, which [`print()`]
+/// prints. Fails if it fails.
 pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
     eprintln!("-- {name}");
     let explain = |error: std::io::Error| format!("{name} could not be run: {error}");
@@ -36,8 +36,8 @@ pub(crate) fn print() {
     }
 }
 
-/// Whether a line counts tests: `test result: ok. 5 passed; …` of cargo, `# pass 5` or `ℹ pass 5` of node, `5 passed in 2.10s`
-/// of pytest.
+/// Whether a line counts tests: `test result: ok. 5 passed; …` of cargo, `# pass 5` or `ℹ pass 5` of node, `5 passed in
+/// 2.10s` of pytest.
 fn is_result(line: &str) -> bool {
     let of_node = |rest: &str| {
         let (word, number) = rest.split_once(' ').unwrap_or_default();

@@ -1,8 +1,8 @@
 //! `cargo xtask studio`: the studio as one HTML file that opens from a disk, and `<frixel-scene>` as one script, for
 //! documents and for the widget of the Python module; with `--site`, both as a site of files for any web server.
 //!
-//! The WebAssembly module, the scripts, the vendored bundles and the bundled scenes are in each, as far as it uses them,
-//! compressed and as text. `host/studio/web/boot.js` unpacks them in the browser.
+//! The WebAssembly module, the scripts, the vendored bundles and the bundled scenes are in each, as far as it uses
+//! them, compressed and as text. `host/studio/web/boot.js` unpacks them in the browser.
 
 mod element;
 mod page;
@@ -52,8 +52,8 @@ const IGNORED: [&str; 4] = ["node_modules", "entry.js", "chart_entry.js", "widge
 /// The files that a script carries, by their names in it.
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// Builds the page and, beside it, the script of `<frixel-scene>`, and the module of the widget into the Python package;
-/// returns the page's path.
+/// Builds the page and, beside it, the script of `<frixel-scene>`, and the module of the widget into the Python
+/// package; returns the page's path.
 pub(crate) fn build() -> Result<PathBuf, String> {
     let files = files()?;
     let page = page::of(&files, &Place::File { icon_svg: &text(&root().join(site::ICON))? })?;
@@ -80,8 +80,8 @@ fn files() -> Result<Files, String> {
     Ok(files)
 }
 
-/// Version and commit of the page, as JSON: `commit` is null outside of a checkout, `isChanged` says whether files differ
-/// from it.
+/// Version and commit of the page, as JSON: `commit` is null outside of a checkout, `isChanged` says whether files
+/// differ from it.
 fn about() -> String {
     let git = |arguments: &[&str]| text_of(Command::new("git").current_dir(root()).args(arguments)).ok();
     let commit = git(&["rev-parse", "--short=12", "HEAD"]).map(|commit| commit.trim().to_owned());

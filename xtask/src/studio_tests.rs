@@ -1,5 +1,5 @@
-//! The checks of JavaScript, most of which is the studio's: types and lints of its scripts, and its tests in Chromium (`host/studio/test`), driven by
-//! node and playwright-core.
+//! The checks of JavaScript, most of which is the studio's: types and lints of its scripts, and its tests in Chromium
+//! (`host/studio/test`), driven by node and playwright-core.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -8,8 +8,8 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::hprintln;
 
-/// Counts of `SysTick`, and the instructions that take as many. An instruction takes 1,024 ns: 25.6 counts at the 25 MHz
-/// of an MPS2 board with AN385 or AN386, and 20.48 at the 20 MHz of one with AN505.
+/// Counts of `SysTick`, and the instructions that take as many. An instruction takes 1,024 ns: 25.6 counts at the 25
+/// MHz of an MPS2 board with AN385 or AN386, and 20.48 at the 20 MHz of one with AN505.
 const COUNTS: u32 = if cfg!(an505) { 512 } else { 128 };
 const INSTRUCTIONS: u32 = if cfg!(an505) { 25 } else { 5 };
 /// `SysTick` is 24 bits wide.

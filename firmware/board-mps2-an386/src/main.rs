@@ -1,12 +1,12 @@
 //! The firmware on an emulated Cortex-M4F: `qemu-system-arm -M mps2-an386`.
 //!
-//! Tick, main loop and fault handling are those of every board (`frixel-board`). [`tick`] runs in the `SysTick` interrupt,
-//! above everything. Amplifier and touch source are words of memory that it shares with the simulator ([`shared`]).
-//! Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`] causes faults on
-//! demand.
+//! Tick, main loop and fault handling are those of every board (`frixel-board`). [`tick`] runs in the `SysTick`
+//! interrupt, above everything. Amplifier and touch source are words of memory that it shares with the simulator
+//! ([`shared`]). Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`]
+//! causes faults on demand.
 //!
-//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep: timer,
-//! serial port and memory are others there.
+//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep:
+//! timer, serial port and memory are others there.
 #![no_std]
 #![no_main]
 
@@ -27,14 +27,14 @@ use cortex_m_rt::entry;
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
 use frixel_board::main_loop::MainLoop;
-use frixel_control::{Active, Board, StreamBuffer, Ticker};
+use frixel_board::memory::Memory;
+use frixel_control::{Board, StreamBuffer, Ticker};
 use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 use frixel_exchange::{BOARD, layout};
-use frixel_layers::BitmapPool;
-use frixel_session::{Queues, Session};
+use frixel_session::{Session, SessionEnds, TickEnds};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 use board::{Mps2, NoDac, NoLight, NoWatchdog};
@@ -43,36 +43,37 @@ use uart::Uart;
 /// Whether the machine is the one of timer, serial port and stack guard.
 const IS_AN386: bool = cfg!(not(an505));
 
-/// Memory for bitmaps, written by the session and read by the tick.
-static POOL: BitmapPool = BitmapPool::new();
-/// Samples of a stream, likewise.
+/// Samples of a stream, written by the session and read by the tick.
 static STREAM: StreamBuffer = StreamBuffer::new();
 
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
+    static mut MEMORY: Memory = Memory::new();
 
     let Some(mut peripherals) = Peripherals::take() else { fault::never() };
     if IS_AN386 {
         guard::start(&mut peripherals.MPU);
     }
     shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
-    let (ticker, session) = make(started(TEXT));
+    let (mut ticker, session, session_ends, tick_ends) = MEMORY.make(started(TEXT));
+    ticker.attach_stream(&STREAM);
+    session.attach_stream(&STREAM);
     match shared::get(layout::MODE) {
-        layout::MODE_LINK if IS_AN386 => run(session, ticker, peripherals),
+        layout::MODE_LINK if IS_AN386 => run(session, ticker, (session_ends, tick_ends), peripherals),
         _ => lockstep::run(session, ticker),
     }
 }
 
 /// Starts the tick on the board's own timer, and runs the main loop with the host on the serial port.
-fn run(session: &'static mut Session<'static>, ticker: Ticker<'static>, mut peripherals: Peripherals) -> ! {
-    let (Some(queues), Some(bytes)) =
-        (singleton!(: Queues = Queues::new()), singleton!(: uart::Queues = uart::Queues::new()))
-    else {
-        fault::never()
-    };
+fn run(
+    session: &'static mut Session<'static>,
+    ticker: Ticker<'static>,
+    (session_ends, tick_ends): (SessionEnds, TickEnds),
+    mut peripherals: Peripherals,
+) -> ! {
+    let Some(bytes) = singleton!(: uart::Queues = uart::Queues::new()) else { fault::never() };
     session.attach_tick_meter(&tick::SHARED.meter);
-    let (session_ends, tick_ends) = queues.split();
     let status = ticker.status();
     tick::start(ticker, tick_ends, peripherals.SYST);
     let mut main_loop = MainLoop::<Mps2> {
@@ -93,35 +94,6 @@ fn run(session: &'static mut Session<'static>, ticker: Ticker<'static>, mut peri
         main_loop.turn(shared::touch(tick::SHARED.count()));
         fault_injection::in_main();
     }
-}
-
-/// Makes the tick and the session.
-#[inline(never)]
-fn make(board: Board) -> (Ticker<'static>, &'static mut Session<'static>) {
-    let (Some(first), Some(second)) = (first_coefficients(), second_coefficients()) else { fault::never() };
-    let mut ticker = Ticker::new(&board, &POOL, first);
-    ticker.attach_stream(&STREAM);
-    let Some(session) = session(board, second) else { fault::never() };
-    session.attach_stream(&STREAM);
-    (ticker, session)
-}
-
-// Large values are made on the stack, so that no copy of them lies in flash. Each has a function of its own, so that
-// the stack holds only one at a time, and none for ever, as in `main`.
-
-#[inline(never)]
-fn first_coefficients() -> Option<&'static mut Active> {
-    singleton!(: Active = Active::new())
-}
-
-#[inline(never)]
-fn second_coefficients() -> Option<&'static mut Active> {
-    singleton!(: Active = Active::new())
-}
-
-#[inline(never)]
-fn session(board: Board, spare: &'static mut Active) -> Option<&'static mut Session<'static>> {
-    singleton!(: Session<'static> = Session::new(board, &POOL, spare))
 }
 
 /// The board's description at the start.

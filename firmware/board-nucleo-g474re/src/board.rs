@@ -1,4 +1,5 @@
-//! Identity, stores and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them, too.
+//! Identity, stores and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them,
+//! too.
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;

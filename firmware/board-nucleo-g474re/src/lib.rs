@@ -3,10 +3,10 @@
 //! headings in these documents.
 //!
 //! One interrupt, [`tick`], runs above everything, 40,000 times a second. Everything else runs in the main loop,
-//! [`frixel_board::main_loop`]: serial port, session, stores, optical frame, watchdog. The lock-free queues of `heapless` connect
-//! the two; no critical section masks the tick ([`critical`]). This repository's CI runs none of it on hardware. The
-//! code that can be tested without hardware is in `firmware/board`, `firmware/control`, `firmware/session` and
-//! `firmware/drivers`.
+//! [`frixel_board::main_loop`]: serial port, session, stores, optical frame, watchdog. The lock-free queues of
+//! `heapless` connect the two; no critical section masks the tick ([`critical`]). This repository's CI runs none of it
+//! on hardware. The code that can be tested without hardware is in `firmware/board`, `firmware/control`,
+//! `firmware/session` and `firmware/drivers`.
 #![no_std]
 
 pub mod adc;

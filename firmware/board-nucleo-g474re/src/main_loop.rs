@@ -1,8 +1,8 @@
 //! The main loop of [`frixel_board::main_loop`], with the optical frame if the image has it.
 //!
-//! The compiler takes it into the program, where [`tick_interrupt`](crate::tick_interrupt) declares the tick, so that both
-//! share the code of their queues. Otherwise it inlines a part of that into the tick, with a panic for a queue of length
-//! zero, which no queue has (`cargo xtask bench` looks for panics of the tick).
+//! The compiler takes it into the program, where [`tick_interrupt`](crate::tick_interrupt) declares the tick, so that
+//! both share the code of their queues. Otherwise it inlines a part of that into the tick, with a panic for a queue of
+//! length zero, which no queue has (`cargo xtask bench` looks for panics of the tick).
 
 #[cfg(feature = "optical-frame")]
 use core::pin::pin;

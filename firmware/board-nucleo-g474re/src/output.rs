@@ -92,7 +92,8 @@ impl KickedEnable for Output {
     }
 }
 
-/// Starts the timer anew. If it does not run, amplifier enable has this output mode from now on, and CLEAR is a one-shot.
+/// Starts the timer anew. If it does not run, amplifier enable has this output mode from now on, and CLEAR is a
+/// one-shot.
 #[inline]
 fn restart(enable: Ocm) {
     if TIM4.cr1().read().cen() && TIM4.cnt().read().cnt() >= 1 {

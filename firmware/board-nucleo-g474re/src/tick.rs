@@ -48,7 +48,8 @@ where
         // SAFETY: TIM3 is unmasked below.
         unsafe { self.0.give(tick) };
         period::start_interrupts();
-        // SAFETY: no critical section depends on it being masked. Priority 0, the highest, is its priority from reset on.
+        // SAFETY: no critical section depends on it being masked. Priority 0, the highest, is its priority from reset
+        // on.
         unsafe { NVIC::unmask(Interrupt::TIM3) };
     }
 

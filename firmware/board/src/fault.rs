@@ -43,14 +43,27 @@ impl LastReset {
         };
         Self { cause, fault, text, fault_starts: record.count_start(fault.is_some()) }
     }
+
+    /// Logs it.
+    #[cfg(feature = "defmt")]
+    pub fn log(&self) {
+        let (fault, detail) = self.fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
+        defmt::info!(
+            "reset: cause {=u8}, fault {=u8}, {=u32:#x} {=[u8]:a}",
+            self.cause.number(),
+            fault,
+            detail,
+            self.text
+        );
+    }
 }
 
 /// The end of a start, from any context.
 pub struct Ending<P> {
     processor: P,
     record: &'static FaultRecord,
-    /// Faults since the start, at most 1. A number, because with an `AtomicBool` the compiler keeps the messages of panics
-    /// that nobody reads, 200 bytes of the smallest image.
+    /// Faults since the start, at most 1. A number, because with an `AtomicBool` the compiler keeps the messages of
+    /// panics that nobody reads, 200 bytes of the smallest image.
     faults: AtomicU32,
 }
 

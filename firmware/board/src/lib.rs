@@ -4,6 +4,7 @@
 //! - [`hardware`]: the traits, one for each part of a board;
 //! - [`tick`]: what the timer's interrupt does;
 //! - [`main_loop`]: the rest of the firmware, between two ticks;
+//! - [`memory`]: the memory of tick and session;
 //! - [`optical_frame`]: a touch source of the main loop;
 //! - [`fault`]: how a start ends after a panic or a fault, and what the next one learns of it;
 //! - [`bring_up`]: the script that takes a new board from nothing connected to stored limits;
@@ -17,6 +18,7 @@ pub mod hardware;
 mod local_host;
 mod local_scene;
 pub mod main_loop;
+pub mod memory;
 pub mod optical_frame;
 #[cfg(feature = "self-test")]
 pub mod self_test;

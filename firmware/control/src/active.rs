@@ -72,7 +72,8 @@ impl Active {
         self.layers.electric_friction_n(inputs, pool, clicks)
     }
 
-    /// Enables or disables a layer and sets its gain while the scene plays, from `tick` on. Unknown layer numbers are ignored.
+    /// Enables or disables a layer and sets its gain while the scene plays, from `tick` on. Unknown layer numbers are
+    /// ignored.
     #[inline]
     pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32, tick: u32) {
         self.layers.set(number, on, gain, tick);

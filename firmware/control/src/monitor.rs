@@ -19,12 +19,12 @@ use crate::{Board, ReadyWhileDisabled};
 /// amplifier, level shifter and ADC (assumed; none has been measured).
 const FLOOR: f32 = 0.04;
 /// Tolerance as a fraction of a constant voltage: for the gain errors of the same parts (5 % are asked of the
-/// amplifier), for an amplifier that is faster or slower than its board says, and for the 2 us for which the newest code
-/// is out when the monitor is read.
+/// amplifier), for an amplifier that is faster or slower than its board says, and for the 2 us for which the newest
+/// code is out when the monitor is read.
 const GAIN_TOLERANCE: f32 = 0.25;
-/// The monitor faults once ticks with a wrong voltage exceed a third of those with a right one by as many as are in this
-/// time, in s. Long against a disturbed reading; and a monitor that is wrong in every tick has the output off within
-/// 0.5 ms at 40 kHz, the ticks included after which a wrong voltage is seen and the zero is put out.
+/// The monitor faults once ticks with a wrong voltage exceed a third of those with a right one by as many as are in
+/// this time, in s. Long against a disturbed reading; and a monitor that is wrong in every tick has the output off
+/// within 0.5 ms at 40 kHz, the ticks included after which a wrong voltage is seen and the zero is put out.
 const WRONG_S: f32 = 0.4e-3;
 /// Right ticks that make up for a wrong one. A DAC that holds its last code is right in every other half period of a
 /// square carrier: it is found after three times that time, or in the first half period that is longer. A healthy
@@ -155,8 +155,8 @@ impl MonitorCheck {
         self.count_one(is_right)
     }
 
-    /// Counts a right or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so that
-    /// it soon falls again however long the monitor was wrong.
+    /// Counts a right or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so
+    /// that it soon falls again however long the monitor was wrong.
     fn count_one(&mut self, is_right: bool) -> bool {
         self.wrong_count = if is_right {
             self.wrong_count.saturating_sub(1)

@@ -85,8 +85,8 @@ fn status() -> Option<(u32, u32)> {
 }
 
 /// Returns a place that the start-up code does not clear, such as a static in the section `.uninit`. Its initialiser is
-/// never written, so the compiler must not conclude from it what the place holds. Put atomics of integers there only, of
-/// which every content is valid.
+/// never written, so the compiler must not conclude from it what the place holds. Put atomics of integers there only,
+/// of which every content is valid.
 pub fn outlasting<T: Sync>(place: &'static T) -> &'static T {
     #[cfg(target_arch = "arm")]
     // SAFETY: no instruction. For all that the compiler knows, it writes the place.

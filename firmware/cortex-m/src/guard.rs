@@ -1,9 +1,9 @@
 //! A guard region below the stack, set up in the memory protection unit.
 //!
 //! For boards whose stack lies at the bottom of RAM, and whose RAM begins at `0x2000_0000`. Below the STM32's RAM lie
-//! unused addresses, and the option bytes of the flash, where a write may not fault; on the emulated board, nothing below
-//! RAM faults. With the guard, an overflow faults whatever the size of the frame. The guard is disabled in the hard
-//! fault's handler, which has a stack of its own (PM0214, "Memory protection unit").
+//! unused addresses, and the option bytes of the flash, where a write may not fault; on the emulated board, nothing
+//! below RAM faults. With the guard, an overflow faults whatever the size of the frame. The guard is disabled in the
+//! hard fault's handler, which has a stack of its own (PM0214, "Memory protection unit").
 
 use cortex_m::asm;
 use cortex_m::peripheral::MPU;

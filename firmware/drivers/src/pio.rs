@@ -1,8 +1,8 @@
-//! Instructions of the programmable I/O (PIO) of the RP2040 and the RP2350, as the words that its state machines execute
-//! (RP2040 data sheet, 3.4, "Instruction Set"). A board writes its programs with them.
+//! Instructions of the programmable I/O (PIO) of the RP2040 and the RP2350, as the words that its state machines
+//! execute (RP2040 data sheet, 3.4, "Instruction Set"). A board writes its programs with them.
 //!
-//! Every function panics if a number does not fit into its instruction. In constants, where programs stand, that fails to
-//! compile.
+//! Every function panics if a number does not fit into its instruction. In constants, where programs stand, that fails
+//! to compile.
 //!
 //! A state machine takes one cycle of its divided clock for an instruction, and as many more as [`Instruction::delay`]
 //! says. It shares the five bits of that number with the pins of [`Instruction::side`].

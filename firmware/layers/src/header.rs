@@ -250,9 +250,9 @@ impl Header {
         ]
     }
 
-    /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers. The knots of a law depend on the
-    /// largest voltage: where the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a header with
-    /// the lower voltage.
+    /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers. The knots of a law depend on
+    /// the largest voltage: where the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a
+    /// header with the lower voltage.
     ///
     /// # Errors
     ///

@@ -25,9 +25,9 @@
 //!   parameters become coefficients;
 //! - its coefficients, with `Evaluate`: the friction at the finger's place.
 //!
-//! `kind.rs` holds the traits. The list at the end of `kinds.rs` gives it its number in records and its Cargo feature; everything that
-//! covers all kinds is generated from that list. Whatever several kinds use has its own module: waves, clicks, regions,
-//! blends, points.
+//! `kind.rs` holds the traits. The list at the end of `kinds.rs` gives it its number in records and its Cargo feature;
+//! everything that covers all kinds is generated from that list. Whatever several kinds use has its own module: waves,
+//! clicks, regions, blends, points.
 //!
 //! # Order of the modules
 //!
@@ -116,7 +116,8 @@ pub use wave::Wave;
 
 use frixel_wire::hello::feature;
 
-/// Bits of the hello's features of the kinds of layers and regions, and of empirical laws, whose Cargo features are enabled.
+/// Bits of the hello's features of the kinds of layers and regions, and of empirical laws, whose Cargo features are
+/// enabled.
 pub const FEATURES: u32 = kinds::KIND_FEATURES_ON
     | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 }
     | if cfg!(feature = "empirical") { feature::EMPIRICAL } else { 0 };

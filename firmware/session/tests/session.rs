@@ -132,8 +132,8 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
     );
 }
 
-/// The bound for a person whom no coating protects, at each carrier frequency that the board can give: 68 kOhm allow 28.7 V
-/// peak at 125 Hz, 43.9 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
+/// The bound for a person whom no coating protects, at each carrier frequency that the board can give: 68 kOhm allow
+/// 28.7 V peak at 125 Hz, 43.9 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
 #[test]
 fn a_peak_that_would_hurt_through_a_bridged_coating_is_refused_at_every_carrier() {
     let limits = BoardLimits { series_resistance_ohm: 68e3, current_max_a_rms: 1.0, ..Board::SIMULATOR.limits };

@@ -59,8 +59,8 @@ impl fmt::Display for State {
 pub enum Fault {
     /// The amplifier reports a fault.
     Amplifier,
-    /// The amplifier's monitor shows another voltage than the driven one, or one that rises or stays while the amplifier
-    /// is disabled.
+    /// The amplifier's monitor shows another voltage than the driven one, or one that rises or stays while the
+    /// amplifier is disabled.
     Monitor,
     /// A tick missed its deadline.
     Deadline,

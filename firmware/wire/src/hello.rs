@@ -66,8 +66,8 @@ pub mod notice {
     /// Cleared once a scene is committed.
     pub const STORED_SCENE_SKIPPED: u8 = 1;
 
-    /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because a build with other
-    /// ceilings has stored them. The limits that are built in are in effect.
+    /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because a build with
+    /// other ceilings has stored them. The limits that are built in are in effect.
     pub const STORED_LIMITS_REFUSED: u8 = 1 << 1;
     /// The firmware was built to take stored limits above its ceilings for voltage and current.
     pub const LIMITS_ABOVE_CEILINGS: u8 = 1 << 2;

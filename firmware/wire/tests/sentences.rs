@@ -13,8 +13,8 @@ use frixel_wire::hello::{Hello, notice};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use support::samples;
 
-/// All sentences about the samples, which a person reads when one changes: each says what was found, with its numbers, and
-/// what to do.
+/// All sentences about the samples, which a person reads when one changes: each says what was found, with its numbers,
+/// and what to do.
 #[test]
 fn sentences_are_those_of_the_golden_file() {
     let outside = samples::config_refusal(ConfigField::VoltagePeak, ConfigRefusal::WHOLE_SCENE);

@@ -42,8 +42,8 @@ pub enum InjectedFault {
 /// Result of one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkRecord {
-    /// Ticks since the board's last reset, this one included. Of a [`PicoRig`](super::PicoRig), ticks since the board was
-    /// first switched on.
+    /// Ticks since the board's last reset, this one included. Of a [`PicoRig`](super::PicoRig), ticks since the board
+    /// was first switched on.
     pub tick: u32,
     /// The board's output.
     pub drive: Drive,

@@ -1,6 +1,7 @@
 //! The image of the Pico board on an emulated RP2040, wired to its chips and its world.
 
 mod board_rig;
+mod injection;
 mod limits;
 mod process;
 mod protocol;
@@ -289,8 +290,8 @@ impl PicoRig {
         let mut buffer = [0; FRAME_MAX_LEN];
         if let Ok(frame) = payload::request_frame(&HostRequest { sequence: TOUCH_SEQUENCE, command }, &mut buffer) {
             match &mut self.touch_frames {
-                Some(frames) => frames.extend(&*frame),
-                None => self.to_board.extend(&*frame),
+                Some(frames) => frames.extend(frame),
+                None => self.to_board.extend(frame),
             }
         }
     }
@@ -328,66 +329,6 @@ impl PicoRig {
             }
             WireEvent::Light(_) | WireEvent::Flash { .. } | WireEvent::MonitorRead { .. } => {}
         }
-    }
-}
-
-/// What a test does to the board.
-impl PicoRig {
-    /// Cuts the power of the processor, and switches it on again. `seed` is that of what its RAM holds then. The DAC keeps
-    /// its own supply.
-    pub fn power_cycle(&mut self, seed: u32) -> Result<(), EmulatorError> {
-        self.process.request(Request::PowerCycle, &[seed]).map(drop)
-    }
-
-    /// Pulls the RUN pin low and lets it go.
-    pub fn pull_run_pin(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::RunPin, &[]).map(drop)
-    }
-
-    /// Stops the core for ever, as a loop without interrupts does.
-    pub fn hang(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::Hang, &[]).map(drop)
-    }
-
-    /// Lets the main loop hang, while interrupts go on.
-    pub fn hang_main_loop(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::HangMainLoop, &[]).map(drop)
-    }
-
-    /// Stops the crystal: core, tick and one-shot stand still, and every pin stays as it is.
-    pub fn stop_crystal(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::StopCrystal, &[]).map(drop)
-    }
-
-    /// Stops the state machine of the beat: no tick begins any more, and the main loop goes on.
-    pub fn stop_beat(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::StopPio, &[0]).map(drop)
-    }
-
-    /// Stops the state machine of the one-shot: it holds what it drives.
-    pub fn stop_one_shot(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::StopPio, &[1]).map(drop)
-    }
-
-    /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction asked
-    /// for. `false` if there is no such function.
-    pub fn jump_to(&mut self, name: &str) -> Result<bool, EmulatorError> {
-        let bytes: Vec<u32> = name.bytes().map(u32::from).collect();
-        match self.process.request(Request::AddressOf, &bytes)?.first() {
-            Some(address) if *address != 0 => self.process.request(Request::Jump, &[*address]).map(|_| true),
-            _ => Ok(false),
-        }
-    }
-
-    /// Lets the core go on at an address.
-    pub fn jump(&mut self, address: u32) -> Result<(), EmulatorError> {
-        self.process.request(Request::Jump, &[address]).map(drop)
-    }
-
-    /// Cuts the power in the flash operation after `operations` more of them, when `fraction` of it is done, 0 to 1.
-    pub fn cut_at_flash_operation(&mut self, operations: u32, fraction: f64) -> Result<(), EmulatorError> {
-        let fraction = (fraction * f64::from(u32::MAX)) as u32;
-        self.process.request(Request::CutAtFlashOperation, &[operations, fraction]).map(drop)
     }
 }
 

@@ -38,8 +38,8 @@ pub struct FingertipConfig {
     /// Frequency below which charge leaks through the skin faster than the drive alternates, in Hz: 0 (no leakage) to
     /// 10,000. The voltage across the gap is the electrode's voltage behind a first-order high-pass.
     ///
-    /// Leakage dominates below 250 Hz (arXiv 2409.18725). Others found a small effect of the frequency over 30 to 230 Hz
-    /// (4TU 08aa3d2d), or looked for the corner and did not find it (Meyer, Peshkin, Colgate 2013):
+    /// Leakage dominates below 250 Hz (arXiv 2409.18725). Others found a small effect of the frequency over 30 to 230
+    /// Hz (4TU 08aa3d2d), or looked for the corner and did not find it (Meyer, Peshkin, Colgate 2013):
     /// [`Self::without_leakage`] is their reading.
     pub leakage_hz: f64,
 }

@@ -12,6 +12,10 @@ const CACHE = OWN_CACHES + SITE.version;
 
 worker.addEventListener("install", (event) => event.waitUntil(keep()));
 worker.addEventListener("activate", (event) => event.waitUntil(forgetOthers()));
+// The page of the version before goes on until a person takes the new one.
+worker.addEventListener("message", ({ data }) => {
+  if (data === "take over") worker.skipWaiting();
+});
 worker.addEventListener("fetch", (event) => {
   if (event.request.method === "GET") event.respondWith(answer(event.request));
 });
@@ -31,6 +35,13 @@ async function forgetOthers() {
 
 /** @param {Request} request */
 async function answer(request) {
+  // A browser whose store is broken still has the network.
+  const kept = await keptAnswer(request).catch(() => undefined);
+  return kept ?? fetch(request);
+}
+
+/** @param {Request} request */
+async function keptAnswer(request) {
   const cache = await caches.open(CACHE);
-  return (await cache.match(request, { ignoreSearch: true })) ?? fetch(request);
+  return cache.match(request, { ignoreSearch: true });
 }

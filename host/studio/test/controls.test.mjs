@@ -65,13 +65,17 @@ test("on the full screen the map has the size that a bank card says, and before 
   await page.click("#full-screen");
   await page.getByLabel("Width of the card").fill("3.2");
   await page.getByText("Show in real size", { exact: true }).click();
-  await page.waitForFunction(() => document.fullscreenElement?.id === "map" && studioPage.map.scale === 3.2);
-  // Nothing else of the page is there: the finger's canvas is what a press meets, a centimetre from the map's corner.
+  await page.waitForFunction(() => document.fullscreenElement && studioPage.map.scale === 3.2);
+  assert.ok(await page.locator("#scope").isHidden());
+  // A press meets the finger's canvas, a centimetre from the map's corner, and Stop where it stands.
   const met = await page.evaluate(() => {
-    const { left, top } = document.getElementById("map-finger").getBoundingClientRect();
-    return document.elementFromPoint(left + 32, top + 32)?.id;
+    const at = (id, offset) => {
+      const { left, top } = document.getElementById(id).getBoundingClientRect();
+      return document.elementFromPoint(left + offset, top + offset)?.id;
+    };
+    return [at("map-finger", 32), at("stop", 8)];
   });
-  assert.equal(met, "map-finger");
+  assert.deepEqual(met, ["map-finger", "stop"]);
   await page.evaluate(() => document.exitFullscreen());
   await page.waitForFunction((fitted) => Math.abs(studioPage.map.scale - fitted) < 0.01, fitted);
   assert.deepEqual(errors, []);

@@ -91,9 +91,11 @@ async function changeAll(more) {
       const make = async (what, changes, expected) => {
         const after = await check(replaced(text, toml.replacements(changes)));
         const { boxMm } = after.layers.find(({ index }) => index === layer.index);
-        const others = (layers) => JSON.stringify(layers.filter(({ index }) => index !== layer.index).map((each) => each.boxMm));
+        const others = ({ layers }) =>
+          JSON.stringify(layers.filter(({ index }) => index !== layer.index).map((each) => each.boxMm));
         const problems = after.problems.map(({ message }) => message);
-        found.push({ ...about, what, expected, actual: boxMm, problems, isOthers: others(after.layers) === others(before.layers) });
+        const isOthers = others(after) === others(before);
+        found.push({ ...about, what, expected, actual: boxMm, problems, isOthers });
       };
       const { x, y, width, height } = bounds(place.box, place.copies);
       if (!place.whyNotMoved) {

@@ -193,6 +193,31 @@ test("a fault is shown, and cleared by a press", async () => {
   await armable(page);
 });
 
+test("while a hand changes a layer nothing can be armed, and the press after it arms what it made", async () => {
+  await write(page, CONSTANT);
+  await armable(page);
+  const from = board.events.length;
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await page.locator(".layer-box").focus();
+  const { x, y, width, height } = await page.locator(".layer-handle[data-side=se]").boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x - 20, y - 20, { steps: 3 });
+  // The texts of the hand are checked and drawn, and wait for it.
+  await page.waitForFunction(() => document.getElementById("check").textContent === "loading…");
+  await assertStaysDisarmed(from);
+  assert.equal(await page.locator("#arm:not([hidden]):enabled").count(), 0, "Arm can be pressed");
+  await page.mouse.up();
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  await armable(page);
+  await assertStaysDisarmed(from);
+  assert.match(await page.evaluate(() => studioPage.editor.text), /region = \{ x_mm = 0, y_mm = 0, width_mm = \d/);
+  await page.click("#arm");
+  await board.until("driving", stateOf.driving);
+  await page.click("#stop");
+  await board.until("disarmed", stateOf.disarmed);
+});
+
 test("a press where Arm has only just appeared arms nothing", async () => {
   await pressArm();
   await page.locator("#arm").waitFor({ state: "hidden" });
@@ -264,6 +289,26 @@ test("a stop during an upload leaves the scene that is shown to be armed, with i
   const stopped = board.events.length;
   await page.click("#stop");
   await board.assertDisarmed(stopped, "the stop button");
+});
+
+test("with a board connected no ghost finger slides, and no touch is sent", async () => {
+  assert.ok(await page.isHidden("#first-words"), "it has ended, and so have the words about it");
+  const found = await page.evaluate(async () => {
+    const { engine } = studioPage;
+    let count = 0;
+    const send = engine.pointer.bind(engine);
+    engine.pointer = (sample) => {
+      count += 1;
+      send(sample);
+    };
+    const before = serialPort.sent.length;
+    await new Promise((resolve) => setTimeout(resolve, 3000));
+    engine.pointer = send;
+    return { count, link: engine.state.link, kept: serialPort.sent.length - before };
+  });
+  assert.deepEqual({ link: found.link, count: found.count }, { link: "serial", count: 0 });
+  assert.ok(found.kept > 0, "the board was connected meanwhile");
+  assert.ok(await page.isDisabled("#open-lag"), "a board has no switch for its prediction");
 });
 
 test("a page that is closed leaves no board armed", async () => {

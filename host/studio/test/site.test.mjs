@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
+import os from "node:os";
 import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import { gzipSync } from "node:zlib";
@@ -53,6 +54,30 @@ test("a link opens its scene, also without the server", async (context) => {
   await page.goto(link);
   await page.waitForFunction(() => document.getElementById("scene-name")?.value === "mine");
   await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("a newer version is offered, and takes the place of the one before once a person wants it", async (context) => {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-site-"));
+  fs.cpSync(SITE, folder, { recursive: true });
+  const { address, end } = await serve(folder);
+  context.after(end);
+  const { page, errors } = await openPage(address, { isSimulated: true });
+  await plays(page);
+  await isKept(page);
+  const cachesOf = () => page.evaluate(() => caches.keys());
+  await page.evaluate(() => caches.open("of somebody else"));
+  const [before] = await cachesOf();
+  const worker = path.join(folder, "service-worker.js");
+  fs.writeFileSync(worker, fs.readFileSync(worker, "utf8").replace(/"version":"[^"]*"/, '"version":"newer"'));
+  await page.goto(address);
+  await plays(page);
+  await page.getByText("Load it", { exact: true }).waitFor();
+  assert.ok((await cachesOf()).includes(before), "the version before goes on");
+  await Promise.all([page.waitForEvent("load"), page.getByText("Load it", { exact: true }).click()]);
+  await plays(page);
+  const after = await cachesOf();
+  assert.ok(after.length === 2 && !after.includes(before) && after.includes("of somebody else"), after.join());
   assert.deepEqual(errors, []);
 });
 

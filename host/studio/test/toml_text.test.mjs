@@ -44,7 +44,12 @@ burst = {}
 [layer.region]
 x_mm = -0.5#close`;
 const texts = [FORMS, ...gallery.map((name) => fs.readFileSync(new URL(name, folder), "utf8"))];
-const ARRAY = 'version = 2\nlayer = [\n  { kind = "constant", friction_n = 0.3 }, # one\n  { kind = "stream", region.x_mm = 1 },\n]\n';
+const ARRAY = `version = 2
+layer = [
+  { kind = "constant", friction_n = 0.3 }, # one
+  { kind = "stream", region.x_mm = 1 },
+]
+`;
 texts.push(ARRAY);
 
 /** Small numbers in an order that is the same at each run. */

@@ -66,6 +66,7 @@ async function start() {
   if (!(isReload && last)) openLink(scene);
   const { editor, sound, samples, map, player, ghost } = parts;
   ghost.start();
+  keepSite();
   // The tests look at the page's parts through this.
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
@@ -244,7 +245,6 @@ function takeScenes({ engine, project, editor, gallery }, scene) {
   incoming.onFiles = (found) => scene.take(found);
 }
 
-keepSite();
 start().catch((error) => {
   const why = element("p", { className: "card" }, `The studio cannot start: ${sentenceOf(error)}`);
   document.querySelector("main")?.replaceChildren(why);

@@ -8,8 +8,8 @@ use super::interpolation::{Curve, Point, polynomial};
 use super::{TableBuilder, TableError};
 use crate::Real;
 
-/// Largest friction of a table, in newtons. Far above it the coefficients `V/x^n` of a row underflow, and the row exceeds
-/// the largest voltage.
+/// Largest friction of a table, in newtons. Far above it the coefficients `V/x^n` of a row underflow, and the row
+/// exceeds the largest voltage.
 pub(crate) const FRICTION_MAX_N: f32 = 1e12;
 
 /// The mapping from bit patterns of the friction to rows, and the values outside the rows.

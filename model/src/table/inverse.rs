@@ -110,8 +110,8 @@ impl InverseTable {
         Self::begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
     }
 
-    /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The truncation
-    /// is as in [`Self::build_up_to`].
+    /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The
+    /// truncation is as in [`Self::build_up_to`].
     ///
     /// [`Self::RELATIVE_ERROR`] holds for frictions from 2^-15 of that at the largest voltage on. Below the range the
     /// voltage is zero.

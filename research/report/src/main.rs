@@ -1,6 +1,6 @@
 //! Writes the figures of the contact model's paper, those behind decisions of the design: which tick rate and which
-//! touch estimator, and what two readings of charge leakage predict for touch. `cargo run --release -p frixel-research -- FOLDER` puts them on one page, with the numbers behind
-//! each picture beside it.
+//! touch estimator, and what two readings of charge leakage predict for touch. `cargo run --release -p frixel-research
+//! -- FOLDER` puts them on one page, with the numbers behind each picture beside it.
 //!
 //! What an inversion, a scene and extreme cases cost is in `frixel report`.
 #![forbid(unsafe_code)]

@@ -35,9 +35,9 @@ struct Measured {
 /// `cargo xtask soak` plays thousands of random scenes to find one whose rare events take more.
 const M4F: Measured = Measured { tick: "m4f.tick_", quantity: CYCLES, percent: 100, rare: 60 };
 
-/// Instructions, which are not followed one by one: a tick has ten times as many as on the M4F. An emulator of the RP2040
-/// that knows the cycles of each found 1.36 to 1.42 of them for an instruction, for a grating, a bitmap and noise. Rare
-/// events take as many more as a tick does.
+/// Instructions, which are not followed one by one: a tick has ten times as many as on the M4F. An emulator of the
+/// RP2040 that knows the cycles of each found 1.36 to 1.42 of them for an instruction, for a grating, a bitmap and
+/// noise. Rare events take as many more as a tick does.
 const M0_PLUS: Measured = Measured { tick: "m0plus.tick_", quantity: "", percent: 145, rare: 600 };
 
 /// Core cycles, as in the file.

@@ -43,7 +43,8 @@ const PICOS: [(&str, Board, [Build; 2]); 2] = [
 ];
 /// The tick of the Picos.
 const PICO_TICK: &str = "PIO0_IRQ_0";
-/// The main program and the NUCLEO's exceptions that can interrupt each other: the tick, and the fault of unreadable flash.
+/// The main program and the NUCLEO's exceptions that can interrupt each other: the tick, and the fault of unreadable
+/// flash.
 const MAIN: &str = "main";
 const TICK: &str = "TIM3";
 const EXCEPTIONS: [&str; 2] = [TICK, "NonMaskableInt"];

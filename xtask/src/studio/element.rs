@@ -38,8 +38,8 @@ fn is_picture(name: &str) -> bool {
     name.starts_with(SCENES) && PICTURES.iter().any(|ending| name.ends_with(ending))
 }
 
-/// The script that carries what the element uses, as far as `is_carried`; an expression of JavaScript gives the `folder` of
-/// the rest. A document that has it already, as one with two
+/// The script that carries what the element uses, as far as `is_carried`; an expression of JavaScript gives the
+/// `folder` of the rest. A document that has it already, as one with two
 /// widgets, keeps the first.
 fn joined(files: &Files, is_carried: impl Fn(&str) -> bool, folder: Option<&str>) -> Result<String, String> {
     let modules = modules(files, MODULE)?;

@@ -44,14 +44,15 @@ fn joined(index: &str, web: &Path, files: &Files, place: &Place) -> Result<Strin
         }
         Place::Site { head } => ((*head).to_owned(), " 'self'"),
     };
-    let page = page.replacen(ICON_LINE, &head, 1);
+    let (before, behind) = page.split_once(ICON_LINE).ok_or_else(|| format!("index.html has no {ICON_LINE}"))?;
+    let page = format!("{before}{head}{behind}");
     let policy = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\" />", policy(&boot, of_site));
     let (before, behind) = page.split_once("<head>").ok_or("index.html has no <head>")?;
     Ok(format!("{before}<head>\n    {policy}{behind}"))
 }
 
-/// What the page may load: what it carries, the bridge of `frixel studio` where it was served by it, and manifest, icons
-/// and service worker of its site.
+/// What the page may load: what it carries, the bridge of `frixel studio` where it was served by it, and manifest,
+/// icons and service worker of its site.
 fn policy(boot: &str, of_site: &str) -> String {
     let boot = STANDARD.encode(Sha256::digest(boot.as_bytes()));
     let manifest = if of_site.is_empty() { " 'none'" } else { of_site };
@@ -90,7 +91,7 @@ mod tests {
             ("boot.js".to_owned(), b"function boot() {}\n".to_vec()),
             ("main.js".to_owned(), b"import './a.js';".to_vec()),
         ]);
-        let index = "<html><head></head><body><script type=\"module\" src=\"main.js\"></script></body></html>";
+        let index = "<html><head><link rel=\"icon\" href=\"data:,\" /></head><body><script type=\"module\" src=\"main.js\"></script></body></html>";
         let page = joined(index, Path::new("."), &files, &Place::File { icon_svg: "" }).unwrap();
         let boot = "function boot() {}\nboot(JSON.parse(document.getElementById(\"studio-files\").textContent), \"main.js\");\n";
         assert!(page.contains(&format!("<script>{boot}</script></body>")), "{page}");

@@ -20,8 +20,8 @@ pub enum Injection {
 
 impl Injection {
     /// Returns how far the injection has come after a reset, before which the board had injected `injected` of
-    /// [`FAULTS`]; it has stored `found` as the reason of the reset. The board forgets `injected` when it calls this: only the start directly after the last
-    /// injected fault has passed.
+    /// [`FAULTS`]; it has stored `found` as the reason of the reset. The board forgets `injected` when it calls this:
+    /// only the start directly after the last injected fault has passed.
     pub fn after_reset(injected: usize, found: Option<Fault>) -> Self {
         let Some(expected) = injected.checked_sub(1).and_then(|index| FAULTS.get(index)) else { return Self::NotBegun };
         match found {

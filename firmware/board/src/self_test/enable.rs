@@ -77,8 +77,8 @@ fn cut_pulse<B: LoopedBoard>(board: &mut B) -> Result<Option<u32>, Stop> {
     Ok(fell.map(|Fall { at, .. }| us_between::<B>(cut, at)))
 }
 
-/// Waits until `look` finds something, for so long since a time. Disables the enable and ends the script as soon as ready
-/// is high or the arm switch is closed.
+/// Waits until `look` finds something, for so long since a time. Disables the enable and ends the script as soon as
+/// ready is high or the arm switch is closed.
 fn watch<B: LoopedBoard, T>(
     board: &mut B,
     since: u32,

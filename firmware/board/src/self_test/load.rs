@@ -10,8 +10,8 @@ use super::{LoopedBoard, Round, Stop};
 use crate::local_host::{LocalHost, Progress};
 use crate::local_scene::{header, stored, stored_len};
 
-/// Peak voltage of the scene, V. The wires show the monitor of an amplifier at 0 V, up to 4 V beside that: the supervisor
-/// takes what is within 8 V and 25 % of the driven voltage for right.
+/// Peak voltage of the scene, V. The wires show the monitor of an amplifier at 0 V, up to 4 V beside that: the
+/// supervisor takes what is within 8 V and 25 % of the driven voltage for right.
 const PEAK_V: f32 = 5.0;
 /// Largest electric friction of a layer, N: of the size that [`PEAK_V`] reaches, so that the tick looks up voltages.
 const HIGH_N: f32 = 2.5e-5;
@@ -77,8 +77,8 @@ impl Load {
         Ok(())
     }
 
-    /// One round of the main loop; returns whether the scene plays. The enable is low, but an input that is high says that
-    /// something was plugged in meanwhile.
+    /// One round of the main loop; returns whether the scene plays. The enable is low, but an input that is high says
+    /// that something was plugged in meanwhile.
     pub(super) fn round(&mut self, board: &mut impl LoopedBoard) -> Result<bool, Stop> {
         refuse_inputs(board)?;
         let released_ticks = board.board().ticks(RELEASED_S);

@@ -4,8 +4,8 @@ use core::fmt;
 
 use frixel_wire::message::TICK_TIME_CLASSES;
 
-/// Begin the lines: the first one, one with a measurement, one with a histogram, the last one, and the one that says why
-/// there are no more.
+/// Begin the lines: the first one, one with a measurement, one with a histogram, the last one, and the one that says
+/// why there are no more.
 const BEGIN: &str = "frixel self-test, version ";
 const MEASURED: &str = "measured";
 const HISTOGRAM: &str = "histogram";

@@ -1,14 +1,14 @@
 //! Self-test: measures a new board with a few wires between its own pins, without DAC, amplifier and voltage.
 //! `docs/first-board.md` describes it for the person who does it.
 //!
-//! [`run`] is the script. It drives and measures the pins through a [`LoopedBoard`], which the board implements, and says
-//! each [`Measurement`] in a line that a program can read: `frixel selftest --wires` writes them to a report. These hold
-//! whatever board and person do:
+//! [`run`] is the script. It drives and measures the pins through a [`LoopedBoard`], which the board implements, and
+//! says each [`Measurement`] in a line that a program can read: `frixel selftest --wires` writes them to a report.
+//! These hold whatever board and person do:
 //!
 //! - It ends at once when the amplifier's ready is high or the arm switch is closed, during a pulse of the enable, too,
 //!   and while the monitor's pin is driven or not at zero volts.
-//! - The enable is pulsed only after its wire was found with the enable low, and the person has said that the amplifier is
-//!   unplugged. It is low whenever the tick runs: [`LoopedBoard::round`] kicks nothing and sends zeros to the DAC.
+//! - The enable is pulsed only after its wire was found with the enable low, and the person has said that the amplifier
+//!   is unplugged. It is low whenever the tick runs: [`LoopedBoard::round`] kicks nothing and sends zeros to the DAC.
 //! - A missing wire ends it. A measurement out of its range does not: the rest is measured, and all of it is reported.
 //!
 //! The board resets meanwhile: what [`LoopedBoard::reset`] keeps says where the script goes on.
@@ -128,7 +128,8 @@ pub trait LoopedBoard {
     /// The inputs now, as the pins show them. Called all the while that the enable may be high: it does not wait.
     fn inputs(&mut self) -> Inputs;
 
-    /// The levels at the end of a wire, with the pins at its beginning at rest. That of the monitor is driven by nothing.
+    /// The levels at the end of a wire, with the pins at its beginning at rest. That of the monitor is driven by
+    /// nothing.
     fn levels(&mut self, wire: Wire) -> Levels;
 
     /// Drives this voltage into the monitor's wire, and returns what the monitor's ADC reads, in mV. The wire is driven
@@ -141,7 +142,8 @@ pub trait LoopedBoard {
     /// Sends a frame, and counts its clocks; `None` if SYNC did not fall and rise.
     fn clocks(&mut self) -> Option<Clocks>;
 
-    /// Cycle of the period at which SYNC has risen: of a frame that this sends, and while the tick runs of its last frame.
+    /// Cycle of the period at which SYNC has risen: of a frame that this sends, and while the tick runs of its last
+    /// frame.
     fn latch_cycles(&mut self) -> Option<u32>;
 
     /// The time, in cycles modulo 2^32.

@@ -163,8 +163,8 @@ fn a_sine_begins_a_whole_half_wave_at_an_early_edge() {
     assert_eq!(carrier.early_edges(), 1);
 }
 
-/// A new scene may allow less than what has gathered: every code then takes the integral towards zero, with an eighth of
-/// the envelope.
+/// A new scene may allow less than what has gathered: every code then takes the integral towards zero, with an eighth
+/// of the envelope.
 #[test]
 fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
     for start_ticks in [10, 30] {

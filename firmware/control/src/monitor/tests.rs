@@ -1,10 +1,10 @@
-//! What the monitor check takes for a healthy amplifier. In which time it finds a broken one is tested in `frixel-session`
-//! (`safety`) and, with the amplifiers of the simulator, in `frixel-hil-sim` (`amplifier`).
+//! What the monitor check takes for a healthy amplifier. In which time it finds a broken one is tested in
+//! `frixel-session` (`safety`) and, with the amplifiers of the simulator, in `frixel-hil-sim` (`amplifier`).
 //!
-//! The plant here is a board and its amplifier in steps of 0.2 us: the enable changes 10 us into a tick, the DAC latches
-//! the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", unread). The monitor's ADC takes 2.5 us for a
-//! conversion, of which it samples for 2.2 us, and runs by itself: what a tick reads 0.9 us after its beginning was
-//! sampled up to 0.6 us after it, and as early as 1.8 us before.
+//! The plant here is a board and its amplifier in steps of 0.2 us: the enable changes 10 us into a tick, the DAC
+//! latches the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", unread). The monitor's ADC takes 2.5
+//! us for a conversion, of which it samples for 2.2 us, and runs by itself: what a tick reads 0.9 us after its
+//! beginning was sampled up to 0.6 us after it, and as early as 1.8 us before.
 
 use frixel_wire::hello::BoardLimits;
 
@@ -222,8 +222,8 @@ fn a_healthy_amplifier_has_no_wrong_tick_at_any_carrier_and_voltage() {
     }
 }
 
-/// It is right until the half period ends, and in every other one: 1.5 ms from 500 Hz on, and 0.5 ms after the half period
-/// on a slower carrier.
+/// It is right until the half period ends, and in every other one: 1.5 ms from 500 Hz on, and 0.5 ms after the half
+/// period on a slower carrier.
 #[test]
 fn a_dac_that_holds_its_last_code_is_found_within_1_5_ms_or_half_a_millisecond_after_the_half_period() {
     for voltage_v in [20.0, 50.0, 200.0] {

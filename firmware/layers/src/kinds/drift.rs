@@ -1,5 +1,5 @@
-//! Gratings and rings that move. Their phase is a tick number times a step, modulo a turn, as that of a vibration: it is as
-//! exact after 2^32 ticks as after one.
+//! Gratings and rings that move. Their phase is a tick number times a step, modulo a turn, as that of a vibration: it
+//! is as exact after 2^32 ticks as after one.
 
 use frixel_wire::message::{ConfigRefusal, Refusal};
 

@@ -58,8 +58,8 @@ impl Parameter for Beat {
     }
 }
 
-/// Bursts of a vibration: in each period, its envelope rises over the ramp, stays at 1, and falls over the ramp. The first
-/// period begins when the host switches the layer on, or at power-on.
+/// Bursts of a vibration: in each period, its envelope rises over the ramp, stays at 1, and falls over the ramp. The
+/// first period begins when the host switches the layer on, or at power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Burst {
     /// Period of the bursts, s; 0 for a continuous vibration.

@@ -9,8 +9,8 @@ use heapless::Deque;
 /// Answers that may be outstanding (`PROTOCOL.md`, section 5). A host waits for its answers, so usually one or two are.
 const ANSWERS_MAX: usize = 64;
 /// Length of the longest frame of an answer: the refusal of a scene that is too costly, with a sequence number and a
-/// count of the longest form. A piece of a fault's text, 52 bytes, and tick times, 79 bytes, take the room of two and of
-/// three answers.
+/// count of the longest form. A piece of a fault's text, 52 bytes, and tick times, 79 bytes, take the room of two and
+/// of three answers.
 const ANSWER_MAX_LEN: usize = 37;
 /// Unsolicited frames are dropped while more than this is queued, 2.5 ms of a line of 2 Mbaud. They thus leave room for
 /// all answers, and those that are sent are recent.

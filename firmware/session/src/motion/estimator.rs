@@ -5,13 +5,14 @@
 //! the covariance. It grows with the time between samples, so after a lost sample the filter trusts the next one more;
 //! a filter with constant gains does not (`docs/touch.md` compares both).
 
-/// Time constant of the finger's acceleration, in s. From 0.03 to 0.1 the error on human strokes changes by a twentieth.
+/// Time constant of the finger's acceleration, in s. From 0.03 to 0.1 the error on human strokes changes by a
+/// twentieth.
 const ACCELERATION_S: f32 = 0.04;
 /// Standard deviation of the acceleration of a finger at rest, in m/s^2.
 const ACCELERATION_M_PER_S2: f32 = 0.3;
 /// Standard deviation of the acceleration per m/s of recent speed, added to that of a finger at rest, in 1/s: a finger
-/// that moves fast also turns fast. On strokes with the accelerations of recorded ones after smoothing, the error is least
-/// at 4 to 8, on those before smoothing at 12 to 20 (`docs/touch.md`).
+/// that moves fast also turns fast. On strokes with the accelerations of recorded ones after smoothing, the error is
+/// least at 4 to 8, on those before smoothing at 12 to 20 (`docs/touch.md`).
 const ACCELERATION_PER_SPEED_PER_S: f32 = 8.0;
 /// Time constant with which the recent speed decays, in s.
 const RECENT_S: f32 = 0.5;

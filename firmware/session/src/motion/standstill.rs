@@ -9,8 +9,9 @@ use frixel_control::is_past;
 
 /// A finger that moves by less than [`SLOW_WITHIN_M`] in this time, 1.2 mm/s on average, counts as still.
 const STILL_AFTER_S: f32 = 50e-3;
-/// See [`STILL_AFTER_S`]. A larger value would ramp down under fingers that creep, a smaller one would drive a finger at
-/// rest more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time; docs/touch.md has it.
+/// See [`STILL_AFTER_S`]. A larger value would ramp down under fingers that creep, a smaller one would drive a finger
+/// at rest more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time; docs/touch.md has
+/// it.
 const SLOW_WITHIN_M: f32 = 0.06e-3;
 /// A still finger that moves by more than this in [`MOVING_WITHIN_S`], 2 mm/s on average, counts as moving. It is more
 /// than a step of 0.18 mm, as screens report it, along one side.

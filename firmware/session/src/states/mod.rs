@@ -109,8 +109,8 @@ impl<'a> States<'a> {
     }
 
     /// The next order. Orders that wait come first: they are few, so they delay a lift by a few ticks only. An
-    /// [`Order::HostHeard`] waits for at most one order of the `finger`: it waits so that pings do not delay tracks, and
-    /// not longer, so that a touch source that reports at every tick does not cause a host timeout.
+    /// [`Order::HostHeard`] waits for at most one order of the `finger`: it waits so that pings do not delay tracks,
+    /// and not longer, so that a touch source that reports at every tick does not cause a host timeout.
     pub(crate) fn next_order(&mut self, finger: impl FnOnce() -> Option<Order<'a>>) -> Option<Order<'a>> {
         if let Some(order) = self.orders.next() {
             self.host_heard &= !order.is_sign_of_life();

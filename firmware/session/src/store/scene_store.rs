@@ -42,9 +42,9 @@ impl SceneStore {
     /// Finds the scene that is stored in `slot`, and commits it in `session`, which then orders the ticker to load it.
     /// This does not arm the board.
     ///
-    /// After three starts in a row that ended in a fault ([`Board::reset_fault_starts`]), the stored scene is left alone
-    /// and the hello says so ([`notice::STORED_SCENE_SKIPPED`]). It stays stored until another scene takes its place,
-    /// and a start that does not follow three faults loads it again.
+    /// After three starts in a row that ended in a fault ([`Board::reset_fault_starts`]), the stored scene is left
+    /// alone and the hello says so ([`notice::STORED_SCENE_SKIPPED`]). It stays stored until another scene takes its
+    /// place, and a start that does not follow three faults loads it again.
     ///
     /// [`Board::reset_fault_starts`]: frixel_control::Board::reset_fault_starts
     /// [`notice::STORED_SCENE_SKIPPED`]: frixel_wire::hello::notice::STORED_SCENE_SKIPPED

@@ -196,7 +196,8 @@ pub enum ConfigField {
     /// The voltage of a point of an empirical law, V rms: finite, above zero and above that of the point before. Since
     /// protocol 1.4.
     LawPoint,
-    /// The electric friction of a point of an empirical law, or of the law at the largest voltage, N. Since protocol 1.4.
+    /// The electric friction of a point of an empirical law, or of the law at the largest voltage, N. Since protocol
+    /// 1.4.
     LawFriction,
 }
 

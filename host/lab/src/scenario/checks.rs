@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use frixel_hil_sim::RigTick;
-use frixel_scene::{Expectation, Scenario, Seen};
+use frixel_scene::{At, Expectation, Scenario, Seen};
 use frixel_wire::fault::{Fault, State};
 
 use super::Unmet;
@@ -36,7 +36,7 @@ impl Clock {
     }
 
     fn ticks(self, ms: f64) -> u64 {
-        (1e-3 * ms * f64::from(self.tick_hz)).round() as u64
+        At::Ms(ms).tick(self.tick_hz)
     }
 }
 

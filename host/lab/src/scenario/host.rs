@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_play::{PlayError, Player, load};
-use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
+use frixel_scene::{Action, At, Program, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::payload::hello_request_frame;
 
@@ -118,7 +118,7 @@ impl<'s, 'r> Host<'s, 'r> {
                 return self.connect();
             }
             Action::Hang { ms } => {
-                self.line.pass_to(self.line.ticks() + (1e-3 * ms * f64::from(self.line.tick_hz())).round() as u64);
+                self.line.pass_to(self.line.ticks() + At::Ms(*ms).tick(self.line.tick_hz()));
                 return Ok(());
             }
             Action::Die => {

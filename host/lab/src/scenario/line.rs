@@ -9,7 +9,7 @@ use std::time::Duration;
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_hil_sim::{BoardRig, RigError};
 use frixel_play::Recorded;
-use frixel_scene::{Cause, Scenario};
+use frixel_scene::{At, Cause, Scenario};
 
 use super::checks::Checks;
 use super::direction::Direction;
@@ -59,7 +59,7 @@ struct PlannedFault {
 impl<'r> ScenarioLine<'r> {
     pub(super) fn new(scenario: &Scenario, rig: &'r mut dyn BoardRig) -> Self {
         let (tick_hz, first_tick) = (rig.board().tick_hz, rig.tick());
-        let ticks = |ms: f64| (1e-3 * ms * f64::from(tick_hz)).round() as u64;
+        let ticks = |ms: f64| At::Ms(ms).tick(tick_hz);
         let mut faults: Vec<_> = scenario
             .faults
             .iter()

@@ -77,7 +77,7 @@ pub struct StraightStroke {
     pub speed_mm_per_s: f64,
 }
 
-/// A time in a scenario.
+/// A time in a scenario, or how long something lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum At {
     /// In ms since the start.
@@ -87,19 +87,14 @@ pub enum At {
 }
 
 impl At {
-    /// The time in ticks of a board.
+    /// The time in ticks of a board: the next whole number of them.
     pub fn tick(self, tick_hz: u32) -> u64 {
         match self {
-            Self::Ms(ms) => ticks_of(ms, tick_hz),
+            // A time that is above a whole number of ticks by rounding alone is that number.
+            Self::Ms(ms) => (ms * 1e-3 * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64,
             Self::Tick(tick) => tick,
         }
     }
-}
-
-/// The next whole number of ticks from so many ms on.
-pub(crate) fn ticks_of(ms: f64, tick_hz: u32) -> u64 {
-    // A time that is above a whole number of ticks by rounding alone is that number.
-    (ms * 1e-3 * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64
 }
 
 /// Something that the host does.

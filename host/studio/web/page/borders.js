@@ -50,6 +50,7 @@ export class Borders {
   /** @type {Place[]} */
   #way = [];
   #between;
+  #tMs = 0;
   #frictionAt;
 
   /**
@@ -75,6 +76,7 @@ export class Borders {
    * @param {Record<By, Place>} board
    */
   add(tMs, finger, board) {
+    this.#tMs = tMs;
     this.#way.push(finger);
     if (this.#way.length > BACK + 1) this.#way.shift();
     const isUp = this.#crossed("finger", finger);
@@ -117,6 +119,17 @@ export class Borders {
     if (near.length === 0) return;
     const border = near.reduce((best, each) => (apart(each) < apart(best) ? each : best));
     border[by] ??= (at.xMm - border.xMm) * border.ux + (at.yMm - border.yMm) * border.uy;
+  }
+
+  /** How many lines the finger has come upon: borders where friction rises. */
+  get lines() {
+    return this.found.filter(({ isUp }) => isUp).length;
+  }
+
+  /** How many of them a board without prediction has jumped over. */
+  get missed() {
+    const isKnown = (/** @type {Border} */ border) => this.#tMs - border.tMs > 2 * WITHIN_MS;
+    return this.found.filter((border) => border.isUp && border.reported === undefined && isKnown(border)).length;
   }
 
   /**

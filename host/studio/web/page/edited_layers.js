@@ -65,7 +65,8 @@ export class EditedLayers {
     this.#texts = texts;
     this.screen = screen;
     const parsed = new Map([...texts].map(([file, text]) => [file, new TomlText(text)]));
-    this.#withOtherDefaults = new Set([...parsed].filter(([, toml]) => includesDefaults(toml, files)).map(([file]) => file));
+    const withDefaults = [...parsed].filter(([, toml]) => includesDefaults(toml, files));
+    this.#withOtherDefaults = new Set(withDefaults.map(([file]) => file));
     this.all = layers.map((layer) => {
       const toml = parsed.get(layer.file);
       return this.#describe(layer, toml, toml?.layerAt(layer.from[0]));

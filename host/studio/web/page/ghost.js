@@ -66,11 +66,12 @@ export class Ghost {
     document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
   }
 
-  /** Whether it may slide now: never with a board, unseen, while layers are edited, or in a blind comparison. */
+  /** Whether it may slide now: never with a board, unseen, in a blind comparison, or while layers are edited. */
   get #maySlide() {
     const { link, state } = this.#engine.state;
     const isOthers = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
-    return link === "simulator" && state === "active" && !isOthers && document.visibilityState === "visible";
+    const isThere = state === "active" && this.#map.frictionN.length > 0;
+    return link === "simulator" && isThere && !isOthers && document.visibilityState === "visible";
   }
 
   /** Whether it is drawn. */

@@ -4,6 +4,7 @@
 import { byId, element } from "./dom.js";
 import { EditedLayers } from "./edited_layers.js";
 import { HandDrag, withSide } from "./hand_drag.js";
+import { HandKeys } from "./hand_keys.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { layerNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
@@ -25,12 +26,6 @@ import { LayerPanel } from "./layer_panel.js";
  * @typedef {{ held: HeldChange, from: EditedLayer }} Grip
  */
 
-const KEYS =
-  "Arrow keys move it by 1 mm, with Shift by 0.1 mm. Tab: next layer. Space: its numbers. Enter: its text. Delete removes it. Escape deselects it.";
-/** @type {Record<string, [number, number]>} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-const STEP_MM = 1;
-const FINE_STEP_MM = 0.1;
 const ELSEWHERE = "The text has changed: its layers are read again in a moment.";
 
 export class Hands {
@@ -45,8 +40,6 @@ export class Hands {
   #selected;
   /** @type {Grip | undefined} */
   #grip;
-  /** How far the arrow keys have moved a layer since they are held. */
-  #byKeysMm = [0, 0];
   #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
   isEditing = false;
   /** The mode Edit begins: the map is no longer for sliding. */
@@ -62,12 +55,13 @@ export class Hands {
     this.#layers = new EditedLayers(parts.editor);
     this.#boxes = new LayerBoxes(this.#surface);
     const { box, onLayout } = parts.map;
-    const keys = element("p", { id: "hands-keys", hidden: true }, KEYS);
-    box.append(this.#surface, keys, makeHint());
+    const words = "Press a layer to select it. Drag it to move it, its handles to resize it.";
+    box.append(this.#surface, element("p", { className: "hint hands-hint" }, words));
     document.body.append(this.#panel.element);
     this.#makeSwitch();
     new HandDrag(this.#surface, this, parts.map);
-    this.#listen(box);
+    new HandKeys(this.#surface, this, [box, this.#panel.element]);
+    this.#listen();
     parts.map.onLayout = (area) => {
       onLayout(area);
       this.#lay(area);
@@ -84,12 +78,7 @@ export class Hands {
     this.setEditing(false);
   }
 
-  /** @param {HTMLElement} box */
-  #listen(box) {
-    for (const part of [box, this.#panel.element])
-      part.addEventListener("keydown", (event) => this.#undoByKey(event), { capture: true });
-    this.#surface.addEventListener("keydown", (event) => this.#key(event));
-    this.#surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.end());
+  #listen() {
     this.#surface.addEventListener("focusout", () => this.end());
     this.#panel.element.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
@@ -100,9 +89,9 @@ export class Hands {
     this.#panel.onNumber = ({ path, decimals }, value) => this.change([{ path, value, decimals }]);
     this.#panel.onSide = (side, mm) => this.#toSide(side, mm);
     this.#panel.onEnd = () => this.end();
-    this.#panel.onText = () => this.#toText();
-    this.#panel.onDelete = () => this.#delete();
-    this.#panel.onClose = () => this.#deselect();
+    this.#panel.onText = () => this.toText();
+    this.#panel.onDelete = () => this.delete();
+    this.#panel.onClose = () => this.focus(undefined);
   }
 
   /** @param {boolean} isEditing */
@@ -136,6 +125,11 @@ export class Hands {
     if (!editor.has(this.selected?.layer.file)) this.#panel.hide();
   }
 
+  /** Whether a hand is changing a layer. */
+  get isHeld() {
+    return this.#parts.player.isHeld;
+  }
+
   get selected() {
     return this.#layers.find(this.#selected);
   }
@@ -156,10 +150,6 @@ export class Hands {
     this.select(key);
     if (key === undefined) this.#surface.focus({ preventScroll: true });
     else this.#boxes.focus(key);
-  }
-
-  #deselect() {
-    this.focus(undefined);
   }
 
   /**
@@ -228,7 +218,6 @@ export class Hands {
 
   /** The hand lets go: the scene plays as it is now. */
   end() {
-    this.#byKeysMm = [0, 0];
     const grip = this.#grip;
     if (!grip) return;
     this.#grip = undefined;
@@ -277,41 +266,27 @@ export class Hands {
     else this.resize(withSide(place, side, mm, this.screen));
   }
 
-  /** @param {KeyboardEvent} event */
-  #key(event) {
-    const { key, shiftKey } = event;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (key in ARROWS && this.selected) {
-      const step = shiftKey ? FINE_STEP_MM : STEP_MM;
-      this.#byKeysMm = this.#byKeysMm.map((mm, along) => mm + step * ARROWS[key][along]);
-      const [dx, dy] = this.#byKeysMm;
-      this.move(dx, dy);
-    } else if (key === "Tab") {
-      const next = this.#selected && this.#boxes.neighbour(this.#selected, shiftKey ? -1 : 1);
-      if (!next) return;
-      this.focus(next);
-    } else if (key === "Enter") this.#toText();
-    else if (key === " ") this.#panel.focus();
-    else if (key === "Delete" || key === "Backspace") this.#delete();
-    else if (key === "Escape") {
-      if (this.#parts.player.isHeld) this.cancel();
-      else this.#deselect();
-    } else return;
-    event.preventDefault();
-  }
-
-  /** @param {KeyboardEvent} event */
-  #undoByKey(event) {
-    const key = event.key.toLowerCase();
-    if (!(event.ctrlKey || event.metaKey) || (key !== "z" && key !== "y")) return;
-    event.preventDefault();
+  /** @param {"undo" | "redo"} what */
+  goBack(what) {
     this.end();
-    const { editor } = this.#parts;
-    if (key === "y" || event.shiftKey) editor.redo();
-    else editor.undo();
+    this.#parts.editor[what]();
   }
 
-  #toText() {
+  /**
+   * Selects the next layer, or that before; returns whether there is one.
+   * @param {1 | -1} by
+   */
+  focusNeighbour(by) {
+    const next = this.#selected && this.#boxes.neighbour(this.#selected, by);
+    if (next) this.focus(next);
+    return next !== undefined;
+  }
+
+  focusPanel() {
+    this.#panel.focus();
+  }
+
+  toText() {
     const { editor } = this.#parts;
     const { selected } = this;
     if (!selected || !editor.has(selected.layer.file)) return;
@@ -320,7 +295,7 @@ export class Hands {
     editor.goTo(selected.layer.file, first);
   }
 
-  #delete() {
+  delete() {
     this.end();
     const from = this.grip();
     const grip = this.#grip;
@@ -329,7 +304,7 @@ export class Hands {
     grip.held.make([from.toml.removal(from.at)]);
     grip.held.end();
     this.#layers.all = this.#layers.all.filter((each) => each !== from);
-    this.#deselect();
+    this.focus(undefined);
   }
 
   /** @param {Area} area */
@@ -360,11 +335,7 @@ export class Hands {
     const { toml, at, layer } = selected;
     const numbers = toml && at !== undefined ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
     this.#panel.show(selected, numbers, isNew);
-    this.#panel.place([byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect()));
+    const covered = [byId("numbers"), byId("scope").parentElement ?? box];
+    this.#panel.place(covered.map((each) => each.getBoundingClientRect()));
   }
-}
-
-function makeHint() {
-  const words = "Press a layer to select it. Drag it to move it, its handles to resize it.";
-  return element("p", { className: "hint hands-hint" }, words);
 }

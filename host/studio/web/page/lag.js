@@ -1,7 +1,7 @@
 // How late friction comes: prediction on and off, the touch source, and the lag of both as bands on the map.
 // @ts-check
 
-import { byId, colour } from "./dom.js";
+import { byId } from "./dom.js";
 import { Borders } from "./borders.js";
 import { attempt } from "./notices.js";
 
@@ -16,8 +16,11 @@ import { attempt } from "./notices.js";
 const WIDE_PX = 15;
 /** A band is drawn at least this long, CSS pixels, so that a lag of nothing is seen. */
 const LONG_MIN_PX = 3;
-/** @type {Record<By, { ink: string, side: number }>} */
-const BANDS = { predicted: { ink: "good", side: -1 }, reported: { ink: "felt", side: 1 } };
+/**
+ * The map is as dark in the light theme as in the dark one; first.css has the same inks.
+ * @type {Record<By, { ink: string, side: number }>}
+ */
+const BANDS = { predicted: { ink: "#7dffb0", side: -1 }, reported: { ink: "#ff7a1a", side: 1 } };
 
 export class Lag {
   #engine;
@@ -124,6 +127,8 @@ export class Lag {
     const mm = (/** @type {number | undefined} */ value) => (value === undefined ? "–" : `${value.toFixed(1)} mm`);
     byId("lag-predicted").textContent = mm(predicted);
     byId("lag-reported").textContent = mm(reported);
+    const missed = this.#borders?.missed ?? 0;
+    byId("lag-missed").textContent = missed > 0 ? `, ${missed} of ${this.#borders?.lines} missed` : "";
     const isOn = byId("prediction").checked;
     byId("lag-predicted").parentElement?.classList.toggle("plays", isOn);
     byId("lag-reported").parentElement?.classList.toggle("plays", !isOn);
@@ -132,7 +137,7 @@ export class Lag {
   /** @param {CanvasRenderingContext2D} context */
   draw(context) {
     if (!this.isOpen || !this.#borders) return;
-    const { scale, box } = this.#map;
+    const { scale } = this.#map;
     // Both sides of a line are borders: the band stands where friction rises.
     for (const border of this.#borders.found.filter(({ isUp }) => isUp)) {
       context.save();
@@ -142,7 +147,7 @@ export class Lag {
         const lagMm = border[/** @type {By} */ (by)];
         if (lagMm === undefined) continue;
         const long = Math.sign(lagMm || 1) * Math.max(LONG_MIN_PX, Math.abs(lagMm) * scale);
-        context.fillStyle = colour(ink, box);
+        context.fillStyle = ink;
         context.globalAlpha = 0.85;
         context.fillRect(0, 0, long, side * WIDE_PX);
         context.globalAlpha = 1;

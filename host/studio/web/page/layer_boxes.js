@@ -12,7 +12,7 @@ import { numberText } from "./toml_text.js";
 const HANDLES = {
   nw: [0, 0], n: [0.5, 0], ne: [1, 0], e: [1, 0.5], se: [1, 1], s: [0.5, 1], sw: [0, 1], w: [0, 0.5],
 };
-/** A side shorter than this has no handle of its own, and handles stand outside of a box that is as small, CSS pixels. */
+/** A shorter side has no handle of its own, and the handles of so small a box stand outside of it, CSS pixels. */
 const LONG_SIDE_PX = 80;
 const OUTSIDE_PX = 8;
 
@@ -143,5 +143,6 @@ function lay(made, { x, y, width, height }, scale) {
 function labelOf({ layer: { name, kind }, place: { box, copies, isWholeScreen } }) {
   const [x, y, width, height] = [box.x, box.y, box.width, box.height].map((mm) => numberText(mm, 2));
   const where = isWholeScreen ? "the whole screen" : `${width} by ${height} mm at ${x}, ${y}`;
-  return [name, ...(name === kind ? [] : [kind]), where, ...(copies.length > 1 ? [`${copies.length} copies`] : [])].join(", ");
+  const what = name === kind ? [name] : [name, kind];
+  return [...what, where, ...(copies.length > 1 ? [`${copies.length} copies`] : [])].join(", ");
 }

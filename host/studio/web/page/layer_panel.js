@@ -62,10 +62,11 @@ export class LayerPanel {
     if (madeFor !== this.#madeFor) this.#make(edited, numbers);
     this.#madeFor = madeFor;
     for (const [side] of SIDES) {
-      const isFixed = side === "x" || side === "y" ? place.whyNotMoved : place.whyNotResized;
+      // A layer of the whole screen is not moved, but gets a region from either side.
+      const isMoved = (side === "x" || side === "y") && !place.isWholeScreen;
+      const why = isMoved ? place.whyNotMoved : place.whyNotResized;
       const isKept = side === "height" && place.keepsRatio;
-      const shown = isFixed && (side === "x" || side === "y") && place.isWholeScreen && !place.whyNotResized ? "" : isFixed;
-      this.#update(side, numberText(place.box[side], 2), shown !== "" || isKept, shown);
+      this.#update(side, numberText(place.box[side], 2), why !== "" || isKept, why);
     }
     for (const number of numbers) this.#update(number.field, numberText(number.value, number.decimals), false, "");
     this.element.hidden = false;
@@ -97,17 +98,20 @@ export class LayerPanel {
   #make({ layer: { name, kind }, at }, numbers) {
     this.#fields.clear();
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
-    const text = element("button", { type: "button", title: "To its text (Enter)", onclick: () => this.onText() }, "Text");
-    const gone = { type: /** @type {const} */ ("button"), title: "Delete the layer (Delete)", onclick: () => this.onDelete() };
-    const close = element("button", { type: "button", "aria-label": "Deselect", onclick: () => this.onClose() }, "✕");
+    const text = element("button", { title: "To its text (Enter)", onclick: () => this.onText() }, "Text");
+    const gone = element("button", { title: "Take it out (Delete)", onclick: () => this.onDelete() }, "Delete");
+    const close = element("button", { "aria-label": "Deselect", onclick: () => this.onClose() }, "✕");
     const title = element("span", {}, element("b", {}, name), name === kind ? "" : ` ${kind}`);
     const head = element("div", { className: "layer-panel-head" }, title);
     this.element.replaceChildren(head, this.#note);
     if (at !== undefined) {
-      head.append(text, element("button", gone, "Delete"));
+      head.append(text, gone);
       const sides = SIDES.map(([side, label]) => this.#side(side, label, name));
       const rows = numbers.map((number) => this.#row(number, name));
-      this.element.append(element("div", { className: "layer-sides" }, ...sides), element("div", { className: "layer-numbers" }, ...rows));
+      this.element.append(
+        element("div", { className: "layer-sides" }, ...sides),
+        element("div", { className: "layer-numbers" }, ...rows),
+      );
     }
     head.append(close);
   }
@@ -153,12 +157,13 @@ export class LayerPanel {
     };
     slider.onchange = input.onchange = () => this.onEnd();
     this.#fields.set(field, [slider, input]);
-    return element("div", { className: "layer-number" }, element("span", {}, label), slider, input, element("span", {}, unit));
+    const [before, behind] = [element("span", {}, label), element("span", {}, unit)];
+    return element("div", { className: "layer-number" }, before, slider, input, behind);
   }
 
   /**
-   * Puts the panel over what shows what a finger feels: nothing is felt while layers are edited, and neither map nor text
-   * is covered.
+   * Puts the panel over what shows what a finger feels: nothing is felt while layers are edited, and neither map nor
+   * text is covered.
    * @param {DOMRect[]} covered
    */
   place(covered) {

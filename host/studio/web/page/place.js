@@ -29,7 +29,8 @@ export const SIDE_MIN_MM = 1;
 /** @type {Record<Side, "width" | "height">} */
 const ALONG = { x: "width", width: "width", y: "height", height: "height" };
 const WHOLE_SCREEN = "This layer covers the whole screen: drag a corner inwards to give it a place of its own.";
-const ELSEWHERE = "The place of this layer comes from [defaults] of an included file: write it into the layer to move it.";
+const ELSEWHERE =
+  "The place of this layer comes from [defaults] of an included file: write it into the layer to move it.";
 
 /**
  * @param {TomlText} toml The file that the layer is in.
@@ -187,7 +188,8 @@ class PlaceReader {
     };
     const [dx, dy] = [step("x"), step("y")];
     const rows = Array.from({ length: count("rows") }, (_, row) => row * dy);
-    return rows.flatMap((y) => Array.from({ length: count("columns") }, (_, at) => /** @type {[number, number]} */ ([at * dx, y])));
+    const columns = Array.from({ length: count("columns") }, (_, column) => column * dx);
+    return rows.flatMap((y) => columns.map((x) => /** @type {[number, number]} */ ([x, y])));
   }
 
   /**
@@ -252,7 +254,9 @@ class PlaceReader {
     };
     const region = this.#region;
     const sides = /** @type {const} */ (["x", "y"]);
-    const added = this.anchors.flatMap(({ side, length }) => (by[side] === 0 ? [] : [set(length, length.mm + by[side])]));
+    const added = this.anchors.flatMap(({ side, length }) =>
+      by[side] === 0 ? [] : [set(length, length.mm + by[side])],
+    );
     if (!region) return added;
     const moved = this.#isPolygon
       ? this.#vertices(region).flatMap((point) => point.map((each, at) => ({ ...each, side: sides[at] })))
@@ -278,7 +282,8 @@ class PlaceReader {
     if (region && this.#isPolygon) {
       const scaled = this.#vertices(region).flatMap((point) =>
         point.map((each, at) => {
-          const [side, along] = at === 0 ? /** @type {const} */ (["x", "width"]) : /** @type {const} */ (["y", "height"]);
+          const side = at === 0 ? "x" : "y";
+          const along = ALONG[side];
           return set(each, to[side] + ((each.mm - from[side]) * to[along]) / from[along]);
         }),
       );

@@ -36,15 +36,18 @@ export class RealSize {
   }
 
   /**
-   * Shows the map alone on the full screen, in real size, until a person leaves it.
+   * Shows the map on the full screen, in real size, until a person leaves it; state, Stop and notices stay in sight.
    * @param {number | undefined} pixelsPerMm
    */
   async #fillScreen(pixelsPerMm) {
     const before = this.#map.realSize;
-    await this.#map.box.requestFullscreen();
+    await document.documentElement.requestFullscreen();
+    document.body.classList.add("full-screen");
     this.#show(pixelsPerMm);
-    this.#map.box.onfullscreenchange = () => {
-      if (!document.fullscreenElement) this.#show(before);
+    document.onfullscreenchange = () => {
+      if (document.fullscreenElement) return;
+      document.body.classList.remove("full-screen");
+      this.#show(before);
     };
   }
 

@@ -181,8 +181,8 @@ impl Captures {
     }
 }
 
-/// Cycles by which TIM1 is ahead of the tick's period. Both have its length, so that it stays; the middle of two reads is
-/// taken, because a read takes some cycles.
+/// Cycles by which TIM1 is ahead of the tick's period. Both have its length, so that it stays; the middle of two reads
+/// is taken, because a read takes some cycles.
 fn ahead() -> u32 {
     cortex_m::interrupt::free(|_| {
         let before = period::cycles();

@@ -1,0 +1,60 @@
+//! The memory of tick and session.
+
+use core::mem::MaybeUninit;
+
+use frixel_control::{Active, Board, Ticker};
+use frixel_layers::BitmapPool;
+use frixel_session::{Queues, Session, SessionEnds, TickEnds};
+
+/// Memory for bitmaps, written by the session and read by the tick.
+static POOL: BitmapPool = BitmapPool::new();
+
+/// Room for what is too large for the stack. A static of a board's `main`, which is the only one to have a reference.
+pub struct Memory {
+    first: MaybeUninit<Active>,
+    second: MaybeUninit<Active>,
+    session: MaybeUninit<Session<'static>>,
+    queues: Queues,
+}
+
+impl Memory {
+    /// Empty memory.
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    pub const fn new() -> Self {
+        Self {
+            first: MaybeUninit::uninit(),
+            second: MaybeUninit::uninit(),
+            session: MaybeUninit::uninit(),
+            queues: Queues::new(),
+        }
+    }
+
+    /// Makes the tick, the session and the queues between them, of which each takes its ends.
+    #[inline(never)]
+    pub fn make(
+        &'static mut self,
+        board: Board,
+    ) -> (Ticker<'static>, &'static mut Session<'static>, SessionEnds, TickEnds) {
+        let ticker = Ticker::new(&board, &POOL, coefficients(&mut self.first));
+        let session = session(&mut self.session, board, coefficients(&mut self.second));
+        let (session_ends, tick_ends) = self.queues.split();
+        (ticker, session, session_ends, tick_ends)
+    }
+}
+
+// Large values are made on the stack, so that no copy of them lies in flash. Each has a function of its own, so that
+// the stack holds only one at a time.
+
+#[inline(never)]
+fn coefficients(place: &'static mut MaybeUninit<Active>) -> &'static mut Active {
+    place.write(Active::new())
+}
+
+#[inline(never)]
+fn session(
+    place: &'static mut MaybeUninit<Session<'static>>,
+    board: Board,
+    spare: &'static mut Active,
+) -> &'static mut Session<'static> {
+    place.write(Session::new(board, &POOL, spare))
+}
