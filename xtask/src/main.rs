@@ -52,6 +52,8 @@ cargo xtask studio --site FOLDER [ADDRESS]
 cargo xtask studio-test
                      types and lints of the studio's scripts, and the studio in a browser: needs node,
                      npm and Chromium
+cargo xtask studio-shots
+                     the pictures of docs/studio, of the page as it is; look at each before it is kept
 cargo xtask python   the Python module in a fresh virtual environment: wheel, types, lints, tests, examples; its
                      widget in Chromium
 cargo xtask dist FOLDER
@@ -87,6 +89,7 @@ fn main() -> ExitCode {
         ["studio", "--site", folder, address] => {
             require(&[WASM_TARGET]).and_then(|()| studio::build_site(folder, Some(address)))
         }
+        ["studio-shots"] => require(&studio_tests::NEEDS).and_then(|()| studio_tests::take_shots()),
         ["studio-test"] => {
             let result = require(&studio_tests::NEEDS)
                 .and_then(|()| studio_tests::check_scripts())

@@ -21,6 +21,8 @@ const REAL_BOARD: &str = "real_board";
 /// The tests in which the page meets the command `frixel`. All others run without it, so that a change in the command
 /// does not concern them.
 const COMMAND_TESTS: &str = "command.test.mjs";
+/// Takes the pictures of docs/studio.
+const SHOTS: &str = "shots.mjs";
 /// Files of tests that run at once: those on the machine's clock wait, while others compute.
 const FILES_AT_ONCE: u32 = 2;
 /// Longest time of a file of tests, ms.
@@ -82,6 +84,15 @@ fn site() -> Result<PathBuf, String> {
     }
     studio::build_site(&site.to_string_lossy(), None)?;
     absolute(&site)
+}
+
+/// Builds the page, and takes the pictures of docs/studio.
+pub(crate) fn take_shots() -> Result<(), String> {
+    let page = studio::build()?;
+    let folder = folder();
+    install(&folder)?;
+    let mut node = Command::new("node");
+    run("pictures of the studio", node.current_dir(&folder).arg(SHOTS).env("STUDIO_PAGE", page))
 }
 
 /// The runner of tests, with the page and the virtual board that says it is real. Builds these programs, too.

@@ -50,11 +50,22 @@ fn gallery() -> Vec<Entry> {
     entries.collect()
 }
 
+/// Lines of a comment as a paragraph.
+fn paragraph<'t>(lines: impl Iterator<Item = &'t str>) -> String {
+    lines.map(str::trim).collect::<Vec<_>>().join(" ")
+}
+
 impl Entry {
-    /// The comment that the file begins with, as a paragraph.
+    /// The comment that the file begins with: what a finger meets.
+    fn headline(&self) -> String {
+        paragraph(self.text.lines().map_while(|line| line.strip_prefix('#')))
+    }
+
+    /// The comment that the file begins with, and the one that it ends with, as a paragraph.
     fn comment(&self) -> String {
-        let lines = self.text.lines().map_while(|line| line.strip_prefix('#'));
-        lines.map(str::trim).collect::<Vec<_>>().join(" ")
+        let mut last: Vec<&str> = self.text.lines().rev().map_while(|line| line.strip_prefix('#')).collect();
+        last.reverse();
+        format!("{} {}", self.headline(), paragraph(last.into_iter()))
     }
 
     /// Contrast of the reference friction on the default stroke under a bundled finger, from the 5th to the 95th
@@ -175,6 +186,18 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
         );
     }
     assert!(cut > 0);
+}
+
+/// Whoever opens a scene reads in one breath what it is; the rest stands below the layers.
+#[test]
+fn every_scene_begins_with_one_plain_sentence_of_at_most_100_characters() {
+    for entry in gallery() {
+        let headline = entry.headline();
+        assert!(headline.chars().count() <= 100, "{}: {headline}", entry.name);
+        assert!(headline.ends_with('.') && !headline.contains(". "), "{}: one sentence: {headline}", entry.name);
+        assert!(!headline.contains(['`', ';', '(']), "{}: plain words: {headline}", entry.name);
+        assert!(headline.split(' ').count() >= 6, "{}: {headline}", entry.name);
+    }
 }
 
 #[test]

@@ -79,6 +79,8 @@ test("the scope draws from its first sample on", async () => {
     const frame = {
       firstTick: 0, ticksPerSample: 40, contact: true, xMm: values(20), yMm: values(20), speedMmPerS: values(80),
       referenceN: values(0.3), feltN: values(0.3), voltageV: values(90),
+      predictedXMm: values(20), predictedYMm: values(20), reportedXMm: values(20), reportedYMm: values(20),
+      contactRadiusMm: values(4),
     };
     samples.add(frame);
     scope.feel(frame);

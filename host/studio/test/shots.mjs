@@ -1,6 +1,7 @@
-// Takes the pictures of docs/studio: `cargo xtask studio`, then
-// `STUDIO_PAGE=PATH FRIXEL=PATH node shots.mjs [NAME ...]` in this folder; each picture is looked at before it is kept.
+// Takes the pictures of docs/studio, all that are there: `cargo xtask studio-shots`. Some of them: `cargo xtask studio`,
+// then `STUDIO_PAGE=PATH node shots.mjs NAME ...` in this folder. Each picture is looked at before it is kept.
 
+import fs from "node:fs";
 import path from "node:path";
 import { cleanUp, openPage } from "./harness.mjs";
 import { give, openStudio } from "./page.mjs";
@@ -8,9 +9,9 @@ import { give, openStudio } from "./page.mjs";
 const OUT = new URL("../../../docs/studio/", import.meta.url).pathname;
 const wanted = process.argv.slice(2);
 
-/** Opens the studio; `size` is that of the window. */
-async function open({ size = { width: 1440, height: 900 }, scheme = "light" } = {}) {
-  const { page, close } = await openStudio();
+/** Opens the studio; `size` is that of the window. With `isFirstVisit`, text and tools are closed. */
+async function open({ size = { width: 1440, height: 900 }, scheme = "light", isFirstVisit = false } = {}) {
+  const { page, close } = await openStudio(undefined, { isFirstVisit });
   await page.setViewportSize(size);
   await page.emulateMedia({ colorScheme: scheme });
   await page.waitForTimeout(300);
@@ -51,16 +52,9 @@ const shot = (page, name) => page.screenshot({ path: path.join(OUT, `${name}.png
 
 const SHOTS = {
   async play() {
-    const { page, close } = await open();
+    const { page, close } = await open({ isFirstVisit: true });
     await slide(page);
     await shot(page, "play");
-    await close();
-  },
-  async dark() {
-    const { page, close } = await open({ scheme: "dark" });
-    await bundled(page, "grating");
-    await slide(page);
-    await shot(page, "dark");
     await close();
   },
   async sound() {
@@ -132,7 +126,7 @@ live = true
     await close();
   },
   async tablet() {
-    const { page, close } = await open({ size: { width: 820, height: 1180 } });
+    const { page, close } = await open({ size: { width: 820, height: 1180 }, isFirstVisit: true });
     await slide(page);
     await shot(page, "tablet");
     await close();
@@ -140,7 +134,9 @@ live = true
   async mockup() {
     const { page, close } = await open();
     await bundled(page, "slider");
+    await page.click("#options summary");
     await page.selectOption("#look", "both");
+    await page.keyboard.press("Escape");
     await page.waitForTimeout(500);
     await slide(page);
     await shot(page, "mockup");
@@ -193,5 +189,6 @@ live = true
   },
 };
 
+if (wanted.length === 0) for (const name of fs.readdirSync(OUT)) fs.rmSync(path.join(OUT, name));
 for (const [name, take] of Object.entries(SHOTS)) if (wanted.length === 0 || wanted.includes(name)) await take();
 await cleanUp();

@@ -179,6 +179,8 @@ test("the scope says how long ago, also after an hour", async () => {
       const frame = {
         firstTick: HOUR_TICKS + at * 4000, ticksPerSample: 40, contact: true, xMm: values(20), yMm: values(20),
         speedMmPerS: values(80), referenceN: values(0.3), feltN: values(0.3), voltageV: values(90),
+        predictedXMm: values(20), predictedYMm: values(20), reportedXMm: values(20), reportedYMm: values(20),
+        contactRadiusMm: values(4),
       };
       samples.add(frame);
       scope.feel(frame);

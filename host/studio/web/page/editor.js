@@ -84,7 +84,7 @@ export class Editor {
       this.onChange(this.#shown, state.doc.toString());
       this.onHistory();
     });
-    const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene" });
+    const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0" });
     this.#extensions = [
       lineNumbers(),
       lintGutter(),

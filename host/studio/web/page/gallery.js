@@ -102,17 +102,11 @@ export class Gallery {
 }
 
 /**
- * The comment at a scene's head, up to its first two sentences.
+ * What a finger meets: the comment at a scene's head.
  * @param {string} text
  */
 function introduction(text) {
-  const comment = /^(?:#.*\n)+/.exec(text)?.[0] ?? "";
-  return comment
-    .replaceAll(/^# ?|`/gm, "")
-    .replaceAll("\n", " ")
-    .split(/(?<=\.) /)
-    .slice(0, 2)
-    .join(" ");
+  return /^# (.*)/.exec(text)?.[1] ?? "";
 }
 
 /**

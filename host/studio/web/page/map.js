@@ -162,12 +162,16 @@ export class FrictionMap {
       marginTop: `${Math.max(0, (clientHeight - height) / 2)}px`,
     });
     this.draw();
-    this.onLayout({
+    const area = {
       left: this.#canvas.offsetLeft + left,
       top: this.#canvas.offsetTop + top,
       width: widthMm * this.scale,
       height: heightMm * this.scale,
-    });
+    };
+    // For what floats over the screen.
+    this.box.style.setProperty("--screen-right", `${Math.max(0, clientWidth - area.left - area.width)}px`);
+    this.box.style.setProperty("--screen-bottom", `${Math.max(0, clientHeight - area.top - area.height)}px`);
+    this.onLayout(area);
   }
 
   /**

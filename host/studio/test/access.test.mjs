@@ -1,0 +1,163 @@
+// The page for people who use it in other ways: by keys alone, with forced colours, with less motion, by a screen reader.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** The page's policy takes no script of others: this one comes from the debugger. */
+const AXE = fs.readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+/** What axe-core finds wrong, a line each: the rule, and where. */
+async function violations(page) {
+  const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+  return found.violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) =>
+    `${id}: ${target.join(" ")}: ${failureSummary.split("\n").slice(1).join(" ").trim()}`));
+}
+
+/** States of the page that are looked at, and what leads there. */
+const STATES = {
+  "first visit": () => {},
+  "text and tools": (page) => page.click("#toggle-drawer"),
+  sound: (page) => page.click("#tab-sound"),
+  compare: (page) => page.click("#tab-compare"),
+  pictures: (page) => page.click("#tab-pictures"),
+  "what is felt": (page) => page.click("#tab-report"),
+  "a live layer": async (page) => {
+    await page.click("#tab-layers");
+    await page.click("text=Make live");
+    await page.locator("#panel-layers input[type=range]").waitFor();
+  },
+  "a mistake": async (page) => {
+    await page.evaluate((text) => (studioPage.editor.text = text), WHOLE_SCREEN_GRATING.replace("grating", "gratin"));
+    await page.locator("#problems li.error").waitFor();
+  },
+  options: (page) => page.click("#options summary"),
+  board: (page) => page.click("#open-board"),
+  about: async (page) => {
+    await page.keyboard.press("Escape");
+    await page.click("#open-about");
+    await page.locator("#about p.soft").waitFor();
+  },
+  open: async (page) => {
+    await page.keyboard.press("Escape");
+    await page.click("#open-files");
+    await page.locator("#open h3").first().waitFor();
+  },
+};
+
+for (const colorScheme of ["light", "dark"]) {
+  test(`axe-core finds nothing wrong, ${colorScheme}`, async () => {
+    const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+    await page.emulateMedia({ colorScheme, reducedMotion: "reduce" });
+    await page.evaluate(AXE);
+    const found = [];
+    for (const [name, lead] of Object.entries(STATES)) {
+      await lead(page);
+      found.push(...(await violations(page)).map((each) => `${name}: ${each}`));
+    }
+    await page.keyboard.press("Escape");
+    await page.setViewportSize({ width: 390, height: 844 });
+    await page.click("#toggle-menu");
+    found.push(...(await violations(page)).map((each) => `the menu of a phone: ${each}`));
+    assert.deepEqual(found, []);
+    assert.deepEqual(errors, []);
+    await close();
+  });
+}
+
+test("with forced colours, bars, states and the focus are still seen", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.emulateMedia({ forcedColors: "active" });
+  const seen = await page.evaluate(() => {
+    const colour = (selector, property) => getComputedStyle(document.querySelector(selector))[property];
+    return {
+      bar: [colour(".step-bar", "backgroundColor"), colour(".step-bar span", "backgroundColor")],
+      tabs: [colour("#tab-layers", "borderBottomColor"), colour("#tab-sound", "borderBottomColor")],
+      state: [colour("#board", "backgroundColor"), getComputedStyle(document.getElementById("board"), "::before").backgroundColor],
+      stop: [colour("#stop", "borderStyle"), colour("#stop", "borderTopWidth")],
+    };
+  });
+  for (const name of ["bar", "tabs", "state"]) assert.notEqual(seen[name][0], seen[name][1], JSON.stringify(seen));
+  assert.notEqual(seen.stop[0], "none");
+  await page.keyboard.press("Tab");
+  const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+  assert.notEqual(outline, "none");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("with less motion nothing moves by itself but what a person does", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  const moving = await page.evaluate(async () => {
+    document.getElementById("map").dataset.stale = "drawing";
+    await new Promise((done) => setTimeout(done, 50));
+    const animations = document.getAnimations().map(({ animationName, transitionProperty }) => animationName ?? transitionProperty);
+    const isMoving = (each) => /[1-9]/.test(getComputedStyle(each).transitionDuration + getComputedStyle(each).animationDuration);
+    return [...animations, ...[...document.querySelectorAll("body *")].filter(isMoving).map(({ id, className }) => id || className)];
+  });
+  assert.deepEqual(moving, []);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** The element with the focus: its id or name, whether it is in the window, and whether its focus is seen. */
+function focused() {
+  const { activeElement } = document;
+  const { left, top, right, bottom } = activeElement.getBoundingClientRect();
+  const style = getComputedStyle(activeElement);
+  const around = getComputedStyle(activeElement.closest(".cm-editor") ?? activeElement);
+  return {
+    name: activeElement.id || activeElement.getAttribute("aria-label") || activeElement.textContent.trim(),
+    isInside: left >= -1 && top >= -1 && right <= innerWidth + 1 && bottom <= innerHeight + 1,
+    isSeen: style.outlineStyle !== "none" || around.borderTopColor !== "rgba(0, 0, 0, 0)",
+  };
+}
+
+test("keys alone reach everything, lead out of the text, and play and stop the board", async () => {
+  const { page, errors, close } = await openStudio();
+  const reached = [];
+  for (let presses = 0; presses < 80; presses += 1) {
+    await page.keyboard.press("Tab");
+    const now = await page.evaluate(focused);
+    if (now.name === reached[0]?.name) break;
+    reached.push(now);
+  }
+  const names = reached.map(({ name }) => name);
+  for (const name of ["open-gallery", "new", "save", "share", "toggle-drawer", "stop", "scene-name", "finger", "map-finger",
+    "pause", "Text of the scene", "tab-layers", "open-board"])
+    assert.ok(names.includes(name), `${name} is not reached: ${names.join(", ")}`);
+  assert.ok(names.indexOf("tab-layers") > names.indexOf("Text of the scene"), "Tab leads out of the text");
+  for (const { name, isInside, isSeen } of reached) {
+    assert.ok(isSeen, `the focus of ${name} is not seen`);
+    if (name !== "Text of the scene") assert.ok(isInside, `${name} is outside of the window`);
+  }
+  await page.focus("#stop");
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => document.documentElement.dataset.state === "disarmed");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.documentElement.dataset.state === "active");
+  await page.focus("#tab-layers");
+  await page.keyboard.press("ArrowRight");
+  assert.ok(await page.locator("#panel-sound").isVisible());
+  await page.focus("#options summary");
+  await page.keyboard.press("Enter");
+  assert.ok(await page.locator("#screen").isVisible());
+  await page.keyboard.press("Escape");
+  assert.ok(await page.locator("#screen").isHidden());
+  await page.focus("#toggle-drawer");
+  await page.keyboard.press("Enter");
+  assert.ok(await page.locator("#drawer").isHidden());
+  await page.focus("#map-finger");
+  await page.keyboard.down("ArrowRight");
+  await page.waitForFunction(() => /^\d+$/.test(document.querySelector("#numbers dd.felt span").textContent));
+  await page.keyboard.up("ArrowRight");
+  assert.deepEqual(errors, []);
+  await close();
+});
