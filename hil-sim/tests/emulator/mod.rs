@@ -1,5 +1,5 @@
 //! The emulated board's image, or a word on why there is none.
-#![allow(unreachable_pub, clippy::panic, reason = "part of a test, which may fail")]
+#![allow(dead_code, unreachable_pub, clippy::panic, reason = "part of tests, which may fail, and use what they need")]
 
 use std::io::Write;
 

@@ -208,7 +208,7 @@ test("a slide is heard where sound is on", async () => {
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   await page.click("#tab-sound");
   await page.click("text=Sound on");
-  await page.locator("text=Sound off").waitFor();
+  await page.locator("#panel-sound >> text=Sound off").waitFor();
   const isHeard = () => {
     const { analyser } = studioPage.sound;
     const levels = new Float32Array(analyser.frequencyBinCount);

@@ -88,7 +88,7 @@ test("a shared link and a saved zip bring the scene back", async () => {
 test("a touch source is chosen, or dropped as a file, and stays with the work", async () => {
   const { page, errors, close } = await openStudio();
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
-  await page.click("#options summary");
+  await page.click("#open-lag");
   await page.selectOption("#touch", "500");
   await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
   await page.reload();

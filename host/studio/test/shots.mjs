@@ -61,7 +61,7 @@ const SHOTS = {
     const { page, close } = await open({ scheme: "dark" });
     await page.click("#tab-sound");
     await page.click("text=Sound on");
-    await page.locator("text=Sound off").waitFor();
+    await page.locator("#panel-sound >> text=Sound off").waitFor();
     await slide(page);
     await shot(page, "sound");
     await close();
