@@ -55,14 +55,19 @@ pub struct RigConfig {
 
 impl Default for RigConfig {
     fn default() -> Self {
-        Self { world: WorldConfig::IDEAL, ..Self::of(Board::SIMULATOR) }
+        Self::of(Board::SIMULATOR)
     }
 }
 
 impl RigConfig {
-    /// A rig of a board in the world that it expects.
+    /// A rig of a board in the default world.
     pub fn of(board: Board) -> Self {
-        Self { board, world: WorldConfig::of(&board), baud: 2_000_000 }
+        let world = WorldConfig {
+            tick_hz: board.tick_hz,
+            full_scale_v_peak: f64::from(board.limits.full_scale_v_peak),
+            ..WorldConfig::default()
+        };
+        Self { board, world, baud: 2_000_000 }
     }
 }
 

@@ -10,7 +10,7 @@ use frixel_control::Board;
 use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
 use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
-use frixel_scene::{CompileError, Program, Scene, compile};
+use frixel_scene::{Program, Scene, compile};
 
 pub(super) const BOARD: Board = Board::PICO;
 pub(super) const TICK: Duration = Duration::from_micros(1_000_000 / BOARD.tick_hz as u64);
@@ -27,13 +27,8 @@ pub(super) type Host = Device<PollingLink<Cable>>;
 
 /// A scene, compiled for the board.
 pub(super) fn program(text: &str) -> Program {
-    compiled(text).unwrap()
-}
-
-/// A scene, compiled for the board, if that takes it.
-pub(super) fn compiled(text: &str) -> Result<Program, CompileError> {
-    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new())?;
-    compile(&scene, &BOARD.limits, BOARD.tick_hz)
+    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+    compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
 }
 
 /// A finger that slides again and again.

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_hil_sim::{Point, RigConfig, Stroke, WorldConfig};
 use frixel_wire::message::Command;
 
 use super::bench::{BOARD, Bench, CONSTANT, program};
@@ -30,7 +30,7 @@ fn driven(codes: impl IntoIterator<Item = i16>) -> Vec<i16> {
 fn in_process(finger_after_ticks: u64) -> Vec<i16> {
     let [left, right] = [0.01, 0.11].map(|x_m| Point { x_m, y_m: 0.03 });
     let stroke = Stroke::constant_speed(left, right, 0.1).unwrap();
-    let config = RigConfig::of(BOARD);
+    let config = RigConfig { board: BOARD, world: WorldConfig::of(&BOARD), baud: 2_000_000 };
     let mut script = Script::new(&config, stroke, 1);
     script.play(&program(CONSTANT).scene_bytes());
     script.rig.world_mut().lift_finger();

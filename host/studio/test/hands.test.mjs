@@ -38,16 +38,21 @@ async function openEditing(text = PLATES) {
   const opened = await openStudio();
   await opened.page.evaluate((text) => played(text), text);
   await opened.page.getByRole("button", { name: "Edit", exact: true }).click();
-  // The screen has another size than that of the first scene: a press has to wait until its map has its place.
+  // The screen has another size than that of the first scene.
   await opened.page.waitForFunction(() => studioPage.map.screen.heightMm === 80);
-  await opened.page.evaluate(async () => {
+  await settled(opened.page);
+  return opened;
+}
+
+/** Waits until the map has found its place. */
+function settled(page) {
+  return page.evaluate(async () => {
     const place = () => JSON.stringify(document.querySelector(".hands").getBoundingClientRect());
     for (let before = ""; before !== place(); ) {
       before = place();
       for (let frames = 0; frames < 4; frames += 1) await new Promise(requestAnimationFrame);
     }
   });
-  return opened;
 }
 
 /** Where a place of the screen is in the window, CSS pixels. */
@@ -226,6 +231,8 @@ test("a finger on a touch screen moves a layer", async () => {
   const { page, errors } = await openEditing();
   const client = await page.context().newCDPSession(page);
   await client.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  // Buttons are larger under a finger.
+  await settled(page);
   const touch = async (type, ...places) => {
     const points = await Promise.all(places.map(([x, y]) => onPage(page, x, y)));
     await client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y]) => ({ x, y })) });

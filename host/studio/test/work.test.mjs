@@ -125,6 +125,7 @@ test("the map of a scene is not shown when another one was opened meanwhile", as
     engine.map = async (...scene) => {
       engine.map = drawn;
       document.getElementById("new").click();
+      [...document.querySelectorAll("#new-scene button")].find((each) => each.textContent === "Empty scene").click();
       const picture = await drawn(...scene);
       while (document.getElementById("scene-name").value !== "untitled") await new Promise((resolve) => setTimeout(resolve));
       late = picture;

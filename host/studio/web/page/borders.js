@@ -14,9 +14,9 @@
  * @typedef {{ by: By, isUp: boolean, tMs: number, at: Place }} Crossing
  */
 
-/** A border is the mean of the least and the largest friction; this part of their difference around it is not crossed. */
+/** A border is the mean of least and largest friction: this part of their difference beside it is on no side. */
 const HYSTERESIS = 0.12;
-/** A board crosses a border within this time of the finger, or misses it, ms: reports of 100 Hz, one of which is lost. */
+/** A board crosses a border within this time of the finger, ms, or misses it: 100 reports a second are no later. */
 const WITHIN_MS = 60;
 /** How far back the direction of the finger is taken from, samples of a millisecond. */
 const BACK = 6;

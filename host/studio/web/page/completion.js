@@ -139,8 +139,8 @@ function withNeeds(schema, alternatives, present) {
 }
 
 /**
- * The table that the cursor is in: fields that fit to what stands in it, all its fields, its alternatives, and what stands
- * in it.
+ * The table that the cursor is in: fields that fit to what stands in it, all its fields, its alternatives, and what
+ * stands in it.
  * @param {Schema} schema
  * @param {Place} place
  */

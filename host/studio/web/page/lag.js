@@ -12,7 +12,7 @@ import { attempt } from "./notices.js";
 /** @import { FrictionMap } from "./map.js" */
 /** @import { Player } from "./player.js" */
 
-/** How far a band reaches to its side of the stroke, CSS pixels; that with prediction and that without lie side by side. */
+/** How far a band reaches to its side of the stroke, CSS pixels: with prediction to the one, without to the other. */
 const WIDE_PX = 15;
 /** A band is drawn at least this long, CSS pixels, so that a lag of nothing is seen. */
 const LONG_MIN_PX = 3;
@@ -123,7 +123,7 @@ export class Lag {
   }
 
   #say() {
-    const [predicted, reported] = /** @type {By[]} */ (["predicted", "reported"]).map((by) => this.#borders?.meanMm(by));
+    const [predicted, reported] = [this.#borders?.meanMm("predicted"), this.#borders?.meanMm("reported")];
     const mm = (/** @type {number | undefined} */ value) => (value === undefined ? "–" : `${value.toFixed(1)} mm`);
     byId("lag-predicted").textContent = mm(predicted);
     byId("lag-reported").textContent = mm(reported);

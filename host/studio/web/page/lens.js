@@ -80,7 +80,8 @@ export class Lens {
     const before = this.#now;
     const moved = before && { xMm: place.xMm - before.at.xMm, yMm: place.yMm - before.at.yMm };
     const length = moved ? Math.hypot(moved.xMm, moved.yMm) : 0;
-    const direction = moved && length > 0.005 ? { xMm: moved.xMm / length, yMm: moved.yMm / length } : before?.direction;
+    const isMoving = moved && length > 0.005;
+    const direction = isMoving ? { xMm: moved.xMm / length, yMm: moved.yMm / length } : before?.direction;
     const predicted = { xMm: frame.predictedXMm[at], yMm: frame.predictedYMm[at] };
     this.#now = {
       at: place,
@@ -91,7 +92,8 @@ export class Lens {
     };
     const report = { xMm: frame.reportedXMm[at], yMm: frame.reportedYMm[at] };
     const last = this.#reports.at(-1);
-    if (Number.isFinite(report.xMm) && (report.xMm !== last?.xMm || report.yMm !== last?.yMm)) this.#reports.push(report);
+    const isNew = report.xMm !== last?.xMm || report.yMm !== last?.yMm;
+    if (Number.isFinite(report.xMm) && isNew) this.#reports.push(report);
     this.#reports.splice(0, this.#reports.length - REPORTS);
     this.#voltagesV.push(frame.voltageV[at]);
     this.#voltagesV.splice(0, this.#voltagesV.length - ENVELOPE);

@@ -41,7 +41,8 @@ const PREFERRED = ["_fraction", "_mm"];
  * @param {Record<string, string>} present What stands there already.
  */
 export function missingLines(table, present) {
-  const choices = (table.allOf ?? []).flatMap(({ oneOf }) => (oneOf ? [oneOf.flatMap(({ required }) => required ?? [])] : []));
+  const alternatives = (table.allOf ?? []).map(({ oneOf = [] }) => oneOf.flatMap(({ required = [] }) => required));
+  const choices = alternatives.filter(({ length }) => length > 0);
   const lines = [];
   for (const choice of [...(table.required ?? []).map((name) => [name]), ...choices]) {
     if (choice.includes("kind") || choice.some((name) => name in present)) continue;

@@ -123,7 +123,8 @@ export class NewScene {
     const files = { ...(await carriedFiles()), "new.toml": text };
     const check = await this.#engine.check(files, "new.toml", {});
     if (!("screen" in check)) throw new Error(check.problems.map(({ message }) => message).join("\n"));
-    const map = await this.#engine.map(files, "new.toml", {}, { ...mapSizePx(check.screen, LONG_SIDE_PX), speedMmPerS: 100 });
+    const size = { ...mapSizePx(check.screen, LONG_SIDE_PX), speedMmPerS: 100 };
+    const map = await this.#engine.map(files, "new.toml", {}, size);
     Object.assign(canvas, { width: map.widthPx, height: map.heightPx });
     contextOf(canvas).putImageData(imageOf(map), 0, 0);
   }
