@@ -17,6 +17,11 @@ import { parseTOML } from "../vendor/studio-vendor.js";
 
 export class TomlText {
   #text;
+  /**
+   * Lines in which the layer tables begin, once they were asked for: each layer of a scene asks.
+   * @type {number[] | undefined}
+   */
+  #linesOfLayers;
   #comments;
   /** @type {{ [key: string]: Value }} */
   #root = {};
@@ -113,11 +118,24 @@ export class TomlText {
    * @param {number} line From 1.
    */
   layerAt(line) {
-    const layers = this.value(["layer"]);
-    if (!Array.isArray(layers)) return undefined;
-    const lines = layers.map((_, at) => this.#rangeOf(["layer", at])).map((range) => lineOf(this.#text, range[0]));
+    this.#linesOfLayers ??= this.#firstLines();
+    const lines = this.#linesOfLayers;
     const found = lines.indexOf(line);
     return found < 0 || lines.indexOf(line, found + 1) >= 0 ? undefined : found;
+  }
+
+  /** The lines in which the layer tables begin. */
+  #firstLines() {
+    const layers = this.value(["layer"]);
+    if (!Array.isArray(layers)) return [];
+    let [line, from] = [1, 0];
+    // In the order of the text, each line is counted once.
+    return layers.map((_, at) => {
+      const [begin] = this.#rangeOf(["layer", at]);
+      line += this.#text.slice(from, begin).split("\n").length - 1;
+      from = Math.max(from, begin);
+      return line;
+    });
   }
 
   /**
