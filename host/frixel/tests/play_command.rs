@@ -252,8 +252,8 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
     fs::copy(repository().join("scenes/textures/brick.png"), folder.path().join("textures/brick.png")).unwrap();
     let scene = fs::read_to_string(brick()).unwrap();
     for (from, to, parts) in [
-        ("height_mm = 110", "heigth_mm = 110", ["wrong.toml:8:1", "heigth_mm", "`height_mm`"]),
-        ("textures/brick.png", "textures/brik.png", ["wrong.toml:20:", "brik.png", "not found"]),
+        ("height_mm = 110", "heigth_mm = 110", ["wrong.toml:6:1", "heigth_mm", "`height_mm`"]),
+        ("textures/brick.png", "textures/brik.png", ["wrong.toml:18:", "brik.png", "not found"]),
         ("white_n = 0.166", "white_n = 0.26", ["layer 1", "\"brick\"", "saturate = true"]),
         ("x_mm = 10", "x_mm = 60", ["layer 1", "\"brick\"", "screen"]),
     ] {
