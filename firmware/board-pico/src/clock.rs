@@ -112,7 +112,8 @@ fn start_pll(pll: Pll, set_reset: fn(&mut Peripherals, bool), settings: &PllSett
 }
 
 /// Gives the reference back to the ring oscillator, and divides it into ticks for the watchdog, which nothing else uses:
-/// so the watchdog counts on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators").
+/// so these go on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators"). Whether the
+/// watchdog counts them without the chip's own clock, the data sheets do not say.
 /// The boot ROM has run from the ring oscillator, so it is on.
 fn start_watchdog_ticks() {
     const CYCLES: u16 = (chip::RING_OSCILLATOR_MAX_HZ / 1_000_000) as u16;

@@ -120,7 +120,7 @@ impl I2c for Bus {
 
 impl Bus {
     fn new() -> Self {
-        clock::release(|w| w.set_i2c0(false));
+        clock::restart(|w, is_reset| w.set_i2c0(is_reset));
         pins::connect_pulled_up(SDA, Function::I2c);
         pins::connect_pulled_up(SCL, Function::I2c);
         Self(())

@@ -81,10 +81,8 @@ impl Output {
 /// Lets the enable follow the one-shot, or be low whatever that does (RP2040, 2.19.6.1, `GPIO0_CTRL`).
 #[inline]
 fn override_enable(over: Outover) {
-    IO_BANK0.gpio(AMPLIFIER_ENABLE).ctrl().write(|w| {
-        w.set_funcsel(Function::Pio1 as u8);
-        w.set_outover(over);
-    });
+    // The function stays: what `zero_for_good` has disconnected, no kick connects again.
+    IO_BANK0.gpio(AMPLIFIER_ENABLE).ctrl().modify(|w| w.set_outover(over));
 }
 
 impl KickedEnable for Output {

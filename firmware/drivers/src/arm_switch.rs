@@ -6,7 +6,7 @@ use embedded_hal::digital::InputPin;
 /// milliseconds).
 const HELD_AFTER_US: u32 = 20_000;
 /// Time for which the contact must be open before the switch counts as released. This bridges contact breaks from a
-/// moving hand, and leaves 0.3 ms of the 1.1 ms within which the output is off: 0.14 ms for the filter of the wire
+/// moving hand, and leaves 0.3 ms of the 1.1 ms within which the output is off: 0.11 ms for the filter of the wire
 /// (`docs/hardware.md`, "Arm switch"), a tick until the pin is read, a tick until the DAC has the zero.
 const RELEASED_AFTER_US: u32 = 800;
 
@@ -161,8 +161,8 @@ mod tests {
 
     #[test]
     fn the_output_is_off_within_1100_us_after_the_contact_opens() {
-        // 10 kOhm and 10 nF that are 1 % and 20 % too large, and no pull-down inside.
-        let off_s = off_after_s(1_000.0, 10_100.0, 12e-9);
+        // 8.2 kOhm and 10 nF that are 1 % and 20 % too large, and no pull-down inside.
+        let off_s = off_after_s(1_000.0, 8_282.0, 12e-9);
         assert!(off_s < 1.1e-3, "{off_s}");
         // Without the resistor, 100 nF discharge through the pull-down inside, 25 to 55 kOhm.
         assert!(off_after_s(1_000.0, 25_000.0, 100e-9) > 1.1e-3);

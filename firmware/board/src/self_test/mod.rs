@@ -5,8 +5,8 @@
 //! says each [`Measurement`] in a line that a program can read: `frixel selftest --wires` writes them to a report.
 //! These hold whatever board and person do:
 //!
-//! - It ends at once when the amplifier's ready is high or the arm switch is closed, during a pulse of the enable, too,
-//!   and while the monitor's pin is driven or not at zero volts.
+//! - It ends when the amplifier's ready is high or the arm switch is closed: at once during a pulse of the enable, else
+//!   before the next measurement. It ends, too, while the monitor's pin is driven or not at zero volts.
 //! - The enable is pulsed only after its wire was found with the enable low, and the person has said that the amplifier
 //!   is unplugged. It is low whenever the tick runs: [`LoopedBoard::round`] kicks nothing and sends zeros to the DAC.
 //! - A missing wire ends it. A measurement out of its range does not: the rest is measured, and all of it is reported.
