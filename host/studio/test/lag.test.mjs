@@ -233,3 +233,22 @@ test("a slow replay has a lens at the finger: contact, reports, predicted place,
   assert.deepEqual(errors, []);
   await close();
 });
+
+/** Begins a blind comparison of the first scene and another. */
+async function compareBlind(page) {
+  await page.click("#tab-compare");
+  await page.click("text=Keep this scene as A");
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("text=Compare A with the scene now");
+  await page.locator("body.blind").waitFor();
+}
+
+test("the prediction switch ends a blind comparison: the scene plays, not the version that was felt", async () => {
+  const { page, errors, close } = await openStudio();
+  await compareBlind(page);
+  await page.evaluate(() => document.getElementById("prediction").click());
+  await page.locator("text=the comparison is over").waitFor();
+  assert.equal(await page.locator("body.blind").count(), 0);
+  assert.deepEqual(errors, []);
+  await close();
+});

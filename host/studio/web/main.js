@@ -116,7 +116,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, player, editor, map, finger, scope, compare, ghost, lag, hands }) {
+function makeControls({ engine, project, editor, map, finger, scope, compare, ghost, hands }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -133,7 +133,6 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
     hands.setEditing(false);
     map.draw();
   };
-  lag.onChange = () => player.now(editor.text);
   hands.onEdit = () => {
     ghost.end();
     byId("first-words").hidden = true;
@@ -196,6 +195,7 @@ function showWhatPlays(parts, scene) {
     if (compare.isRunning || status === "loaded") return;
     map.markStale(status === "loading" ? "drawing" : "older");
   };
+  lag.onChange = () => scene.replay();
   board.onBoard = () => scene.replay();
 }
 
