@@ -252,3 +252,25 @@ test("the prediction switch ends a blind comparison: the scene plays, not the ve
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("a blind comparison ends a slow replay, and the lens says nothing in one", async () => {
+  const { page, errors, close } = await openStudio();
+  await wholeStroke(page, 40);
+  await page.evaluate(() => {
+    document.getElementById("loop").checked = true;
+    document.getElementById("replay").click();
+  });
+  await page.evaluate(() => wait(1000));
+  assert.ok(await page.isVisible("#lens-words"));
+  await compareBlind(page);
+  await page.evaluate(() => wait(300));
+  assert.equal(await page.textContent("#replay"), "Replay slowly");
+  assert.ok(await page.isHidden("#lens-words"), "the replay is over");
+  // However one gets there: words of what is felt say which version that is.
+  await page.evaluate(() => document.getElementById("replay").click());
+  await page.evaluate(() => wait(1000));
+  assert.equal(await page.textContent("#replay"), "Stop replay");
+  assert.ok(await page.isHidden("#lens-words"), "in a comparison");
+  assert.deepEqual(errors, []);
+  await close();
+});

@@ -22,7 +22,7 @@ import { Layers } from "./page/layers.js";
 import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
 import { NewScene } from "./page/new_scene.js";
-import { followPresses, notify } from "./page/notices.js";
+import { attempt, followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
 import { Player, isPlayable } from "./page/player.js";
@@ -131,6 +131,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
   compare.onChange = () => {
     // Outlines and numbers would say which version is felt.
     hands.setEditing(false);
+    if (compare.isRunning) attempt(() => engine.endReplay());
     map.draw();
   };
   hands.onEdit = () => {
