@@ -187,3 +187,22 @@ test("who asks for less motion sees none before a press, but the words and the s
   assert.ok(await page.isVisible("#hear"));
   await close();
 });
+
+test("once a board is connected the words of the simulator go, also when the ghost rests, and stay away", async () => {
+  const { page, errors, close } = await openAsStranger({ init: () => (globalThis.matchMedia = () => ({ matches: true })) });
+  assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
+  await page.evaluate(() => {
+    const { engine } = studioPage;
+    const { state } = engine;
+    const report = (link) => {
+      Object.defineProperty(engine, "state", { value: { ...state, link }, configurable: true });
+      engine.onState(engine.state);
+    };
+    report("serial");
+    report("simulator");
+  });
+  await page.evaluate(() => wait(100));
+  assert.ok(await page.isHidden("#first-words"));
+  assert.deepEqual(errors, []);
+  await close();
+});

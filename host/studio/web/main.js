@@ -135,8 +135,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
     map.draw();
   };
   hands.onEdit = () => {
-    ghost.end();
-    byId("first-words").hidden = true;
+    ghost.dismiss();
   };
 }
 
@@ -227,6 +226,7 @@ function showWhatIsFelt(parts) {
   board.onState = () => {
     showOutcome();
     lag.showBoard();
+    ghost.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
 }

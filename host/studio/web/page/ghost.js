@@ -40,6 +40,7 @@ export class Ghost {
   #finger;
   #note = byId("first-words");
   #isEnded = false;
+  #isDismissed = false;
   #isDown = false;
   /** Time that it has slid, and the time of the last picture, ms. */
   #slidMs = 0;
@@ -57,10 +58,7 @@ export class Ghost {
     this.#finger = finger;
     finger.overlays.push(this);
     this.#offerSound(sound);
-    byId("first-dismiss").onclick = () => {
-      this.end();
-      this.#note.hidden = true;
-    };
+    byId("first-dismiss").onclick = () => this.dismiss();
     for (const type of /** @type {const} */ (["pointerdown", "click", "keydown"]))
       map.box.addEventListener(type, (event) => this.#touched(event), { capture: true });
     document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
@@ -81,7 +79,7 @@ export class Ghost {
 
   /** Begins, where a person has not asked for less motion: then nothing moves before a press. */
   start() {
-    this.#note.hidden = false;
+    this.#note.hidden = this.#isDismissed;
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.end();
     if (this.#isEnded) return;
     this.#finger.isGuided = true;
@@ -96,6 +94,18 @@ export class Ghost {
     this.#finger.isGuided = false;
     this.#finger.redraw();
     this.#say(RESTS);
+  }
+
+  /** Ends for good, and the words go. */
+  dismiss() {
+    this.end();
+    this.#isDismissed = true;
+    this.#note.hidden = true;
+  }
+
+  /** What the words say is of the simulator. */
+  showBoard() {
+    if (this.#engine.state.link !== "simulator" && !this.#isDismissed) this.dismiss();
   }
 
   /** @param {string} words */
@@ -128,11 +138,8 @@ export class Ghost {
   /** @param {number} ms */
   #frame(ms) {
     if (this.#isEnded) return;
-    const { link } = this.#engine.state;
-    if (link !== "simulator" || this.#slidMs >= REST_AFTER_MS) {
+    if (this.#slidMs >= REST_AFTER_MS) {
       this.end();
-      // What the words say is of the simulator.
-      if (link !== "simulator") this.#note.hidden = true;
       return;
     }
     if (this.#maySlide) this.#slide(ms);
