@@ -189,7 +189,10 @@ test("who asks for less motion sees none before a press, but the words and the s
 });
 
 test("once a board is connected the words of the simulator go, also when the ghost rests, and stay away", async () => {
-  const { page, errors, close } = await openAsStranger({ init: () => (globalThis.matchMedia = () => ({ matches: true })) });
+  const { page, errors, close } = await openAsStranger();
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
   assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
   await page.evaluate(() => {
     const { engine } = studioPage;
