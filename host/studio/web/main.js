@@ -133,6 +133,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
     hands.setEditing(false);
     if (compare.isRunning) attempt(() => engine.endReplay());
     map.draw();
+    ghost.wake();
   };
   hands.onEdit = () => {
     ghost.dismiss();
@@ -145,7 +146,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag, ghost, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Checked | undefined} */
   let shown;
@@ -177,6 +178,7 @@ function showWhatPlays(parts, scene) {
     hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
+    ghost.wake();
     if (player.status === "loaded") map.markStale(undefined);
     // While a hand moves layers, the next map is about to come.
     if (player.isHeld) return;

@@ -42,6 +42,9 @@ export class Ghost {
   #isEnded = false;
   #isDismissed = false;
   #isDown = false;
+  #isStarted = false;
+  /** Whether each picture of the screen moves it. */
+  #isMoving = false;
   /** Time that it has slid, and the time of the last picture, ms. */
   #slidMs = 0;
   #lastMs = 0;
@@ -61,7 +64,7 @@ export class Ghost {
     byId("first-dismiss").onclick = () => this.dismiss();
     for (const type of /** @type {const} */ (["pointerdown", "click", "keydown"]))
       map.box.addEventListener(type, (event) => this.#touched(event), { capture: true });
-    document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
+    document.addEventListener("visibilitychange", () => (this.#maySlide ? this.wake() : this.#lift()));
   }
 
   /** Whether it may slide now: never with a board, unseen, in a blind comparison, or while layers are edited. */
@@ -72,9 +75,9 @@ export class Ghost {
     return link === "simulator" && isThere && !isOthers && document.visibilityState === "visible";
   }
 
-  /** Whether it is drawn. */
+  /** Whether it is drawn at each picture of the screen. */
   get isActive() {
-    return !this.#isEnded;
+    return this.#isMoving;
   }
 
   /** Begins, where a person has not asked for less motion: then nothing moves before a press. */
@@ -82,8 +85,16 @@ export class Ghost {
     this.#note.hidden = this.#isDismissed;
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.end();
     if (this.#isEnded) return;
+    this.#isStarted = true;
     this.#finger.isGuided = true;
     this.#say(SLIDES);
+    this.wake();
+  }
+
+  /** Slides on, if it may: call it when what may keep it from sliding has changed. */
+  wake() {
+    if (!this.#isStarted || this.#isEnded || this.#isMoving || !this.#maySlide) return;
+    this.#isMoving = true;
     clock.nextFrame((ms) => this.#frame(ms));
   }
 
@@ -91,6 +102,7 @@ export class Ghost {
   end() {
     this.#lift();
     this.#isEnded = true;
+    this.#isMoving = false;
     this.#finger.isGuided = false;
     this.#finger.redraw();
     this.#say(RESTS);
@@ -103,9 +115,10 @@ export class Ghost {
     this.#note.hidden = true;
   }
 
-  /** What the words say is of the simulator. */
+  /** The board plays, or another one: what the words say is of the simulator. */
   showBoard() {
     if (this.#engine.state.link !== "simulator" && !this.#isDismissed) this.dismiss();
+    this.wake();
   }
 
   /** @param {string} words */
@@ -142,8 +155,13 @@ export class Ghost {
       this.end();
       return;
     }
-    if (this.#maySlide) this.#slide(ms);
-    else this.#lift();
+    if (!this.#maySlide) {
+      this.#isMoving = false;
+      this.#lift();
+      this.#finger.redraw();
+      return;
+    }
+    this.#slide(ms);
     this.#lastMs = ms;
     clock.nextFrame((next) => this.#frame(next));
   }
