@@ -274,3 +274,59 @@ test("a blind comparison ends a slow replay, and the lens says nothing in one", 
   assert.deepEqual(errors, []);
   await close();
 });
+
+/** What is played from now on, as `watched.predicts`, one for each time; `watched.replays` counts what slides by itself. */
+const watchPlays = (page) =>
+  page.evaluate(() => {
+    const { engine } = studioPage;
+    globalThis.watched = { predicts: [], replays: 0 };
+    const [play, replay] = [engine.play.bind(engine), engine.replay.bind(engine)];
+    engine.play = (files, entry, options) => {
+      watched.predicts.push(!options.withoutPrediction);
+      return play(files, entry, options);
+    };
+    engine.replay = (options) => {
+      watched.replays += 1;
+      return replay(options);
+    };
+  });
+
+test("prediction that is off is on again once its panel is closed", async () => {
+  const { page, errors, close } = await openStudio();
+  await watchPlays(page);
+  await page.click("#open-lag");
+  await page.locator("#prediction").uncheck();
+  await page.waitForFunction(() => watched.predicts.length === 1);
+  await page.click("#open-lag");
+  await page.waitForFunction(() => watched.predicts.length === 2);
+  assert.deepEqual(await page.evaluate(() => watched.predicts), [false, true]);
+  await page.click("#open-lag");
+  assert.ok(await page.isChecked("#prediction"));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a setting that could not be played slides no stroke later, and another board has none to slide", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.click("#open-lag");
+  await wholeStroke(page, 40);
+  await watchPlays(page);
+  await page.evaluate(() => (studioPage.editor.text = "version = 2\n[[layer]]\nkind = 7\n"));
+  await page.locator("#problems li.error").first().waitFor();
+  await page.selectOption("#touch", "500");
+  await page.evaluate(() => wait(500));
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.evaluate(() => wait(500));
+  assert.equal(await page.evaluate(() => watched.replays), 0, "after a mistake");
+  await page.click("#open-board");
+  await page.click("#board-dialog >> text=Simulator");
+  await page.waitForFunction(() => watched.predicts.length === 2);
+  assert.ok(await page.isDisabled("#replay"));
+  await page.locator("#prediction").uncheck();
+  await page.waitForFunction(() => watched.predicts.length === 3);
+  await page.evaluate(() => wait(500));
+  assert.equal(await page.evaluate(() => watched.replays), 0, "on a board after a reset");
+  assert.ok(await page.isHidden("#notice"));
+  assert.deepEqual(errors, []);
+  await close();
+});

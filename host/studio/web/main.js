@@ -94,7 +94,7 @@ async function makeParts(engine) {
     sound,
     works: new Works(),
     finger,
-    lag: new Lag({ engine, map, finger, player }),
+    lag: new Lag({ engine, map, finger, project, player }),
     lens: new Lens({ map, finger }),
     ghost: new Ghost({ engine, map, finger, sound }),
     hands: new Hands({ map, editor, player, project }, sceneSchema),
@@ -193,12 +193,17 @@ function showWhatPlays(parts, scene) {
     board.allowArm(status);
     layers.isSceneLoading = status === "loading";
     showStatus(status);
+    if (status === "mistaken" || status === "failed") lag.failed();
     // A blind comparison shows no map. What is loaded has its map once that is drawn.
     if (compare.isRunning || status === "loaded") return;
     map.markStale(status === "loading" ? "drawing" : "older");
   };
   lag.onChange = () => scene.replay();
-  board.onBoard = () => scene.replay();
+  board.onBoard = () => {
+    lag.forgetStroke();
+    byId("replay").disabled = true;
+    scene.replay();
+  };
 }
 
 /**
