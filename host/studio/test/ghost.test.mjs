@@ -8,9 +8,10 @@ import { WHOLE_SCREEN_GRATING, openStudio, showDrawer } from "./page.mjs";
 afterEach(endLeftovers);
 after(cleanUp);
 
-/** Opens the page as a stranger does. In it, `sent` is what goes to the board as touch. */
+/** Opens the page as a stranger does, and waits for its map, without which no ghost slides. In it, `sent` is what goes to the board as touch. */
 async function openAsStranger(options = {}) {
   const opened = await openStudio(undefined, { isFirstVisit: true, ...options });
+  await opened.page.waitForFunction(() => studioPage.map.frictionN.length > 0);
   await opened.page.evaluate(() => {
     globalThis.sent = [];
     const { engine } = studioPage;
@@ -35,6 +36,20 @@ const sentIn = (page, ms) =>
     await wait(ms);
     return sent.slice(before);
   }, ms);
+
+/** How many pictures the page draws in two seconds. */
+const drawnInTwoSeconds = (page) =>
+  page.evaluate(async () => {
+    let count = 0;
+    const clear = CanvasRenderingContext2D.prototype.clearRect;
+    CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+      count += 1;
+      clear.apply(this, box);
+    };
+    await wait(2000);
+    CanvasRenderingContext2D.prototype.clearRect = clear;
+    return count;
+  });
 
 const scope = () => document.querySelector("#scope canvas").toDataURL();
 
@@ -138,6 +153,7 @@ test("hidden, in a blind comparison and stopped, it lifts and sends nothing; it 
   await page.waitForFunction(() => document.documentElement.dataset.state === "disarmed");
   await page.evaluate(() => wait(100));
   await isLifted("stopped");
+  assert.equal(await drawnInTwoSeconds(page), 0, "and nothing is drawn");
   await page.click("#stop");
   assert.ok((await sentIn(page, 2000)).some(({ down }) => down), "it goes on");
   await showDrawer(page);
@@ -157,17 +173,7 @@ test("after a minute it rests, and its pictures end", async () => {
   await page.evaluate(() => wait(12_000));
   assert.deepEqual(await sentIn(page, 5000), []);
   assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
-  const drawn = await page.evaluate(async () => {
-    let count = 0;
-    const clear = CanvasRenderingContext2D.prototype.clearRect;
-    CanvasRenderingContext2D.prototype.clearRect = function (...box) {
-      count += 1;
-      clear.apply(this, box);
-    };
-    await wait(2000);
-    return count;
-  });
-  assert.equal(drawn, 0, "nothing is drawn in an idle page");
+  assert.equal(await drawnInTwoSeconds(page), 0, "nothing is drawn in an idle page");
   assert.deepEqual(errors, []);
   await close();
 });
@@ -185,5 +191,27 @@ test("who asks for less motion sees none before a press, but the words and the s
   assert.equal(touched, 0);
   assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
   assert.ok(await page.isVisible("#hear"));
+  await close();
+});
+
+test("once a board is connected the words of the simulator go, also when the ghost rests, and stay away", async () => {
+  const { page, errors, close } = await openAsStranger();
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
+  await page.evaluate(() => {
+    const { engine } = studioPage;
+    const { state } = engine;
+    const report = (link) => {
+      Object.defineProperty(engine, "state", { value: { ...state, link }, configurable: true });
+      engine.onState(engine.state);
+    };
+    report("serial");
+    report("simulator");
+  });
+  await page.evaluate(() => wait(100));
+  assert.ok(await page.isHidden("#first-words"));
+  assert.deepEqual(errors, []);
   await close();
 });

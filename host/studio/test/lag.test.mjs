@@ -233,3 +233,100 @@ test("a slow replay has a lens at the finger: contact, reports, predicted place,
   assert.deepEqual(errors, []);
   await close();
 });
+
+/** Begins a blind comparison of the first scene and another. */
+async function compareBlind(page) {
+  await page.click("#tab-compare");
+  await page.click("text=Keep this scene as A");
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("text=Compare A with the scene now");
+  await page.locator("body.blind").waitFor();
+}
+
+test("the prediction switch ends a blind comparison: the scene plays, not the version that was felt", async () => {
+  const { page, errors, close } = await openStudio();
+  await compareBlind(page);
+  await page.evaluate(() => document.getElementById("prediction").click());
+  await page.locator("text=the comparison is over").waitFor();
+  assert.equal(await page.locator("body.blind").count(), 0);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a blind comparison ends a slow replay, and the lens says nothing in one", async () => {
+  const { page, errors, close } = await openStudio();
+  await wholeStroke(page, 40);
+  await page.evaluate(() => {
+    document.getElementById("loop").checked = true;
+    document.getElementById("replay").click();
+  });
+  await page.evaluate(() => wait(1000));
+  assert.ok(await page.isVisible("#lens-words"));
+  await compareBlind(page);
+  await page.evaluate(() => wait(300));
+  assert.equal(await page.textContent("#replay"), "Replay slowly");
+  assert.ok(await page.isHidden("#lens-words"), "the replay is over");
+  // However one gets there: words of what is felt say which version that is.
+  await page.evaluate(() => document.getElementById("replay").click());
+  await page.evaluate(() => wait(1000));
+  assert.equal(await page.textContent("#replay"), "Stop replay");
+  assert.ok(await page.isHidden("#lens-words"), "in a comparison");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** What is played from now on, as `watched.predicts`, one for each time; `watched.replays` counts what slides by itself. */
+const watchPlays = (page) =>
+  page.evaluate(() => {
+    const { engine } = studioPage;
+    globalThis.watched = { predicts: [], replays: 0 };
+    const [play, replay] = [engine.play.bind(engine), engine.replay.bind(engine)];
+    engine.play = (files, entry, options) => {
+      watched.predicts.push(!options.withoutPrediction);
+      return play(files, entry, options);
+    };
+    engine.replay = (options) => {
+      watched.replays += 1;
+      return replay(options);
+    };
+  });
+
+test("prediction that is off is on again once its panel is closed", async () => {
+  const { page, errors, close } = await openStudio();
+  await watchPlays(page);
+  await page.click("#open-lag");
+  await page.locator("#prediction").uncheck();
+  await page.waitForFunction(() => watched.predicts.length === 1);
+  await page.click("#open-lag");
+  await page.waitForFunction(() => watched.predicts.length === 2);
+  assert.deepEqual(await page.evaluate(() => watched.predicts), [false, true]);
+  await page.click("#open-lag");
+  assert.ok(await page.isChecked("#prediction"));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a setting that could not be played slides no stroke later, and another board has none to slide", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.click("#open-lag");
+  await wholeStroke(page, 40);
+  await watchPlays(page);
+  await page.evaluate(() => (studioPage.editor.text = "version = 2\n[[layer]]\nkind = 7\n"));
+  await page.locator("#problems li.error").first().waitFor();
+  await page.selectOption("#touch", "500");
+  await page.evaluate(() => wait(500));
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.evaluate(() => wait(500));
+  assert.equal(await page.evaluate(() => watched.replays), 0, "after a mistake");
+  await page.click("#open-board");
+  await page.click("#board-dialog >> text=Simulator");
+  await page.waitForFunction(() => watched.predicts.length === 2);
+  assert.ok(await page.isDisabled("#replay"));
+  await page.locator("#prediction").uncheck();
+  await page.waitForFunction(() => watched.predicts.length === 3);
+  await page.evaluate(() => wait(500));
+  assert.equal(await page.evaluate(() => watched.replays), 0, "on a board after a reset");
+  assert.ok(await page.isHidden("#notice"));
+  assert.deepEqual(errors, []);
+  await close();
+});

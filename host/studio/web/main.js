@@ -22,7 +22,7 @@ import { Layers } from "./page/layers.js";
 import { Lens } from "./page/lens.js";
 import { FrictionMap } from "./page/map.js";
 import { NewScene } from "./page/new_scene.js";
-import { followPresses, notify } from "./page/notices.js";
+import { attempt, followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
 import { Player, isPlayable } from "./page/player.js";
@@ -94,7 +94,7 @@ async function makeParts(engine) {
     sound,
     works: new Works(),
     finger,
-    lag: new Lag({ engine, map, finger, player }),
+    lag: new Lag({ engine, map, finger, project, player }),
     lens: new Lens({ map, finger }),
     ghost: new Ghost({ engine, map, finger, sound }),
     hands: new Hands({ map, editor, player, project }, sceneSchema),
@@ -116,7 +116,7 @@ async function makeParts(engine) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, player, editor, map, finger, scope, compare, ghost, lag, hands }) {
+function makeControls({ engine, project, editor, map, finger, scope, compare, ghost, hands }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -131,12 +131,12 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
   compare.onChange = () => {
     // Outlines and numbers would say which version is felt.
     hands.setEditing(false);
+    if (compare.isRunning) attempt(() => engine.endReplay());
     map.draw();
+    ghost.wake();
   };
-  lag.onChange = () => player.now(editor.text);
   hands.onEdit = () => {
-    ghost.end();
-    byId("first-words").hidden = true;
+    ghost.dismiss();
   };
 }
 
@@ -146,7 +146,7 @@ function makeControls({ engine, project, player, editor, map, finger, scope, com
  * @param {OpenScene} scene
  */
 function showWhatPlays(parts, scene) {
-  const { project, player, editor, map, scope, layers, board, compare, lag, hands } = parts;
+  const { project, player, editor, map, scope, layers, board, compare, lag, ghost, hands } = parts;
   const hint = byId("map-hint");
   /** @type {Checked | undefined} */
   let shown;
@@ -178,6 +178,7 @@ function showWhatPlays(parts, scene) {
     hint.hidden ||= !byId("first-words").hidden;
     if (compare.isRunning) return;
     map.show(picture, check);
+    ghost.wake();
     if (player.status === "loaded") map.markStale(undefined);
     // While a hand moves layers, the next map is about to come.
     if (player.isHeld) return;
@@ -192,11 +193,17 @@ function showWhatPlays(parts, scene) {
     board.allowArm(status);
     layers.isSceneLoading = status === "loading";
     showStatus(status);
+    if (status === "mistaken" || status === "failed") lag.failed();
     // A blind comparison shows no map. What is loaded has its map once that is drawn.
     if (compare.isRunning || status === "loaded") return;
     map.markStale(status === "loading" ? "drawing" : "older");
   };
-  board.onBoard = () => scene.replay();
+  lag.onChange = () => scene.replay();
+  board.onBoard = () => {
+    lag.forgetStroke();
+    byId("replay").disabled = true;
+    scene.replay();
+  };
 }
 
 /**
@@ -226,6 +233,7 @@ function showWhatIsFelt(parts) {
   board.onState = () => {
     showOutcome();
     lag.showBoard();
+    ghost.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;
   };
 }

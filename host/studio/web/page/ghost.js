@@ -40,7 +40,11 @@ export class Ghost {
   #finger;
   #note = byId("first-words");
   #isEnded = false;
+  #isDismissed = false;
   #isDown = false;
+  #isStarted = false;
+  /** Whether each picture of the screen moves it. */
+  #isMoving = false;
   /** Time that it has slid, and the time of the last picture, ms. */
   #slidMs = 0;
   #lastMs = 0;
@@ -57,13 +61,10 @@ export class Ghost {
     this.#finger = finger;
     finger.overlays.push(this);
     this.#offerSound(sound);
-    byId("first-dismiss").onclick = () => {
-      this.end();
-      this.#note.hidden = true;
-    };
+    byId("first-dismiss").onclick = () => this.dismiss();
     for (const type of /** @type {const} */ (["pointerdown", "click", "keydown"]))
       map.box.addEventListener(type, (event) => this.#touched(event), { capture: true });
-    document.addEventListener("visibilitychange", () => !this.#maySlide && this.#lift());
+    document.addEventListener("visibilitychange", () => (this.#maySlide ? this.wake() : this.#lift()));
   }
 
   /** Whether it may slide now: never with a board, unseen, in a blind comparison, or while layers are edited. */
@@ -74,18 +75,26 @@ export class Ghost {
     return link === "simulator" && isThere && !isOthers && document.visibilityState === "visible";
   }
 
-  /** Whether it is drawn. */
+  /** Whether it is drawn at each picture of the screen. */
   get isActive() {
-    return !this.#isEnded;
+    return this.#isMoving;
   }
 
   /** Begins, where a person has not asked for less motion: then nothing moves before a press. */
   start() {
-    this.#note.hidden = false;
+    this.#note.hidden = this.#isDismissed;
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.end();
     if (this.#isEnded) return;
+    this.#isStarted = true;
     this.#finger.isGuided = true;
     this.#say(SLIDES);
+    this.wake();
+  }
+
+  /** Slides on, if it may: call it when what may keep it from sliding has changed. */
+  wake() {
+    if (!this.#isStarted || this.#isEnded || this.#isMoving || !this.#maySlide) return;
+    this.#isMoving = true;
     clock.nextFrame((ms) => this.#frame(ms));
   }
 
@@ -93,9 +102,23 @@ export class Ghost {
   end() {
     this.#lift();
     this.#isEnded = true;
+    this.#isMoving = false;
     this.#finger.isGuided = false;
     this.#finger.redraw();
     this.#say(RESTS);
+  }
+
+  /** Ends for good, and the words go. */
+  dismiss() {
+    this.end();
+    this.#isDismissed = true;
+    this.#note.hidden = true;
+  }
+
+  /** The board plays, or another one: what the words say is of the simulator. */
+  showBoard() {
+    if (this.#engine.state.link !== "simulator" && !this.#isDismissed) this.dismiss();
+    this.wake();
   }
 
   /** @param {string} words */
@@ -128,15 +151,17 @@ export class Ghost {
   /** @param {number} ms */
   #frame(ms) {
     if (this.#isEnded) return;
-    const { link } = this.#engine.state;
-    if (link !== "simulator" || this.#slidMs >= REST_AFTER_MS) {
+    if (this.#slidMs >= REST_AFTER_MS) {
       this.end();
-      // What the words say is of the simulator.
-      if (link !== "simulator") this.#note.hidden = true;
       return;
     }
-    if (this.#maySlide) this.#slide(ms);
-    else this.#lift();
+    if (!this.#maySlide) {
+      this.#isMoving = false;
+      this.#lift();
+      this.#finger.redraw();
+      return;
+    }
+    this.#slide(ms);
     this.#lastMs = ms;
     clock.nextFrame((next) => this.#frame(next));
   }

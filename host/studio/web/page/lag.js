@@ -11,6 +11,7 @@ import { attempt } from "./notices.js";
 /** @import { Finger } from "./finger.js" */
 /** @import { FrictionMap } from "./map.js" */
 /** @import { Player } from "./player.js" */
+/** @import { Project } from "./project.js" */
 
 /** How far a band reaches to its side of the stroke, CSS pixels: with prediction to the one, without to the other. */
 const WIDE_PX = 15;
@@ -30,8 +31,14 @@ export class Lag {
   #borders;
   #isStroke = false;
   #isOpen = false;
-  /** Another setting is on its way: the last stroke is slid again once it plays. */
-  #isChanging = false;
+  #project;
+  #player;
+  /**
+   * The scene, as `Project.opened` counts, that another setting is on its way for: once it plays, the last stroke is
+   * slid again.
+   * @type {number | undefined}
+   */
+  #changing;
   /** Whether there is a stroke of a person's that can be slid again. */
   hasStroke = false;
   /** Another way to play was chosen. */
@@ -39,18 +46,19 @@ export class Lag {
   /** Drawn anew only when a band comes or goes. */
   isActive = false;
 
-  /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, player: Player }} parts */
-  constructor({ engine, map, finger, player }) {
+  /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, project: Project, player: Player }} parts */
+  constructor({ engine, map, finger, project, player }) {
     this.#engine = engine;
+    this.#project = project;
+    this.#player = player;
     this.#map = map;
     this.#finger = finger;
     finger.overlays.push(this);
     byId("open-lag").onclick = () => this.#open(!this.isOpen);
-    byId("touch").addEventListener("change", () => (this.#isChanging = true));
+    byId("touch").addEventListener("change", () => (this.#changing = project.opened));
     byId("prediction").onchange = () => {
-      player.withoutPrediction = !byId("prediction").checked;
-      this.#isChanging = true;
-      this.#say();
+      this.#changing = project.opened;
+      this.#predict(byId("prediction").checked);
       this.onChange();
     };
   }
@@ -66,6 +74,17 @@ export class Lag {
     byId("open-lag").setAttribute("aria-expanded", String(isOpen));
     this.#forget();
     this.#say();
+    if (isOpen || byId("prediction").checked) return;
+    // Nothing else says that friction comes late.
+    this.#predict(true);
+    if (this.#engine.state.link === "simulator") this.onChange();
+  }
+
+  /** @param {boolean} isOn */
+  #predict(isOn) {
+    byId("prediction").checked = isOn;
+    this.#player.withoutPrediction = !isOn;
+    this.#say();
   }
 
   #forget() {
@@ -77,10 +96,21 @@ export class Lag {
   /** The scene plays, maybe in another way: the last stroke again shows what that changes. */
   played() {
     this.#forget();
-    const isChanging = this.#isChanging;
-    this.#isChanging = false;
+    const isChanging = this.#changing === this.#project.opened;
+    this.#changing = undefined;
     if (!isChanging || !this.isOpen || !this.hasStroke || this.#engine.state.link !== "simulator") return;
     attempt(() => this.#engine.replay({ slowness: 1 }));
+  }
+
+  /** The scene does not play: a later one plays by itself, and no stroke with it. */
+  failed() {
+    this.#changing = undefined;
+  }
+
+  /** Another board plays: it knows no stroke. */
+  forgetStroke() {
+    this.#changing = undefined;
+    this.hasStroke = false;
   }
 
   /** A board plays as its scene says: it has no switch. */
