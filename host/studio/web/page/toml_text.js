@@ -212,14 +212,32 @@ export class TomlText {
   }
 
   /**
-   * The replacement that takes a layer table out, with the comment right above it and the empty lines behind it.
+   * The replacements that take a layer out: each of its tables, with the comment right above it and the empty lines
+   * behind it. Other tables between them stay.
    * @param {number} layer
+   * @returns {Replacement[]}
+   */
+  removals(layer) {
+    const array = this.#nodes.get("layer");
+    if (array?.type === "TOMLArray") return [elementRemoval(array, layer)];
+    /** @type {[number, number][]} */
+    const runs = [];
+    let wasOwn = false;
+    for (const { resolvedKey, range } of this.#tables) {
+      const isOwn = resolvedKey[0] === "layer" && resolvedKey[1] === layer;
+      if (isOwn && wasOwn) runs[runs.length - 1][1] = range[1];
+      else if (isOwn) runs.push([range[0], range[1]]);
+      wasOwn = isOwn;
+    }
+    return runs.map(([from, to]) => this.#removal(from, to));
+  }
+
+  /**
+   * @param {number} from
+   * @param {number} to
    * @returns {Replacement}
    */
-  removal(layer) {
-    const [from, to] = this.#rangeOf(["layer", layer]);
-    const array = this.#nodes.get("layer");
-    if (array?.type === "TOMLArray") return elementRemoval(array, layer);
+  #removal(from, to) {
     let first = lineStart(this.#text, from);
     while (first > 0 && this.#isComment(lineStart(this.#text, first - 1))) first = lineStart(this.#text, first - 1);
     // The head of the file stays.
@@ -279,6 +297,8 @@ export function replaced(text, replacements) {
  * @param {string} [before]
  */
 export function numberText(value, decimals, before = "") {
+  // TOML has words for these, but no scene may have them.
+  if (!Number.isFinite(value)) throw new Error(`${value} is no number of a scene`);
   const text = String(Number(value.toFixed(decimals)));
   const written = text === "-0" ? "0" : text;
   return before.includes(".") && !written.includes(".") ? `${written}.0` : written;
