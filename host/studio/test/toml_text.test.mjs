@@ -197,6 +197,19 @@ test("a layer is taken out with its comment, and every other layer stays", () =>
   assert.equal(replaced(head, new TomlText(head).removals(0)), "# a scene\n");
 });
 
+test("the last element of an array is taken out, and the comment of the one before stays", () => {
+  for (const [text, expected] of [
+    [ARRAY, ARRAY.replace(/\n.*stream.*/, "")],
+    ["layer = [{ a = 1 }, { b = 2 }]", "layer = [{ a = 1 }]"],
+    ["layer = [{ a = 1 }, # one\n  { b = 2 }]", "layer = [{ a = 1 }, # one\n]"],
+    ["layer = [{ a = 1 }, # one\n  { b = 2 } # 2, 3\n]", "layer = [{ a = 1 }, # one\n]"],
+    ["layer = [\n  { a = 1 }, # one\n  { b = 2 } # two, too\n  , # end\n]", "layer = [\n  { a = 1 }, # one\n]"],
+  ]) {
+    assert.equal(replaced(text, new TomlText(text).removals(1)), expected);
+    assert.deepEqual(parse(expected), { ...parse(text), layer: [parse(text).layer[0]] });
+  }
+});
+
 test("a table that stands between those of a layer stays", () => {
   const head = "version = 2\n\n";
   const design = "# the design\n[design]\nwidth_px = 10 # wide\nheight_px = 20\n\n";

@@ -219,7 +219,7 @@ export class TomlText {
    */
   removals(layer) {
     const array = this.#nodes.get("layer");
-    if (array?.type === "TOMLArray") return [elementRemoval(array, layer)];
+    if (array?.type === "TOMLArray") return [elementRemoval(this.#text, array, layer)];
     /** @type {[number, number][]} */
     const runs = [];
     let wasOwn = false;
@@ -266,14 +266,23 @@ export class TomlText {
 }
 
 /**
+ * @param {string} text
  * @param {AST.TOMLArray} array
  * @param {number} at
  * @returns {Replacement}
  */
-function elementRemoval({ elements }, at) {
+function elementRemoval(text, { elements }, at) {
   const [from, to] = elements[at].range;
   if (at + 1 < elements.length) return { from, to: elements[at + 1].range[0], insert: "" };
-  return { from: at > 0 ? elements[at - 1].range[1] : from, to, insert: "" };
+  if (at === 0) return { from, to, insert: "" };
+  const before = text.slice(elements[at - 1].range[1], from);
+  if (!before.includes("#")) return { from: from - before.length, to, insert: "" };
+  // The comment of the element before stays, and so does its comma: the own one goes.
+  const indent = /\n?[ \t]*$/.exec(before)?.[0] ?? "";
+  const behind = /^(?:(?:\s|#.*\n)*,)?(?:[ \t]*#.*)?/.exec(text.slice(to))?.[0] ?? "";
+  const end = to + behind.length;
+  // What is in the line of the element comes into that of the comment otherwise.
+  return { from: from - indent.length, to: end, insert: text[end] === "\n" ? "" : "\n" };
 }
 
 /**
