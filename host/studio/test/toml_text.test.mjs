@@ -52,6 +52,32 @@ layer = [
 `;
 texts.push(ARRAY);
 
+/** Forms that only a hand writes: words of tables in a string, hexadecimal, a table out of order, comments inside. */
+const ODD = `version = 2
+
+[[layer]]
+kind = "rings"
+gain = 0x1F
+note = """
+[[layer]] # no table
+gain = 7
+"""
+region = { x_mm = 1, # left
+  y_mm = 0b11, width_mm = 5 }
+
+[design]
+width_px = 1200
+
+[layer.repeat]
+columns = 0o17
+dx_mm = 4
+
+[[layer]]
+gain = 2
+`;
+texts.push(ODD);
+texts.push(FORMS.replaceAll("\n", "\r\n"));
+
 /** Small numbers in an order that is the same at each run. */
 function* random(seed) {
   for (let state = seed; ; ) {
@@ -93,7 +119,7 @@ test("a number is changed where it stands, and nothing else", () => {
         assert.deepEqual(parse(edited), withValue(before, path, rounded), `${path} = ${value}`);
         assert.ok(found.length <= 1);
         for (const { from, to, insert } of found) {
-          assert.match(text.slice(from, to), /^[-+\d._e]+$/, "only the digits of the number go");
+          assert.match(text.slice(from, to), /^([-+\d._e]+|0[xob][\dA-F]+)$/, "only the digits of the number go");
           assert.match(insert, /^-?\d+(\.\d{1,2})?$/);
           changed += 1;
         }
@@ -141,22 +167,57 @@ test("a key that is missing is added in the form that its table has", () => {
   );
 });
 
+test("a key is added to a table of an odd form", () => {
+  const add = (path, value) => {
+    const edited = replaced(ODD, new TomlText(ODD).replacements([{ path, value, decimals: 2 }]));
+    assert.deepEqual(parse(edited), withValue(parse(ODD), path, value), path.join("."));
+    return edited;
+  };
+  const lines = (from, to) => ODD.replace(from, to);
+  assert.equal(add(["layer", 0, "region", "height_mm"], 4), lines("width_mm = 5 }", "width_mm = 5, height_mm = 4 }"));
+  assert.equal(add(["layer", 0, "angle_deg"], 4), lines("width_mm = 5 }", "width_mm = 5 }\nangle_deg = 4"));
+  assert.equal(add(["layer", 0, "repeat", "rows"], 2), lines("dx_mm = 4", "dx_mm = 4\nrows = 2"));
+});
+
 test("a layer is taken out with its comment, and every other layer stays", () => {
   for (const text of texts) {
     const before = parse(text);
     for (const at of before.layer.keys()) {
-      const edited = replaced(text, [new TomlText(text).removal(at)]);
+      const edited = replaced(text, new TomlText(text).removals(at));
       const layer = before.layer.filter((_, other) => other !== at);
       assert.deepEqual({ layer: [], ...parse(edited) }, { ...before, layer });
       assert.ok(!/\n\n\n|\n\n$/.test(edited), "no gap is left");
     }
   }
-  const without = (at) => replaced(FORMS, [new TomlText(FORMS).removal(at)]);
+  const without = (at) => replaced(FORMS, new TomlText(FORMS).removals(at));
   assert.equal(without(2), `${FORMS.slice(0, FORMS.indexOf("\n\n# the last one"))}\n`);
   assert.equal(without(0), FORMS.slice(0, FORMS.indexOf("# above")) + FORMS.slice(FORMS.indexOf("[[layer]]\nregion")));
   // The comment at the head of a file says what the scene is.
   const head = "# a scene\n[[layer]]\nkind = 1\n";
-  assert.equal(replaced(head, [new TomlText(head).removal(0)]), "# a scene\n");
+  assert.equal(replaced(head, new TomlText(head).removals(0)), "# a scene\n");
+});
+
+test("the last element of an array is taken out, and the comment of the one before stays", () => {
+  for (const [text, expected] of [
+    [ARRAY, ARRAY.replace(/\n.*stream.*/, "")],
+    ["layer = [{ a = 1 }, { b = 2 }]", "layer = [{ a = 1 }]"],
+    ["layer = [{ a = 1 }, # one\n  { b = 2 }]", "layer = [{ a = 1 }, # one\n]"],
+    ["layer = [{ a = 1 }, # one\n  { b = 2 } # 2, 3\n]", "layer = [{ a = 1 }, # one\n]"],
+    ["layer = [\n  { a = 1 }, # one\n  { b = 2 } # two, too\n  , # end\n]", "layer = [\n  { a = 1 }, # one\n]"],
+  ]) {
+    assert.equal(replaced(text, new TomlText(text).removals(1)), expected);
+    assert.deepEqual(parse(expected), { ...parse(text), layer: [parse(text).layer[0]] });
+  }
+});
+
+test("a table that stands between those of a layer stays", () => {
+  const head = "version = 2\n\n";
+  const design = "# the design\n[design]\nwidth_px = 10 # wide\nheight_px = 20\n\n";
+  const layer = '[[layer]]\nkind = "constant"\n\n';
+  const text = `${head}${layer}${design}# where\n[layer.region]\nx_px = 1\n\n${layer}`;
+  const toml = new TomlText(text);
+  assert.equal(replaced(text, toml.removals(0)), `${head}${design}${layer}`);
+  assert.equal(replaced(text, toml.removals(1)), text.slice(0, -layer.length - 1));
 });
 
 test("a layer is found by its line", () => {
@@ -174,4 +235,5 @@ test("numbers are written as a person writes them", () => {
   assert.equal(numberText(64, 2, "63.5"), "64.0");
   assert.equal(numberText(0.1 + 0.2, 2), "0.3");
   assert.equal(numberText(123456.789, 2), "123456.79");
+  for (const value of [NaN, Infinity]) assert.throws(() => numberText(value, 2), /no number of a scene/);
 });

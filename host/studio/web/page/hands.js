@@ -301,7 +301,7 @@ export class Hands {
     const grip = this.#grip;
     if (!from?.toml || from.at === undefined || !grip) return;
     this.#grip = undefined;
-    grip.held.make([from.toml.removal(from.at)]);
+    grip.held.make(from.toml.removals(from.at));
     grip.held.end();
     this.#layers.all = this.#layers.all.filter((each) => each !== from);
     this.focus(undefined);

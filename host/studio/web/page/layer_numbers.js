@@ -51,7 +51,7 @@ export function layerNumbers(schema, toml, at, kind, reach) {
     const label = field.slice(0, field.length - ending.length);
     const isPlace = PLACE.includes(label) || field.endsWith("_px") || (kind === "bitmap" && label === "width");
     const value = own(field) ?? DEFAULTS[/** @type {keyof typeof DEFAULTS} */ (field)];
-    if (typeof value !== "number" || isPlace || (about.type !== "number" && about.type !== "integer")) return [];
+    if (typeof value !== "number" || !Number.isFinite(value) || isPlace || (about.type !== "number" && about.type !== "integer")) return [];
     const isWhole = about.type === "integer" || field === "number" || field === "seed";
     const { minimum: min = -1e6, maximum: max = 1e6 } = about;
     const [least, most] = ends(field, unit, value, isTotal, reach);

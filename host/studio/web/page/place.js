@@ -23,7 +23,11 @@
 
 /** Kinds that have a place besides their region. */
 const PLACED = ["rings", "spokes", "edge", "bitmap"];
+/** @type {Side[]} */
+const SIDES = ["x", "y", "width", "height"];
 const DECIMALS = 2;
+/** Numbers that differ by less are the same, pixels. */
+const CLOSE = 1e-6;
 /** Smallest side that a hand gives a region, mm. */
 export const SIDE_MIN_MM = 1;
 /** @type {Record<Side, "width" | "height">} */
@@ -177,16 +181,25 @@ class PlaceReader {
     );
   }
 
+  /**
+   * How far a copy is from the one before, in x and y.
+   * @param {Path | undefined} repeat
+   */
+  #steps(repeat) {
+    return (/** @type {const} */ (["x", "y"])).map((side) => {
+      const fields = repeat ? [`d${side}_mm`, `d${side}_px`] : [];
+      const field = fields.find((name) => this.#toml.value([...(repeat ?? []), name]) !== undefined);
+      return repeat && field ? Number(this.#toml.value([...repeat, field])) * this.#pixelMm(field, side) : 0;
+    });
+  }
+
   /** @returns {[number, number][]} */
   copies() {
     const repeat = this.#pathOf("repeat");
-    if (!repeat) return [[0, 0]];
+    // Where this file does not say the size of a pixel, the box of the check is around all copies.
+    if (!repeat || this.#isInForeignPixels) return [[0, 0]];
     const count = (/** @type {string} */ name) => Number(this.#toml.value([...repeat, name]) ?? 1);
-    const step = (/** @type {"x" | "y"} */ side) => {
-      const field = [`d${side}_mm`, `d${side}_px`].find((name) => this.#toml.value([...repeat, name]) !== undefined);
-      return field ? Number(this.#toml.value([...repeat, field])) * this.#pixelMm(field, side) : 0;
-    };
-    const [dx, dy] = [step("x"), step("y")];
+    const [dx, dy] = this.#steps(repeat);
     const rows = Array.from({ length: count("rows") }, (_, row) => row * dy);
     const columns = Array.from({ length: count("columns") }, (_, column) => column * dx);
     return rows.flatMap((y) => columns.map((x) => /** @type {[number, number]} */ ([x, y])));
@@ -201,16 +214,27 @@ class PlaceReader {
     const region = this.#region;
     const { boxMm } = this.#layer;
     if (!boxMm) return { x: 0, y: 0, width: this.#screen.widthMm, height: this.#screen.heightMm };
-    if (region && this.#isPolygon) return around(this.#vertices(region));
-    const sides = /** @type {Side[]} */ (["x", "y", "width", "height"]);
-    const lengths = sides.map((side) => region && this.#length(region, side)?.mm);
-    if (lengths.every((mm) => mm !== undefined)) {
+    const isHere = !this.#isInForeignPixels;
+    if (region && isHere && this.#isPolygon) return around(this.#vertices(region));
+    const lengths = SIDES.map((side) => region && this.#length(region, side)?.mm);
+    if (isHere && lengths.every((mm) => mm !== undefined)) {
       const [x, y, width, height] = lengths;
       return { x, y, width, height };
     }
     const [x, y, width, height] = boxMm;
     const offsets = bounds({ x: 0, y: 0, width: 0, height: 0 }, copies);
     return { x: x - offsets.x, y: y - offsets.y, width: width - offsets.width, height: height - offsets.height };
+  }
+
+  /** Whether a length of its place is in pixels whose size this file does not say. */
+  get #isInForeignPixels() {
+    const region = this.#region;
+    const lengths = [
+      ...this.anchors.map(({ length }) => length),
+      ...(region || this.#kind === "bitmap" ? SIDES.map((side) => this.#length(region, side)) : []),
+      ...(region ? this.#vertices(region).flat() : []),
+    ];
+    return [...this.#steps(this.#pathOf("repeat")), ...lengths.map((length) => length?.mm)].some(Number.isNaN);
   }
 
   /**
@@ -222,13 +246,7 @@ class PlaceReader {
     const isPlaced = PLACED.includes(this.#kind) && this.#kind !== "bitmap";
     const hasAll = (this.#layer.boxMm === null || this.hasRegion) && (!isPlaced || this.anchors.length === 2);
     if (!hasAll && hasOtherDefaults) return ELSEWHERE;
-    const region = this.#region;
-    const lengths = [
-      ...this.anchors.map(({ length }) => length),
-      ...(region ? ["x", "y"].map((side) => this.#length(region, /** @type {Side} */ (side))) : []),
-      ...(region ? this.#vertices(region).flat() : []),
-    ];
-    if (lengths.some((length) => Number.isNaN(length?.mm)))
+    if (this.#isInForeignPixels)
       return "This layer is placed in pixels of a design in another file: change it in the text.";
     return "";
   }
@@ -278,7 +296,6 @@ class PlaceReader {
       const value = { x_mm: x, y_mm: y, width_mm: width, height_mm: height };
       return [{ path: [...this.#own, "region"], value, decimals: DECIMALS, after: "kind" }];
     }
-    const sides = /** @type {Side[]} */ (["x", "y", "width", "height"]);
     if (region && this.#isPolygon) {
       const scaled = this.#vertices(region).flatMap((point) =>
         point.map((each, at) => {
@@ -289,7 +306,7 @@ class PlaceReader {
       );
       return this.#inOwnRegion(scaled);
     }
-    const changed = sides.filter((side) => to[side] !== from[side]);
+    const changed = SIDES.filter((side) => to[side] !== from[side]);
     const changes = changed.flatMap((side) => {
       const length = this.#length(region, side);
       return length ? [set(length, to[side])] : [];
@@ -326,9 +343,14 @@ class PlaceReader {
  * @param {number} mm
  * @returns {Change}
  */
-function set({ path, pixelMm }, mm) {
-  // A pixel finer than a millimetre's half needs no fraction.
-  return { path, value: mm / pixelMm, decimals: pixelMm !== 1 && pixelMm <= 0.5 ? 0 : DECIMALS };
+function set({ path, mm: before, pixelMm }, mm) {
+  const value = mm / pixelMm;
+  const isFine = pixelMm !== 1 && pixelMm <= 0.5;
+  // A pixel finer than a millimetre's half needs no fraction, unless it has one, or a step is finer still.
+  const pixels = before / pixelMm;
+  const isWhole =
+    isFine && Math.abs(pixels - Math.round(pixels)) < CLOSE && Math.abs(value - pixels) > 1 - CLOSE;
+  return { path, value, decimals: isWhole ? 0 : DECIMALS };
 }
 
 /**

@@ -76,12 +76,13 @@ export class Project {
   }
 
   /**
+   * Adds a file; texts get the line ends that the editor gives them.
    * @param {string} name
    * @param {Content} content
    */
   add(name, content) {
-    const isText = isToml(name) && typeof content !== "string";
-    this.files.set(name, isText ? new TextDecoder().decode(content) : content);
+    const text = isToml(name) && typeof content !== "string" ? new TextDecoder().decode(content) : content;
+    this.files.set(name, isToml(name) && typeof text === "string" ? text.replaceAll(/\r\n?/g, "\n") : text);
   }
 
   /**

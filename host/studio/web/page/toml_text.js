@@ -212,14 +212,32 @@ export class TomlText {
   }
 
   /**
-   * The replacement that takes a layer table out, with the comment right above it and the empty lines behind it.
+   * The replacements that take a layer out: each of its tables, with the comment right above it and the empty lines
+   * behind it. Other tables between them stay.
    * @param {number} layer
+   * @returns {Replacement[]}
+   */
+  removals(layer) {
+    const array = this.#nodes.get("layer");
+    if (array?.type === "TOMLArray") return [elementRemoval(this.#text, array, layer)];
+    /** @type {[number, number][]} */
+    const runs = [];
+    let wasOwn = false;
+    for (const { resolvedKey, range } of this.#tables) {
+      const isOwn = resolvedKey[0] === "layer" && resolvedKey[1] === layer;
+      if (isOwn && wasOwn) runs[runs.length - 1][1] = range[1];
+      else if (isOwn) runs.push([range[0], range[1]]);
+      wasOwn = isOwn;
+    }
+    return runs.map(([from, to]) => this.#removal(from, to));
+  }
+
+  /**
+   * @param {number} from
+   * @param {number} to
    * @returns {Replacement}
    */
-  removal(layer) {
-    const [from, to] = this.#rangeOf(["layer", layer]);
-    const array = this.#nodes.get("layer");
-    if (array?.type === "TOMLArray") return elementRemoval(array, layer);
+  #removal(from, to) {
     let first = lineStart(this.#text, from);
     while (first > 0 && this.#isComment(lineStart(this.#text, first - 1))) first = lineStart(this.#text, first - 1);
     // The head of the file stays.
@@ -248,14 +266,23 @@ export class TomlText {
 }
 
 /**
+ * @param {string} text
  * @param {AST.TOMLArray} array
  * @param {number} at
  * @returns {Replacement}
  */
-function elementRemoval({ elements }, at) {
+function elementRemoval(text, { elements }, at) {
   const [from, to] = elements[at].range;
   if (at + 1 < elements.length) return { from, to: elements[at + 1].range[0], insert: "" };
-  return { from: at > 0 ? elements[at - 1].range[1] : from, to, insert: "" };
+  if (at === 0) return { from, to, insert: "" };
+  const before = text.slice(elements[at - 1].range[1], from);
+  if (!before.includes("#")) return { from: from - before.length, to, insert: "" };
+  // The comment of the element before stays, and so does its comma: the own one goes.
+  const indent = /\n?[ \t]*$/.exec(before)?.[0] ?? "";
+  const behind = /^(?:(?:\s|#.*\n)*,)?(?:[ \t]*#.*)?/.exec(text.slice(to))?.[0] ?? "";
+  const end = to + behind.length;
+  // What is in the line of the element comes into that of the comment otherwise.
+  return { from: from - indent.length, to: end, insert: text[end] === "\n" ? "" : "\n" };
 }
 
 /**
@@ -279,6 +306,8 @@ export function replaced(text, replacements) {
  * @param {string} [before]
  */
 export function numberText(value, decimals, before = "") {
+  // TOML has words for these, but no scene may have them.
+  if (!Number.isFinite(value)) throw new Error(`${value} is no number of a scene`);
   const text = String(Number(value.toFixed(decimals)));
   const written = text === "-0" ? "0" : text;
   return before.includes(".") && !written.includes(".") ? `${written}.0` : written;
