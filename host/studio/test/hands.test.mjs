@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import { cleanUp, endLeftovers } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openIncluding, openStudio } from "./page.mjs";
+import { KEYS, PLAY, WHOLE_SCREEN_GRATING, give, openIncluding, openStudio } from "./page.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
@@ -59,7 +59,7 @@ function settled(page) {
 function onPage(page, xMm, yMm) {
   return page.evaluate(
     ([xMm, yMm]) => {
-      const { left, top } = document.querySelector(".hands").getBoundingClientRect();
+      const { left, top } = document.getElementById("map-finger").getBoundingClientRect();
       const { scale } = studioPage.map;
       return [left + xMm * scale, top + yMm * scale];
     },
@@ -342,6 +342,113 @@ test("a layer of another file is moved there, and one whose file is not here say
   assert.deepEqual(errors, []);
 });
 
+test("a file with Windows line ends that a scene includes is edited on the map", async () => {
+  const { page, errors } = await openStudio();
+  const key = KEYS.slice(0, KEYS.indexOf('\n[[layer]]\nname = "wood"'));
+  await give(page, ["keys.toml", key.replaceAll("\n", "\r\n")], ["play.toml", PLAY]);
+  await page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 2);
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await settled(page);
+  await drag(page, [22, 40], [22, 30]);
+  assert.equal(await page.evaluate(() => studioPage.editor.textOf("keys.toml")), key.replace("y_mm = 20", "y_mm = 10"));
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("what is selected stays selected where layers come and go before it, and in no other scene", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "Delete");
+  await page.locator(".layer-box").nth(1).waitFor({ state: "detached" });
+  await plays(page);
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  assert.match(await selected(page), /^right,/);
+  await press(page, "Control+z");
+  await page.locator(".layer-box").nth(1).waitFor();
+  await plays(page);
+  assert.match(await selected(page), /^right,/);
+  await press(page, "Delete");
+  assert.equal(await textOf(page), PLATES.slice(0, PLATES.indexOf("\n# The upper")));
+  await press(page, "Control+z");
+  await page.locator(".layer-box").nth(1).waitFor();
+  await plays(page);
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  assert.match(await selected(page), /^left,/);
+  await give(page, ["other.toml", PLATES.replace("# Two", "# Two other")]);
+  await page.waitForFunction(() => studioPage.editor.text.startsWith("# Two other"));
+  await plays(page);
+  assert.equal(await page.locator(".layer-box[aria-current=true]").count(), 0);
+  assert.deepEqual(errors, []);
+});
+
+test("a scene whose text cannot be read for the map plays, and says why it is not edited there", async () => {
+  const { page, errors } = await openEditing();
+  // The compiler reads past a byte-order mark.
+  await page.evaluate((text) => played(text), `\uFEFF${PLATES}`);
+  await plays(page);
+  const says = () => page.locator("#notice span").textContent();
+  assert.match(await says(), /^This scene is edited in its text, not on the map: /);
+  assert.ok(await page.locator(".hands").isHidden());
+  await page.evaluate(() => (document.getElementById("notice").hidden = true));
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  assert.match(await says(), /^This scene is edited in its text/);
+  assert.ok(await page.locator("#notice").isVisible());
+  await page.evaluate((text) => played(text), PLATES);
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await drag(page, [20, 30], [25, 30]);
+  assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 15.0"));
+  assert.deepEqual(errors, []);
+});
+
+test("a slider lets go where its key goes up elsewhere, and a number that no scene has is not shown", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const slider = page.getByLabel("friction of left, of reach", { exact: true });
+  await slider.focus();
+  await page.keyboard.down("ArrowRight");
+  assert.ok(await page.evaluate(() => studioPage.player.isHeld));
+  await press(page, "Tab");
+  await page.keyboard.up("ArrowRight");
+  await plays(page);
+  assert.match(await textOf(page), /friction_fraction = 0\.51\n/);
+  const number = page.getByLabel("friction of left, of reach, as a number");
+  await number.fill("1000");
+  await press(page, "Enter");
+  assert.equal(await number.inputValue(), "0.51");
+  assert.deepEqual(errors, []);
+});
+
+test("sliders are for the numbers that count, and end where the finger does", async () => {
+  const { page, errors } = await openEditing();
+  const text = WHOLE_SCREEN_GRATING.replace("\n[[", "\n[defaults]\nlow_fraction = 0.1\n\n[[");
+  await page.evaluate((text) => played(text), text);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const labels = await page.locator(".layer-numbers [type=range]").evaluateAll((all) => all.map((each) => each.ariaLabel));
+  assert.deepEqual(labels.filter((label) => /^low/.test(label)), ["low of grating, N"]);
+  const most = () => page.getByLabel("high of grating, N", { exact: true }).evaluate(({ max }) => max);
+  const before = await most();
+  const names = await page.locator("#finger option").evaluateAll((all) => all.map(({ value }) => value));
+  await page.selectOption("#finger", names.find((name) => /dry/.test(name)));
+  await page.waitForFunction(
+    (before) => document.querySelector('[aria-label="high of grating, N"]').max !== before,
+    before,
+  );
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("on a narrow window with the text open the panel has its place below the map", async () => {
+  const { page, errors } = await openEditing();
+  await page.setViewportSize({ width: 390, height: 844 });
+  await settled(page);
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const panel = await page.locator(".layer-panel").boundingBox();
+  const map = await page.locator(".map-card").boundingBox();
+  assert.ok(panel.width > 300 && panel.x >= 0 && panel.x + panel.width <= 390, JSON.stringify(panel));
+  assert.ok(panel.y >= map.y + map.height && panel.y + panel.height <= 844, JSON.stringify({ panel, map }));
+  assert.deepEqual(errors, []);
+});
+
 test("a blind comparison shows no outlines", async () => {
   const { page, errors } = await openEditing();
   await page.evaluate(() => document.getElementById("tab-compare").click());
@@ -359,10 +466,16 @@ test("in the mode Feel a press slides the finger, also after the mode Edit", asy
   await drag(page, [20, 30], [25, 30]);
   await page.getByRole("button", { name: "Feel", exact: true }).click();
   const text = await textOf(page);
-  const count = () => page.evaluate(() => studioPage.samples.nowS);
   await plays(page);
-  await drag(page, [20, 30], [60, 30]);
-  await page.waitForFunction((before) => studioPage.samples.nowS > before, await count());
+  await page.evaluate(() => {
+    globalThis.places = [];
+    eachFrame(({ xMm }) => places.push(...xMm));
+  });
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, 60, 30)), { steps: 6 });
+  await page.waitForFunction(() => places.some((xMm) => Math.abs(xMm - 60) < 1));
+  await page.mouse.up();
   assert.equal(await textOf(page), text);
   assert.ok(await page.locator(".hands").isHidden());
   assert.deepEqual(errors, []);

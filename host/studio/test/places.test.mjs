@@ -170,3 +170,21 @@ test("pixels stay whole, unless one has a part or a step is finer", async () => 
   assert.equal(await xAfter("30.5", 1), "33.0");
   assert.equal(await xAfter("30.5", 0.4), "31.5");
 });
+
+test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
+  const { EditedLayers } = await pageModule("edited_layers.js");
+  const text = 'version = 2\ninclude = ["parts/b.toml"]\n[[layer]]\nkind = "constant"\n';
+  const bytes = (content) => new TextEncoder().encode(content);
+  const whyNot = (more) => {
+    const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });
+    const layer = { index: 0, name: "constant", kind: "constant", from: [3, 1], boxMm: [10, 10, 20, 20] };
+    const screen = { widthMm: 120, heightMm: 80 };
+    assert.ok(layers.take({ layers: [layer], screen }, { "a.toml": text, ...more }, "a.toml"));
+    return layers.all[0].place.whyNotMoved;
+  };
+  const defaults = "[defaults.region]\nx_mm = 10\n";
+  assert.match(whyNot({ "parts/b.toml": bytes(defaults) }), /defaults. of an included file/);
+  const further = { "parts/b.toml": 'include = ["../c.toml"]\n', "c.toml": bytes(defaults) };
+  assert.match(whyNot(further), /defaults. of an included file/);
+  assert.doesNotMatch(whyNot({ "parts/b.toml": "", "c.toml": defaults }), /defaults. of an included file/);
+});

@@ -41,6 +41,22 @@ export class EditedLayers {
   }
 
   /**
+   * The layer that is now what a layer of the texts before was, if that is sure.
+   * @param {EditedLayer} before
+   */
+  successor(before) {
+    const there = this.find(before.key);
+    const { name, kind, file } = before.layer;
+    const isCounted = before.toml !== undefined && countOf(there) === countOf(before);
+    if (before.at === undefined || (isCounted && wordsOf(there) === wordsOf(before)))
+      return there?.layer.name === name && there.layer.kind === kind ? there : undefined;
+    const same = this.all.filter((each) => each.layer.file === file && wordsOf(each) === wordsOf(before));
+    if (same.length === 1) return same[0];
+    // Its own text has changed.
+    return isCounted && there?.layer.name === name && there.layer.kind === kind ? there : undefined;
+  }
+
+  /**
    * Whether the texts are those that `all` is for: otherwise a check of them is on its way.
    */
   get isCurrent() {
@@ -65,7 +81,7 @@ export class EditedLayers {
     this.#texts = texts;
     this.screen = screen;
     const parsed = new Map([...texts].map(([file, text]) => [file, new TomlText(text)]));
-    const withDefaults = [...parsed].filter(([, toml]) => includesDefaults(toml, files));
+    const withDefaults = [...parsed].filter(([file, toml]) => includesDefaults(toml, file ?? entry, files));
     this.#withOtherDefaults = new Set(withDefaults.map(([file]) => file));
     this.all = layers.map((layer) => {
       const toml = parsed.get(layer.file);
@@ -130,18 +146,52 @@ export class EditedLayers {
 }
 
 /**
+ * The values of a layer, as words to compare.
+ * @param {EditedLayer | undefined} edited
+ */
+function wordsOf(edited) {
+  return edited?.at === undefined ? undefined : JSON.stringify(edited.toml?.value(["layer", edited.at]));
+}
+
+/**
+ * How many layers the file of a layer has.
+ * @param {EditedLayer | undefined} edited
+ */
+function countOf(edited) {
+  const layers = edited?.toml?.value(["layer"]);
+  return Array.isArray(layers) ? layers.length : 0;
+}
+
+/**
  * @param {TomlText} toml
+ * @param {string} file Its name.
  * @param {Files} files
  * @returns {boolean}
  */
-function includesDefaults(toml, files) {
+function includesDefaults(toml, file, files) {
   const names = toml.value(["include"]);
-  return Array.isArray(names) && names.some((name) => {
-    const content = files[String(name)];
-    if (typeof content !== "string") return false;
-    const included = new TomlText(content);
-    return included.value(["defaults"]) !== undefined || includesDefaults(included, files);
+  return Array.isArray(names) && names.some((each) => {
+    const name = joined(file, String(each));
+    const content = files[name];
+    if (content === undefined) return false;
+    const included = new TomlText(typeof content === "string" ? content : new TextDecoder().decode(content));
+    return included.value(["defaults"]) !== undefined || includesDefaults(included, name, files);
   });
+}
+
+/**
+ * The path of a file that another one calls `name`.
+ * @param {string} file
+ * @param {string} name
+ */
+function joined(file, name) {
+  /** @type {string[]} */
+  const parts = [];
+  for (const part of [...file.split("/").slice(0, -1), ...name.split("/")]) {
+    if (part === ".." && parts.length > 0 && parts[parts.length - 1] !== "..") parts.pop();
+    else if (part !== "" && part !== ".") parts.push(part);
+  }
+  return parts.join("/");
 }
 
 /**

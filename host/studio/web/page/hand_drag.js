@@ -145,7 +145,7 @@ function snapped(mm, grid) {
  * @param {Screen} screen
  * @param {number} grid
  */
-export function resized({ box, copies, keepsRatio }, handle, dx, dy, screen, grid) {
+function resized({ box, copies, keepsRatio }, handle, dx, dy, screen, grid) {
   const all = bounds({ ...box, width: 0, height: 0 }, copies);
   const [left, right] = dragged(
     [box.x, box.x + box.width],

@@ -1,13 +1,14 @@
 // Hands on the map: in the mode *Edit* layers are selected, moved, resized and tuned, and their text changes with them.
 // @ts-check
 
-import { byId, element } from "./dom.js";
+import { byId, element, sentenceOf } from "./dom.js";
 import { EditedLayers } from "./edited_layers.js";
 import { HandDrag, withSide } from "./hand_drag.js";
 import { HandKeys } from "./hand_keys.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { layerNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
+import { notify } from "./notices.js";
 
 /** @import { Checked, Files } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
@@ -26,7 +27,7 @@ import { LayerPanel } from "./layer_panel.js";
  * @typedef {{ held: HeldChange, from: EditedLayer }} Grip
  */
 
-const ELSEWHERE = "The text has changed: its layers are read again in a moment.";
+const ELSEWHERE = "The text has changed: its layers are read again once it has no mistake.";
 
 export class Hands {
   #parts;
@@ -42,6 +43,10 @@ export class Hands {
   #grip;
   #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
   isEditing = false;
+  /** Why the scene that plays cannot be edited here, or "". */
+  #whyNot = "";
+  /** The scene that the layers are of, as the project counts them. */
+  #opened = 0;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
 
@@ -96,6 +101,10 @@ export class Hands {
 
   /** @param {boolean} isEditing */
   setEditing(isEditing) {
+    if (isEditing && this.#whyNot) {
+      this.#refuse();
+      return;
+    }
     this.end();
     this.isEditing = isEditing;
     const [feel, edit] = this.#buttons;
@@ -110,19 +119,56 @@ export class Hands {
   }
 
   /**
-   * Takes the layers of a scene that was checked.
+   * Takes the layers of a scene that was checked. Where their texts cannot be read here, the scene plays all the same,
+   * and is not edited on the map.
    * @param {Checked} check
    * @param {Files} files That were checked.
    */
   show(check, files) {
-    const { editor, project } = this.#parts;
     if (this.isHolding) return;
+    try {
+      this.#take(check, files);
+      this.#whyNot = "";
+    } catch (error) {
+      this.#whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
+      if (this.isEditing) this.#refuse();
+    }
+  }
+
+  /** Says why there is no mode Edit, and leaves it. */
+  #refuse() {
+    notify(this.#whyNot, undefined, { beside: this.#buttons[1] });
+    this.setEditing(false);
+  }
+
+  /**
+   * @param {Checked} check
+   * @param {Files} files
+   */
+  #take(check, files) {
+    const { editor, project } = this.#parts;
     this.#reach = check;
+    const before = this.selected;
     if (!this.#layers.take(check, files, project.entry)) return;
-    if (!this.#layers.find(this.#selected)) this.#selected = undefined;
-    this.#draw(false);
+    const isSameScene = project.opened === this.#opened;
+    this.#opened = project.opened;
+    const after = before && isSameScene ? this.#layers.successor(before) : undefined;
+    this.#reselect(after?.key);
     // What is selected stands in the text that is shown.
     if (!editor.has(this.selected?.layer.file)) this.#panel.hide();
+  }
+
+  /**
+   * The layer that is selected has another key: layers before it came or went.
+   * @param {string | undefined} key
+   */
+  #reselect(key) {
+    const hasFocus = this.#surface.contains(document.activeElement);
+    const isOther = key !== this.#selected;
+    this.#selected = key;
+    this.#draw(isOther);
+    // The keys act on what is selected.
+    if (isOther && hasFocus) this.focus(key);
   }
 
   /** Whether a hand is changing a layer. */
@@ -334,8 +380,8 @@ export class Hands {
     }
     const { toml, at, layer } = selected;
     const numbers = toml && at !== undefined ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
-    this.#panel.show(selected, numbers, isNew);
-    const covered = [byId("numbers"), byId("scope").parentElement ?? box];
-    this.#panel.place(covered.map((each) => each.getBoundingClientRect()));
+    this.#panel.show(selected, numbers, this.#reach, isNew);
+    const felt = [byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect());
+    this.#panel.place(felt, (box.closest(".map-card") ?? box).getBoundingClientRect());
   }
 }

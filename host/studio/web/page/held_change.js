@@ -40,11 +40,6 @@ export class HeldChange {
     return this.#view.state.doc !== this.#now;
   }
 
-  /** The text before. */
-  get startText() {
-    return this.#start.doc.toString();
-  }
-
   /**
    * Makes these replacements of the text before, in place of those that were made last.
    * @param {Replacement[]} replacements

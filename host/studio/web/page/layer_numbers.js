@@ -43,8 +43,12 @@ export function layerNumbers(schema, toml, at, kind, reach) {
   const blend = own("blend");
   const fields = layerFields(schema, { kind, ...(typeof blend === "string" ? { blend } : {}) });
   const isTotal = kind === "constant" && (blend ?? "replace") === "replace" && own("above") !== "natural";
-  const written = [["layer", at], ["defaults"]].flatMap((path) => Object.keys(toml.value(path) ?? {}));
-  const names = [...new Set([...written, ...Object.keys(DEFAULTS)])].filter((field) => field in fields);
+  const written = Object.keys(toml.value(["layer", at]) ?? {});
+  // A field of the layer counts before a default in any unit.
+  const has = new Set(written.map(stemOf));
+  const others = [...Object.keys(toml.value(["defaults"]) ?? {}), ...Object.keys(DEFAULTS)];
+  const counting = others.filter((field) => !has.has(stemOf(field)));
+  const names = [...new Set([...written, ...counting])].filter((field) => field in fields);
   return names.flatMap((field) => {
     const about = fields[field];
     const [ending, unit, decimals, step] = UNITS.find(([each]) => field.endsWith(each)) ?? ["", "", 2, 0.01];
@@ -69,6 +73,14 @@ export function layerNumbers(schema, toml, at, kind, reach) {
       max,
     };
   });
+}
+
+/**
+ * The name of a field without its unit: fields with the same stem say the same.
+ * @param {string} field
+ */
+function stemOf(field) {
+  return field.replace(/_(n|fraction|factor|mm|px)$/, "");
 }
 
 /**

@@ -6,7 +6,7 @@ import { clamp } from "./place.js";
 import { numberText } from "./toml_text.js";
 
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { LayerNumber } from "./layer_numbers.js" */
+/** @import { LayerNumber, Most } from "./layer_numbers.js" */
 /** @import { Side } from "./place.js" */
 
 /** @type {[Side, string][]} */
@@ -22,6 +22,8 @@ export class LayerPanel {
   /** The fields, by name, for the layer that they were made for. */
   #fields = /** @type {Map<string, HTMLInputElement[]>} */ (new Map());
   #madeFor = "";
+  /** What the text has, by field, as it was shown last. */
+  #shown = /** @type {Map<string, string>} */ (new Map());
   /**
    * A number of the layer is being changed: `onNumber(number, value)`, until `onEnd()`.
    * @type {(number: LayerNumber, value: number) => void}
@@ -37,13 +39,17 @@ export class LayerPanel {
   onDelete = () => {};
   onClose = () => {};
 
-  /** Says a sentence at the layer. */
-  set note(sentence) {
-    this.#note.textContent = sentence;
+  constructor() {
+    // A key that is held is let go elsewhere, where no keyup is heard.
+    this.element.addEventListener("focusout", () => this.onEnd());
   }
 
-  get note() {
-    return this.#note.textContent;
+  /**
+   * Says a sentence at the layer.
+   * @param {string} sentence
+   */
+  set note(sentence) {
+    this.#note.textContent = sentence;
   }
 
   focus() {
@@ -53,11 +59,13 @@ export class LayerPanel {
   /**
    * @param {EditedLayer} edited
    * @param {LayerNumber[]} numbers
+   * @param {Most} reach That the ends of the sliders are for.
    * @param {boolean} isNew Whether another layer was selected before.
    */
-  show(edited, numbers, isNew) {
+  show(edited, numbers, { naturalN, reachN }, isNew) {
     const { layer, place, at } = edited;
-    const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, numbers.map(({ field }) => field)]);
+    const fields = numbers.map(({ field }) => field);
+    const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, fields, naturalN, reachN]);
     if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
     if (madeFor !== this.#madeFor) this.#make(edited, numbers);
     this.#madeFor = madeFor;
@@ -84,6 +92,7 @@ export class LayerPanel {
    * @param {string} why
    */
   #update(name, text, isDisabled, why) {
+    this.#shown.set(name, text);
     for (const input of this.#fields.get(name) ?? []) {
       if (input !== document.activeElement || Number(input.value) !== Number(text)) input.value = text;
       input.disabled = isDisabled;
@@ -155,7 +164,12 @@ export class LayerPanel {
       if (input.value !== "" && input.valueAsNumber >= min && input.valueAsNumber <= max)
         this.onNumber(number, input.valueAsNumber);
     };
-    slider.onchange = input.onchange = () => this.onEnd();
+    slider.onchange = () => this.onEnd();
+    input.onchange = () => {
+      this.onEnd();
+      // What no scene may have was not taken.
+      input.value = this.#shown.get(field) ?? "";
+    };
     this.#fields.set(field, [slider, input]);
     const [before, behind] = [element("span", {}, label), element("span", {}, unit)];
     return element("div", { className: "layer-number" }, before, slider, input, behind);
@@ -163,10 +177,13 @@ export class LayerPanel {
 
   /**
    * Puts the panel over what shows what a finger feels: nothing is felt while layers are edited, and neither map nor
-   * text is covered.
-   * @param {DOMRect[]} covered
+   * text is covered. Where all of that is hidden, it lies over what is below the map.
+   * @param {DOMRect[]} felt
+   * @param {DOMRect} map
    */
-  place(covered) {
+  place(felt, map) {
+    const seen = felt.filter(({ width }) => width > 0);
+    const covered = seen.length > 0 ? seen : [new DOMRect(map.left, map.bottom, map.width, LEAST_PX)];
     const left = Math.min(...covered.map((each) => each.left));
     const top = Math.min(...covered.map((each) => each.top));
     const right = Math.max(...covered.map((each) => each.right));
