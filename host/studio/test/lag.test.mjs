@@ -209,6 +209,75 @@ function lensParts(page) {
   });
 }
 
+/** The lens's radius on a large map, in CSS pixels, for the millimetres that it shows around the finger. */
+const LENS = { radiusPx: 120, radiusMm: 8 };
+
+/**
+ * What is drawn in the lens: where the contact's ring crosses the line up from the finger, the box of each ink, and the
+ * envelope's pixels; lengths in CSS pixels, from the finger. Also the newest sample, the voltages that led to it, and
+ * the largest friction.
+ */
+function lensDrawn(page) {
+  return page.evaluate(async (radiusPx) => {
+    const { engine, editor, map, samples } = studioPage;
+    const canvas = document.getElementById("map-finger");
+    const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const last = samples.since(samples.nowS);
+    const { voltageV } = samples.since(samples.nowS - 0.12);
+    const [left, top] = [last.xMm[0] * map.scale - radiusPx, last.yMm[0] * map.scale - radiusPx].map(Math.round);
+    const inkOf = (name) => {
+      const probe = map.box.appendChild(document.createElement("span"));
+      probe.style.color = `var(--${name})`;
+      const ink = getComputedStyle(probe).color.match(/\d+/g).map(Number);
+      probe.remove();
+      return ink;
+    };
+    const colourAt = (x, y) => {
+      const at = 4 * ((top + y) * width + left + x);
+      return data.slice(at, at + 3);
+    };
+    const boxOf = (name) => {
+      const ink = inkOf(name);
+      const found = [];
+      for (let y = 4; y < 2 * radiusPx - 4; y += 1)
+        for (let x = 4; x < 2 * radiusPx - 4; x += 1) {
+          const isInk = colourAt(x, y).every((value, index) => Math.abs(value - ink[index]) < 10);
+          if (isInk) found.push([x - radiusPx, y - radiusPx]);
+        }
+      const [xs, ys] = [found.map(([x]) => x), found.map(([, y]) => y)];
+      const box = { left: Math.min(...xs), right: Math.max(...xs), top: Math.min(...ys), bottom: Math.max(...ys) };
+      return { ...box, pixels: found.length };
+    };
+    const contact = [];
+    for (let y = 14; y < radiusPx - 12; y += 1) {
+      if (colourAt(radiusPx, radiusPx - y).every((value) => value > 170)) contact.push(y);
+    }
+    const { highN } = await engine.check({ "scene.toml": editor.text }, "scene.toml", {});
+    return { contact, force: boxOf("felt"), voltage: boxOf("voltage"), last, voltageV, highN };
+  }, LENS.radiusPx);
+}
+
+/** Contact, arrow and envelope are as large as the samples say. */
+async function assertLensDrawn(page) {
+  const { contact, force, voltage, last, voltageV, highN } = await lensDrawn(page);
+  const { radiusPx, radiusMm } = LENS;
+  const contactPx = (last.contactRadiusMm[0] * radiusPx) / radiusMm;
+  assert.ok(contact.length > 0 && contact.every((y) => Math.abs(y - contactPx) < 3), `${contact}, not ${contactPx}`);
+  // Against the way of the finger. A report may lie over the tip.
+  const forcePx = (0.85 * radiusPx * last.feltN[0]) / highN;
+  const isLong = -force.left > forcePx - 14 && -force.left < forcePx + 3;
+  assert.ok(isLong && force.right < 12, `${JSON.stringify(force)}, not ${forcePx}`);
+  const [widePx, highPx, belowPx] = [1.1 * radiusPx, 0.2 * radiusPx, 0.68 * radiusPx];
+  const isAt = (value, wanted) => Math.abs(value - wanted) < 4;
+  const said = JSON.stringify(voltage);
+  assert.ok(isAt(voltage.left, -widePx / 2) && isAt(voltage.right, widePx / 2), said);
+  assert.ok(isAt((voltage.top + voltage.bottom) / 2, belowPx), said);
+  const most = Math.max(50, ...voltageV);
+  const area = (widePx * highPx * mean([...voltageV])) / most;
+  // Pixels at its edges are in part of another ink.
+  assert.ok(voltage.pixels > 0.75 * area && voltage.pixels < 1.1 * area, `${said}, not ${area} pixels`);
+}
+
 test("a slow replay has a lens at the finger: contact, reports, predicted place, voltage and force", async () => {
   const { page, errors, close } = await openWide();
   await wholeStroke(page, 40);
@@ -221,6 +290,7 @@ test("a slow replay has a lens at the finger: contact, reports, predicted place,
   assert.ok(predicted && Math.hypot(predicted.xMm - xMm, predicted.yMm - 40) < 2, JSON.stringify({ predicted, xMm }));
   assert.ok(reports && reports.leftMm < xMm - 0.8, `reports trail behind: ${JSON.stringify({ reports, xMm })}`);
   const [, contact, force, voltage] = /contact\s*([\d.]+) mm[\s\S]*force\s*(\d+) mN[\s\S]*voltage\s*(\d+) V rms/.exec(words) ?? [];
+  await assertLensDrawn(page);
   // The words are of a picture at most two samples older.
   assert.ok(Math.abs(contact - 2 * contactMm) < 0.2 && contact > 7 && contact < 11, words);
   assert.ok(Math.abs(force - 1000 * feltN) < 25 && force > 150, words);
