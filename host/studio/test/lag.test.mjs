@@ -1,32 +1,16 @@
-// The page in a browser: how late friction comes with prediction and without, and the lens of a slow replay.
+// The page in a browser: how late friction comes, with prediction and without.
 
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import { cleanUp, endLeftovers } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
+import { STRIPES_MM, WHOLE_SCREEN_GRATING, compareBlind, openStudio, openWide, wholeStroke } from "./page.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
 
-/** Smooth stripes: friction is the mean of least and largest at every half of one. */
-const STRIPES_MM = 20;
 /** The page takes a border as crossed 12 % of the difference behind that mean: so far behind it, mm. */
 const BEHIND_MM = (STRIPES_MM / (2 * Math.PI)) * Math.asin(2 * 0.12);
-const STRIPES = WHOLE_SCREEN_GRATING.replace("wavelength_mm = 2", `wave = "sine"\nwavelength_mm = ${STRIPES_MM}`);
 const INKS = { predicted: [0x7d, 0xff, 0xb0], reported: [0xff, 0x7a, 0x1a] };
-
-/** Opens the page with a large map that shows the stripes. */
-async function openWide() {
-  const opened = await openStudio();
-  await opened.page.setViewportSize({ width: 1920, height: 1200 });
-  await opened.page.click("#toggle-drawer");
-  await opened.page.evaluate((text) => played(text), STRIPES);
-  await opened.page.waitForFunction(() => {
-    const at = (xMm) => studioPage.map.frictionAt(xMm, 40);
-    return at(5) - at(15) > 0.09 && at(45) - at(55) > 0.09;
-  });
-  return opened;
-}
 
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 const rms = (values) => Math.sqrt(mean(values.map((value) => value * value)));
@@ -186,91 +170,12 @@ test("a faster touch source slides the same stroke again, and its bands are shor
   await close();
 });
 
-/** Where the lens's ring and the inks of its parts are on the map, as boxes in mm; none where it is not. */
-function lensParts(page) {
-  return page.evaluate(() => {
-    const canvas = document.getElementById("map-finger");
-    const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-    const perMm = studioPage.map.scale * devicePixelRatio;
-    const inks = { reports: [0xff, 0xd2, 0x3f], predicted: [0x7d, 0xff, 0xb0] };
-    const boxes = {};
-    for (const [name, ink] of Object.entries(inks)) {
-      const found = [];
-      for (let at = 0; at < data.length; at += 4) {
-        if (data[at + 3] > 250 && ink.every((value, index) => Math.abs(data[at + index] - value) < 8)) found.push(at / 4);
-      }
-      const [xs, ys] = [found.map((at) => (at % width) / perMm), found.map((at) => Math.floor(at / width) / perMm)];
-      const middle = (values) => (Math.min(...values) + Math.max(...values)) / 2;
-      boxes[name] = found.length > 0 ? { xMm: middle(xs), yMm: middle(ys), leftMm: Math.min(...xs) } : null;
-    }
-    const { samples } = studioPage;
-    const last = samples.since(samples.nowS);
-    return { ...boxes, words: document.getElementById("lens-words").innerText, last };
-  });
-}
-
-test("a slow replay has a lens at the finger: contact, reports, predicted place, voltage and force", async () => {
-  const { page, errors, close } = await openWide();
-  await wholeStroke(page, 40);
-  assert.ok(await page.isHidden("#lens-words"), "not while one slides");
-  await page.click("#replay");
-  await page.evaluate(() => wait(5000));
-  const { reports, predicted, words, last } = await lensParts(page);
-  const [xMm, contactMm, feltN, voltageV] = ["xMm", "contactRadiusMm", "feltN", "voltageV"].map((name) => last[name][0]);
-  assert.ok(xMm > 30 && xMm < 90, `${xMm} mm`);
-  assert.ok(predicted && Math.hypot(predicted.xMm - xMm, predicted.yMm - 40) < 2, JSON.stringify({ predicted, xMm }));
-  assert.ok(reports && reports.leftMm < xMm - 0.8, `reports trail behind: ${JSON.stringify({ reports, xMm })}`);
-  const [, contact, force, voltage] = /contact\s*([\d.]+) mm[\s\S]*force\s*(\d+) mN[\s\S]*voltage\s*(\d+) V rms/.exec(words) ?? [];
-  // The words are of a picture at most two samples older.
-  assert.ok(Math.abs(contact - 2 * contactMm) < 0.2 && contact > 7 && contact < 11, words);
-  assert.ok(Math.abs(force - 1000 * feltN) < 25 && force > 150, words);
-  assert.ok(Math.abs(voltage - voltageV) < 15, words);
-  await page.click("#replay");
-  await page.evaluate(() => wait(300));
-  assert.ok(await page.isHidden("#lens-words"), "the replay is over");
-  const gone = await lensParts(page);
-  assert.deepEqual([gone.reports, gone.predicted], [null, null]);
-  assert.deepEqual(errors, []);
-  await close();
-});
-
-/** Begins a blind comparison of the first scene and another. */
-async function compareBlind(page) {
-  await page.click("#tab-compare");
-  await page.click("text=Keep this scene as A");
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
-  await page.click("text=Compare A with the scene now");
-  await page.locator("body.blind").waitFor();
-}
-
 test("the prediction switch ends a blind comparison: the scene plays, not the version that was felt", async () => {
   const { page, errors, close } = await openStudio();
   await compareBlind(page);
   await page.evaluate(() => document.getElementById("prediction").click());
   await page.locator("text=the comparison is over").waitFor();
   assert.equal(await page.locator("body.blind").count(), 0);
-  assert.deepEqual(errors, []);
-  await close();
-});
-
-test("a blind comparison ends a slow replay, and the lens says nothing in one", async () => {
-  const { page, errors, close } = await openStudio();
-  await wholeStroke(page, 40);
-  await page.evaluate(() => {
-    document.getElementById("loop").checked = true;
-    document.getElementById("replay").click();
-  });
-  await page.evaluate(() => wait(1000));
-  assert.ok(await page.isVisible("#lens-words"));
-  await compareBlind(page);
-  await page.evaluate(() => wait(300));
-  assert.equal(await page.textContent("#replay"), "Replay slowly");
-  assert.ok(await page.isHidden("#lens-words"), "the replay is over");
-  // However one gets there: words of what is felt say which version that is.
-  await page.evaluate(() => document.getElementById("replay").click());
-  await page.evaluate(() => wait(1000));
-  assert.equal(await page.textContent("#replay"), "Stop replay");
-  assert.ok(await page.isHidden("#lens-words"), "in a comparison");
   assert.deepEqual(errors, []);
   await close();
 });

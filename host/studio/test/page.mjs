@@ -168,3 +168,29 @@ export async function openIncluding() {
 }
 
 export const tabsOf = (page) => page.locator("#file-tabs button").allTextContents();
+
+/** Smooth stripes: friction is the mean of least and largest at every half of one. */
+export const STRIPES_MM = 20;
+const STRIPES = WHOLE_SCREEN_GRATING.replace("wavelength_mm = 2", `wave = "sine"\nwavelength_mm = ${STRIPES_MM}`);
+
+/** Opens the page with a large map that shows the stripes. */
+export async function openWide() {
+  const opened = await openStudio();
+  await opened.page.setViewportSize({ width: 1920, height: 1200 });
+  await opened.page.click("#toggle-drawer");
+  await opened.page.evaluate((text) => played(text), STRIPES);
+  await opened.page.waitForFunction(() => {
+    const at = (xMm) => studioPage.map.frictionAt(xMm, 40);
+    return at(5) - at(15) > 0.09 && at(45) - at(55) > 0.09;
+  });
+  return opened;
+}
+
+/** Begins a blind comparison of the first scene and another. */
+export async function compareBlind(page) {
+  await page.click("#tab-compare");
+  await page.click("text=Keep this scene as A");
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.click("text=Compare A with the scene now");
+  await page.locator("body.blind").waitFor();
+}

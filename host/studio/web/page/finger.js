@@ -258,7 +258,14 @@ export class Finger {
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#area.width, this.#area.height);
     this.#drawTrail(context);
+    // The lens of a replay shows what is under its finger.
+    if (this.#replayed) this.#drawFinger(context);
     if (!this.#isBlind) for (const overlay of this.overlays) overlay.draw(context);
+    if (!this.#replayed) this.#drawFinger(context);
+  }
+
+  /** @param {CanvasRenderingContext2D} context */
+  #drawFinger(context) {
     const finger = this.#finger;
     if (!finger) return;
     const { scale } = this.#map;
