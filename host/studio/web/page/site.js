@@ -11,10 +11,13 @@ export async function keepSite() {
   // The first version of all has nothing to take over from.
   if (!registration || !navigator.serviceWorker.controller) return;
   if (registration.waiting) offer(registration.waiting);
-  registration.addEventListener("updatefound", () => {
+  const follow = () => {
     const { installing } = registration;
     installing?.addEventListener("statechange", () => installing.state === "installed" && offer(installing));
-  });
+  };
+  // It may have been found while the page started.
+  follow();
+  registration.addEventListener("updatefound", follow);
 }
 
 /**
