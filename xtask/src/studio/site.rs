@@ -126,8 +126,12 @@ fn worker(site: &Files) -> Result<String, String> {
     }
     let version = STANDARD.encode(digest.finalize());
     // A server gives the documents by the names of their folders, and may redirect from their own.
-    let names: Vec<&str> = site.keys().map(|name| name.strip_suffix("index.html").unwrap_or(name)).collect();
-    let names: Vec<&str> = names.into_iter().map(|name| if name.is_empty() { "./" } else { name }).collect();
+    let address = |name| match str::strip_suffix(name, "index.html") {
+        Some("") => "./",
+        Some(folder) => folder,
+        None => name,
+    };
+    let names: Vec<&str> = site.keys().map(|name| address(name)).collect();
     let facts = serde_json::json!({ "version": version, "files": names });
     Ok(format!("const SITE = {facts};\n{}", text(&root().join(SOURCES).join("service_worker.js"))?))
 }
