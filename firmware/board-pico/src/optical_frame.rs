@@ -18,6 +18,7 @@ use frixel_drivers::i2c_bus_clear::clear_bus;
 use frixel_drivers::zforce::{self, MESSAGE_MAX_LEN, ZForce};
 use rp_pac::I2C0;
 use rp_pac::i2c::vals::Speed;
+use rp_pac::resets::regs::Peripherals;
 
 use crate::chip::TICK_HZ;
 use crate::clock::{self, CORE_HZ};
@@ -120,7 +121,7 @@ impl I2c for Bus {
 
 impl Bus {
     fn new() -> Self {
-        clock::restart(|w, is_reset| w.set_i2c0(is_reset));
+        clock::restart(Peripherals::set_i2c0);
         pins::connect_pulled_up(SDA, Function::I2c);
         pins::connect_pulled_up(SCL, Function::I2c);
         Self(())
