@@ -129,6 +129,8 @@ impl<P: Port> LoopedRig<P> {
     fn progress(&self) -> Progress {
         if self.ticks_run {
             Progress::Ticks
+        } else if self.one_shot.is_high_again() {
+            Progress::EnabledAgain
         } else if self.one_shot.amplifier_has_turned_on() {
             Progress::Enabled
         } else if self.enable_was_found_low {

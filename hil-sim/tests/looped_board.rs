@@ -147,6 +147,7 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
         (Wrong::SwitchClosed, Stop::Switch),
         (Wrong::SwitchPressed, Stop::Switch),
         (Wrong::SwitchPressedInPulse, Stop::Switch),
+        (Wrong::SwitchPressedInCutPulse, Stop::Switch),
         (Wrong::SwitchPressedUnderTicks, Stop::Switch),
         (Wrong::MonitorDriven, Stop::MonitorDriven(Levels::HIGH)),
         (Wrong::MonitorNotZero, Stop::MonitorNotZero(1_750)),
@@ -168,7 +169,11 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
         // A pulse where there must be none is caught by the simulated board, too.
         let comes_after_pulses = matches!(
             wrong,
-            Wrong::TickLate | Wrong::EnableStaysHigh | Wrong::ReadyUnderTicks | Wrong::SwitchPressedUnderTicks
+            Wrong::TickLate
+                | Wrong::EnableStaysHigh
+                | Wrong::SwitchPressedInCutPulse
+                | Wrong::ReadyUnderTicks
+                | Wrong::SwitchPressedUnderTicks
         );
         assert!(comes_after_pulses || !said.contains("enable_rises_us"), "{said}");
         assert!(rig.refused_us() <= REFUSED_MAX_US, "{wrong:?}: {} us", rig.refused_us());

@@ -30,6 +30,18 @@ fn a_playing_tick_sends_its_code_and_then_kicks_the_enable() {
     assert!(matches!(of_tick(&board)[..], [Event::Sent(_), Event::Kicked]));
 }
 
+/// The monitor soon follows the code that the DAC has just put out; an order, for one, takes long.
+#[test]
+fn a_tick_reads_the_monitor_before_anything_else() {
+    let mut board = Board::playing();
+    for _ in 0..10 {
+        let before = board.shared.count();
+        board.step();
+        assert_eq!(board.shared.count(), before + 1);
+        assert_eq!(board.wires.ticks_at_reading.get(), before, "the count is the first thing after the inputs");
+    }
+}
+
 #[test]
 fn a_board_that_was_not_armed_sends_zero_and_keeps_the_amplifier_off() {
     let mut board = Board::new();

@@ -23,6 +23,8 @@ pub(super) struct OneShot {
     /// Since when the enable has been high.
     high_since: Option<u32>,
     refused_cycles: u32,
+    /// Pulses that have ended.
+    pulses: u32,
     rose: Option<u32>,
     fell: Option<Fall>,
 }
@@ -39,6 +41,7 @@ impl OneShot {
         if self.falls_at == Some(self.now) {
             self.high_since = None;
             self.falls_at = None;
+            self.pulses += 1;
             self.fell = Some(Fall { at: self.now, had_fallen_before: self.fell.is_some() });
         }
         self.now
@@ -82,6 +85,11 @@ impl OneShot {
     /// Time for which the enable has been high although it was refused, us.
     pub(super) fn refused_us(&self) -> u32 {
         self.refused_cycles / CYCLES_PER_US
+    }
+
+    /// Whether the enable is high in a pulse after the first one.
+    pub(super) fn is_high_again(&self) -> bool {
+        self.high_since.is_some() && self.pulses > 0
     }
 
     /// Whether an amplifier on this enable has turned on.

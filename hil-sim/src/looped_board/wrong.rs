@@ -35,6 +35,8 @@ wrongs! {
     SwitchPressed = "switch-pressed",
     /// The arm switch is pressed during a pulse of the enable, and let go at its end.
     SwitchPressedInPulse = "switch-pressed-in-pulse",
+    /// The arm switch is pressed during the pulse that the board cuts short.
+    SwitchPressedInCutPulse = "switch-pressed-in-cut-pulse",
     /// The arm switch is pressed after the tick was started.
     SwitchPressedUnderTicks = "switch-pressed-under-ticks",
     /// The amplifier's monitor is plugged in.
@@ -100,6 +102,8 @@ pub(super) enum Progress {
     Wired,
     /// The enable has been high long enough for an amplifier to turn on.
     Enabled,
+    /// The enable is high in the pulse after the first one.
+    EnabledAgain,
     /// The tick runs.
     Ticks,
 }
@@ -119,12 +123,13 @@ impl Wrong {
         let closed = Inputs { switch_closed: true, ..LOW };
         match (self, progress) {
             (Self::ReadyHigh, _)
-            | (Self::ReadyRises, Progress::Wired | Progress::Enabled | Progress::Ticks)
+            | (Self::ReadyRises, Progress::Wired | Progress::Enabled | Progress::EnabledAgain | Progress::Ticks)
             | (Self::ReadyWhileEnabled, Progress::Enabled)
             | (Self::ReadyUnderTicks, Progress::Ticks) => ready,
             (Self::SwitchClosed, _)
-            | (Self::SwitchPressed, Progress::Wired | Progress::Enabled | Progress::Ticks)
+            | (Self::SwitchPressed, Progress::Wired | Progress::Enabled | Progress::EnabledAgain | Progress::Ticks)
             | (Self::SwitchPressedInPulse, Progress::Enabled)
+            | (Self::SwitchPressedInCutPulse, Progress::EnabledAgain)
             | (Self::SwitchPressedUnderTicks, Progress::Ticks) => closed,
             _ => LOW,
         }

@@ -52,6 +52,9 @@ pub(crate) struct Wires {
     pub(crate) transmitted: RefCell<Vec<u8>>,
     monitor: RefCell<IdealMonitor>,
     code: Cell<DacCode>,
+    shared: Cell<Option<&'static TickShared>>,
+    /// Ticks that had begun their work when the monitor was read last.
+    pub(crate) ticks_at_reading: Cell<u32>,
 }
 
 /// A board with its amplifier on and its switch released, on time.
@@ -70,6 +73,8 @@ pub(crate) fn wires() -> Rc<Wires> {
         transmitted: RefCell::default(),
         monitor: RefCell::new(monitor()),
         code: Cell::new(DacCode::ZERO),
+        shared: Cell::new(None),
+        ticks_at_reading: Cell::new(0),
     })
 }
 
@@ -140,6 +145,7 @@ pub(crate) fn tick(
     queues: TickEnds,
 ) -> Tick<Fake> {
     let part = || Part(Rc::clone(wires));
+    wires.shared.set(Some(shared));
     Tick {
         shared,
         ticker,
@@ -190,6 +196,7 @@ impl KickedEnable for Part {
 
 impl Monitor for Part {
     fn monitor_v(&mut self) -> f32 {
+        self.0.ticks_at_reading.set(self.0.shared.get().unwrap().count());
         let mut monitor = self.0.monitor.borrow_mut();
         monitor.follow(self.0.code.get());
         monitor.voltage_v()
