@@ -1,6 +1,7 @@
-//! Running other programs.
+//! Running other programs, and the folders that they work in.
 
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -28,6 +29,17 @@ pub(crate) fn root() -> PathBuf {
 /// The folder of the workspace's build artefacts.
 pub(crate) fn target_folder() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into)
+}
+
+/// Makes a folder, which must be empty or new, and returns its absolute path.
+pub(crate) fn empty_folder(name: &str) -> Result<PathBuf, String> {
+    let folder = std::path::absolute(name).map_err(|error| format!("{name}: {error}"))?;
+    let explain = |error: std::io::Error| format!("{}: {error}", folder.display());
+    fs::create_dir_all(&folder).map_err(explain)?;
+    if fs::read_dir(&folder).map_err(explain)?.next().is_some() {
+        return Err(format!("{} has files in it: give a new folder, or empty it", folder.display()));
+    }
+    Ok(folder)
 }
 
 /// A `cargo` command that runs in a folder of the repository.

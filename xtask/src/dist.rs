@@ -21,7 +21,7 @@ use std::process::Command;
 use sha2::{Digest, Sha256};
 
 use crate::check::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
-use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, root, run, target_folder};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, empty_folder, root, run, target_folder};
 use crate::licences::{self, Program};
 use crate::machine_paths;
 use crate::needs::{self, Need};
@@ -66,13 +66,9 @@ const fn board(folder: &'static str, target: &'static str, features: &'static [&
 
 /// Makes the folder, which must be empty or new.
 pub(crate) fn make(folder: &str) -> Result<(), String> {
-    let folder = std::path::absolute(folder).map_err(|error| format!("{folder}: {error}"))?;
-    let images = folder.join("images");
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    if !files_below(&folder)?.is_empty() {
-        return Err(format!("{} has files in it: give a new folder, or empty it", folder.display()));
-    }
+    let folder = empty_folder(folder)?;
     needs::require(&NEEDS)?;
+    let images = folder.join("images");
     fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
 
     command(&folder)?;

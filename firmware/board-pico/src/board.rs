@@ -50,10 +50,12 @@ pub const RECEIVE_WINDOW: usize = 4096;
 /// to 0.75 V around 1.65 V, so that 220 V use the full range.
 pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
-/// Limits until others are stored. No bring-up of this board has measured DAC, amplifier, monitor and one-shot before a
-/// first play, so its voltage is one that does no harm if the gain or the reference is twice as large as it should be.
-pub const LIMITS: BoardLimits =
-    BoardLimits { voltage_max_v_peak: 10.0, receive_window_bytes: RECEIVE_WINDOW as u16, ..BOARD.limits };
+/// Limits until others are stored.
+pub const LIMITS: BoardLimits = BoardLimits {
+    voltage_max_v_peak: Board::PICO_UNMEASURED_V_PEAK,
+    receive_window_bytes: RECEIVE_WINDOW as u16,
+    ..BOARD.limits
+};
 
 const _: () = assert!(check_ceilings(&LIMITS).is_ok());
 

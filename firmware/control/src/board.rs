@@ -120,7 +120,8 @@ impl Board {
         ..Self::SIMULATOR
     };
 
-    /// The Raspberry Pi Pico 2 with the parts of the NUCLEO-G474RE, until bring-up has stored other limits.
+    /// The Raspberry Pi Pico 2 with the parts and the limits of the NUCLEO-G474RE. Until limits are stored, its image
+    /// allows [`Self::PICO_UNMEASURED_V_PEAK`].
     pub const PICO_2: Self = Self {
         kind: BoardKind::Pico2,
         limits: BoardLimits {
@@ -148,6 +149,11 @@ impl Board {
         },
         ..Self::NUCLEO_G474RE
     };
+
+    /// Largest voltage of a Pico or Pico 2 until limits are stored, V peak. No bring-up of these boards has measured DAC,
+    /// amplifier, monitor and one-shot before a first play, so it is one that does no harm if the gain or the reference is
+    /// twice as large as it should be.
+    pub const PICO_UNMEASURED_V_PEAK: f32 = 10.0;
 
     /// The real board of a name.
     pub fn named(name: &str) -> Option<Self> {

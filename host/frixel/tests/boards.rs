@@ -10,7 +10,7 @@ use frixel_scene::{Scene, compile, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 
-use crate::processes::repository;
+use crate::processes::{repository, run};
 
 /// Names of the gallery's scenes, sorted, and their text.
 fn gallery() -> Vec<(String, String)> {
@@ -72,4 +72,16 @@ fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
     let found = cycles(&noise, &board);
     assert!(refusal.contains("noise") && refusal.contains(&format!("estimated at {found} cycles")), "{refusal}");
     assert!(refusal.contains("layer 1 (noise) takes too long") && refusal.contains("has time for 13100"), "{refusal}");
+}
+
+/// A board that was not measured refuses what its kind will take: who checks for it learns so from the check.
+#[test]
+fn a_check_for_a_pico_says_what_it_allows_until_limits_are_stored() {
+    let scenes = repository().join("scenes");
+    for (board, says_so) in [("pico", true), ("pico-2", true), ("nucleo-g474re", false)] {
+        let output = run(&scenes, &["scene", "check", "constant.toml", "--board", board]);
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(text.contains("V rms at"), "{text}");
+        assert_eq!(text.contains("until limits are stored, this board allows 10 V peak"), says_so, "{text}");
+    }
 }

@@ -304,6 +304,17 @@ fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
 /// How long a write to a client may take that has no processor for itself. Reads do not wait: they ask first.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(30);
 
+/// Opens the board's port, which stays exclusive until the board notices that its last client is gone.
+fn opened(port: &str) -> TTYPort {
+    let builder = serialport::new(port, 2_000_000).timeout(WRITE_TIMEOUT);
+    let mut opened = None;
+    until("the port is free", || {
+        opened = TTYPort::open(&builder).ok();
+        opened.is_some()
+    });
+    opened.unwrap()
+}
+
 /// Passes bytes between a client and a board, until the client has sent so many.
 struct Tap {
     to_client: TTYPort,
@@ -316,7 +327,7 @@ impl Tap {
     fn new(board: &VirtualBoard) -> Self {
         let (mut to_client, client_end) = TTYPort::pair().unwrap();
         to_client.set_timeout(WRITE_TIMEOUT).unwrap();
-        let to_board = TTYPort::open(&serialport::new(&board.port, 2_000_000).timeout(WRITE_TIMEOUT)).unwrap();
+        let to_board = opened(&board.port);
         let path = client_end.name().unwrap();
         Self { to_client, _client_end: client_end, path, to_board }
     }

@@ -18,7 +18,7 @@ use sha2::{Digest, Sha256};
 
 use super::page::{self, Place};
 use super::{Files, bytes, element, files, text};
-use crate::command::root;
+use crate::command::{empty_folder, root};
 
 const SOURCES: &str = "host/studio/site";
 pub(super) const ICON: &str = "host/studio/site/icon.svg";
@@ -43,12 +43,8 @@ const DESCRIPTION: &str = "Slide over a screen that pushes back: the firmware of
 
 /// Makes the folder, which must be empty or new. Links to the site show its picture if the site's `address` is given.
 pub(crate) fn build(folder: &str, address: Option<&str>) -> Result<(), String> {
-    let folder = std::path::absolute(folder).map_err(|error| format!("{folder}: {error}"))?;
     let address = address.map(checked).transpose()?;
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    if fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?.next().is_some() {
-        return Err(format!("{} has files in it: give a new folder, or empty it", folder.display()));
-    }
+    let folder = empty_folder(folder)?;
     let site = site(&files()?, address.as_deref())?;
     for (name, content) in &site {
         let path = folder.join(name);

@@ -10,6 +10,7 @@ use frixel_hil_sim::{Board, RigConfig, TouchConfig};
 use frixel_lab::simulation::board_costs;
 use frixel_layers::Header;
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
+use frixel_wire::hello::BoardKind;
 
 use super::super::argument;
 use super::super::error::CommandError;
@@ -88,9 +89,16 @@ fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<(), 
 /// The board, the voltage that it gives at the scene's carrier, and the friction of the scene's finger there.
 fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
+    let is_pico = matches!(board.kind, BoardKind::Pico | BoardKind::Pico2);
+    let until_measured = if is_pico {
+        let v_peak = Board::PICO_UNMEASURED_V_PEAK;
+        format!("                   until limits are stored, this board allows {v_peak:.0} V peak (docs/pico.md)\n")
+    } else {
+        String::new()
+    };
     format!(
         "  board            {} behind {} kOhm {verdict}\n  voltage          {voltage_max_v_peak:.1} V peak, \
-         {voltage_max_v_rms:.1} V rms at {carrier_hz:.0} Hz: up to {:.1} mN above natural, {} Weber steps\n",
+         {voltage_max_v_rms:.1} V rms at {carrier_hz:.0} Hz: up to {:.1} mN above natural, {} Weber steps\n{until_measured}",
         board.kind,
         (1e-3 * board.limits.series_resistance_ohm).round(),
         1e3 * program.reach.electric_friction_max_n,
