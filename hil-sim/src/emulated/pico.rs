@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use frixel_control::{Board, Drive};
+use frixel_drivers::rp2::STORES_OFFSET;
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -85,7 +86,7 @@ impl PicoRig {
     /// board's tick rate.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = Self::factory_new(image, world)?;
-        let words = [&[limits::OFFSET][..], &limits::stored(&Board::PICO.limits)].concat();
+        let words = [&[STORES_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
         rig.process.request(Request::WriteFlash, &words)?;
         Ok(rig)
     }
