@@ -22,6 +22,10 @@ pub(super) const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\n
 /// Another one.
 pub(super) const WEAKER: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
+/// Stripes as wide as a finger tells apart, from nothing to nearly all that the board can give.
+pub(super) const GRATING: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\n\
+     low_n = 0.0\nhigh_fraction = 0.9\n";
+
 /// A host with nothing but a serial line.
 pub(super) type Host = Device<PollingLink<Cable>>;
 

@@ -8,3 +8,4 @@ mod endings;
 mod parity;
 mod play;
 mod store;
+mod twin;
