@@ -15,8 +15,6 @@ use frixel_wire::hello::BoardLimits;
 
 pub(super) const BOARD: Board = Board::PICO;
 pub(super) const TICK: Duration = Duration::from_micros(1_000_000 / BOARD.tick_hz as u64);
-/// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.
-pub(super) const FRAME_MAX: Duration = Duration::from_micros(5);
 /// Time until the switch counts as held, with a margin.
 const SWITCH_TIME: Duration = Duration::from_millis(50);
 

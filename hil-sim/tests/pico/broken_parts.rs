@@ -10,13 +10,16 @@ use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Refusal;
 
-use super::bench::{BOARD, Bench, CONSTANT, FRAME_MAX, Host, TICK, program};
+use super::bench::{BOARD, Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
-/// From a broken part to zero, if the fault is that of the last of so many ticks that read it: they follow the break, and
-/// the zero is out when the next frame is.
+/// Instructions of a tick after which it has read monitor, ready line and switch.
+const READ_AFTER: u32 = 2_000;
+
+/// From a broken part to zero, if the fault is that of the last of so many ticks that read it: the first one of them is the
+/// next, and the last one, which computes no friction any more, disables the amplifier and clears the DAC in its first half.
 fn zero_within(reading_ticks: u32) -> Duration {
-    (reading_ticks + 1) * TICK + FRAME_MAX
+    reading_ticks * TICK + TICK / 2
 }
 
 fn try_to_play(host: &mut Host) -> Result<(), DeviceError> {
@@ -28,8 +31,11 @@ fn breaks(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
     let host = bench.play(CONSTANT);
-    let begin = bench.now();
-    bench.with(|rig| rig.broken = broken);
+    let begin = bench.with(|rig| {
+        assert!(rig.run_instructions(READ_AFTER).unwrap());
+        rig.broken = broken;
+        rig.now()
+    });
     bench.pass(Duration::from_millis(5));
     let zero_since = bench.with(|rig| rig.zero_since()).unwrap_or_else(|| panic!("{fault:?}: the output is not zero"));
     let late = zero_since.saturating_sub(begin);

@@ -12,9 +12,11 @@ use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
 use frixel_wire::message::{ConfigField, Refusal};
 
-use super::bench::{BOARD, Bench, CONSTANT, FRAME_MAX, TICK, program, program_for};
+use super::bench::{BOARD, Bench, CONSTANT, TICK, program, program_for};
 use crate::emulator;
 
+/// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.
+const FRAME_MAX: Duration = Duration::from_micros(5);
 /// How far the distance of two frames may be from a tick: two cycles of the core.
 const JITTER_MAX: Duration = Duration::from_nanos(10);
 /// Longest time from a new code to the reading of the monitor. The ADC has sampled it 2 us before, or 4; the supervisor
