@@ -51,20 +51,29 @@ fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
     Fidelity::of(&recorder.rows().iter().map(sample).collect::<Vec<_>>()).unwrap()
 }
 
-fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> Fidelity {
+/// What is felt of a stroke on the Pico, and the tick of the world at which it begins.
+fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> (Fidelity, u64) {
     let bench = Bench::in_world(image, &world(), stroke(seconds, seed), seed);
     let mut host = bench.connect();
     frixel_play::start(&mut host, &program(GRATING), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.take_records();
-    bench.with(|rig| rig.world_mut().start_stroke());
+    let start_tick = bench.with(|rig| {
+        rig.world_mut().start_stroke();
+        rig.world().tick()
+    });
     host.wait(Duration::from_secs_f64(seconds), &mut |_| ()).unwrap();
-    fidelity(bench.take_records().into_iter().map(|record| (record.felt, record.drive.dac_code.bits())))
+    let ticks = bench.take_records().into_iter().map(|record| (record.felt, record.drive.dac_code.bits()));
+    (fidelity(ticks), start_tick)
 }
 
-fn in_process(seconds: f64, seed: u64) -> Fidelity {
+/// The same on the in-process rig. From the same tick on, the same reports are lost and late.
+fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
     let config = RigConfig { board: BOARD, world: world(), baud: 2_000_000 };
     let mut script = Script::new(&config, stroke(seconds, seed), seed);
     script.play(&program(GRATING).scene_bytes());
+    script.rig.world_mut().lift_finger();
+    script.run(start_tick - script.rig.tick());
+    script.rig.world_mut().start_stroke();
     let ticks = (seconds * f64::from(BOARD.tick_hz)) as u32;
     fidelity((0..ticks).map(|tick| {
         if tick.is_multiple_of(BOARD.tick_hz / 10) {
@@ -75,31 +84,41 @@ fn in_process(seconds: f64, seed: u64) -> Fidelity {
     }))
 }
 
-fn is_felt_within_the_goal(image: &Image, seconds: f64, seed: u64) {
-    let (found, beside) = (on_the_pico(image, seconds, seed), in_process(seconds, seed));
-    for (rig, Fidelity { error, correlation, spurious_over_noise_db, .. }) in [("Pico", found), ("in-process", beside)]
-    {
-        println!(
-            "{rig}, seed {seed}: error {error:.3?}, correlation {correlation:.3?}, spurious {spurious_over_noise_db:.1?} dB"
-        );
+/// Error, correlation and what is spurious, in dB, of strokes with these seeds: as in `host/frixel/tests/felt.rs`, a root
+/// mean square, a mean, and a mean power.
+fn is_felt_within_the_goal(image: &Image, seconds: f64, seeds: impl Iterator<Item = u64>) {
+    let (mut error_2, mut correlation, mut power, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for seed in seeds {
+        let (found, start_tick) = on_the_pico(image, seconds, seed);
+        let beside = in_process(seconds, seed, start_tick);
+        for (rig, felt) in [("Pico", found), ("in-process", beside)] {
+            let Fidelity { error, correlation, spurious_over_noise_db, .. } = felt;
+            println!(
+                "{rig}, seed {seed}: error {error:.3?}, correlation {correlation:.3?}, {spurious_over_noise_db:.1?} dB"
+            );
+        }
+        let error = found.error.unwrap();
+        assert!(error <= beside.error.unwrap() + LINE_ERROR_MAX, "{found:?}, in-process {beside:?}");
+        error_2 += error * error;
+        correlation += found.correlation.unwrap();
+        power += found.spurious_over_noise_db.map_or(0.0, |db| 10_f64.powf(0.1 * db));
+        count += 1.0;
     }
-    assert!(found.error.unwrap() <= ERROR_MAX, "{found:?}");
-    assert!(found.error.unwrap() <= beside.error.unwrap() + LINE_ERROR_MAX, "{found:?}, in-process {beside:?}");
-    assert!(found.correlation.unwrap() >= CORRELATION_MIN, "{found:?}");
-    assert!(found.spurious_over_noise_db.unwrap_or(f64::NEG_INFINITY) <= SPURIOUS_MAX_DB, "{found:?}");
+    let (error, correlation, spurious_db) =
+        ((error_2 / count).sqrt(), correlation / count, 10.0 * (power / count).log10());
+    println!("error {error:.3}, correlation {correlation:.3}, spurious {spurious_db:.1} dB");
+    assert!(error <= ERROR_MAX && correlation >= CORRELATION_MIN && spurious_db <= SPURIOUS_MAX_DB);
 }
 
 #[test]
 fn a_grating_is_felt_within_the_goal() {
     let Some(image) = emulator::pico_image() else { return };
-    is_felt_within_the_goal(&image, 1.5, *HUMAN_TEST_SEEDS.start());
+    is_felt_within_the_goal(&image, 1.5, HUMAN_TEST_SEEDS.take(1));
 }
 
 #[test]
 #[ignore = "takes minutes: `cargo xtask soak pico`"]
 fn a_grating_is_felt_within_the_goal_on_long_strokes() {
     let Some(image) = emulator::pico_image() else { return };
-    for seed in HUMAN_TEST_SEEDS.take(4) {
-        is_felt_within_the_goal(&image, 8.5, seed);
-    }
+    is_felt_within_the_goal(&image, 8.5, HUMAN_TEST_SEEDS.take(4));
 }
