@@ -20,6 +20,8 @@ const CORRELATION_MIN: f64 = 0.9;
 const SPURIOUS_MAX_DB: f64 = 6.0;
 /// What the line and the main loop, which hear a report some ticks later, may add to the error of the in-process rig.
 const LINE_ERROR_MAX: f64 = 0.02;
+/// Ticks between two pings of the in-process rig's host: less than its timeout of 250 ms.
+const PING_TICKS: u64 = 800;
 /// Median speed of the touches, in m/s.
 const SPEED_M_PER_S: f64 = 0.05;
 
@@ -72,14 +74,18 @@ fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
     let mut script = Script::new(&config, stroke(seconds, seed), seed);
     script.play(&program(GRATING).scene_bytes());
     script.rig.world_mut().lift_finger();
-    script.run(start_tick - script.rig.tick());
-    script.rig.world_mut().start_stroke();
-    let ticks = (seconds * f64::from(BOARD.tick_hz)) as u32;
-    fidelity((0..ticks).map(|tick| {
-        if tick.is_multiple_of(BOARD.tick_hz / 10) {
+    let step = |script: &mut Script| {
+        if script.rig.tick().is_multiple_of(PING_TICKS) {
             script.send(Command::Ping);
         }
-        let record = script.step();
+        script.step()
+    };
+    while script.rig.tick() < start_tick {
+        step(&mut script);
+    }
+    script.rig.world_mut().start_stroke();
+    fidelity((0..(seconds * f64::from(BOARD.tick_hz)) as u32).map(|_| {
+        let record = step(&mut script);
         (record.felt, record.drive.dac_code.bits())
     }))
 }
