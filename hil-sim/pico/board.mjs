@@ -2,6 +2,7 @@
 
 import { RP2040 } from "rp2040js";
 
+import { CallWatch } from "./call_watch.mjs";
 import { ENDLESS_LOOP_AT, FLASH_LEN, Flash } from "./flash.mjs";
 import { Pins } from "./pins.mjs";
 import { PioStepper } from "./pio.mjs";
@@ -40,6 +41,8 @@ export class Board {
   #flash;
   #pins;
   #uart;
+  /** The calls that someone looks at. @type {CallWatch | undefined} */
+  #calls;
   #chipReset;
   #isHung = false;
   #isCrystalStopped = false;
@@ -206,6 +209,7 @@ export class Board {
       if (core.waiting || this.#isHung) {
         core.cycles += this.#idleCycles(end, cycleNanos);
       } else {
+        this.#calls?.before(core.PC);
         core.executeInstruction();
         left -= 1;
       }
@@ -261,6 +265,16 @@ export class Board {
   /** @param {number} offset @param {number[]} bytes */
   writeFlash(offset, bytes) {
     this.#rp2040.flash.set(bytes, offset);
+  }
+
+  /** @param {number} address @param {number} wordCount */
+  watch(address, wordCount) {
+    this.#calls ??= new CallWatch(this.#rp2040);
+    this.#calls.watch(address, wordCount);
+  }
+
+  takeCalls() {
+    return this.#calls?.take() ?? [];
   }
 
   /** @param {number} number */

@@ -100,6 +100,11 @@ class Rig {
       case REQUEST.WRITE_FLASH:
         this.#board.writeFlash(values[0], values.slice(1));
         return [];
+      case REQUEST.WATCH:
+        this.#board.watch(values[0], values[1]);
+        return [];
+      case REQUEST.TAKE_CALLS:
+        return this.#board.takeCalls();
       default:
         throw new Error(`unknown request ${kind}`);
     }

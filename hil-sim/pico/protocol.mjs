@@ -26,6 +26,12 @@ export const REQUEST = {
   STOP_PIO: 10,
   /** Write the flash, as another image has before: offset, and bytes. */
   WRITE_FLASH: 11,
+  /** Note the calls of a function from now on: its address, and how many words to read of what its first argument points
+   *  at. */
+  WATCH: 12,
+  /** The calls since the last time, in their order: of each the number of its function, counted from 0 in the order of
+   *  `WATCH`, and the words. */
+  TAKE_CALLS: 13,
 };
 
 /** Bits of the inputs. */

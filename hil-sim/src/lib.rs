@@ -35,6 +35,7 @@ mod person;
 mod pseudo_terminal;
 mod random;
 mod rig;
+mod simulated_flash;
 mod stroke;
 mod touch;
 mod world;

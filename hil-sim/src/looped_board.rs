@@ -1,7 +1,6 @@
 //! A simulated board with the wires of the self-test, which can have one thing wrong: what
 //! [`frixel_board::self_test`] must find. Its session, ticker and supervisor are the firmware's own.
 
-mod flash;
 mod one_shot;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a terminal of another process, in real time")]
@@ -20,13 +19,15 @@ use frixel_session::store::Slot;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::TickTimes;
 
-pub use flash::SimulatedFlash;
+pub use crate::simulated_flash::SimulatedFlash;
 use one_shot::OneShot;
 #[cfg(unix)]
 pub use terminal_port::TerminalPort;
 use wrong::Progress;
 pub use wrong::Wrong;
 
+/// Memory as the NUCLEO has it, and enough of it for limits and a scene.
+type BoardFlash = SimulatedFlash<34, 2048>;
 /// Ticks of a round of the main loop.
 const ROUND_TICKS: u32 = 4;
 /// Cycles of a tick at rest, and under the largest scene.
@@ -61,7 +62,7 @@ pub struct LoopedRig<P> {
     ticker: Ticker<'static>,
     status: Status,
     meter: TickMeter,
-    flash: SimulatedFlash,
+    flash: BoardFlash,
     kept: u32,
     /// Bytes that the board has received, for a line that loses some.
     received: usize,
@@ -87,7 +88,7 @@ impl<P: Port> LoopedRig<P> {
             status: ticker.status(),
             ticker,
             meter: TickMeter::new(DEADLINE_CYCLES),
-            flash: SimulatedFlash::new(),
+            flash: BoardFlash::new(),
             kept: 0,
             received: 0,
             latch_moved: false,
@@ -160,7 +161,7 @@ impl<P: Port> LoopedRig<P> {
 }
 
 impl<P: Port> LoopedBoard for LoopedRig<P> {
-    type Flash = SimulatedFlash;
+    type Flash = BoardFlash;
 
     const SLOT: Slot = Slot { first_page: 2, pages: 16 };
     const LATCH_CYCLES: u32 = 4_100;
@@ -305,7 +306,7 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
         self.meter.times(self.ticker.status().counters.missed_deadlines)
     }
 
-    fn flash(&mut self) -> Option<&mut SimulatedFlash> {
+    fn flash(&mut self) -> Option<&mut BoardFlash> {
         (!self.is(Wrong::OneBank)).then_some(&mut self.flash)
     }
 

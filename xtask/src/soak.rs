@@ -62,7 +62,8 @@ const PARTS: [Part; 12] = [
     },
     Part {
         name: "pico",
-        what: "the Pico's image: a hundred random instructions of a play for each way to end it, power cuts at each flash operation",
+        what: "the Pico's image: a hundred random instructions of a play for each way to end it, power cuts at each flash operation, \
+               a grating under long strokes",
         needs: &[M0_PLUS_TARGET, Need::Node, Need::Npm],
         run: pico,
     },

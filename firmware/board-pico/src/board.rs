@@ -5,6 +5,7 @@ use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
 use frixel_control::Board;
 use frixel_drivers::monitor::MonitorScale;
+use frixel_drivers::rp2::LIMITS_PAGES;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneStore;
 use frixel_session::store::{Ceilings, Slot, check_ceilings, load_limits};
@@ -63,10 +64,10 @@ const _: () = assert!(check_ceilings(&LIMITS).is_ok());
 pub const CEILINGS: Ceilings =
     if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
 
-/// Where the limits are stored: the first two pages of the stores.
-pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
+/// Where the limits are stored: at the beginning of the stores.
+pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: LIMITS_PAGES };
 /// Where the last scene is stored: the rest, 124 KiB a copy. 64 KiB of bitmaps and the largest scene need 71 KiB.
-pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
+pub const SCENE_SLOT: Slot = Slot { first_page: 2 * LIMITS_PAGES, pages: (PAGES - 2 * LIMITS_PAGES) / 2 };
 
 const _: () = assert!(
     SCENE_SLOT.capacity::<StoreFlash>() as usize

@@ -7,6 +7,7 @@
 
 use core::ptr;
 
+use frixel_drivers::rp2::STORES_OFFSET;
 use frixel_session::store::{Flash, Operation, WORD_LEN};
 
 use crate::rom::{FlashFunctions, PAGE_LEN, SECTOR_LEN};
@@ -16,8 +17,6 @@ use crate::watchdog;
 
 /// Where the processor sees the flash.
 const FLASH: u32 = 0x1000_0000;
-/// Offset of the stores in the flash.
-const START: u32 = 1 << 20;
 /// Pages of the stores.
 pub const PAGES: u32 = 64;
 const LEN: u32 = PAGES * StoreFlash::PAGE_LEN;
@@ -51,7 +50,7 @@ impl Flash for StoreFlash {
         if end.is_none_or(|end| end > LEN) {
             return false;
         }
-        for (address, byte) in (FLASH + START + offset..).zip(bytes) {
+        for (address, byte) in (FLASH + STORES_OFFSET + offset..).zip(bytes) {
             // SAFETY: the address lies in the stores, as checked above, and any byte there is valid.
             *byte = unsafe { ptr::with_exposed_provenance::<u8>(address as usize).read_volatile() };
         }
@@ -63,7 +62,7 @@ impl Flash for StoreFlash {
             return;
         }
         self.feed_watchdog();
-        self.functions.erase(START + page * SECTOR_LEN);
+        self.functions.erase(STORES_OFFSET + page * SECTOR_LEN);
         self.failed = !(0..SECTOR_LEN).step_by(WORD_LEN).all(|place| self.holds(page * SECTOR_LEN + place, [0xff; 8]));
     }
 
@@ -77,7 +76,7 @@ impl Flash for StoreFlash {
             bytes.copy_from_slice(&word);
         }
         self.feed_watchdog();
-        self.functions.program(START + offset - place as u32, &page);
+        self.functions.program(STORES_OFFSET + offset - place as u32, &page);
         self.failed = !self.holds(offset, word);
     }
 

@@ -54,6 +54,14 @@ pub enum EmulatorError {
         /// The operating system's error.
         reason: io::Error,
     },
+    /// The emulated board would not start with the limits that it is to have.
+    #[error(
+        "the emulated board cannot have the limits of `Board::PICO`, which are in its flash before it starts: {reason}"
+    )]
+    LimitsNotStored {
+        /// The reason, and what to do.
+        reason: String,
+    },
     /// The emulator has ended.
     #[error("the emulator has ended:\n{output}")]
     Ended {

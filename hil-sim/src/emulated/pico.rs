@@ -3,6 +3,7 @@
 mod board_rig;
 mod injection;
 mod limits;
+mod orders;
 mod process;
 mod protocol;
 
@@ -11,6 +12,7 @@ use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use frixel_control::{Board, Drive};
+use frixel_drivers::rp2::STORES_OFFSET;
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -21,6 +23,7 @@ use super::{EmulatorError, Image, LinkRecord};
 use crate::World;
 use crate::chips::Ad5761rChip;
 pub use board_rig::PicoBoardRig;
+pub use orders::{AppliedOrder, Watched};
 use process::Process;
 use protocol::{ARM, Ended, READY, Ran, Request};
 pub use protocol::{Stamped, StartCause, WireEvent};
@@ -76,6 +79,8 @@ pub struct PicoRig {
     touch_frames: Option<Vec<u8>>,
     at_host: Vec<u8>,
     events: Option<Vec<Stamped>>,
+    /// The bytes that were sent to the board since its orders are watched.
+    watched_bytes: Option<Vec<u8>>,
     starts: u32,
     instructions: u64,
 }
@@ -85,7 +90,7 @@ impl PicoRig {
     /// board's tick rate.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = Self::factory_new(image, world)?;
-        let words = [&[limits::OFFSET][..], &limits::stored(&Board::PICO.limits)].concat();
+        let words = [&[STORES_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
         rig.process.request(Request::WriteFlash, &words)?;
         Ok(rig)
     }
@@ -108,6 +113,7 @@ impl PicoRig {
             touch_frames: None,
             at_host: Vec::new(),
             events: None,
+            watched_bytes: None,
             starts: 0,
             instructions: 0,
         })
@@ -256,6 +262,9 @@ impl PicoRig {
             inputs |= ARM;
         }
         let head = [time.as_nanos() as u32, instructions_max, inputs, monitor_code as u32, self.dac.shifting_out()];
+        if let Some(watched) = &mut self.watched_bytes {
+            watched.extend(&self.to_board);
+        }
         let words: Vec<u32> = head.into_iter().chain(self.to_board.drain(..).map(u32::from)).collect();
         let words = self.process.request(Request::Run, &words)?;
         let mut ran = Ran::read(&words).ok_or_else(|| no_answer("to run"))?;

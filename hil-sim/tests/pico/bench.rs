@@ -11,6 +11,7 @@ use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
 use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
+use frixel_wire::hello::BoardLimits;
 
 pub(super) const BOARD: Board = Board::PICO;
 pub(super) const TICK: Duration = Duration::from_micros(1_000_000 / BOARD.tick_hz as u64);
@@ -22,13 +23,22 @@ pub(super) const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\n
 /// Another one.
 pub(super) const WEAKER: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
+/// Stripes as wide as a finger tells apart, from nothing to nearly all that the board can give.
+pub(super) const GRATING: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\n\
+     low_n = 0.0\nhigh_fraction = 0.9\n";
+
 /// A host with nothing but a serial line.
 pub(super) type Host = Device<PollingLink<Cable>>;
 
 /// A scene, compiled for the board.
 pub(super) fn program(text: &str) -> Program {
+    program_for(text, &BOARD.limits)
+}
+
+/// A scene, compiled for the board with these limits.
+pub(super) fn program_for(text: &str, limits: &BoardLimits) -> Program {
     let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
-    compile(&scene, &BOARD.limits, BOARD.tick_hz).unwrap()
+    compile(&scene, limits, BOARD.tick_hz).unwrap()
 }
 
 /// A finger that slides again and again.
@@ -58,6 +68,15 @@ impl Bench {
     /// Switches the board on.
     pub(super) fn just_on(image: &Image) -> Self {
         Self::of(PicoRig::start(image, world()).unwrap())
+    }
+
+    /// As [`Self::new`], in a world like this whose finger will make `stroke`.
+    pub(super) fn in_world(image: &Image, config: &WorldConfig, stroke: Stroke, seed: u64) -> Self {
+        let mut world = World::new(*config, stroke, seed).unwrap();
+        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+        let bench = Self::of(PicoRig::start(image, world).unwrap());
+        bench.pass(SWITCH_TIME);
+        bench
     }
 
     /// Switches a board on that has stored nothing yet.
@@ -118,7 +137,12 @@ impl Bench {
 
     /// Plays a scene under the sliding finger, and waits until the board drives.
     pub(super) fn start(&self, host: &mut Host, text: &str) {
-        frixel_play::start(host, &program(text), &mut |_| ControlFlow::Continue(())).unwrap();
+        self.start_program(host, &program(text));
+    }
+
+    /// Plays a program under the sliding finger, and waits until the board drives.
+    pub(super) fn start_program(&self, host: &mut Host, program: &Program) {
+        frixel_play::start(host, program, &mut |_| ControlFlow::Continue(())).unwrap();
         self.with(|rig| rig.world_mut().start_stroke());
         host.wait(Duration::from_millis(60), &mut |_| ()).unwrap();
         assert_eq!(self.with(|rig| rig.zero_since()), None, "the board drives");

@@ -3,33 +3,43 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use frixel_control::monitor_wrong_ticks;
 use frixel_driver::DeviceError;
+use frixel_drivers::arm_switch::released_after_ticks;
 use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Refusal;
 
-use super::bench::{Bench, CONSTANT, Host, TICK, program};
+use super::bench::{BOARD, Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
-/// From a broken part to zero: the 0.4 ms after which the monitor or the ready line counts as wrong, and what the tick, the
-/// DAC and the reading of the monitor take.
-const ZERO_WITHIN: Duration = Duration::from_millis(2);
+/// Instructions of a tick after which it has read monitor, ready line and switch.
+const READ_AFTER: u32 = 2_000;
+
+/// From a broken part to zero, if the fault is that of the last of so many ticks that read it: the first one of them is the
+/// next, and the last one, which computes no friction any more, disables the amplifier and clears the DAC in its first half.
+fn zero_within(reading_ticks: u32) -> Duration {
+    reading_ticks * TICK + TICK / 2
+}
 
 fn try_to_play(host: &mut Host) -> Result<(), DeviceError> {
     frixel_play::start(host, &program(CONSTANT), &mut |_| ControlFlow::Continue(()))
 }
 
-/// Plays, breaks something, and expects that the board stops with a fault in time.
-fn breaks(broken: BrokenInputs, fault: Fault) {
+/// Plays, breaks something, and expects that the board stops with a fault at the last of so many ticks that read it.
+fn breaks(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
     let host = bench.play(CONSTANT);
-    let begin = bench.now();
-    bench.with(|rig| rig.broken = broken);
+    let begin = bench.with(|rig| {
+        assert!(rig.run_instructions(READ_AFTER).unwrap());
+        rig.broken = broken;
+        rig.now()
+    });
     bench.pass(Duration::from_millis(5));
     let zero_since = bench.with(|rig| rig.zero_since()).unwrap_or_else(|| panic!("{fault:?}: the output is not zero"));
     let late = zero_since.saturating_sub(begin);
-    assert!(late <= ZERO_WITHIN, "{fault:?}: the output was zero after {late:?}");
+    assert!(late <= zero_within(reading_ticks), "{fault:?}: the output was zero after {late:?}");
     drop(host);
     let hello = *bench.connect().hello();
     assert_eq!((hello.state, hello.last_fault), (State::Faulted, Some(fault)));
@@ -37,12 +47,13 @@ fn breaks(broken: BrokenInputs, fault: Fault) {
 
 #[test]
 fn a_ready_line_that_falls_stops_the_output() {
-    breaks(BrokenInputs { ready: Some(false), ..BrokenInputs::default() }, Fault::Amplifier);
+    breaks(BrokenInputs { ready: Some(false), ..BrokenInputs::default() }, Fault::Amplifier, 1);
 }
 
 #[test]
 fn a_monitor_that_shows_nothing_stops_the_output() {
-    breaks(BrokenInputs { monitor_v: Some(0.0), ..BrokenInputs::default() }, Fault::Monitor);
+    let broken = BrokenInputs { monitor_v: Some(0.0), ..BrokenInputs::default() };
+    breaks(broken, Fault::Monitor, monitor_wrong_ticks(&BOARD));
 }
 
 /// A single reading that is disturbed makes up for itself in the next ticks, so that many of them do not add up. With a
@@ -63,7 +74,8 @@ fn a_monitor_that_is_disturbed_now_and_then_does_not_stop_the_output() {
 
 #[test]
 fn a_switch_that_is_let_go_stops_the_output() {
-    breaks(BrokenInputs { arm_switch: Some(false), ..BrokenInputs::default() }, Fault::ArmSwitch);
+    let broken = BrokenInputs { arm_switch: Some(false), ..BrokenInputs::default() };
+    breaks(broken, Fault::ArmSwitch, released_after_ticks(BOARD.tick_hz));
 }
 
 /// The firmware disables the amplifier by its pin, too.

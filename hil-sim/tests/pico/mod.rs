@@ -5,6 +5,8 @@
 mod bench;
 mod broken_parts;
 mod endings;
+mod felt;
 mod parity;
 mod play;
 mod store;
+mod twin;

@@ -6,11 +6,13 @@ use std::time::Duration;
 use frixel_control::Drive;
 use frixel_driver::DeviceError;
 use frixel_hil_sim::emulated::{Stamped, StartCause, WireEvent};
+use frixel_layers::Header;
+use frixel_scene::Program;
 use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
-use frixel_wire::message::Refusal;
+use frixel_wire::message::{ConfigField, Refusal};
 
-use super::bench::{BOARD, Bench, CONSTANT, TICK, program};
+use super::bench::{BOARD, Bench, CONSTANT, TICK, program, program_for};
 use crate::emulator;
 
 /// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.
@@ -57,11 +59,21 @@ fn a_board_that_was_never_brought_up_drives_ten_volts_at_most() {
     let bench = Bench::factory_new(&image);
     bench.pass(Duration::from_millis(50));
     let mut host = bench.connect();
-    let built_in = BoardLimits { voltage_max_v_peak: 10.0, ..BOARD.limits };
-    assert_eq!(host.hello().limits, built_in);
-    let refused = frixel_play::start(&mut host, &program(CONSTANT), &mut |_| ControlFlow::Continue(())).unwrap_err();
-    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::Config(_), .. }), "{refused:?}");
-    assert!(bench.with(|rig| rig.zero_since()).is_some());
+    let limits = host.hello().limits;
+    assert_eq!(limits, BoardLimits { voltage_max_v_peak: 10.0, ..BOARD.limits });
+    let within = program_for(CONSTANT, &limits);
+    let above = Program { header: Header { voltage_max_v_peak: 10.5, ..within.header }, ..within.clone() };
+    let refused = frixel_play::start(&mut host, &above, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let DeviceError::Refused { refusal: Refusal::Config(refusal), .. } = refused else { panic!("{refused:?}") };
+    assert_eq!((refusal.field, refusal.max), (ConfigField::VoltagePeak, 10.0), "{refusal}");
+    let records = bench.take_records();
+    assert!(records.iter().all(|record| record.drive == Drive::default()), "a refused scene drives");
+
+    bench.start_program(&mut host, &within);
+    host.wait(Duration::from_millis(200), &mut |_| ()).unwrap();
+    let codes = bench.take_records().into_iter().map(|record| record.drive.dac_code.bits().unsigned_abs());
+    let largest_v = f32::from(codes.max().unwrap()) / f32::from(i16::MAX) * limits.full_scale_v_peak;
+    assert!((9.0..=10.0).contains(&largest_v), "the largest voltage is {largest_v} V");
 }
 
 #[test]

@@ -45,11 +45,14 @@ impl PicoRig {
     /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction asked
     /// for. `false` if there is no such function.
     pub fn jump_to(&mut self, name: &str) -> Result<bool, EmulatorError> {
+        let Some(address) = self.address_of(name)? else { return Ok(false) };
+        self.jump(address).map(|()| true)
+    }
+
+    /// The address of the first function whose name in the image contains `name`.
+    pub(super) fn address_of(&mut self, name: &str) -> Result<Option<u32>, EmulatorError> {
         let bytes: Vec<u32> = name.bytes().map(u32::from).collect();
-        match self.process.request(Request::AddressOf, &bytes)?.first() {
-            Some(address) if *address != 0 => self.process.request(Request::Jump, &[*address]).map(|_| true),
-            _ => Ok(false),
-        }
+        Ok(self.process.request(Request::AddressOf, &bytes)?.first().copied().filter(|address| *address != 0))
     }
 
     /// Lets the core go on at an address.

@@ -16,6 +16,8 @@ pub(super) enum Request {
     StopCrystal = 9,
     StopPio = 10,
     WriteFlash = 11,
+    Watch = 12,
+    TakeCalls = 13,
 }
 
 /// Bits of the inputs in a [`Request::Run`].

@@ -2,28 +2,26 @@
 
 use frixel_session::store::{Flash, Operation, WORD_LEN};
 
-const PAGES: usize = 34;
-const PAGE_LEN: usize = 2048;
 /// Looks at an operation until it is done.
 const BUSY_LOOKS: u32 = 2;
 /// What an erasure or a write that was interrupted leaves.
 const TORN: u8 = 0x5a;
 
-/// The memory, erased at first.
-pub struct SimulatedFlash {
+/// The memory, of so many pages, erased at first.
+pub struct SimulatedFlash<const PAGES: usize, const PAGE_LEN: usize> {
     bytes: Vec<u8>,
     busy: u32,
     /// First byte and length of what the operation under way changes.
     under_way: (usize, usize),
 }
 
-impl SimulatedFlash {
-    pub(super) fn new() -> Self {
+impl<const PAGES: usize, const PAGE_LEN: usize> SimulatedFlash<PAGES, PAGE_LEN> {
+    pub(crate) fn new() -> Self {
         Self { bytes: vec![0xff; PAGES * PAGE_LEN], busy: 0, under_way: (0, 0) }
     }
 
     /// The board resets: an operation that is under way leaves neither the old nor the new.
-    pub(super) fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         if self.busy > 0 {
             let (start, len) = self.under_way;
             self.bytes[start + len / 2..start + len].fill(TORN);
@@ -31,8 +29,14 @@ impl SimulatedFlash {
         self.busy = 0;
     }
 
-    pub(super) fn erase_all(&mut self) {
+    pub(crate) fn erase_all(&mut self) {
         self.bytes.fill(0xff);
+    }
+
+    /// What it holds now.
+    #[cfg(unix)]
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
     fn begin(&mut self, start: usize, len: usize) {
@@ -42,7 +46,7 @@ impl SimulatedFlash {
     }
 }
 
-impl Flash for SimulatedFlash {
+impl<const PAGES: usize, const PAGE_LEN: usize> Flash for SimulatedFlash<PAGES, PAGE_LEN> {
     const PAGE_LEN: u32 = PAGE_LEN as u32;
 
     fn read(&self, offset: u32, bytes: &mut [u8]) -> bool {

@@ -1,0 +1,130 @@
+//! What a finger feels of a grating: the goal of `host/frixel/tests/felt.rs`, and the in-process rig's number beside it.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
+use frixel_felt::recorder::{FeltRow, Observation, Recorder};
+use frixel_hil_sim::emulated::Image;
+use frixel_hil_sim::{Felt, HUMAN_TEST_SEEDS, RigConfig, Stroke, TouchConfig, WorldConfig};
+use frixel_wire::message::Command;
+
+use super::bench::{BOARD, Bench, GRATING, program};
+use crate::emulator;
+use crate::script::Script;
+
+/// The goal at 50 mm/s: error from 0 to 400 Hz over the rms of the reference's changes, correlation, and the third octave
+/// that grew most over the finger's own noise in it.
+const ERROR_MAX: f64 = 0.25;
+const CORRELATION_MIN: f64 = 0.9;
+const SPURIOUS_MAX_DB: f64 = 6.0;
+/// What the line and the main loop, which hear a report some ticks later, may add to the error of the in-process rig.
+const LINE_ERROR_MAX: f64 = 0.02;
+/// Ticks between two pings of the in-process rig's host: less than its timeout of 250 ms.
+const PING_TICKS: u64 = 800;
+/// Median speed of the touches, in m/s.
+const SPEED_M_PER_S: f64 = 0.05;
+
+/// Every effect of the plant, and the touch source that a grating of 10 mm is made for.
+fn world() -> WorldConfig {
+    WorldConfig { touch: TouchConfig::bundled("100").unwrap(), ..WorldConfig::of(&BOARD).realistic() }
+}
+
+fn stroke(seconds: f64, seed: u64) -> Stroke {
+    Stroke::human(0.12, 0.08, seconds, Some(SPEED_M_PER_S), seed).unwrap()
+}
+
+/// The fidelity of what was felt tick by tick, with the code that went to the DAC.
+fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
+    let ticks_per_row = (f64::from(BOARD.tick_hz) / SAMPLE_HZ) as u32;
+    let recorder = Recorder::new(&program(GRATING), &BOARD.limits, BOARD.tick_hz, u64::MAX, ticks_per_row);
+    let mut recorder = recorder.unwrap().through_finger();
+    recorder.start(0);
+    for (tick, (felt, code)) in (1..).zip(ticks) {
+        recorder.record(&Observation::of_world(tick, &felt, code));
+    }
+    let mut is_tracked = false;
+    let sample = |row: &FeltRow| {
+        let is_driven = row.dac_code != Some(0);
+        is_tracked = row.speed_mm_s.is_some() && (is_tracked || is_driven);
+        let speed_m_per_s = row.speed_mm_s.filter(|_| is_tracked).map(|speed_mm_s| 1e-3 * speed_mm_s);
+        FidelitySample { speed_m_per_s, is_driven, ..FidelitySample::of_row(row, 0.0) }
+    };
+    Fidelity::of(&recorder.rows().iter().map(sample).collect::<Vec<_>>()).unwrap()
+}
+
+/// What is felt of a stroke on the Pico, and the tick of the world at which it begins.
+fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> (Fidelity, u64) {
+    let bench = Bench::in_world(image, &world(), stroke(seconds, seed), seed);
+    let mut host = bench.connect();
+    frixel_play::start(&mut host, &program(GRATING), &mut |_| ControlFlow::Continue(())).unwrap();
+    bench.take_records();
+    let start_tick = bench.with(|rig| {
+        rig.world_mut().start_stroke();
+        rig.world().tick()
+    });
+    host.wait(Duration::from_secs_f64(seconds), &mut |_| ()).unwrap();
+    let ticks = bench.take_records().into_iter().map(|record| (record.felt, record.drive.dac_code.bits()));
+    (fidelity(ticks), start_tick)
+}
+
+/// The same on the in-process rig. From the same tick on, the same reports are lost and late.
+fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
+    let config = RigConfig { board: BOARD, world: world(), baud: 2_000_000 };
+    let mut script = Script::new(&config, stroke(seconds, seed), seed);
+    script.play(&program(GRATING).scene_bytes());
+    script.rig.world_mut().lift_finger();
+    let step = |script: &mut Script| {
+        if script.rig.tick().is_multiple_of(PING_TICKS) {
+            script.send(Command::Ping);
+        }
+        script.step()
+    };
+    while script.rig.tick() < start_tick {
+        step(&mut script);
+    }
+    script.rig.world_mut().start_stroke();
+    fidelity((0..(seconds * f64::from(BOARD.tick_hz)) as u32).map(|_| {
+        let record = step(&mut script);
+        (record.felt, record.drive.dac_code.bits())
+    }))
+}
+
+/// Error, correlation and what is spurious, in dB, of strokes with these seeds: as in `host/frixel/tests/felt.rs`, a root
+/// mean square, a mean, and a mean power.
+fn is_felt_within_the_goal(image: &Image, seconds: f64, seeds: impl Iterator<Item = u64>) {
+    let (mut error_2, mut correlation, mut power, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for seed in seeds {
+        let (found, start_tick) = on_the_pico(image, seconds, seed);
+        let beside = in_process(seconds, seed, start_tick);
+        for (rig, felt) in [("Pico", found), ("in-process", beside)] {
+            let Fidelity { error, correlation, spurious_over_noise_db, .. } = felt;
+            println!(
+                "{rig}, seed {seed}: error {error:.3?}, correlation {correlation:.3?}, {spurious_over_noise_db:.1?} dB"
+            );
+        }
+        let error = found.error.unwrap();
+        assert!(error <= beside.error.unwrap() + LINE_ERROR_MAX, "{found:?}, in-process {beside:?}");
+        error_2 += error * error;
+        correlation += found.correlation.unwrap();
+        power += found.spurious_over_noise_db.map_or(0.0, |db| 10_f64.powf(0.1 * db));
+        count += 1.0;
+    }
+    let (error, correlation, spurious_db) =
+        ((error_2 / count).sqrt(), correlation / count, 10.0 * (power / count).log10());
+    println!("error {error:.3}, correlation {correlation:.3}, spurious {spurious_db:.1} dB");
+    assert!(error <= ERROR_MAX && correlation >= CORRELATION_MIN && spurious_db <= SPURIOUS_MAX_DB);
+}
+
+#[test]
+fn a_grating_is_felt_within_the_goal() {
+    let Some(image) = emulator::pico_image() else { return };
+    is_felt_within_the_goal(&image, 1.5, HUMAN_TEST_SEEDS.take(1));
+}
+
+#[test]
+#[ignore = "takes minutes: `cargo xtask soak pico`"]
+fn a_grating_is_felt_within_the_goal_on_long_strokes() {
+    let Some(image) = emulator::pico_image() else { return };
+    is_felt_within_the_goal(&image, 8.5, HUMAN_TEST_SEEDS.take(4));
+}
