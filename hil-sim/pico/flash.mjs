@@ -1,8 +1,8 @@
 // The flash chip (Winbond W25Q16JV of a Pico), and the functions of the boot ROM that erase and program it.
 //
-// rp2040js has no boot ROM, and a store to flash writes there. Here a store is an error, the ROM has its table of functions
-// (RP2040 datasheet, 2.8.3), and the chip has the rules of NOR flash: a sector is erased to ones, programming makes zeros of
-// ones, and both take time, in which nothing in flash can be read.
+// rp2040js has no boot ROM, and a store to flash writes there. Here a store is an error, the ROM has its table of
+// functions (RP2040 datasheet, 2.8.3), and the chip has the rules of NOR flash: a sector is erased to ones, programming
+// makes zeros of ones, and both take time, in which nothing in flash can be read.
 
 import { EVENT } from "./protocol.mjs";
 

@@ -1,7 +1,8 @@
-// The wires of the carrier board (hardware/carrier.toml): the DAC's bus, the amplifier's lines, switch, monitor and light.
+// The wires of the carrier board (hardware/carrier.toml): the DAC's bus, the amplifier's lines, switch, monitor and
+// light.
 //
-// A pin that the chip does not drive has the level that the carrier's resistor gives it. What happens on the wires becomes
-// events with the time at which it happened; the chips themselves are simulated in `frixel-hil-sim`.
+// A pin that the chip does not drive has the level that the carrier's resistor gives it. What happens on the wires
+// becomes events with the time at which it happened; the chips themselves are simulated in `frixel-hil-sim`.
 
 import { EVENT } from "./protocol.mjs";
 

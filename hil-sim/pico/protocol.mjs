@@ -1,5 +1,5 @@
-// The words between this process and `frixel-hil-sim` (src/emulated/pico/protocol.rs): little-endian, 32 bits each, in messages
-// that begin with the number of words that follow.
+// The words between this process and `frixel-hil-sim` (src/emulated/pico/protocol.rs): little-endian, 32 bits each, in
+// messages that begin with the number of words that follow.
 
 /** First word of a request. */
 export const REQUEST = {

@@ -1,9 +1,9 @@
 // UART0, and the line between it and the host.
 //
-// rp2040js sends a byte at once and never has a full transmit FIFO, asks for an interrupt after each received byte, has no
-// receive timeout and no data request for DMA. Here a byte takes ten bits of the line, and the interrupts are those of the
-// PL011 (RP2040 datasheet, 4.2): FIFO levels, and a timeout of 32 bits, without which a driver that waits for it would hang
-// on a real board only.
+// rp2040js sends a byte at once and never has a full transmit FIFO, asks for an interrupt after each received byte, has
+// no receive timeout and no data request for DMA. Here a byte takes ten bits of the line, and the interrupts are those
+// of the PL011 (RP2040 datasheet, 4.2): FIFO levels, and a timeout of 32 bits, without which a driver that waits for it
+// would hang on a real board only.
 
 import { BAUD } from "./protocol.mjs";
 

@@ -1,5 +1,5 @@
-// A start that leaves some of the chip running, such as a debugger's, finds peripherals as the last one has left them. In
-// this rig each is new, so one that the firmware does not reset itself is an error.
+// A start that leaves some of the chip running, such as a debugger's, finds peripherals as the last one has left them.
+// In this rig each is new, so one that the firmware does not reset itself is an error.
 
 const RESETS = 0x4000c;
 /** Peripherals that a start must reset before it uses them, and their bits in RESETS.RESET. */

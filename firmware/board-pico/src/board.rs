@@ -1,5 +1,5 @@
-//! Identity, stores and limits of this board. The limits stand in `Board::PICO_2` and `Board::PICO`, where the host finds
-//! them, too.
+//! Identity, stores and limits of this board. The limits stand in `Board::PICO_2` and `Board::PICO`, where the host
+//! finds them, too.
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;

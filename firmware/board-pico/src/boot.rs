@@ -25,8 +25,8 @@ use crate::chip::INTERRUPTS;
 #[used]
 static BOOT_2: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 
-/// A block with one item, the type of the image: an executable for the Arm cores of an RP2350, in secure state (RP2350, 5.9.5,
-/// "Image definitions"; 5.1.5.1, "Block loops"). It is a loop of its own.
+/// A block with one item, the type of the image: an executable for the Arm cores of an RP2350, in secure state (RP2350,
+/// 5.9.5, "Image definitions"; 5.1.5.1, "Block loops"). It is a loop of its own.
 #[cfg(feature = "rp2350")]
 #[unsafe(link_section = ".boot")]
 #[used]

@@ -59,8 +59,8 @@ pub fn start() {
     start_watchdog_ticks();
 }
 
-/// Enables the peripherals that the board uses, except the pins, in the state after a reset: one that does not reset the
-/// whole chip, such as a debugger's, has left them running.
+/// Enables the peripherals that the board uses, except the pins, in the state after a reset: one that does not reset
+/// the whole chip, such as a debugger's, has left them running.
 pub fn start_peripherals() {
     restart(|w, is_reset| {
         w.set_adc(is_reset);
@@ -111,10 +111,10 @@ fn start_pll(pll: Pll, set_reset: fn(&mut Peripherals, bool), settings: &PllSett
     pll.pwr().modify(|w| w.set_postdivpd(false));
 }
 
-/// Gives the reference back to the ring oscillator, and divides it into ticks for the watchdog, which nothing else uses:
-/// so these go on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators"). Whether the
-/// watchdog counts them without the chip's own clock, the data sheets do not say.
-/// The boot ROM has run from the ring oscillator, so it is on.
+/// Gives the reference back to the ring oscillator, and divides it into ticks for the watchdog, which nothing else
+/// uses: so these go on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators").
+/// Whether the watchdog counts them without the chip's own clock, the data sheets do not say. The boot ROM has run from
+/// the ring oscillator, so it is on.
 fn start_watchdog_ticks() {
     const CYCLES: u16 = (chip::RING_OSCILLATOR_MAX_HZ / 1_000_000) as u16;
     CLOCKS.clk_ref_ctrl().modify(|w| w.set_src(ClkRefCtrlSrc::ROSC_CLKSRC_PH));

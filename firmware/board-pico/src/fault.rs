@@ -1,5 +1,5 @@
-//! Panics and faults: they set the output to zero, store the reason, and reset ([`frixel_board::fault`]). The next start
-//! reports the reason.
+//! Panics and faults: they set the output to zero, store the reason, and reset ([`frixel_board::fault`]). The next
+//! start reports the reason.
 
 use core::panic::PanicInfo;
 

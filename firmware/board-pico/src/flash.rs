@@ -1,9 +1,9 @@
 //! The part of the flash that holds the stores: behind the first MiB, which belongs to the image.
 //!
-//! Unlike that of the NUCLEO, the flash has one bank, and the ROM's functions wait: an erasure takes 45 ms, and 400 ms at
-//! most (data sheet of the W25Q16JV, "AC Electrical Characteristics", unread), a word some 0.1 ms and at most 4. The main
-//! loop waits as long. The stores are written only while the board is disarmed, and the tick, all of which is in RAM,
-//! goes on. A write that power cuts leaves any bits, which the stores' checksums find.
+//! Unlike that of the NUCLEO, the flash has one bank, and the ROM's functions wait: an erasure takes 45 ms, and 400 ms
+//! at most (data sheet of the W25Q16JV, "AC Electrical Characteristics", unread), a word some 0.1 ms and at most 4. The
+//! main loop waits as long. The stores are written only while the board is disarmed, and the tick, all of which is in
+//! RAM, goes on. A write that power cuts leaves any bits, which the stores' checksums find.
 
 use core::ptr;
 

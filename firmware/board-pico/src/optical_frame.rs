@@ -1,5 +1,5 @@
-//! The optical touch frame, a Neonode zForce module on I2C 0. The FIFOs of 16 bytes are served whenever the main loop polls;
-//! between two polls the peripheral holds SCL low, so that no byte is lost (RP2040, 4.3, "I2C").
+//! The optical touch frame, a Neonode zForce module on I2C 0. The FIFOs of 16 bytes are served whenever the main loop
+//! polls; between two polls the peripheral holds SCL low, so that no byte is lost (RP2040, 4.3, "I2C").
 //!
 //! The module lies along the top edge of the screen, with its corner at the screen's corner.
 //!
@@ -73,8 +73,8 @@ pub enum Error {
     ArbitrationLoss,
     /// The transfer took longer than 6 ms.
     Timeout,
-    /// SDA is low before the transfer, and nine clocks have not freed it, or the peripheral waits for the last transfer to
-    /// end: a short, a module without supply, or one that holds SCL.
+    /// SDA is low before the transfer, and nine clocks have not freed it, or the peripheral waits for the last transfer
+    /// to end: a short, a module without supply, or one that holds SCL.
     BusHeld,
     /// A transaction of several transfers, or of none or more than 127 bytes, which the module never needs.
     Unsupported,
@@ -136,8 +136,8 @@ async fn clear() -> bool {
     is_free
 }
 
-/// Disables the peripheral, which clears its FIFOs, and clears its flags: those of a transfer that was given up must not end
-/// the next one. Returns whether it is idle; until then, it takes no configuration (RP2040, 4.3.10,
+/// Disables the peripheral, which clears its FIFOs, and clears its flags: those of a transfer that was given up must
+/// not end the next one. Returns whether it is idle; until then, it takes no configuration (RP2040, 4.3.10,
 /// "Disabling").
 async fn disable() -> bool {
     I2C0.ic_enable().write(|w| w.set_enable(false));
@@ -207,8 +207,8 @@ impl Transfer<'_, '_> {
         }
     }
 
-    /// Fills the transmit FIFO: with the bytes to write, or with commands to read, of which no more may be under way than
-    /// the receive FIFO holds.
+    /// Fills the transmit FIFO: with the bytes to write, or with commands to read, of which no more may be under way
+    /// than the receive FIFO holds.
     fn send(&mut self) {
         let (bytes, is_read): (&[u8], bool) = match &*self.operation {
             Operation::Read(bytes) => (bytes, true),

@@ -92,8 +92,8 @@ impl KickedEnable for Output {
         override_enable(Outover::NORMAL);
     }
 
-    /// The enable is low at once, and stays low until the next kick even if the state machine stands still. Both pins of
-    /// the one-shot are low within 1.1 us: a kick without pins and without rounds.
+    /// The enable is low at once, and stays low until the next kick even if the state machine stands still. Both pins
+    /// of the one-shot are low within 1.1 us: a kick without pins and without rounds.
     #[inline]
     fn disable(&mut self) {
         override_enable(Outover::LOW);

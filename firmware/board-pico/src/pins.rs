@@ -62,8 +62,8 @@ impl Pin {
         Self { number }
     }
 
-    /// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring a
-    /// pin down that was high (erratum RP2350-E9): `docs/hardware.md` asks for a resistor.
+    /// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring
+    /// a pin down that was high (erratum RP2350-E9): `docs/hardware.md` asks for a resistor.
     pub(crate) fn input_pulled_down(number: usize) -> Self {
         SIO.gpio_oe(0).value_clr().write_value(1 << number);
         configure(number, Function::Sio, Pull::Down, true);

@@ -31,8 +31,8 @@ pub(crate) fn unique_number(_: &crate::rom::FlashFunctions) -> [u8; 8] {
     number
 }
 
-/// The interface of the flash as the boot ROM leaves it: bytes in both directions, with the chip select as software sets
-/// it (RP2040, 4.10, "SSI").
+/// The interface of the flash as the boot ROM leaves it: bytes in both directions, with the chip select as software
+/// sets it (RP2040, 4.10, "SSI").
 #[cfg(feature = "rp2040")]
 mod flash {
     use rp_pac::io::vals::Outover;

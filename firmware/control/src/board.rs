@@ -150,9 +150,9 @@ impl Board {
         ..Self::NUCLEO_G474RE
     };
 
-    /// Largest voltage of a Pico or Pico 2 until limits are stored, V peak. No bring-up of these boards has measured DAC,
-    /// amplifier, monitor and one-shot before a first play, so it is one that does no harm if the gain or the reference is
-    /// twice as large as it should be.
+    /// Largest voltage of a Pico or Pico 2 until limits are stored, V peak. No bring-up of these boards has measured
+    /// DAC, amplifier, monitor and one-shot before a first play, so it is one that does no harm if the gain or the
+    /// reference is twice as large as it should be.
     pub const PICO_UNMEASURED_V_PEAK: f32 = 10.0;
 
     /// The real board of a name.

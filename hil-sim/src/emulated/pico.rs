@@ -86,8 +86,8 @@ pub struct PicoRig {
 }
 
 impl PicoRig {
-    /// Switches a board on that has stored the limits of [`Board::PICO`], in a world whose finger is up, and which has the
-    /// board's tick rate.
+    /// Switches a board on that has stored the limits of [`Board::PICO`], in a world whose finger is up, and which has
+    /// the board's tick rate.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = Self::factory_new(image, world)?;
         let words = [&[STORES_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
@@ -129,8 +129,8 @@ impl PicoRig {
         self.tick_period
     }
 
-    /// Number of ticks of the world since the board was first switched on, modulo 2^32. The board's own count begins when
-    /// its beat does, anew at each start.
+    /// Number of ticks of the world since the board was first switched on, modulo 2^32. The board's own count begins
+    /// when its beat does, anew at each start.
     pub fn tick(&self) -> u32 {
         self.world.tick() as u32
     }
@@ -181,8 +181,8 @@ impl PicoRig {
         self.events.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Leaves the touch source's frames to the caller from now on, who takes them after every step and sends them on the
-    /// line that carries its own.
+    /// Leaves the touch source's frames to the caller from now on, who takes them after every step and sends them on
+    /// the line that carries its own.
     pub(crate) fn hand_over_touch_frames(&mut self) {
         self.touch_frames = Some(Vec::new());
     }

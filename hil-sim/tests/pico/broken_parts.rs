@@ -16,8 +16,9 @@ use crate::emulator;
 /// Instructions of a tick after which it has read monitor, ready line and switch.
 const READ_AFTER: u32 = 2_000;
 
-/// From a broken part to zero, if the fault is that of the last of so many ticks that read it: the first one of them is the
-/// next, and the last one, which computes no friction any more, disables the amplifier and clears the DAC in its first half.
+/// From a broken part to zero, if the fault is that of the last of so many ticks that read it: the first one of them is
+/// the next, and the last one, which computes no friction any more, disables the amplifier and clears the DAC in its
+/// first half.
 fn zero_within(reading_ticks: u32) -> Duration {
     reading_ticks * TICK + TICK / 2
 }

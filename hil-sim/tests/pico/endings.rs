@@ -117,7 +117,8 @@ fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
     *bench.connect().hello()
 }
 
-/// Expects that the firmware itself disabled the amplifier and cleared the DAC, before the start that lets go of all pins.
+/// Expects that the firmware itself disabled the amplifier and cleared the DAC, before the start that lets go of all
+/// pins.
 fn zeroed_by_firmware(bench: &Bench, ending: Ending) {
     let events = bench.take_events();
     assert!(events.is_sorted_by_key(|stamped| stamped.at), "{ending:?}: {events:?}");
@@ -155,8 +156,8 @@ fn whatever_ends_a_play_at_any_of_a_hundred_instructions_leaves_the_output_at_ze
     suffer_often(&image, Ending::HangingMainLoop, 20);
 }
 
-/// The image has given its watchdog the ring oscillator, which goes on without the crystal. That the watchdog counts while
-/// the chip's clock stands still is the rig's assumption, and no data sheet's: this says nothing of a board.
+/// The image has given its watchdog the ring oscillator, which goes on without the crystal. That the watchdog counts
+/// while the chip's clock stands still is the rig's assumption, and no data sheet's: this says nothing of a board.
 #[test]
 fn the_watchdog_is_given_the_ring_oscillator() {
     let Some(image) = emulator::pico_image() else { return };

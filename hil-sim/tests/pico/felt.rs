@@ -1,4 +1,5 @@
-//! What a finger feels of a grating: the goal of `host/frixel/tests/felt.rs`, and the in-process rig's number beside it.
+//! What a finger feels of a grating: the goal of `host/frixel/tests/felt.rs`, and the in-process rig's number beside
+//! it.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -13,8 +14,8 @@ use super::bench::{BOARD, Bench, GRATING, program};
 use crate::emulator;
 use crate::script::Script;
 
-/// The goal at 50 mm/s: error from 0 to 400 Hz over the rms of the reference's changes, correlation, and the third octave
-/// that grew most over the finger's own noise in it.
+/// The goal at 50 mm/s: error from 0 to 400 Hz over the rms of the reference's changes, correlation, and the third
+/// octave that grew most over the finger's own noise in it.
 const ERROR_MAX: f64 = 0.25;
 const CORRELATION_MIN: f64 = 0.9;
 const SPURIOUS_MAX_DB: f64 = 6.0;
@@ -90,8 +91,8 @@ fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
     }))
 }
 
-/// Error, correlation and what is spurious, in dB, of strokes with these seeds: as in `host/frixel/tests/felt.rs`, a root
-/// mean square, a mean, and a mean power.
+/// Error, correlation and what is spurious, in dB, of strokes with these seeds: as in `host/frixel/tests/felt.rs`, a
+/// root mean square, a mean, and a mean power.
 fn is_felt_within_the_goal(image: &Image, seconds: f64, seeds: impl Iterator<Item = u64>) {
     let (mut error_2, mut correlation, mut power, mut count) = (0.0, 0.0, 0.0, 0.0);
     for seed in seeds {

@@ -101,8 +101,8 @@ fn frames_come_at_every_beat_and_the_enable_is_high_from_the_first_kick_to_the_s
     assert!(bench.with(|rig| rig.zero_since()).is_some());
 }
 
-/// The monitor is compared with the code before the newest one, and the amplifier follows that within some 8 us. So it is
-/// read soon after the newest code is out, whatever else the tick has to do.
+/// The monitor is compared with the code before the newest one, and the amplifier follows that within some 8 us. So it
+/// is read soon after the newest code is out, whatever else the tick has to do.
 #[test]
 fn the_monitor_is_read_before_the_newest_code_has_moved_it() {
     let Some(image) = emulator::pico_image() else { return };

@@ -62,8 +62,8 @@ fn stored(image: &Image) -> (Bench, u32) {
     (bench, operations as u32)
 }
 
-/// Cuts the power at operations of stores, the first one being 0; `choose` gets the number of operations of a store. The
-/// scene that the board does not have is the one that it is given next.
+/// Cuts the power at operations of stores, the first one being 0; `choose` gets the number of operations of a store.
+/// The scene that the board does not have is the one that it is given next.
 fn cut_at(image: &Image, choose: impl FnOnce(u32) -> Vec<u32>) {
     let crc32s = [CONSTANT, WEAKER].map(crc32_of);
     let (bench, operations) = stored(image);

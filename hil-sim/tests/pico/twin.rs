@@ -1,8 +1,9 @@
 //! Session and ticker in this process, which are given what the emulated board was given, at the same ticks.
 //!
-//! A line, a main loop and a queue lie between the host and the Pico's tick, so the tick at which a report is heard, and
-//! the one at which its track is followed, depend on how busy the board is. Both are known: the emulator shows every order
-//! that the tick takes, and a track begins at the tick after the status that the main loop had when it heard the report.
+//! A line, a main loop and a queue lie between the host and the Pico's tick, so the tick at which a report is heard,
+//! and the one at which its track is followed, depend on how busy the board is. Both are known: the emulator shows
+//! every order that the tick takes, and a track begins at the tick after the status that the main loop had when it
+//! heard the report.
 
 use std::collections::VecDeque;
 
@@ -14,7 +15,8 @@ use frixel_session::Session;
 
 use super::bench::BOARD;
 
-/// Ticks between a report and its track, at most: the one in which the main loop has it, and those that the queue holds.
+/// Ticks between a report and its track, at most: the one in which the main loop has it, and those that the queue
+/// holds.
 const LAG_TICKS_MAX: u32 = 40;
 /// Steps of a commit, at most.
 const COMMIT_STEPS_MAX: u32 = 128;
@@ -70,7 +72,8 @@ impl Twin {
         (1..=ticks).map(code).collect()
     }
 
-    /// Gives the ticker an order that the emulated board's tick took: the next one of the session, which has to be the same.
+    /// Gives the ticker an order that the emulated board's tick took: the next one of the session, which has to be the
+    /// same.
     fn take(&mut self, expected: &AppliedOrder) {
         if expected.words[0] == HOST_HEARD {
             self.ticker.apply(Order::HostHeard);
@@ -106,8 +109,8 @@ impl Twin {
     }
 }
 
-/// The tick at which the track of an order begins. Where it lies in memory, the compiler decides; every other word is the
-/// bits of a fraction, a small number, or a tick that is farther away.
+/// The tick at which the track of an order begins. Where it lies in memory, the compiler decides; every other word is
+/// the bits of a fraction, a small number, or a tick that is farther away.
 fn from_tick(order: &AppliedOrder) -> u32 {
     let lag = |word: &u32| order.tick.wrapping_sub(*word);
     let near: Vec<u32> = order.words[1..].iter().copied().filter(|word| lag(word) < LAG_TICKS_MAX).collect();

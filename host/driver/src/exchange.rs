@@ -32,8 +32,8 @@ const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
 const WAITING_PERIOD: Duration = Duration::from_millis(100);
 /// Time to the next try when the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
-/// Credit that uploads leave for commands and pings, bytes: a dozen of them. Those that the line loses take credit until
-/// a command is answered.
+/// Credit that uploads leave for commands and pings, bytes: a dozen of them. Those that the line loses take credit
+/// until a command is answered.
 const RESERVE_LEN: usize = 256;
 /// Credit that commands leave for pings, bytes: the ten that may be unanswered after a minute.
 const PING_RESERVE_LEN: usize = 128;

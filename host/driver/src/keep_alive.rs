@@ -37,17 +37,17 @@ const PERIOD_MIN: Duration = Duration::from_millis(1);
 ///
 /// A ping is due when nothing was written for the period, but not while the two before it are unanswered: a board that
 /// answers more slowly than it is pinged would have more and more of them ahead of every command. Two that stay
-/// unanswered for the period, and for four times the last round trip, count as damaged, and a third one is due; on a board
-/// that has answered one, two more after that. The next one is due 0.75 s later, and each further one after twice the
-/// time; a board that takes longer than 0.75 s for one frame counts as silent. A frame that arrives damaged counts as the
-/// answer to a ping.
+/// unanswered for the period, and for four times the last round trip, count as damaged, and a third one is due; on a
+/// board that has answered one, two more after that. The next one is due 0.75 s later, and each further one after twice
+/// the time; a board that takes longer than 0.75 s for one frame counts as silent. A frame that arrives damaged counts
+/// as the answer to a ping.
 ///
-/// No ping is due once the application has made no call to the link for [`KEEP_ALIVE_TIMEOUT`]: a board does not play on
-/// for a program that hangs. The next call resumes the pings.
+/// No ping is due once the application has made no call to the link for [`KEEP_ALIVE_TIMEOUT`]: a board does not play
+/// on for a program that hangs. The next call resumes the pings.
 ///
-/// A link asks [`Self::due_at`], writes [`Self::next_ping`] then, and passes everything that arrives to
-/// [`Self::hear`]. It says when it writes, and if it also pings outside of calls, when these begin and end. Times are on
-/// the link's clock.
+/// A link asks [`Self::due_at`], writes [`Self::next_ping`] then, and passes everything that arrives to [`Self::hear`].
+/// It says when it writes, and if it also pings outside of calls, when these begin and end. Times are on the link's
+/// clock.
 #[derive(Debug)]
 pub struct KeepAlive {
     period: Option<Duration>,
@@ -136,8 +136,8 @@ impl KeepAlive {
         bytes
     }
 
-    /// Takes the bytes that have arrived at the time `now`, and looks for answers to pings in them. Returns whether there
-    /// is one.
+    /// Takes the bytes that have arrived at the time `now`, and looks for answers to pings in them. Returns whether
+    /// there is one.
     pub fn hear(&mut self, bytes: &[u8], now: Duration) -> bool {
         let mut input = bytes;
         let (before, rejected_before) = (self.unanswered.len(), self.decoder.rejected());

@@ -26,9 +26,10 @@ pub trait Link {
     /// Pings the board from now on whenever nothing was written for `period`, by the rules of
     /// [`KeepAlive`](crate::KeepAlive). Replaces the previous period.
     ///
-    /// A ping reports to the board that the application is running, so a link must not send it for an application
-    /// that hangs: sending ends [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the last [`Self::write`] or
-    /// [`Self::read`], and resumes with the next of these calls. A link that sends only inside these calls needs no timeout.
+    /// A ping reports to the board that the application is running, so a link must not send it for an application that
+    /// hangs: sending ends [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the last [`Self::write`] or
+    /// [`Self::read`], and resumes with the next of these calls. A link that sends only inside these calls needs no
+    /// timeout.
     fn keep_alive(&mut self, period: Duration);
 
     /// Sets the frames that the link sends when it is dropped, as far as that is possible without waiting. The default

@@ -1,7 +1,7 @@
 //! What the command reads: regular files and standard input, each up to a stated size.
 //!
-//! A file that is a pipe or a device is not read, since it may have no end. Errors are [`io::Error`]s, for the sentences
-//! of those who read.
+//! A file that is a pipe or a device is not read, since it may have no end. Errors are [`io::Error`]s, for the
+//! sentences of those who read.
 
 use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, BufRead, Read};

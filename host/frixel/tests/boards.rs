@@ -58,8 +58,8 @@ fn but_for_the_tick(board: &Board) -> BoardLimits {
     BoardLimits { tick_cycles_max, core, ..RigConfig::default().board.limits }
 }
 
-/// What the compiler estimates is what the board estimates, for a scene of one layer that a Pico takes, and for one that
-/// it does not.
+/// What the compiler estimates is what the board estimates, for a scene of one layer that a Pico takes, and for one
+/// that it does not.
 #[test]
 fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
     let board = Board::PICO;

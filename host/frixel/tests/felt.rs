@@ -78,8 +78,8 @@ const SLOW: Class = Class { source: "100", wavelength_mm: 10.0 };
 const MEDIUM: Class = Class { source: "200", wavelength_mm: 5.0 };
 const FAST: Class = Class { source: "500", wavelength_mm: 2.0 };
 
-/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed. `docs/touch.md` says
-/// why.
+/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed. `docs/touch.md`
+/// says why.
 const CASES: [(Class, f64, Held); 9] = [
     (SLOW, 50.0, GOAL),
     (SLOW, 100.0, Held { ratio_max: 0.28, spurious_max_db: 7.5, ..GOAL }),

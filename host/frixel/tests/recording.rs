@@ -343,7 +343,8 @@ fn a_calibration_is_parquet_by_its_name_and_fits_the_same() {
     assert_eq!(fit("data.csv"), fit("data.parquet"));
 }
 
-/// Ctrl-C leaves a whole recording, and what it has is played again, with the ticks in which the output is switched off.
+/// Ctrl-C leaves a whole recording, and what it has is played again, with the ticks in which the output is switched
+/// off.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_recording_is_whole_and_plays_again() {

@@ -62,7 +62,8 @@ impl Running {
         let stream = TcpStream::connect(&self.host).unwrap();
         match client(request, stream) {
             Ok((socket, _)) => {
-                // Only now: a signal of another test ends a read that has a timeout, which the handshake reports as an error.
+                // Only now: a signal of another test ends a read that has a timeout, which the handshake reports as an
+                // error.
                 socket.get_ref().set_read_timeout(Some(Duration::from_secs(5))).unwrap();
                 Ok(socket)
             }

@@ -4,8 +4,8 @@
 //! cargo run -p frixel-lab --example stream
 //! ```
 //!
-//! The feed asks ahead, for up to 2,048 samples, before the board has room for them. So a closure knows how many samples
-//! it gave, and not how many have been felt.
+//! The feed asks ahead, for up to 2,048 samples, before the board has room for them. So a closure knows how many
+//! samples it gave, and not how many have been felt.
 #![allow(clippy::print_stdout, reason = "it is a program")]
 
 use std::cell::Cell;

@@ -86,8 +86,8 @@ pub struct StrokeFile {
 
 impl StrokeFile {
     /// Reads a stroke from CSV with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
-    /// known, in N and above 0; an empty cell is an unknown load. The finger is off the screen in a row whose cells `x_mm`
-    /// and `y_mm` are empty, as in `felt.csv`.
+    /// known, in N and above 0; an empty cell is an unknown load. The finger is off the screen in a row whose cells
+    /// `x_mm` and `y_mm` are empty, as in `felt.csv`.
     ///
     /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
@@ -118,8 +118,8 @@ impl StrokeFile {
     }
 }
 
-/// The text of a file that [`StrokeFile::read`] reads to the bit: of each row the time in s, the place in mm, and the normal
-/// load in N; what is not known is not a number.
+/// The text of a file that [`StrokeFile::read`] reads to the bit: of each row the time in s, the place in mm, and the
+/// normal load in N; what is not known is not a number.
 pub fn to_csv(rows: impl IntoIterator<Item = [f64; 4]>) -> String {
     let mut text = String::from("t_s,x_mm,y_mm,force_n\n");
     for row in rows {

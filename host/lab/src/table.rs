@@ -312,7 +312,8 @@ impl<'t> Row<'t> {
         })
     }
 
-    /// The digits of the number in a cell, in the unit of the caller and with a decimal point. They need not be a number.
+    /// The digits of the number in a cell, in the unit of the caller and with a decimal point. They need not be a
+    /// number.
     pub(crate) fn digits(&self, place: Place) -> Result<Cow<'t, str>, TableError> {
         let (row, column) = (self.number, self.column(place));
         let text = self.text(place);

@@ -1,6 +1,6 @@
 //! What a bad line leaves of an upload and of a stream: nothing that arrives damaged is accepted, and what cannot get
-//! through ends with a sentence. The test of three seconds holds the table of `docs/scenarios.md`, and
-//! `FRIXEL_BLESS=1 cargo test -p frixel-lab --test main goodput` writes it; `cargo xtask soak faults` streams for longer.
+//! through ends with a sentence. The test of three seconds holds the table of `docs/scenarios.md`, and `FRIXEL_BLESS=1
+//! cargo test -p frixel-lab --test main goodput` writes it; `cargo xtask soak faults` streams for longer.
 #![allow(clippy::disallowed_methods, reason = "the tests read the documentation")]
 
 use std::collections::{BTreeMap, HashSet};

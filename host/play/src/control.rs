@@ -38,7 +38,8 @@ impl Control {
         Self { kept: Some(Vec::new()), ..Self::default() }
     }
 
-    /// The lines so far, without those that `replace` a scene and those that cannot be read; `None` if they are not kept.
+    /// The lines so far, without those that `replace` a scene and those that cannot be read; `None` if they are not
+    /// kept.
     pub fn kept(&self) -> Option<&[String]> {
         self.kept.as_deref()
     }
@@ -56,8 +57,8 @@ impl Control {
         Duration::try_from_secs_f64(until_next_s).unwrap_or(Duration::MAX).max(STEP_MIN)
     }
 
-    /// Ends triggers, and carries out the lines of `next_line` until there is none, or one has to wait, at time `t_s` of
-    /// the play. Calls `say` with what is refused or clamped, a sentence each.
+    /// Ends triggers, and carries out the lines of `next_line` until there is none, or one has to wait, at time `t_s`
+    /// of the play. Calls `say` with what is refused or clamped, a sentence each.
     ///
     /// # Errors
     ///

@@ -107,8 +107,8 @@ impl Feed {
         Ok(())
     }
 
-    /// Time that the stream takes from its start until it has faded out, if nothing delays it, in s; `None` if the samples
-    /// come while they are played.
+    /// Time that the stream takes from its start until it has faded out, if nothing delays it, in s; `None` if the
+    /// samples come while they are played.
     pub fn duration_s(&self) -> Option<f64> {
         match &self.source {
             Source::Samples(samples, _) => Some(self.playing_s(samples.len() as u64, 0)),

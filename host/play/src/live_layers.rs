@@ -125,12 +125,12 @@ impl LiveLayers {
         Self { settings: program.start.clone(), chosen, triggers: Vec::new(), program }
     }
 
-    /// A program that follows this one. Of its live layers, those that this program has, too, keep what the host has set
-    /// of them, and their triggers; all others are as the file sets them. A layer without a name is the same if it has
-    /// the same number and kind.
+    /// A program that follows this one. Of its live layers, those that this program has, too, keep what the host has
+    /// set of them, and their triggers; all others are as the file sets them. A layer without a name is the same if it
+    /// has the same number and kind.
     ///
-    /// If the drive cannot give what the gains ask for that the host has set, all are those of the file: the second value
-    /// says so.
+    /// If the drive cannot give what the gains ask for that the host has set, all are those of the file: the second
+    /// value says so.
     pub(crate) fn followed_by(&self, program: Program) -> (Self, Option<Clamped>) {
         let mut next = Self::new(program);
         let titles = (0..).zip(&next.program.titles).filter(|(record, _)| next.program.layers.is_live(*record));
@@ -170,8 +170,8 @@ impl LiveLayers {
         &self.program
     }
 
-    /// Switches a layer, or changes its gain; `None` leaves as it is. The name of a layer with `repeat` is that of all its
-    /// copies.
+    /// Switches a layer, or changes its gain; `None` leaves as it is. The name of a layer with `repeat` is that of all
+    /// its copies.
     ///
     /// # Errors
     ///
@@ -194,10 +194,10 @@ impl LiveLayers {
         Ok(LayerChange { settings: of_records(&records, &changed), clamped, trigger, sets })
     }
 
-    /// Switches a layer that is off on at the time `now`, in its pattern if it has one, and off again `duration_s` seconds
-    /// later; without a duration, when its pattern or its first burst is over, or else after 0.1 s. If it is triggered
-    /// already, its pattern or its bursts begin anew, and it ends at the later of both ends. The name of a layer with `repeat` is that
-    /// of all its copies.
+    /// Switches a layer that is off on at the time `now`, in its pattern if it has one, and off again `duration_s`
+    /// seconds later; without a duration, when its pattern or its first burst is over, or else after 0.1 s. If it is
+    /// triggered already, its pattern or its bursts begin anew, and it ends at the later of both ends. The name of a
+    /// layer with `repeat` is that of all its copies.
     ///
     /// # Errors
     ///

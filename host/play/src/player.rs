@@ -63,8 +63,9 @@ impl<L: Link + Recorded> Player<L> {
         Self::new(device)
     }
 
-    /// Uploads the program and plays it, whatever state an earlier client left the board in. The board sends a telemetry
-    /// message every `telemetry_period_ticks` ticks; 0 disables telemetry. `progress` may break the upload off.
+    /// Uploads the program and plays it, whatever state an earlier client left the board in. The board sends a
+    /// telemetry message every `telemetry_period_ticks` ticks; 0 disables telemetry. `progress` may break the upload
+    /// off.
     pub fn start(
         &mut self,
         program: Program,
@@ -178,8 +179,8 @@ impl<L: Link + Recorded> Player<L> {
         self.recorder_mut().scene_replaced(program, &limits)
     }
 
-    /// Switches a layer by its name or number, or sets its gain; `None` leaves as it is. Returns the change, which has a
-    /// notice on what is clamped from now on.
+    /// Switches a layer by its name or number, or sets its gain; `None` leaves as it is. Returns the change, which has
+    /// a notice on what is clamped from now on.
     pub fn change_layer(&mut self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, PlayError> {
         let change = self.layers()?.change(layer, on, gain)?;
         self.send(&change)?;
@@ -261,7 +262,8 @@ impl<L: Link + Recorded> Player<L> {
         self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
     }
 
-    /// Lets at most `time_max` pass on the board, until a trigger switches its layer next; records the ticks, and sends samples.
+    /// Lets at most `time_max` pass on the board, until a trigger switches its layer next; records the ticks, and sends
+    /// samples.
     ///
     /// Returns how much time has passed. Fails when the connection is lost or when the board stopped without a stop
     /// command; what happened until then has been recorded.

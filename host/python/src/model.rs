@@ -50,7 +50,8 @@ impl AnyContact {
 }
 
 impl Checked {
-    /// The contact under a load. A negative load pulls a finger on springs without an outer radius; the others refuse it.
+    /// The contact under a load. A negative load pulls a finger on springs without an outer radius; the others refuse
+    /// it.
     fn under_load(&self, normal_load_n: f64) -> Result<Box<dyn ContactModel<f64>>, ParameterError> {
         Ok(match self {
             Self::Springs(contact, Some(outer_radius_m)) => Box::new(contact.within(*outer_radius_m, normal_load_n)?),

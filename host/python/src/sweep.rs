@@ -94,7 +94,8 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     played.map(|result| json(&result)).map_err(|error| exception(py, &cell, error))
 }
 
-/// Puts results together, without a look at signals. Returns lines for a person, and the files that `frixel sweep` writes.
+/// Puts results together, without a look at signals. Returns lines for a person, and the files that `frixel sweep`
+/// writes.
 #[pyfunction]
 pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec<String>, NamedBytes<'_>)> {
     let study = py.detach(|| {

@@ -11,8 +11,8 @@ use crate::{BoardRig, RigError, RigFault, RigTick, World};
 const NAME: &str = "the emulated Pico";
 /// Time until the board is there, and its arm switch counts as held or as let go.
 const SWITCH_TIME: Duration = Duration::from_millis(60);
-/// Most time between a request or an event and what is seen of it: the supervisor of a real board waits for its amplifier,
-/// and its touch reports take longer.
+/// Most time between a request or an event and what is seen of it: the supervisor of a real board waits for its
+/// amplifier, and its touch reports take longer.
 const LATENESS: Duration = Duration::from_millis(5);
 const BOARD: Board = Board::PICO;
 

@@ -6,8 +6,8 @@ use crate::emulated::EmulatorError;
 
 /// What a test does to the board.
 impl PicoRig {
-    /// Cuts the power of the processor, and switches it on again. `seed` is that of what its RAM holds then. The DAC keeps
-    /// its own supply.
+    /// Cuts the power of the processor, and switches it on again. `seed` is that of what its RAM holds then. The DAC
+    /// keeps its own supply.
     pub fn power_cycle(&mut self, seed: u32) -> Result<(), EmulatorError> {
         self.process.request(Request::PowerCycle, &[seed]).map(drop)
     }
@@ -42,8 +42,8 @@ impl PicoRig {
         self.process.request(Request::StopPio, &[1]).map(drop)
     }
 
-    /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction asked
-    /// for. `false` if there is no such function.
+    /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction
+    /// asked for. `false` if there is no such function.
     pub fn jump_to(&mut self, name: &str) -> Result<bool, EmulatorError> {
         let Some(address) = self.address_of(name)? else { return Ok(false) };
         self.jump(address).map(|()| true)

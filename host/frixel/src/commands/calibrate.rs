@@ -29,8 +29,8 @@ pub(super) struct CalibrateArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// The recording, for `frixel fit`: CSV, or Parquet by the name DATA.parquet. Until the end, what a board reports is
-    /// CSV in a file of the same name and `.partial`.
+    /// The recording, for `frixel fit`: CSV, or Parquet by the name DATA.parquet. Until the end, what a board reports
+    /// is CSV in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.

@@ -34,12 +34,12 @@ pub(super) struct FitArgs {
     /// standard deviation `friction_sd_n` and the number `n` of what was averaged.
     #[arg(value_name = "DATA.csv", required_unless_present = "recipe")]
     data: Option<PathBuf>,
-    /// Read a file of a published data set as its recipe says (docs/recipes.md); without DATA.csv, print the recipe, and
-    /// without NAME, the list of them.
+    /// Read a file of a published data set as its recipe says (docs/recipes.md); without DATA.csv, print the recipe,
+    /// and without NAME, the list of them.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
     recipe: Option<String>,
-    /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name that
-    /// ends in .svg; with another law, those of an earlier fit are removed.
+    /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name
+    /// that ends in .svg; with another law, those of an earlier fit are removed.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
     /// The law of the voltage that is fitted.
@@ -62,8 +62,8 @@ pub(super) struct FitArgs {
     /// Strokes to leave out, by their names in the column `stroke`.
     #[arg(long, value_name = "STROKE", value_delimiter = ',')]
     without: Vec<String>,
-    /// How friction was measured, in a few words for the profile; without it, `load cell, strokes with the drive switched
-    /// on and off`, or that the data are means.
+    /// How friction was measured, in a few words for the profile; without it, `load cell, strokes with the drive
+    /// switched on and off`, or that the data are means.
     #[arg(long, value_name = "TEXT")]
     method: Option<String>,
     /// Seed of the bootstrap that gives the intervals.

@@ -97,8 +97,8 @@ enum Command {
     Threshold(threshold::ThresholdArgs),
     /// Fit a finger's profile to measured friction.
     Fit(fit::FitArgs),
-    /// Compute the current through a finger on an intact, a scratched and a bridged coating, and the voltages that keep it
-    /// within its limit.
+    /// Compute the current through a finger on an intact, a scratched and a bridged coating, and the voltages that keep
+    /// it within its limit.
     Safety(safety::SafetyArgs),
     /// Draw the contact model, its error and its cost on one page.
     Report(report::ReportArgs),
@@ -131,8 +131,8 @@ struct SimArgs {
     /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
-    /// Run a scenario in place of serving a board, as fast as it goes: what a host does, what goes wrong, and what has to
-    /// be seen (docs/scenarios.md). Prints what happened.
+    /// Run a scenario in place of serving a board, as fast as it goes: what a host does, what goes wrong, and what has
+    /// to be seen (docs/scenarios.md). Prints what happened.
     #[arg(
         long,
         value_name = "FILE.toml",

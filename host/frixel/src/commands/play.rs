@@ -45,8 +45,8 @@ pub(super) struct PlayArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated Cortex-M4F, `pico` for the image of
-    /// the Pico on an emulated RP2040, or the path of a board's serial port.
+    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated Cortex-M4F, `pico` for the image
+    /// of the Pico on an emulated RP2040, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
     #[command(flatten)]
@@ -73,8 +73,8 @@ pub(super) struct PlayArgs {
     /// all of them are simulated.
     #[arg(long)]
     ideal: bool,
-    /// Simulate skin through which no charge leaks. Measurements disagree whether it does (docs/truth.md); without this, it
-    /// leaks below 250 Hz.
+    /// Simulate skin through which no charge leaks. Measurements disagree whether it does (docs/truth.md); without
+    /// this, it leaks below 250 Hz.
     #[arg(long, conflicts_with = "ideal")]
     no_leakage: bool,
     /// Simulated person, whose finger the board does not know: another one for each seed. Without it, the finger is the

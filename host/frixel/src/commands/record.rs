@@ -33,8 +33,8 @@ pub(super) struct RecordArgs {
     /// Path of the board's serial port.
     #[arg(long, required_unless_present = "finish")]
     port: Option<String>,
-    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`, or a Parquet file by the name
-    /// FILE.parquet. Until the end, its rows are CSV in a file of the same name and `.partial`.
+    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`, or a Parquet file by the
+    /// name FILE.parquet. Until the end, its rows are CSV in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.

@@ -23,8 +23,8 @@ pub(super) struct ReportArgs {
     /// Folder for the page and its numbers.
     #[arg(long, default_value = "frixel-report")]
     out: PathBuf,
-    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json. Without it, those of
-    /// this version.
+    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json. Without it, those
+    /// of this version.
     #[arg(long, value_name = "FILE.json")]
     bench: Option<PathBuf>,
 }

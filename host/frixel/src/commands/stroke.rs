@@ -20,10 +20,10 @@ const CHECKS_MAX: f64 = 1e6;
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
-    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the
-    /// normal load, for example a felt.csv; or `human`: the touches of a person, others for every --seed, with the
-    /// accelerations of recorded ones after smoothing (`human-rough`: before smoothing). Default: a sweep over the screen; `play` then visits each layer whose middle the sweep missed, unless --seconds or --stream
-    /// is given.
+    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the normal load,
+    /// for example a felt.csv; or `human`: the touches of a person, others for every --seed, with the accelerations of
+    /// recorded ones after smoothing (`human-rough`: before smoothing). Default: a sweep over the screen; `play` then
+    /// visits each layer whose middle the sweep missed, unless --seconds or --stream is given.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the top left corner of the screen.

@@ -46,8 +46,8 @@ impl Display for Decimals {
     }
 }
 
-/// `value * 10^decimals` for a value of zero or more, rounded to the nearest integer, and to the even one of two; `None`
-/// where the calculation does not hold the number.
+/// `value * 10^decimals` for a value of zero or more, rounded to the nearest integer, and to the even one of two;
+/// `None` where the calculation does not hold the number.
 fn scaled(value: f64, decimals: u32) -> Option<u64> {
     if value == 0.0 {
         return Some(0);

@@ -110,8 +110,8 @@ impl Span {
     }
 }
 
-/// Why the output is off at a row, as an index for [`OFF_REASONS`]; `None` where it is on, where there is no finger, and
-/// where the scene has no friction.
+/// Why the output is off at a row, as an index for [`OFF_REASONS`]; `None` where it is on, where there is no finger,
+/// and where the scene has no friction.
 fn off_reason(row: &FeltRow) -> Option<usize> {
     let is_off = row.x_mm.is_some() && row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms < OFF_BELOW_V_RMS);
     let flags = row.flags.filter(|_| is_off)?;

@@ -27,8 +27,8 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// A recording by the name that the user gave to `option`. It replaces an earlier one only if `overwrites`. `advice`
-    /// says how to keep the rows of a recording that was cut off.
+    /// A recording by the name that the user gave to `option`. It replaces an earlier one only if `overwrites`.
+    /// `advice` says how to keep the rows of a recording that was cut off.
     pub(crate) fn new(
         path: &Path,
         option: &'static str,
@@ -77,8 +77,8 @@ impl Recording {
         self.advice
     }
 
-    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten: its rows then stay until
-    /// the first ones of this recording.
+    /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten: its rows then stay
+    /// until the first ones of this recording.
     pub(crate) fn start(&self) -> Result<FileWriter, OutputFileError> {
         let Some(file) = self.output.file() else { return self.output.create() };
         if is_of_another_program(&partial_beside(file)) && !self.overwrites {
@@ -130,8 +130,8 @@ fn has_rows(text: &str) -> bool {
     text.as_bytes().starts_with(PARQUET) || text.bytes().filter(|byte| *byte == b'\n').count() > 1
 }
 
-/// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit` reads
-/// it, or a profile of `frixel threshold`; or by its metadata, if it is a Parquet file.
+/// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit`
+/// reads it, or a profile of `frixel threshold`; or by its metadata, if it is a Parquet file.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));

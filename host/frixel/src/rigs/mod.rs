@@ -1,5 +1,5 @@
-//! The boards with a clock of their own that a scene can play on, each behind a [`ByteStream`](frixel_driver::ByteStream) or a
-//! [`Link`] that records the play.
+//! The boards with a clock of their own that a scene can play on, each behind a
+//! [`ByteStream`](frixel_driver::ByteStream) or a [`Link`] that records the play.
 //!
 //! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock; `EmulatedRig` for scenarios.
 //! - [`PicoStream`]: the image of the Pico in an emulator, whose clock waits for the host.

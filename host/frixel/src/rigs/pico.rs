@@ -16,9 +16,9 @@ const HELD: Duration = Duration::from_millis(200);
 
 /// The serial port of an emulated Pico, with its clock.
 ///
-/// The record has every tick of the world, counted since the board was switched on. Values that only the board knows are
-/// in those rows for which a telemetry message arrived. The board counts its ticks from another one on, which the first
-/// message shows to a millisecond.
+/// The record has every tick of the world, counted since the board was switched on. Values that only the board knows
+/// are in those rows for which a telemetry message arrived. The board counts its ticks from another one on, which the
+/// first message shows to a millisecond.
 pub struct PicoStream {
     rig: PicoRig,
     held: HeldTicks,

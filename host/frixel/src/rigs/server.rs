@@ -44,8 +44,8 @@ pub struct Server {
 }
 
 impl Server {
-    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, `forces.csv` and `events.csv` in `folder`, where they
-    /// overwrite none of the inputs; then creates the pseudo-terminal.
+    /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, `forces.csv` and `events.csv` in `folder`, where
+    /// they overwrite none of the inputs; then creates the pseudo-terminal.
     pub fn open(folder: &Path, inputs: &Inputs, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
         let log = ServerLog::create(folder, inputs, tick_hz, ticks_per_row)?;
         Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })

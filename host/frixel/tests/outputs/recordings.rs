@@ -158,8 +158,8 @@ fn a_recording_is_on_the_disk_up_to_the_last_second() {
             let read = || folder.read("me.csv.partial").unwrap_or_default();
             let mut rows = read();
             if !rows.ends_with(b"\n") {
-                // A reader may see a write where a page of the file ends in it; it is whole a moment later, and rows that
-                // are written in parts are not, for 50 ms.
+                // A reader may see a write where a page of the file ends in it; it is whole a moment later, and rows
+                // that are written in parts are not, for 50 ms.
                 sleep(Duration::from_millis(5));
                 rows = read();
             }

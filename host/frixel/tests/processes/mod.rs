@@ -11,8 +11,8 @@ const NAP: Duration = Duration::from_millis(5);
 /// A minute of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 12_000;
 
-/// All that a scene of version 1 needs but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78 mN
-/// more.
+/// All that a scene of version 1 needs but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78
+/// mN more.
 pub(crate) const HEAD: &str = "\
 version = 1
 

@@ -18,10 +18,11 @@ const REST_SHARE: f64 = 0.2;
 /// 11.5 um (arXiv 2505.11162), 0.6 ms at 20 mm/s, and clocks may differ by 1 ms.
 const SETTLING_S: f64 = 5e-3;
 /// Rows are dropped for this long before the voltage changes, in seconds: a row may be the mean of a time that ends
-/// after the change, and clocks may differ by 1 ms. Such a row has the friction of both voltages, and the voltage of one.
+/// after the change, and clocks may differ by 1 ms. Such a row has the friction of both voltages, and the voltage of
+/// one.
 const EDGE_S: f64 = 2e-3;
-/// Least number of rows that are left of a segment without its edges. Where most segments of a recording have fewer, the
-/// rows are too far apart to tell, and all are used.
+/// Least number of rows that are left of a segment without its edges. Where most segments of a recording have fewer,
+/// the rows are too far apart to tell, and all are used.
 const SETTLED_ROWS_MIN: usize = 2;
 
 /// The voltages of a recording, as levels that differ by more than 5 %.

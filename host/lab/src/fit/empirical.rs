@@ -104,8 +104,8 @@ fn points(data: &FittedData, strokes: &[StrokeResult], friction_coefficient: &Es
     Ok((VoltageLaw::Points { below, exponent }, highest, Some((held_out_error_n, mean(measured_n)))))
 }
 
-/// Fails if the means of the strokes at a voltage lie beside the law by more than their 99.9 % interval and 5 %. Returns
-/// how far those of the highest voltage lie beside it, in newtons; 0 if they are too few to tell.
+/// Fails if the means of the strokes at a voltage lie beside the law by more than their 99.9 % interval and 5 %.
+/// Returns how far those of the highest voltage lie beside it, in newtons; 0 if they are too few to tell.
 fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
     let mut beside_n = 0.0;
     for level in levels(strokes) {

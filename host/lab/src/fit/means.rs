@@ -211,8 +211,8 @@ fn check_scatter(observations: &[Observation], freedoms: &[Option<f64>], fitted:
     Ok(())
 }
 
-/// The square of the Gaussian number that is as probable as an error in units of its standard error with these degrees of
-/// freedom (Wallace 1959, doi:10.1214/aoms/1177706095).
+/// The square of the Gaussian number that is as probable as an error in units of its standard error with these degrees
+/// of freedom (Wallace 1959, doi:10.1214/aoms/1177706095).
 fn gaussian_square(error: f64, freedom: Option<f64>) -> f64 {
     let Some(freedom) = freedom else { return error * error };
     let scale = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
@@ -367,7 +367,8 @@ mod tests {
         assert!((1.8..2.2).contains(&ratio), "four tables in one have half the interval: {ratio}");
     }
 
-    /// Student's quantiles for 1 to 60 degrees of freedom, from the printed tables (Abramowitz and Stegun, table 26.10).
+    /// Student's quantiles for 1 to 60 degrees of freedom, from the printed tables (Abramowitz and Stegun, table
+    /// 26.10).
     #[test]
     fn errors_of_few_values_are_students() {
         for (freedom, quantile) in [(2.0, 4.303), (4.0, 2.776), (10.0, 2.228), (60.0, 2.000)] {

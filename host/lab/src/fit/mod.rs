@@ -8,8 +8,9 @@
 //! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
 //! least squares (`search`, `least_squares`), its error is told from strokes that it has not seen (`held_out`),
-//! intervals come from a bootstrap over strokes (`intervals`), and data that cannot be trusted are refused (`rules` before the fit, `verdict` after it). A finger that contradicts
-//! the model has a law of its own instead (`empirical`): a power of the voltage, or else points (`measured_points`).
+//! intervals come from a bootstrap over strokes (`intervals`), and data that cannot be trusted are refused (`rules`
+//! before the fit, `verdict` after it). A finger that contradicts the model has a law of its own instead (`empirical`):
+//! a power of the voltage, or else points (`measured_points`).
 //!
 //! # What is estimated
 //!

@@ -26,8 +26,8 @@ const RISE_OF_MEAN: f64 = 0.8;
 /// Slowest response that is fitted, in Hz. It is that of sensor, finger and clocks together.
 const BANDWIDTH_MIN_HZ: f64 = 120.0;
 
-/// Bandwidth of the response to a switch of the drive, in Hz, that of the finger's friction included; `None` if the data
-/// cannot tell: without times, with few switches, or too noisy. Fails if it is too slow.
+/// Bandwidth of the response to a switch of the drive, in Hz, that of the finger's friction included; `None` if the
+/// data cannot tell: without times, with few switches, or too noisy. Fails if it is too slow.
 pub(super) fn check_bandwidth(recording: &Recording, levels: &Levels) -> Result<Option<f64>, FitError> {
     let Some(rise_s) = rise_s(recording, levels) else { return Ok(None) };
     let bandwidth_hz = BANDWIDTH_TIMES_RISE / rise_s;

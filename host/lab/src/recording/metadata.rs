@@ -40,8 +40,8 @@ pub struct Metadata {
     /// Text of the scene's file.
     #[serde(skip)]
     pub scene: String,
-    /// The other files, by what they are (`stroke`, `finger`, `screen`, `touch`, `stream`) or, after `scene/`, the name by
-    /// which the scene names them.
+    /// The other files, by what they are (`stroke`, `finger`, `screen`, `touch`, `stream`) or, after `scene/`, the name
+    /// by which the scene names them.
     #[serde(skip)]
     pub files: BTreeMap<String, SourceFile>,
     /// Scenes that replaced the first one, or that the board refused, in their order.

@@ -2,8 +2,8 @@
 //!
 //! A [`Recording`] is a value: [`Recording::of_rows`] makes one of the rows of a recorder, [`Recording::write_parquet`]
 //! and [`Recording::read_parquet`] are its way to bytes and back. [`ParquetWriter`] writes one while it grows. The same
-//! recording gives the same bytes: no time, path or name of a machine is in them. [`Recording::replay`] plays a simulated
-//! one again.
+//! recording gives the same bytes: no time, path or name of a machine is in them. [`Recording::replay`] plays a
+//! simulated one again.
 
 mod arrow_schema;
 mod error;

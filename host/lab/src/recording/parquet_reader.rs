@@ -20,8 +20,8 @@ use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values};
 pub(crate) const MAGIC: &[u8; 4] = b"PAR1";
 
 impl Recording {
-    /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. Of a file whose writer was killed,
-    /// reads what is whole.
+    /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. Of a file whose writer was
+    /// killed, reads what is whole.
     pub fn read_parquet(bytes: impl Into<Bytes>) -> Result<Self, RecordingError> {
         let bytes: Bytes = bytes.into();
         // The decoders of pages check what they read by assertions.
@@ -53,8 +53,8 @@ fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
     Ok(Recording { metadata, columns, is_cut_off })
 }
 
-/// Whether a file is a recording of a person, by its last bytes: `8 + N` of them at least, where `N` is the little-endian
-/// number in the first four of the last eight.
+/// Whether a file is a recording of a person, by its last bytes: `8 + N` of them at least, where `N` is the
+/// little-endian number in the first four of the last eight.
 pub fn is_of_person(end: &[u8]) -> bool {
     let metadata = || {
         let (before, [a, b, c, d, ..]) = end.split_last_chunk::<8>()?;

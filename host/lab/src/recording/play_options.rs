@@ -46,8 +46,8 @@ pub struct PlayOptions {
     /// Whether samples were streamed: those of the file [`Self::STREAM`].
     pub stream: bool,
     /// The lines that changed it, in their order. A `replace` has the number of the scene among the later ones of the
-    /// recording, from 1, and is left out if that scene could not be compiled. `None` on a board at a port, where a line
-    /// is carried out when it comes.
+    /// recording, from 1, and is left out if that scene could not be compiled. `None` on a board at a port, where a
+    /// line is carried out when it comes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lines: Option<Vec<String>>,
     /// Duration of the streamed file, s, which is that of the play without [`Self::seconds`]; `None` for samples on

@@ -83,9 +83,9 @@ pub enum ReplayError {
 }
 
 impl Recording {
-    /// Plays a simulated recording of this version again, with the lines, scenes and samples that it has: until the tick
-    /// at which it was interrupted, or as many rows as it has, if it is cut off. `goes_on` is asked many times a second of
-    /// the play; when it breaks, the result ends there.
+    /// Plays a simulated recording of this version again, with the lines, scenes and samples that it has: until the
+    /// tick at which it was interrupted, or as many rows as it has, if it is cut off. `goes_on` is asked many times a
+    /// second of the play; when it breaks, the result ends there.
     pub fn replay(&self, goes_on: &mut dyn FnMut() -> ControlFlow<()>) -> Result<Self, ReplayError> {
         let options = options(&self.metadata)?;
         let files = files(&self.metadata.files)?;
@@ -166,8 +166,8 @@ fn compile(scene: &Scene) -> Result<Program, ReplayError> {
     Ok(compile_draft(scene, &board.limits, board.tick_hz)?)
 }
 
-/// The samples that were streamed, if any were, as fast as the board takes them. Behind the last one comes the end of the
-/// stream, or, if the play ended before it, nothing.
+/// The samples that were streamed, if any were, as fast as the board takes them. Behind the last one comes the end of
+/// the stream, or, if the play ended before it, nothing.
 fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result<Option<Feed>, ReplayError> {
     if !options.stream {
         return Ok(None);

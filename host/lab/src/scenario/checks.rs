@@ -50,8 +50,8 @@ struct Check {
 /// What was found of an expectation so far.
 #[derive(Clone, Debug, Default)]
 struct Found {
-    /// The first tick that is not as expected, with its DAC code, whether the amplifier was enabled, and the electrode's
-    /// voltage.
+    /// The first tick that is not as expected, with its DAC code, whether the amplifier was enabled, and the
+    /// electrode's voltage.
     wrong: Option<(u64, i16, bool, f64)>,
     /// Ticks that were looked at.
     ticks: u64,

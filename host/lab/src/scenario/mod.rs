@@ -1,8 +1,8 @@
 //! Runs a scenario on a rig: the host's commands and the faults at their times, and what has to be seen meanwhile.
 //!
-//! [`run_in_process`] runs one on the in-process rig, and [`run`] on any [`BoardRig`]. Host and board are the real ones:
-//! a [`Player`](frixel_play::Player) over a [`Device`](frixel_driver::Device), and the firmware of the rig. Faults of the
-//! line are made at the host's end of it; everything else is the rig's.
+//! [`run_in_process`] runs one on the in-process rig, and [`run`] on any [`BoardRig`]. Host and board are the real
+//! ones: a [`Player`](frixel_play::Player) over a [`Device`](frixel_driver::Device), and the firmware of the rig.
+//! Faults of the line are made at the host's end of it; everything else is the rig's.
 
 mod checks;
 mod direction;
@@ -53,7 +53,8 @@ impl Display for TimelineEntry {
     }
 }
 
-/// An expectation that was not met, or a command that failed and was not expected to. Its text is one sentence: what was expected, what was found, and when.
+/// An expectation that was not met, or a command that failed and was not expected to. Its text is one sentence: what
+/// was expected, what was found, and when.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{file}:{line}: {sentence}")]
 pub struct Unmet {

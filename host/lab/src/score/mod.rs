@@ -1,8 +1,8 @@
 //! Scores a scene: how faithfully simulated fingers feel it, and what they notice of it, over strokes and seeds.
 //!
-//! The input is strokes with their seeds, and what the finger felt on each. The output is the [`Fidelity`] of each play,
-//! of each of its numbers the mean, the interval, and what a person notices, and how many of the simulated fingers
-//! notice each layer.
+//! The input is strokes with their seeds, and what the finger felt on each. The output is the [`Fidelity`] of each
+//! play, of each of its numbers the mean, the interval, and what a person notices, and how many of the simulated
+//! fingers notice each layer.
 
 mod layers;
 mod metric;
@@ -62,8 +62,8 @@ pub struct TrialFinger {
 }
 
 impl Trial {
-    /// Plays the trial on the simulated board of `rig`, and returns what the finger felt and the reference: a sample for
-    /// every quarter of a millisecond.
+    /// Plays the trial on the simulated board of `rig`, and returns what the finger felt and the reference: a sample
+    /// for every quarter of a millisecond.
     pub fn play(&self, program: &Program, rig: &RigConfig) -> Result<Vec<FidelitySample>, SimulationError> {
         self.play_while(program, rig, &|| ControlFlow::Continue(()))
     }
@@ -132,14 +132,14 @@ pub struct Score {
 impl Score {
     /// Plays trials of a program on the simulated board of `rig`, and scores them.
     ///
-    /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number of
-    /// threads.
+    /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number
+    /// of threads.
     pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, SimulationError> {
         Self::of_while(program, rig, trials, &|| ControlFlow::Continue(()))
     }
 
-    /// As [`Self::of`]. `goes_on` is asked many times a second of each play, by several threads; when it breaks, the plays
-    /// end there, and the score is that of what was played.
+    /// As [`Self::of`]. `goes_on` is asked many times a second of each play, by several threads; when it breaks, the
+    /// plays end there, and the score is that of what was played.
     pub fn of_while(
         program: &Program,
         rig: &RigConfig,

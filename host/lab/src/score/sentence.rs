@@ -62,8 +62,8 @@ impl Score {
     }
 }
 
-/// Layers with how many fingers notice them. Copies of a layer are listed together, those first that are noticed the least
-/// surely; a single finger's by its verdict.
+/// Layers with how many fingers notice them. Copies of a layer are listed together, those first that are noticed the
+/// least surely; a single finger's by its verdict.
 fn named(layers: &[&LayerScore], fingers: usize) -> String {
     let copies = layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
     let parts = copies.flat_map(|copies| {

@@ -56,8 +56,8 @@ pub struct TrialPlan {
 }
 
 impl TrialPlan {
-    /// The trials of so many simulated people, the first of an assumed population, whom the board does not know; without
-    /// a number, of the finger that `program`, compiled from `scene`, is meant for.
+    /// The trials of so many simulated people, the first of an assumed population, whom the board does not know;
+    /// without a number, of the finger that `program`, compiled from `scene`, is meant for.
     pub fn of_people(
         &self,
         people: Option<u64>,
@@ -68,7 +68,8 @@ impl TrialPlan {
         self.of_people_while(people, scene, program, is_ideal, &|| ControlFlow::Continue(()))
     }
 
-    /// As [`Self::of_people`]. `goes_on` is asked before each stroke; when it breaks, the result is what was made so far.
+    /// As [`Self::of_people`]. `goes_on` is asked before each stroke; when it breaks, the result is what was made so
+    /// far.
     pub fn of_people_while(
         &self,
         people: Option<u64>,

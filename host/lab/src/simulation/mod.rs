@@ -74,8 +74,8 @@ pub fn simulate(program: &Program, simulation: &Simulation, feed: Option<Feed>) 
     run(program, simulation, recorder(program, simulation)?, None, feed, &mut play_to_end)
 }
 
-/// As [`simulate`], under a finger that is not the program's if there is one, and with a reference that goes through the
-/// simulated finger.
+/// As [`simulate`], under a finger that is not the program's if there is one, and with a reference that goes through
+/// the simulated finger.
 pub fn simulate_through_finger(
     program: &Program,
     simulation: &Simulation,
@@ -85,8 +85,8 @@ pub fn simulate_through_finger(
     run(program, simulation, recorder, own_finger, None, &mut play_to_end)
 }
 
-/// As [`simulate`], or as [`simulate_through_finger`] with `through_finger`. `goes_on` is asked many times a second of the
-/// play; when it breaks, the record ends there.
+/// As [`simulate`], or as [`simulate_through_finger`] with `through_finger`. `goes_on` is asked many times a second of
+/// the play; when it breaks, the record ends there.
 pub fn simulate_while(
     program: &Program,
     simulation: &Simulation,

@@ -169,8 +169,8 @@ impl Cell {
         self.play_while(&|| ControlFlow::Continue(()))
     }
 
-    /// As [`Self::play`]. `goes_on` is asked many times a second of each play; when it breaks, the plays end there, and the
-    /// result is that of what was played.
+    /// As [`Self::play`]. `goes_on` is asked many times a second of each play; when it breaks, the plays end there, and
+    /// the result is that of what was played.
     pub fn play_while(&self, goes_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Result<CellResult, CellError> {
         if self.version != env!("CARGO_PKG_VERSION") {
             return Err(CellError::OtherVersion { found: self.version.clone() });

@@ -56,8 +56,8 @@ impl Observer {
         Self { curve: None, random: Pcg64::seed_from_u64(seed) }
     }
 
-    /// The level at which the observer finds half of the stimuli that are not found by guessing, in decibels relative to
-    /// the largest; `None` for one who feels nothing.
+    /// The level at which the observer finds half of the stimuli that are not found by guessing, in decibels relative
+    /// to the largest; `None` for one who feels nothing.
     pub fn threshold_db(&self) -> Option<f64> {
         self.curve.map(|curve| curve.threshold_db)
     }

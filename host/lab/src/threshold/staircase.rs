@@ -5,8 +5,8 @@ use core::ops::RangeInclusive;
 use super::curve::Curve;
 
 /// Curves that are considered beside the threshold: how steep (3.5 is the usual value, Watson and Pelli 1983,
-/// doi:10.3758/BF03202828), and how often an answer is given without attention. Nobody knows either of a person, so that
-/// the interval allows for all.
+/// doi:10.3758/BF03202828), and how often an answer is given without attention. Nobody knows either of a person, so
+/// that the interval allows for all.
 const STEEPNESS: [f64; 3] = [2.3, 3.5, 5.3];
 const LAPSES: [f64; 2] = [0.01, 0.03];
 /// Levels that are considered, in decibels below the largest that the board can play.
@@ -20,8 +20,8 @@ const EXPECTED_DB: (f64, f64) = (-20.0, 10.0);
 const ABOVE_DB: f64 = 1.5;
 /// Numbers of trials that a threshold can rest on.
 const TRIALS: RangeInclusive<usize> = 12..=40;
-/// How many times likelier the answers are by feeling than by guessing before they give a threshold. A guesser gets that
-/// far with a probability of at most its inverse (Ville's inequality), whatever levels are chosen.
+/// How many times likelier the answers are by feeling than by guessing before they give a threshold. A guesser gets
+/// that far with a probability of at most its inverse (Ville's inequality), whatever levels are chosen.
 const FELT_RATIO: f64 = 1e4;
 /// The same ratio at which checks end, because the person guesses.
 const GUESSED_RATIO: f64 = 1e-3;

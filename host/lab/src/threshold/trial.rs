@@ -12,8 +12,8 @@ pub const STIMULUS_HZ: f64 = 160.0;
 /// Fade of the stimulus at either end of a stroke, in seconds, so that no click gives it away.
 pub const FADE_S: f64 = 0.2;
 
-/// The samples of a trial, for the stream of [`Protocol::scene`]: the stimulus, with an amplitude of `level_db` relative
-/// to the largest, in the first stroke or in the second.
+/// The samples of a trial, for the stream of [`Protocol::scene`]: the stimulus, with an amplitude of `level_db`
+/// relative to the largest, in the first stroke or in the second.
 pub fn samples(protocol: &Protocol, level_db: f64, is_second: bool) -> Vec<u16> {
     let sample_hz = f64::from(protocol.sample_hz());
     let amplitude = amplitude(level_db);

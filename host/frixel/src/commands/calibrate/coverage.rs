@@ -254,8 +254,8 @@ fn errors_fall_with_the_root_of_the_number_of_strokes() {
     assert!(long.median_half_width() < 0.4 * short.median_half_width());
 }
 
-/// Friction that is 3 % low, as it is with the rows in which the drive is switched off, is caught: of eight intervals of
-/// 1 % none would contain the truth.
+/// Friction that is 3 % low, as it is with the rows in which the drive is switched off, is caught: of eight intervals
+/// of 1 % none would contain the truth.
 #[test]
 fn a_few_people_are_fitted_as_they_are() {
     let tally = Tally::of(0..FEW.0, 1..1 + FEW.1, "");

@@ -54,8 +54,8 @@ impl StandardInput {
         Self { reader, bytes }
     }
 
-    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring. An input that goes
-    /// on beyond the limit is an error, since its end would be missing.
+    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring. An input that
+    /// goes on beyond the limit is an error, since its end would be missing.
     pub(super) fn after(self, time_max: Duration) -> io::Result<Vec<u8>> {
         let begun = Instant::now();
         while !self.reader.is_finished() && begun.elapsed() < time_max {

@@ -141,8 +141,8 @@ impl LiveScene {
     }
 }
 
-/// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints why,
-/// and keeps the earlier scene playing. Returns what became of it on the board; `None` if it was not put there.
+/// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints
+/// why, and keeps the earlier scene playing. Returns what became of it on the board; `None` if it was not put there.
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,

@@ -130,7 +130,8 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Starts to write `felt.csv`, and the file of `--record` if there is its metadata. Creates the folder if necessary.
+    /// Starts to write `felt.csv`, and the file of `--record` if there is its metadata. Creates the folder if
+    /// necessary.
     pub(super) fn create(
         args: &PlayArgs,
         files: PlayFiles,
@@ -259,9 +260,10 @@ impl Outputs {
         Ok(())
     }
 
-    /// Completes `felt.csv` and the file of `--record`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg` for a board at a port, and
-    /// `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv` stands alone; what a person's
-    /// finger did stays in `felt.csv.partial`, because without the summary nothing says that it is of a person.
+    /// Completes `felt.csv` and the file of `--record`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg`
+    /// for a board at a port, and `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv`
+    /// stands alone; what a person's finger did stays in `felt.csv.partial`, because without the summary nothing says
+    /// that it is of a person.
     ///
     /// `start_s` is the time from the power-on of the board to time zero of the rows.
     pub(super) fn finish(

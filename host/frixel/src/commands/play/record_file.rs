@@ -46,8 +46,8 @@ pub(super) struct RecordFile {
 }
 
 impl RecordFile {
-    /// Begins the file. What a person's finger does goes to `FILE.partial`, which is a whole Parquet file after each row
-    /// group; a play on a simulator can be made again.
+    /// Begins the file. What a person's finger does goes to `FILE.partial`, which is a whole Parquet file after each
+    /// row group; a play on a simulator can be made again.
     pub(super) fn start(output: &OutputFile, metadata: Metadata, overwrites: bool) -> Result<Self, CommandError> {
         let (file, rows_per_group) = if metadata.is_simulated {
             (output.create()?, ROWS_PER_GROUP)

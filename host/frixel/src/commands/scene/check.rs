@@ -29,8 +29,8 @@ pub(in super::super) struct CheckArgs {
     /// counts, which nobody touches.
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Board::NAMES))]
     board: Option<String>,
-    /// That board with another resistance between amplifier and electrode, kOhm, and up to its full scale: what its touch
-    /// bound leaves (`frixel safety`).
+    /// That board with another resistance between amplifier and electrode, kOhm, and up to its full scale: what its
+    /// touch bound leaves (`frixel safety`).
     #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
     /// Also report the smallest firmware build that plays it.
