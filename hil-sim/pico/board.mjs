@@ -4,6 +4,7 @@ import { RP2040 } from "rp2040js";
 
 import { CallWatch } from "./call_watch.mjs";
 import { ENDLESS_LOOP_AT, FLASH_LEN, Flash } from "./flash.mjs";
+import { I2cBus } from "./i2c.mjs";
 import { Pins } from "./pins.mjs";
 import { PioStepper } from "./pio.mjs";
 import { CAUSE, ENDED, EVENT } from "./protocol.mjs";
@@ -40,6 +41,7 @@ export class Board {
   #pio;
   #flash;
   #pins;
+  #i2c;
   #uart;
   /** The calls that someone looks at. @type {CallWatch | undefined} */
   #calls;
@@ -47,6 +49,7 @@ export class Board {
   #isHung = false;
   #isCrystalStopped = false;
   #hasFrame = false;
+  #asksFrame = false;
   /** The run ends after this instruction. */
   #hasStopped = false;
   #begin = 0;
@@ -74,6 +77,7 @@ export class Board {
     this.#pio = new PioStepper(rp2040);
     this.#flash = new Flash(rp2040, this);
     this.#pins = new Pins(rp2040, this);
+    this.#i2c = new I2cBus(rp2040, this);
     this.#uart = new UartLine(rp2040);
     watchUseBeforeReset(rp2040, (what) => this.fail(what));
     rp2040.onBreak = (number) => {
@@ -174,6 +178,21 @@ export class Board {
     this.#hasStopped = true;
   }
 
+  /** The touch frame is to hear what was recorded last. */
+  asksFrame() {
+    this.#asksFrame = true;
+    this.#hasStopped = true;
+  }
+
+  /** @param {number} value */
+  answerI2c(value) {
+    this.#i2c.answer(value);
+  }
+
+  get hasI2cPins() {
+    return this.#pins.hasI2cPins;
+  }
+
   /** The power is cut now, by the flash. */
   losePower() {
     this.#end(CAUSE.POWER);
@@ -191,8 +210,8 @@ export class Board {
   }
 
   /**
-   * Runs for a time, or until a frame of the DAC has ended, the board resets itself, or so many instructions were carried
-   * out. @param {number} nanos @param {number} instructionsMax
+   * Runs for a time, or until a frame of the DAC has ended, the touch frame is asked, the board resets itself, or so many
+   * instructions were carried out. @param {number} nanos @param {number} instructionsMax
    */
   run(nanos, instructionsMax) {
     const core = this.#core;
@@ -201,6 +220,7 @@ export class Board {
     this.#begin = clock.nanos;
     this.#hasStopped = this.#endsWith !== undefined;
     this.#hasFrame = false;
+    this.#asksFrame = false;
     const end = this.#begin + nanos;
     let left = instructionsMax;
     while (clock.nanos < end && left > 0 && !this.#hasStopped) {
@@ -230,6 +250,9 @@ export class Board {
     if (this.#hasFrame) {
       return ENDED.FRAME;
     }
+    if (this.#asksFrame) {
+      return ENDED.FRAME_ASKED;
+    }
     return left > 0 ? ENDED.TIME : ENDED.INSTRUCTIONS;
   }
 
@@ -239,9 +262,13 @@ export class Board {
     return Math.max(1, Math.ceil(Math.min(nanos / cycleNanos, this.#pio.next - this.#core.cycles)));
   }
 
-  /** @param {{ ready: boolean, arm: boolean, monitorCode: number, shiftingOut: number, bytes: Iterable<number> }} inputs */
+  /**
+   * @param {{ ready: boolean, arm: boolean, frameReady: boolean, sdaIsHeld: boolean, sclIsHeld: boolean,
+   *   monitorCode: number, shiftingOut: number, bytes: Iterable<number> }} inputs
+   */
   drive(inputs) {
     this.#pins.drive(inputs);
+    this.#i2c.drive(inputs);
     this.#pins.shiftingOut = inputs.shiftingOut;
     this.#uart.send(inputs.bytes);
   }

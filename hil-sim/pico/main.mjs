@@ -105,6 +105,9 @@ class Rig {
         return [];
       case REQUEST.TAKE_CALLS:
         return this.#board.takeCalls();
+      case REQUEST.ANSWER_I2C:
+        this.#board.answerI2c(values[0]);
+        return [];
       default:
         throw new Error(`unknown request ${kind}`);
     }
@@ -120,8 +123,17 @@ class Rig {
 
   #run([nanos, instructionsMax, inputs, monitorCode, shiftingOut, ...bytes]) {
     const board = this.#board;
-    const [ready, arm] = [(inputs & INPUT.READY) !== 0, (inputs & INPUT.ARM) !== 0];
-    board.drive({ ready, arm, monitorCode, shiftingOut, bytes });
+    const has = (input) => (inputs & input) !== 0;
+    board.drive({
+      ready: has(INPUT.READY),
+      arm: has(INPUT.ARM),
+      frameReady: has(INPUT.FRAME_READY),
+      sdaIsHeld: has(INPUT.SDA_HELD),
+      sclIsHeld: has(INPUT.SCL_HELD),
+      monitorCode,
+      shiftingOut,
+      bytes,
+    });
     const begin = board.nanos;
     const instructions = board.instructions;
     const ended = board.run(nanos, instructionsMax || Number.MAX_SAFE_INTEGER);

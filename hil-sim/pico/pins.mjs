@@ -16,27 +16,33 @@ export const GPIO = {
   CLEAR: 7,
   READY: 10,
   ARM: 14,
+  SDA: 16,
+  SCL: 17,
+  FRAME_READY: 18,
   LED: 25,
 };
 
 /** Wires that are pulled up while nothing drives them; the others are pulled down. */
-const PULLED_UP = new Set([GPIO.SYNC]);
+const PULLED_UP = new Set([GPIO.SYNC, GPIO.SCL]);
 /** Wires whose edges are events of their own. */
 const WATCHED = new Map([
   [GPIO.ENABLE, EVENT.ENABLE],
   [GPIO.CLEAR, EVENT.CLEAR],
   [GPIO.LED, EVENT.LED],
+  [GPIO.SCL, EVENT.SCL],
 ]);
 /** ADC channel of the amplifier's monitor, GP26, and the offset of the ADC's register RESULT. */
 const MONITOR_CHANNEL = 0;
 const ADC_RESULT = 0x04;
 /** Pads after a reset (RP2040 datasheet, 2.19.6.3, GPIO0): input enabled, pulled down, 4 mA. rp2040js has no input enable. */
 const PAD_AFTER_RESET = 0x56;
+/** Function of a pin that belongs to I2C. */
+const FUNCTION_I2C = 3;
 /** Clocks of a frame of the DAC. */
 const FRAME_CLOCKS = 24;
 
 /** What the wiring needs of a board. @typedef {{ wake(): void, record(kind: number, a: number, b?: number): void,
- *  frameEnded(): void, instant: number }} Wired */
+ *  frameEnded(): void, asksFrame(): void, instant: number }} Wired */
 
 export class Pins {
   #rp2040;
@@ -58,7 +64,7 @@ export class Pins {
       pin.padValue = PAD_AFTER_RESET;
       pin.lastValue = pin.value;
     }
-    for (const number of [GPIO.SYNC, GPIO.SCLK, GPIO.SDI, GPIO.ENABLE, GPIO.CLEAR, GPIO.LED]) {
+    for (const number of [GPIO.SYNC, GPIO.SCLK, GPIO.SDI, GPIO.ENABLE, GPIO.CLEAR, GPIO.LED, GPIO.SCL]) {
       this.#follow(number);
     }
     const read = rp2040.adc.readUint32.bind(rp2040.adc);
@@ -93,11 +99,21 @@ export class Pins {
     return this.#levels.get(number) ?? false;
   }
 
-  /** Sets what the outside drives. @param {{ ready: boolean, arm: boolean, monitorCode: number }} inputs */
-  drive({ ready, arm, monitorCode }) {
+  /** Whether I2C 0 has its pins. */
+  get hasI2cPins() {
+    return [GPIO.SDA, GPIO.SCL].every((number) => this.#rp2040.gpio[number].functionSelect === FUNCTION_I2C);
+  }
+
+  /**
+   * Sets what the outside drives.
+   * @param {{ ready: boolean, arm: boolean, frameReady: boolean, sdaIsHeld: boolean, monitorCode: number }} inputs
+   */
+  drive({ ready, arm, frameReady, sdaIsHeld, monitorCode }) {
     this.#rp2040.adc.channelValues[MONITOR_CHANNEL] = monitorCode;
     this.#input(GPIO.READY, ready);
     this.#input(GPIO.ARM, arm);
+    this.#input(GPIO.FRAME_READY, frameReady);
+    this.#input(GPIO.SDA, !sdaIsHeld);
   }
 
   #input(number, level) {
@@ -112,6 +128,9 @@ export class Pins {
     const kind = WATCHED.get(number);
     if (kind !== undefined) {
       this.#board.record(kind, Number(high));
+      if (number === GPIO.SCL) {
+        this.#board.asksFrame();
+      }
     } else if (number === GPIO.SYNC) {
       this.#sync(high);
     } else if (number === GPIO.SCLK && !this.level(GPIO.SYNC)) {

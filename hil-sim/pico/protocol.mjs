@@ -32,10 +32,13 @@ export const REQUEST = {
   /** The calls since the last time, in their order: of each the number of its function, counted from 0 in the order of
    *  `WATCH`, and the words. */
   TAKE_CALLS: 13,
+  /** The touch frame's answer to the last event of a run that ended with `FRAME_ASKED`: 0 or 1, whether it acknowledges,
+   *  or the byte that it sends. */
+  ANSWER_I2C: 14,
 };
 
-/** Bits of the inputs. */
-export const INPUT = { READY: 1, ARM: 2 };
+/** Bits of the inputs: levels, and I2C lines that others hold low. */
+export const INPUT = { READY: 1, ARM: 2, FRAME_READY: 4, SDA_HELD: 8, SCL_HELD: 16 };
 
 /** Why a run ended: first word of its answer. */
 export const ENDED = {
@@ -47,6 +50,8 @@ export const ENDED = {
   INSTRUCTIONS: 2,
   /** The board has reset itself, or lost its power at a flash operation. */
   RESET: 3,
+  /** The touch frame is asked for an answer, or hears that a transfer or a clock has ended. */
+  FRAME_ASKED: 4,
 };
 
 /** Kinds of events; each has the time since the beginning of the run in ns, and two values. */
@@ -65,6 +70,16 @@ export const EVENT = {
   FLASH: 6,
   /** The firmware reads the amplifier's monitor: ns since SYNC rose last. */
   MONITOR_READ: 7,
+  /** A transfer on I2C begins, and waits for an acknowledgement: address; 1 if it reads. */
+  I2C_ADDRESS: 8,
+  /** A byte on I2C waits for an acknowledgement: the byte. */
+  I2C_WRITE: 9,
+  /** The controller reads a byte on I2C. */
+  I2C_READ: 10,
+  /** A transfer on I2C ends. */
+  I2C_STOP: 11,
+  /** The firmware itself sets SCL: level. */
+  SCL: 12,
 };
 
 /** Why a board starts. */

@@ -5,6 +5,7 @@ const RESETS = 0x4000c;
 /** Peripherals that a start must reset before it uses them, and their bits in RESETS.RESET. */
 const MUST_BE_RESET = [
   { at: 0x40034, bit: 22, name: "UART 0" },
+  { at: 0x40044, bit: 3, name: "I2C 0" },
   { at: 0x4004c, bit: 0, name: "the ADC" },
   { at: 0x40050, bit: 14, name: "the PWM" },
   { at: 0x50200, bit: 10, name: "PIO 0" },

@@ -23,5 +23,7 @@ pub use error::EmulatorError;
 pub use frixel_exchange::BOARD;
 pub use image::{EmulatedBoard, Image};
 pub use link::{InjectedFault, LinkBoard, LinkRecord};
-pub use pico::{AppliedOrder, BrokenInputs, PicoBoardRig, PicoRig, Stamped, StartCause, Watched, WireEvent};
+pub use pico::{
+    AppliedOrder, BrokenInputs, PicoBoardRig, PicoRig, Stamped, StartCause, TouchFrame, Watched, WireEvent,
+};
 pub use replay::{Mismatch, ReplayError, replay};

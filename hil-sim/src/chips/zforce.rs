@@ -116,6 +116,12 @@ impl ZForceModule {
         self.0.borrow_mut().is_connected = connected;
     }
 
+    /// Whether it acknowledges this address.
+    #[must_use]
+    pub fn acknowledges(&self, address: u8) -> bool {
+        self.0.borrow().acknowledges(address)
+    }
+
     /// Replaces the next message by a header with an invalid length.
     pub fn corrupt_length(&self) {
         self.0.borrow_mut().corrupted_lengths += 1;
@@ -142,6 +148,10 @@ impl ZForceModule {
 }
 
 impl Module {
+    fn acknowledges(&self, address: u8) -> bool {
+        address == ADDRESS && self.is_connected
+    }
+
     fn push(&mut self, message: &[u8]) {
         if self.corrupted_lengths > 0 {
             self.corrupted_lengths -= 1;
@@ -199,7 +209,7 @@ impl I2c for ModuleBus {
         let polls = self.0.borrow().transfer_polls;
         wait(polls).await;
         let mut module = self.0.borrow_mut();
-        if address != ADDRESS || !module.is_connected {
+        if !module.acknowledges(address) {
             return Err(BusFault::NoAcknowledge);
         }
         for operation in operations {

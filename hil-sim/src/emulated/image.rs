@@ -27,6 +27,8 @@ pub enum EmulatedBoard {
     Mps2An505,
     /// A Raspberry Pi Pico, with the image that is flashed.
     Pico,
+    /// The same, with an image that takes the finger's place from an optical frame, and has few kinds of layers.
+    PicoWithFrame,
 }
 
 impl EmulatedBoard {
@@ -34,7 +36,7 @@ impl EmulatedBoard {
     pub fn name(self) -> &'static str {
         match self {
             Self::Mps2An386 | Self::Mps2An505 => "board-mps2-an386",
-            Self::Pico => "board-pico",
+            Self::Pico | Self::PicoWithFrame => "board-pico",
         }
     }
 
@@ -44,6 +46,7 @@ impl EmulatedBoard {
             Self::Mps2An386 => "mps2-an386",
             Self::Mps2An505 => "mps2-an505",
             Self::Pico => "pico",
+            Self::PicoWithFrame => "pico-with-frame",
         }
     }
 
@@ -52,7 +55,7 @@ impl EmulatedBoard {
         match self {
             Self::Mps2An386 => "thumbv7em-none-eabihf",
             Self::Mps2An505 => "thumbv8m.main-none-eabihf",
-            Self::Pico => "thumbv6m-none-eabi",
+            Self::Pico | Self::PicoWithFrame => "thumbv6m-none-eabi",
         }
     }
 
@@ -64,6 +67,22 @@ impl EmulatedBoard {
             Self::Pico => {
                 &["--target", "thumbv6m-none-eabi", "--no-default-features", "--features", "rp2040,everything"]
             }
+            Self::PicoWithFrame => &[
+                "--target",
+                "thumbv6m-none-eabi",
+                "--no-default-features",
+                "--features",
+                "rp2040,grating,optical-frame",
+            ],
+        }
+    }
+
+    /// The folder of what cargo makes of it, from that of its firmware: one that all images share, but for the second
+    /// one of a name.
+    fn target_folder(self) -> &'static str {
+        match self {
+            Self::Mps2An386 | Self::Mps2An505 | Self::Pico => "../target",
+            Self::PicoWithFrame => "../target/optical-frame",
         }
     }
 
@@ -71,7 +90,7 @@ impl EmulatedBoard {
     fn emulator(self) -> Result<(), EmulatorError> {
         let (program, missing) = match self {
             Self::Mps2An386 | Self::Mps2An505 => (EMULATOR, EmulatorError::NoEmulator),
-            Self::Pico => (NODE, EmulatorError::NoNode),
+            Self::Pico | Self::PicoWithFrame => (NODE, EmulatorError::NoNode),
         };
         match Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
             Ok(_) => Ok(()),
@@ -117,8 +136,7 @@ impl Image {
     pub fn build(board: EmulatedBoard) -> Result<Self, EmulatorError> {
         board.available()?;
         let folder = source_folder(&format!("firmware/{}", board.name()))?;
-        // The folder that all images share.
-        let target = folder.join("../target");
+        let target = folder.join(board.target_folder());
         let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .args(["build", "--release", "--locked", "--quiet", "--target-dir"])
             .arg(&target)

@@ -1,6 +1,7 @@
 //! The image of the Pico board on an emulated RP2040, wired to its chips and its world.
 
 mod board_rig;
+mod frame;
 mod injection;
 mod limits;
 mod orders;
@@ -23,9 +24,10 @@ use super::{EmulatorError, Image, LinkRecord};
 use crate::World;
 use crate::chips::Ad5761rChip;
 pub use board_rig::PicoBoardRig;
+pub use frame::TouchFrame;
 pub use orders::{AppliedOrder, Watched};
 use process::Process;
-use protocol::{ARM, Ended, READY, Ran, Request};
+use protocol::{ARM, Ended, FRAME_READY, READY, Ran, Request, SCL_HELD, SDA_HELD};
 pub use protocol::{Stamped, StartCause, WireEvent};
 
 /// Sequence number of the touch source's requests: no host waits for an answer to it.
@@ -57,12 +59,15 @@ pub struct BrokenInputs {
 ///
 /// Time is virtual: it passes in [`Self::step`] only, so it waits for a host however busy the machine is. The world
 /// advances by a tick with each frame that the board sends at its beat, and at the same rate without frames. The board
-/// takes touch reports from its host; here the touch source sends them over the same line, between the host's frames.
+/// takes touch reports from its host; here the touch source sends them over the same line, between the host's frames. An
+/// image with an optical frame takes them from [`Self::attach_frame`].
 #[derive(Debug)]
 pub struct PicoRig {
     process: Process,
     dac: Ad5761rChip,
     world: World,
+    /// The touch frame; without one, the host sends the reports.
+    frame: Option<TouchFrame>,
     /// Inputs that do not follow the world.
     pub broken: BrokenInputs,
     tick_period: Duration,
@@ -102,6 +107,7 @@ impl PicoRig {
             process: Process::start(image)?,
             dac: Ad5761rChip::new(),
             world,
+            frame: None,
             broken: BrokenInputs::default(),
             tick_period,
             now: Duration::ZERO,
@@ -148,6 +154,16 @@ impl PicoRig {
     /// The DAC, to break it.
     pub fn dac(&self) -> &Ad5761rChip {
         &self.dac
+    }
+
+    /// Connects a touch frame, which reports the world's finger from now on.
+    pub fn attach_frame(&mut self) {
+        self.frame = Some(TouchFrame::new());
+    }
+
+    /// The touch frame, to break it; `None` without one.
+    pub fn frame_mut(&mut self) -> Option<&mut TouchFrame> {
+        self.frame.as_mut()
     }
 
     /// How often the firmware has started.
@@ -247,8 +263,36 @@ impl PicoRig {
         Ok(ran.ended == Ended::Instructions)
     }
 
-    /// Runs for a time, or until a frame ends.
+    /// Runs for a time, or until a frame of the DAC ends, with the touch frame's answers.
     fn run(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
+        let end = self.now + time;
+        let (mut events, mut instructions) = (Vec::new(), 0);
+        loop {
+            let left = instructions_max.saturating_sub(instructions);
+            let mut ran = self.run_to_question(end.saturating_sub(self.now), left)?;
+            self.answer(&ran.events)?;
+            events.append(&mut ran.events);
+            instructions += ran.instructions;
+            let all_done = instructions_max > 0 && instructions >= instructions_max;
+            if ran.ended != Ended::FrameAsked || all_done {
+                let ended = if ran.ended == Ended::FrameAsked { Ended::Instructions } else { ran.ended };
+                return Ok(Ran { ended, instructions, events, ..ran });
+            }
+        }
+    }
+
+    /// Lets the touch frame answer what happened on its bus.
+    fn answer(&mut self, events: &[Stamped]) -> Result<(), EmulatorError> {
+        for stamped in events {
+            if let Some(answer) = self.frame.as_mut().and_then(|frame| frame.answer(stamped.event)) {
+                self.process.request(Request::AnswerI2c, &[answer.into()])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs for a time, or until a frame of the DAC ends or the touch frame is asked.
+    fn run_to_question(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
         let sense = self.world.sense();
         // The board has latched its last code just now, and reads the monitor before that has moved it.
         let monitor_v = self.broken.monitor_v.unwrap_or_else(|| self.world.monitor_now_v());
@@ -261,6 +305,7 @@ impl PicoRig {
         if is_held {
             inputs |= ARM;
         }
+        inputs |= self.frame.as_ref().map_or(0, frame_inputs);
         let head = [time.as_nanos() as u32, instructions_max, inputs, monitor_code as u32, self.dac.shifting_out()];
         if let Some(watched) = &mut self.watched_bytes {
             watched.extend(&self.to_board);
@@ -292,6 +337,9 @@ impl PicoRig {
 
     /// Sends a touch report to the board.
     fn report(&mut self, touch: Touch) {
+        if let Some(frame) = &mut self.frame {
+            return frame.report(touch);
+        }
         let command = match touch {
             Touch::Down { x_m, y_m, age_ticks } => Command::Touch { x_m, y_m, age_ticks: age_ticks as u16 },
             Touch::Up => Command::Lift,
@@ -336,9 +384,24 @@ impl PicoRig {
                 self.dac.set_clear(false);
                 self.starts += 1;
             }
-            WireEvent::Light(_) | WireEvent::Flash { .. } | WireEvent::MonitorRead { .. } => {}
+            WireEvent::Light(_)
+            | WireEvent::Flash { .. }
+            | WireEvent::MonitorRead { .. }
+            | WireEvent::I2cAddress { .. }
+            | WireEvent::I2cWrite(_)
+            | WireEvent::I2cRead
+            | WireEvent::I2cStop
+            | WireEvent::Scl(_) => {}
         }
     }
+}
+
+fn frame_inputs(frame: &TouchFrame) -> u32 {
+    let [ready, sda_held, scl_held] = frame.levels();
+    [(ready, FRAME_READY), (sda_held, SDA_HELD), (scl_held, SCL_HELD)]
+        .into_iter()
+        .map(|(is_set, input)| if is_set { input } else { 0 })
+        .sum()
 }
 
 fn no_answer(what: &str) -> EmulatorError {

@@ -20,6 +20,11 @@ pub fn pico_image() -> Option<Image> {
     built(EmulatedBoard::Pico)
 }
 
+/// The image of the Pico that takes the finger's place from an optical frame, likewise.
+pub fn pico_image_with_frame() -> Option<Image> {
+    built(EmulatedBoard::PicoWithFrame)
+}
+
 fn built(board: EmulatedBoard) -> Option<Image> {
     match Image::build(board) {
         Ok(image) => Some(image),

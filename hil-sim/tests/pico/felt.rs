@@ -54,9 +54,12 @@ fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
     Fidelity::of(&recorder.rows().iter().map(sample).collect::<Vec<_>>()).unwrap()
 }
 
+/// How to switch a board on: with its image, in a world like this, with a finger that makes a stroke, and a seed.
+type SwitchOn = fn(&Image, &WorldConfig, Stroke, u64) -> Bench;
+
 /// What is felt of a stroke on the Pico, and the tick of the world at which it begins.
-fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> (Fidelity, u64) {
-    let bench = Bench::in_world(image, &world(), stroke(seconds, seed), seed);
+fn on_the_pico(image: &Image, switch_on: SwitchOn, seconds: f64, seed: u64) -> (Fidelity, u64) {
+    let bench = switch_on(image, &world(), stroke(seconds, seed), seed);
     let mut host = bench.connect();
     frixel_play::start(&mut host, &program(GRATING), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.take_records();
@@ -93,10 +96,10 @@ fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
 
 /// Error, correlation and what is spurious, in dB, of strokes with these seeds: as in `host/frixel/tests/felt.rs`, a
 /// root mean square, a mean, and a mean power.
-fn is_felt_within_the_goal(image: &Image, seconds: f64, seeds: impl Iterator<Item = u64>) {
+fn is_felt_within_the_goal(image: &Image, switch_on: SwitchOn, seconds: f64, seeds: impl Iterator<Item = u64>) {
     let (mut error_2, mut correlation, mut power, mut count) = (0.0, 0.0, 0.0, 0.0);
     for seed in seeds {
-        let (found, start_tick) = on_the_pico(image, seconds, seed);
+        let (found, start_tick) = on_the_pico(image, switch_on, seconds, seed);
         let beside = in_process(seconds, seed, start_tick);
         for (rig, felt) in [("Pico", found), ("in-process", beside)] {
             let Fidelity { error, correlation, spurious_over_noise_db, .. } = felt;
@@ -120,12 +123,18 @@ fn is_felt_within_the_goal(image: &Image, seconds: f64, seeds: impl Iterator<Ite
 #[test]
 fn a_grating_is_felt_within_the_goal() {
     let Some(image) = emulator::pico_image() else { return };
-    is_felt_within_the_goal(&image, 1.5, HUMAN_TEST_SEEDS.take(1));
+    is_felt_within_the_goal(&image, Bench::in_world, 1.5, HUMAN_TEST_SEEDS.take(1));
+}
+
+#[test]
+fn a_grating_is_felt_within_the_goal_under_a_finger_that_a_touch_frame_sees() {
+    let Some(image) = emulator::pico_image_with_frame() else { return };
+    is_felt_within_the_goal(&image, Bench::in_world_with_frame, 1.5, HUMAN_TEST_SEEDS.take(1));
 }
 
 #[test]
 #[ignore = "takes minutes: `cargo xtask soak pico`"]
 fn a_grating_is_felt_within_the_goal_on_long_strokes() {
     let Some(image) = emulator::pico_image() else { return };
-    is_felt_within_the_goal(&image, 8.5, HUMAN_TEST_SEEDS.take(4));
+    is_felt_within_the_goal(&image, Bench::in_world, 8.5, HUMAN_TEST_SEEDS.take(4));
 }

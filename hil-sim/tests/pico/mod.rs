@@ -6,6 +6,7 @@ mod bench;
 mod broken_parts;
 mod endings;
 mod felt;
+mod frame;
 mod parity;
 mod play;
 mod store;

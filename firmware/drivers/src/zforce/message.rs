@@ -28,6 +28,8 @@ const BOOT_COMPLETE: u8 = 0x63;
 const EVENT_DOWN: u8 = 0;
 const EVENT_MOVE: u8 = 1;
 const EVENT_UP: u8 = 2;
+/// What is read of a bus that nobody drives.
+const RELEASED: u8 = 0xff;
 /// Coordinates are in tenths of a millimetre.
 const M_PER_UNIT: f32 = 1e-4;
 
@@ -77,8 +79,11 @@ pub fn parse(message: &[u8]) -> Message {
     }
 }
 
+/// A module that stops in the middle of a report releases the bus, and the rest of the bytes are ones: so a touch whose
+/// last byte is that, a confidence that no module states, is ignored. Its place may be half of the finger's.
 fn parse_touch(touch: &[u8]) -> Message {
     match *touch {
+        [.., RELEASED] => Message::Other,
         [_, EVENT_DOWN | EVENT_MOVE, x_high, x_low, y_high, y_low, ..] => Message::Touch(Touch::Down {
             x_m: f32::from(u16::from_be_bytes([x_high, x_low])) * M_PER_UNIT,
             y_m: f32::from(u16::from_be_bytes([y_high, y_low])) * M_PER_UNIT,
@@ -146,6 +151,17 @@ mod tests {
         message[1] += 11;
         message[7] += 11;
         assert!(near(parse(&message), 0.01, 0.02));
+    }
+
+    /// The module restarts in the middle of a report: what follows is read from a released bus.
+    #[test]
+    fn a_touch_that_is_cut_off_is_not_a_touch() {
+        let whole = one_touch(1, 1234, 300);
+        for cut in 0..whole.len() {
+            let mut message = whole.clone();
+            message[cut..].fill(0xff);
+            assert_eq!(parse(&message), Message::Other, "after {cut} bytes");
+        }
     }
 
     #[test]

@@ -18,11 +18,15 @@ pub(super) enum Request {
     WriteFlash = 11,
     Watch = 12,
     TakeCalls = 13,
+    AnswerI2c = 14,
 }
 
 /// Bits of the inputs in a [`Request::Run`].
 pub(super) const READY: u32 = 1;
 pub(super) const ARM: u32 = 2;
+pub(super) const FRAME_READY: u32 = 4;
+pub(super) const SDA_HELD: u32 = 8;
+pub(super) const SCL_HELD: u32 = 16;
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +39,8 @@ pub(super) enum Ended {
     Instructions,
     /// The board has reset itself, or lost its power at a flash operation, and has started again.
     Reset,
+    /// The touch frame was told something, or asked.
+    FrameAsked,
 }
 
 /// Why a board starts.
@@ -82,6 +88,21 @@ pub enum WireEvent {
         /// Time since SYNC rose last, which latches a code.
         since_frame: Duration,
     },
+    /// A transfer on I2C begins, and waits for an acknowledgement.
+    I2cAddress {
+        /// The address, 7 bits.
+        address: u8,
+        /// Whether it reads.
+        reads: bool,
+    },
+    /// This byte on I2C waits for an acknowledgement.
+    I2cWrite(u8),
+    /// A byte is read on I2C.
+    I2cRead,
+    /// A transfer on I2C ends.
+    I2cStop,
+    /// The firmware itself lets SCL go high, or pulls it low.
+    Scl(bool),
 }
 
 /// An event, with its time since the board was first switched on.
@@ -114,6 +135,7 @@ impl Ran {
             1 => Ended::Frame,
             2 => Ended::Instructions,
             3 => Ended::Reset,
+            4 => Ended::FrameAsked,
             _ => return None,
         };
         let (events, bytes) = rest.split_at_checked(4 * *count as usize)?;
@@ -146,6 +168,11 @@ fn stamped(&[kind, at_ns, first, second]: &[u32; 4]) -> Option<Stamped> {
         }),
         6 => WireEvent::Flash { offset: first, programmed_len: second },
         7 => WireEvent::MonitorRead { since_frame: Duration::from_nanos(first.into()) },
+        8 => WireEvent::I2cAddress { address: first as u8, reads: second != 0 },
+        9 => WireEvent::I2cWrite(first as u8),
+        10 => WireEvent::I2cRead,
+        11 => WireEvent::I2cStop,
+        12 => WireEvent::Scl(first != 0),
         _ => return None,
     };
     Some(Stamped { at: Duration::from_nanos(at_ns.into()), event })

@@ -1,0 +1,128 @@
+//! The touch frame on the board's I2C bus.
+
+use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_hal_async::i2c::I2c;
+use frixel_drivers::polling::poll_once;
+use frixel_drivers::zforce::I2C_ADDRESS;
+use frixel_session::Touch;
+
+use super::protocol::WireEvent;
+use crate::chips::{HeldBus, TouchEvent, ZForceModule};
+
+/// What SDA shows while nobody drives it.
+const RELEASED: u8 = 0xff;
+/// Units of the frame in a metre.
+const UNITS_PER_M: f32 = 1e4;
+
+/// A zForce module along the top edge of the screen, and what holds its bus.
+#[derive(Debug)]
+pub struct TouchFrame {
+    module: ZForceModule,
+    /// What holds SDA low, as if the module had been left in a transfer; `None` for nothing.
+    pub holds_sda: Option<HeldBus>,
+    /// Whether the module holds SCL low.
+    pub holds_scl: bool,
+    /// Bytes after which the module restarts in the middle of a transfer; `None` for never.
+    pub restarts_after: Option<u32>,
+    /// Whether the module has left the transfer that is under way.
+    has_left: bool,
+    is_touched: bool,
+    written: Vec<u8>,
+}
+
+impl TouchFrame {
+    pub(super) fn new() -> Self {
+        Self {
+            module: ZForceModule::new(0),
+            holds_sda: None,
+            holds_scl: false,
+            restarts_after: None,
+            has_left: false,
+            is_touched: false,
+            written: Vec::new(),
+        }
+    }
+
+    /// The module, to break it.
+    pub fn module(&self) -> &ZForceModule {
+        &self.module
+    }
+
+    /// Whether a message waits to be read, in whole or in part.
+    pub fn is_waiting(&self) -> bool {
+        self.levels()[0]
+    }
+
+    /// Reports the finger's place.
+    pub(super) fn report(&mut self, touch: Touch) {
+        let units = |place_m: f32| (place_m * UNITS_PER_M).round() as u16;
+        match touch {
+            Touch::Down { x_m, y_m, .. } => {
+                let event = if self.is_touched { TouchEvent::Move } else { TouchEvent::Down };
+                self.module.touch(event, units(x_m), units(y_m));
+                self.is_touched = true;
+            }
+            Touch::Up => {
+                self.module.touch(TouchEvent::Up, 0, 0);
+                self.is_touched = false;
+            }
+        }
+    }
+
+    /// Whether data is ready, and whether SDA and SCL are held low.
+    pub(super) fn levels(&self) -> [bool; 3] {
+        let Ok(is_ready) = self.module.data_ready().is_high();
+        let sda_is_held = self.holds_sda.as_ref().is_some_and(|bus| matches!(bus.sda().is_low(), Ok(true)));
+        [is_ready, sda_is_held, self.holds_scl]
+    }
+
+    /// What the module answers to an event on its bus: a byte, or 1 for an acknowledgement.
+    pub(super) fn answer(&mut self, event: WireEvent) -> Option<u8> {
+        match event {
+            WireEvent::I2cAddress { address, .. } => {
+                // The START condition resets what was left in a transfer.
+                let has_started = self.holds_sda.as_ref().is_none_or(HeldBus::start);
+                Some(u8::from(has_started && self.module.acknowledges(address)))
+            }
+            WireEvent::I2cWrite(byte) => {
+                self.written.push(byte);
+                Some(1)
+            }
+            WireEvent::I2cRead => Some(self.next_byte()),
+            WireEvent::I2cStop => {
+                self.end_transfer();
+                None
+            }
+            WireEvent::Scl(is_high) => {
+                if let Some(bus) = &self.holds_sda {
+                    let Ok(()) = if is_high { bus.scl().set_high() } else { bus.scl().set_low() };
+                }
+                None
+            }
+            _ => None,
+        }
+    }
+
+    fn next_byte(&mut self) -> u8 {
+        if self.restarts_after == Some(0) {
+            self.restarts_after = None;
+            self.module.restart();
+            self.has_left = true;
+        }
+        if self.has_left {
+            return RELEASED;
+        }
+        self.restarts_after = self.restarts_after.map(|bytes| bytes - 1);
+        let mut byte = [RELEASED];
+        let _ = poll_once(std::pin::pin!(self.module.bus().read(I2C_ADDRESS, &mut byte)));
+        byte[0]
+    }
+
+    fn end_transfer(&mut self) {
+        self.has_left = false;
+        let written = std::mem::take(&mut self.written);
+        if !written.is_empty() {
+            let _ = poll_once(std::pin::pin!(self.module.bus().write(I2C_ADDRESS, &written)));
+        }
+    }
+}
