@@ -6,6 +6,7 @@ use std::convert::Infallible;
 use std::pin::pin;
 use std::task::Poll;
 
+use embedded_hal_async::i2c::I2c;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_drivers::amplifier::{Amplifier, KickedEnable};
 use frixel_drivers::arm_switch::ArmSwitch;
@@ -77,6 +78,24 @@ fn a_touch_frame_that_fails_is_left_alone_for_a_while_and_set_up_again() {
     assert!(poll_for(touch.as_mut(), 100).is_none());
     module.touch(TouchEvent::Up, 10, 20);
     assert_eq!(poll_for(touch, 100), Some(Ok(Touch::Up)));
+}
+
+/// A transfer that was given up after any byte costs one pause, not one for every two bytes that are left.
+#[test]
+fn a_report_that_was_read_in_part_is_skipped() {
+    for len in 1..21 {
+        let module = ZForceModule::new(0);
+        let mut frame = ZForce::new(module.bus(), module.data_ready(), PolledDelay);
+        assert!(poll_for(pin!(frame.next_touch()), 100).is_none());
+        module.touch(TouchEvent::Down, 10, 20);
+        poll_for(pin!(module.bus().read(zforce::I2C_ADDRESS, &mut vec![0; len])), 1).unwrap().unwrap();
+        let failed = poll_for(pin!(frame.next_touch()), 200);
+        assert!(matches!(failed, Some(Err(zforce::Error::Length(_)))), "after {len} bytes: {failed:?}");
+        let mut touch = pin!(frame.next_touch());
+        assert!(poll_for(touch.as_mut(), 100).is_none(), "after {len} bytes");
+        module.touch(TouchEvent::Up, 10, 20);
+        assert_eq!(poll_for(touch, 100), Some(Ok(Touch::Up)), "after {len} bytes");
+    }
 }
 
 /// Clears a bus and returns whether that succeeded.

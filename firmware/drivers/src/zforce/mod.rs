@@ -107,8 +107,19 @@ impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
         let mut length = [0; LENGTH_LEN];
         self.bus.read(I2C_ADDRESS, &mut length).await?;
         let mut message = [0; MESSAGE_MAX_LEN];
-        let message = message_len(length).and_then(|len| message.get_mut(..len)).ok_or(Error::Length(length))?;
+        let Some(message) = message_len(length).and_then(|len| message.get_mut(..len)) else {
+            self.skip_message().await;
+            return Err(Error::Length(length));
+        };
         self.bus.read(I2C_ADDRESS, message).await?;
         Ok(parse(message))
+    }
+
+    /// Reads the rest of a message of which a transfer that was given up has read the beginning, and discards it.
+    async fn skip_message(&mut self) {
+        if matches!(self.data_ready.is_high(), Ok(true)) {
+            // The invalid header is reported.
+            let _ = self.bus.read(I2C_ADDRESS, &mut [0; MESSAGE_MAX_LEN]).await;
+        }
     }
 }
