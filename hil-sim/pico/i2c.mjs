@@ -30,8 +30,8 @@ const BYTE_CLOCKS = 9;
 /** Cycles that the peripheral adds to both parts of a clock (RP2040 datasheet, 4.3.14.1). */
 const ADDED_CYCLES = 8;
 
-/** What the bus needs of a board. @typedef {{ record(kind: number, a: number, b?: number): void, fail(what: string): void,
- *  asksFrame(): void, hasI2cPins: boolean }} Bus */
+/** What the bus needs of a board. @typedef {{ record(kind: number, a: number, b?: number): void,
+ *  fail(what: string): void, asksFrame(): void, hasI2cPins: boolean }} Bus */
 
 export class I2cBus {
   #i2c;

@@ -32,8 +32,8 @@ export const REQUEST = {
   /** The calls since the last time, in their order: of each the number of its function, counted from 0 in the order of
    *  `WATCH`, and the words. */
   TAKE_CALLS: 13,
-  /** The touch frame's answer to the last event of a run that ended with `FRAME_ASKED`: 0 or 1, whether it acknowledges,
-   *  or the byte that it sends. */
+  /** The touch frame's answer to the last event of a run that ended with `FRAME_ASKED`: 0 or 1, whether it
+   *  acknowledges, or the byte that it sends. */
   ANSWER_I2C: 14,
 };
 

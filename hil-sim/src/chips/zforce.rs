@@ -116,6 +116,12 @@ impl ZForceModule {
         self.0.borrow_mut().is_connected = connected;
     }
 
+    /// Number of messages that wait to be read, the first of them perhaps in part.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.0.borrow().waiting.len()
+    }
+
     /// Whether it acknowledges this address.
     #[must_use]
     pub fn acknowledges(&self, address: u8) -> bool {

@@ -20,6 +20,11 @@ use crate::polling::yield_now;
 
 /// Pause after a transfer that failed, before the module is set up again.
 const PAUSE_MS: u32 = 100;
+/// Bytes of a transfer that is discarded: a report of two fingers.
+const DISCARDED_LEN: usize = 32;
+/// Most transfers that are discarded before the module is set up, 50 ms at 400 kHz: one whose data-ready pin stays high
+/// is set up all the same.
+const DISCARDED_MAX: u32 = 64;
 
 /// The module: its bus, its data-ready pin (high while a message waits), and a delay.
 #[derive(Debug)]
@@ -88,6 +93,7 @@ impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
     async fn wait_for_touch(&mut self) -> Result<Touch, Error<B::Error>> {
         loop {
             if !self.is_set_up {
+                self.discard_waiting().await?;
                 self.bus.write(I2C_ADDRESS, &SET_FREQUENCY).await?;
                 self.bus.write(I2C_ADDRESS, &ENABLE).await?;
                 self.is_set_up = true;
@@ -101,25 +107,30 @@ impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
     }
 
     async fn read_message(&mut self) -> Result<Message, Error<B::Error>> {
-        while !self.data_ready.is_high().map_err(|_| Error::DataReady)? {
+        while !self.is_data_ready()? {
             yield_now().await;
         }
         let mut length = [0; LENGTH_LEN];
         self.bus.read(I2C_ADDRESS, &mut length).await?;
         let mut message = [0; MESSAGE_MAX_LEN];
-        let Some(message) = message_len(length).and_then(|len| message.get_mut(..len)) else {
-            self.skip_message().await;
-            return Err(Error::Length(length));
-        };
+        let message = message_len(length).and_then(|len| message.get_mut(..len)).ok_or(Error::Length(length))?;
         self.bus.read(I2C_ADDRESS, message).await?;
         Ok(parse(message))
     }
 
-    /// Reads the rest of a message of which a transfer that was given up has read the beginning, and discards it.
-    async fn skip_message(&mut self) {
-        if matches!(self.data_ready.is_high(), Ok(true)) {
-            // The invalid header is reported.
-            let _ = self.bus.read(I2C_ADDRESS, &mut [0; MESSAGE_MAX_LEN]).await;
+    /// Reads what waits, and discards it: the rest of a message of which a transfer that failed has read the beginning,
+    /// and reports that are older by now than the board takes them to be.
+    async fn discard_waiting(&mut self) -> Result<(), Error<B::Error>> {
+        for _ in 0..DISCARDED_MAX {
+            if !self.is_data_ready()? {
+                break;
+            }
+            self.bus.read(I2C_ADDRESS, &mut [0; DISCARDED_LEN]).await?;
         }
+        Ok(())
+    }
+
+    fn is_data_ready(&mut self) -> Result<bool, Error<B::Error>> {
+        self.data_ready.is_high().map_err(|_| Error::DataReady)
     }
 }

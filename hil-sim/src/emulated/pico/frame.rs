@@ -24,8 +24,8 @@ pub struct TouchFrame {
     pub holds_scl: bool,
     /// Bytes after which the module restarts in the middle of a transfer; `None` for never.
     pub restarts_after: Option<u32>,
-    /// Whether the module has left the transfer that is under way.
-    has_left: bool,
+    /// Whether the module has nothing more to send in the transfer that is under way.
+    has_ended: bool,
     is_touched: bool,
     written: Vec<u8>,
 }
@@ -37,7 +37,7 @@ impl TouchFrame {
             holds_sda: None,
             holds_scl: false,
             restarts_after: None,
-            has_left: false,
+            has_ended: false,
             is_touched: false,
             written: Vec::new(),
         }
@@ -46,11 +46,6 @@ impl TouchFrame {
     /// The module, to break it.
     pub fn module(&self) -> &ZForceModule {
         &self.module
-    }
-
-    /// Whether a message waits to be read, in whole or in part.
-    pub fn is_waiting(&self) -> bool {
-        self.levels()[0]
     }
 
     /// Reports the finger's place.
@@ -107,19 +102,21 @@ impl TouchFrame {
         if self.restarts_after == Some(0) {
             self.restarts_after = None;
             self.module.restart();
-            self.has_left = true;
+            self.has_ended = true;
         }
-        if self.has_left {
+        if self.has_ended {
             return RELEASED;
         }
         self.restarts_after = self.restarts_after.map(|bytes| bytes - 1);
+        let waiting = self.module.waiting();
         let mut byte = [RELEASED];
         let _ = poll_once(std::pin::pin!(self.module.bus().read(I2C_ADDRESS, &mut byte)));
+        self.has_ended = self.module.waiting() < waiting;
         byte[0]
     }
 
     fn end_transfer(&mut self) {
-        self.has_left = false;
+        self.has_ended = false;
         let written = std::mem::take(&mut self.written);
         if !written.is_empty() {
             let _ = poll_once(std::pin::pin!(self.module.bus().write(I2C_ADDRESS, &written)));
