@@ -27,7 +27,7 @@ pub use board_rig::PicoBoardRig;
 pub use frame::TouchFrame;
 pub use orders::{AppliedOrder, Watched};
 use process::Process;
-use protocol::{ARM, Ended, FRAME_READY, READY, Ran, Request, SCL_HELD, SDA_HELD};
+use protocol::{ARM, Ended, READY, Ran, Request};
 pub use protocol::{Stamped, StartCause, WireEvent};
 
 /// Sequence number of the touch source's requests: no host waits for an answer to it.
@@ -156,16 +156,6 @@ impl PicoRig {
         &self.dac
     }
 
-    /// Connects a touch frame, which reports the world's finger from now on.
-    pub fn attach_frame(&mut self) {
-        self.frame = Some(TouchFrame::new());
-    }
-
-    /// The touch frame, to break it; `None` without one.
-    pub fn frame_mut(&mut self) -> Option<&mut TouchFrame> {
-        self.frame.as_mut()
-    }
-
     /// How often the firmware has started.
     pub fn starts(&self) -> u32 {
         self.starts
@@ -263,34 +253,6 @@ impl PicoRig {
         Ok(ran.ended == Ended::Instructions)
     }
 
-    /// Runs for a time, or until a frame of the DAC ends, with the touch frame's answers.
-    fn run(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
-        let end = self.now + time;
-        let (mut events, mut instructions) = (Vec::new(), 0);
-        loop {
-            let left = instructions_max.saturating_sub(instructions);
-            let mut ran = self.run_to_question(end.saturating_sub(self.now), left)?;
-            self.answer(&ran.events)?;
-            events.append(&mut ran.events);
-            instructions += ran.instructions;
-            let all_done = instructions_max > 0 && instructions >= instructions_max;
-            if ran.ended != Ended::FrameAsked || all_done {
-                let ended = if ran.ended == Ended::FrameAsked { Ended::Instructions } else { ran.ended };
-                return Ok(Ran { ended, instructions, events, ..ran });
-            }
-        }
-    }
-
-    /// Lets the touch frame answer what happened on its bus.
-    fn answer(&mut self, events: &[Stamped]) -> Result<(), EmulatorError> {
-        for stamped in events {
-            if let Some(answer) = self.frame.as_mut().and_then(|frame| frame.answer(stamped.event)) {
-                self.process.request(Request::AnswerI2c, &[answer.into()])?;
-            }
-        }
-        Ok(())
-    }
-
     /// Runs for a time, or until a frame of the DAC ends or the touch frame is asked.
     fn run_to_question(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
         let sense = self.world.sense();
@@ -305,7 +267,7 @@ impl PicoRig {
         if is_held {
             inputs |= ARM;
         }
-        inputs |= self.frame.as_ref().map_or(0, frame_inputs);
+        inputs |= self.frame.as_ref().map_or(0, TouchFrame::inputs);
         let head = [time.as_nanos() as u32, instructions_max, inputs, monitor_code as u32, self.dac.shifting_out()];
         if let Some(watched) = &mut self.watched_bytes {
             watched.extend(&self.to_board);
@@ -394,14 +356,6 @@ impl PicoRig {
             | WireEvent::Scl(_) => {}
         }
     }
-}
-
-fn frame_inputs(frame: &TouchFrame) -> u32 {
-    let [ready, sda_held, scl_held] = frame.levels();
-    [(ready, FRAME_READY), (sda_held, SDA_HELD), (scl_held, SCL_HELD)]
-        .into_iter()
-        .map(|(is_set, input)| if is_set { input } else { 0 })
-        .sum()
 }
 
 fn no_answer(what: &str) -> EmulatorError {

@@ -1,13 +1,17 @@
 //! The touch frame on the board's I2C bus.
 
+use std::time::Duration;
+
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal_async::i2c::I2c;
 use frixel_drivers::polling::poll_once;
 use frixel_drivers::zforce::I2C_ADDRESS;
 use frixel_session::Touch;
 
-use super::protocol::WireEvent;
+use super::PicoRig;
+use super::protocol::{Ended, FRAME_READY, Ran, Request, SCL_HELD, SDA_HELD, Stamped, WireEvent};
 use crate::chips::{HeldBus, TouchEvent, ZForceModule};
+use crate::emulated::EmulatorError;
 
 /// What SDA shows while nobody drives it.
 const RELEASED: u8 = 0xff;
@@ -31,7 +35,7 @@ pub struct TouchFrame {
 }
 
 impl TouchFrame {
-    pub(super) fn new() -> Self {
+    fn new() -> Self {
         Self {
             module: ZForceModule::new(0),
             holds_sda: None,
@@ -64,15 +68,16 @@ impl TouchFrame {
         }
     }
 
-    /// Whether data is ready, and whether SDA and SCL are held low.
-    pub(super) fn levels(&self) -> [bool; 3] {
+    /// The inputs of a run that it gives: whether data is ready, and whether SDA and SCL are held low.
+    pub(super) fn inputs(&self) -> u32 {
         let Ok(is_ready) = self.module.data_ready().is_high();
         let sda_is_held = self.holds_sda.as_ref().is_some_and(|bus| matches!(bus.sda().is_low(), Ok(true)));
-        [is_ready, sda_is_held, self.holds_scl]
+        let inputs = [(is_ready, FRAME_READY), (sda_is_held, SDA_HELD), (self.holds_scl, SCL_HELD)];
+        inputs.into_iter().map(|(is_set, input)| if is_set { input } else { 0 }).sum()
     }
 
     /// What the module answers to an event on its bus: a byte, or 1 for an acknowledgement.
-    pub(super) fn answer(&mut self, event: WireEvent) -> Option<u8> {
+    fn answer(&mut self, event: WireEvent) -> Option<u8> {
         match event {
             WireEvent::I2cAddress { address, .. } => {
                 // The START condition resets what was left in a transfer.
@@ -121,5 +126,46 @@ impl TouchFrame {
         if !written.is_empty() {
             let _ = poll_once(std::pin::pin!(self.module.bus().write(I2C_ADDRESS, &written)));
         }
+    }
+}
+
+/// The board's bus, and the frame on it.
+impl PicoRig {
+    /// Connects a touch frame, which reports the world's finger from now on.
+    pub fn attach_frame(&mut self) {
+        self.frame = Some(TouchFrame::new());
+    }
+
+    /// The touch frame, to break it; `None` without one.
+    pub fn frame_mut(&mut self) -> Option<&mut TouchFrame> {
+        self.frame.as_mut()
+    }
+
+    /// Runs for a time, or until a frame of the DAC ends, with the touch frame's answers.
+    pub(super) fn run(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
+        let end = self.now + time;
+        let (mut events, mut instructions) = (Vec::new(), 0);
+        loop {
+            let left = instructions_max.saturating_sub(instructions);
+            let mut ran = self.run_to_question(end.saturating_sub(self.now), left)?;
+            self.answer(&ran.events)?;
+            events.append(&mut ran.events);
+            instructions += ran.instructions;
+            let all_done = instructions_max > 0 && instructions >= instructions_max;
+            if ran.ended != Ended::FrameAsked || all_done {
+                let ended = if ran.ended == Ended::FrameAsked { Ended::Instructions } else { ran.ended };
+                return Ok(Ran { ended, instructions, events, ..ran });
+            }
+        }
+    }
+
+    /// Lets the touch frame answer what happened on its bus.
+    fn answer(&mut self, events: &[Stamped]) -> Result<(), EmulatorError> {
+        for stamped in events {
+            if let Some(answer) = self.frame.as_mut().and_then(|frame| frame.answer(stamped.event)) {
+                self.process.request(Request::AnswerI2c, &[answer.into()])?;
+            }
+        }
+        Ok(())
     }
 }
