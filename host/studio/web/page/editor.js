@@ -30,8 +30,10 @@ import {
 } from "../vendor/studio-vendor.js";
 import { completeFrom } from "./completion.js";
 import { HeldChange, joinHeld } from "./held_change.js";
+import { notify } from "./notices.js";
+import { TEXT_MAX_BYTES, tooLarge } from "./project.js";
 
-/** @import { StateCommand } from "../vendor/studio-vendor.js" */
+/** @import { StateCommand, Transaction } from "../vendor/studio-vendor.js" */
 /** @import { Problem } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @typedef {{ name: string | undefined, isShown: boolean, mistakes: number }} FileOfScene */
@@ -99,12 +101,24 @@ export class Editor {
       syntaxHighlighting(colours),
       autocompletion({ override: [completeFrom(schema)] }),
       EditorView.lineWrapping,
+      EditorState.changeFilter.of((change) => this.#isShortEnough(change)),
       changed,
       label,
       // No Tab: it leaves the editor, as everywhere on the page.
       keymap.of([...completionKeymap, ...lintKeymap, ...historyKeymap, ...defaultKeymap]),
     ];
     this.#view = new EditorView({ parent, state: this.#newState("") });
+  }
+
+  /**
+   * Whether a change leaves no more text than the studio can check while a person types.
+   * @param {Transaction} change
+   */
+  #isShortEnough({ newDoc, startState }) {
+    const { length } = newDoc;
+    if (length <= TEXT_MAX_BYTES || length <= startState.doc.length) return true;
+    notify(tooLarge("text", length, TEXT_MAX_BYTES));
+    return false;
   }
 
   /** @param {string} doc */
@@ -230,7 +244,7 @@ export class Editor {
    */
   hold(file) {
     this.show(file);
-    return new HeldChange(this.#view);
+    return new HeldChange(this.#view, () => this.onHistory());
   }
 
   /** @param {string} text */
@@ -250,7 +264,7 @@ export class Editor {
    * @param {string | undefined} file
    * @param {number} number
    */
-  goTo(file, number) {
+  goTo(file, number, { focuses = true } = {}) {
     this.onReveal();
     this.show(file);
     const line = this.#view.state.doc.line(Math.max(1, Math.min(number, this.#view.state.doc.lines)));
@@ -258,7 +272,7 @@ export class Editor {
       selection: { anchor: line.from },
       effects: EditorView.scrollIntoView(line.from, { y: "center" }),
     });
-    this.#view.focus();
+    if (focuses) this.#view.focus();
   }
 
   undo() {
