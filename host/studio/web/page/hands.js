@@ -340,7 +340,8 @@ export class Hands {
     const numbers = isTuned ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
     if (selected) this.#panel.show(selected, numbers, this.#reach, isNew);
     else this.#panel.showNone(this.#layers.all.length, isNew);
-    const felt = [byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect());
-    this.#panel.place(felt, (box.closest(".map-card") ?? box).getBoundingClientRect());
+    const around = [byId("numbers"), byId("scope").parentElement ?? box, box.closest(".map-card") ?? box];
+    const [numbersRect, scope, map] = around.map((each) => each.getBoundingClientRect());
+    this.#panel.place(numbersRect, scope, map);
   }
 }

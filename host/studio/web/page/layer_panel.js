@@ -18,6 +18,8 @@ import { numberText } from "./toml_text.js";
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
 /** Least height of the panel, CSS pixels. */
 const LEAST_PX = 220;
+/** A scope of this height has room for it, CSS pixels. */
+const HIGH_PX = 380;
 const HINT = "Press a layer to select it. Drag it to move it, its handles to resize it.";
 const EMPTY_HINT = "This scene has no layer yet: add one.";
 
@@ -207,23 +209,22 @@ export class LayerPanel {
   }
 
   /**
-   * Puts the panel over what shows what a finger feels: nothing is felt while layers are edited, and neither map nor
-   * text is covered. Where all of that is hidden, it lies over what is below the map.
-   * @param {DOMRect[]} felt
+   * Puts the panel over the scope, or where that is low over the numbers, too: nothing is felt while layers are edited,
+   * and neither map nor text is covered. Where all of that is hidden, it lies over what is below the map.
+   * @param {DOMRect} numbers
+   * @param {DOMRect} scope
    * @param {DOMRect} map
    */
-  place(felt, map) {
-    const seen = felt.filter(({ width }) => width > 0);
-    const covered = seen.length > 0 ? seen : [new DOMRect(map.left, map.bottom, map.width, LEAST_PX)];
-    const left = Math.min(...covered.map((each) => each.left));
-    const top = Math.min(...covered.map((each) => each.top));
-    const right = Math.max(...covered.map((each) => each.right));
-    const bottom = Math.max(...covered.map((each) => each.bottom));
+  place(numbers, scope, map) {
+    const isSeen = scope.width > 0;
+    const below = new DOMRect(map.left, map.bottom, map.width, LEAST_PX);
+    const first = isSeen ? (scope.height >= HIGH_PX ? scope : numbers) : below;
+    const last = isSeen ? scope : below;
     Object.assign(this.element.style, {
-      left: `${left + scrollX}px`,
-      top: `${top + scrollY}px`,
-      width: `${right - left}px`,
-      maxHeight: `${Math.max(bottom - top, LEAST_PX)}px`,
+      left: `${Math.min(first.left, last.left) + scrollX}px`,
+      top: `${first.top + scrollY}px`,
+      width: `${Math.max(first.right, last.right) - Math.min(first.left, last.left)}px`,
+      maxHeight: `${Math.max(last.bottom - first.top, LEAST_PX)}px`,
     });
   }
 }
