@@ -1,35 +1,9 @@
 // The editor of the scene's text and of the files that belong to it: colours, completion, mistakes in place, undo.
 // @ts-check
 
-import {
-  EditorState,
-  EditorView,
-  HighlightStyle,
-  StreamLanguage,
-  autocompletion,
-  bracketMatching,
-  closeBrackets,
-  completionKeymap,
-  defaultKeymap,
-  drawSelection,
-  highlightActiveLine,
-  highlightActiveLineGutter,
-  highlightSpecialChars,
-  history,
-  historyKeymap,
-  keymap,
-  lineNumbers,
-  lintGutter,
-  lintKeymap,
-  redo,
-  setDiagnostics,
-  syntaxHighlighting,
-  tags,
-  toml,
-  undo,
-} from "../vendor/studio-vendor.js";
-import { completeFrom } from "./completion.js";
-import { HeldChange, joinHeld } from "./held_change.js";
+import { EditorState, EditorView, redo, setDiagnostics, undo } from "../vendor/studio-vendor.js";
+import { editorExtensions } from "./editor_setup.js";
+import { HeldChange } from "./held_change.js";
 import { notify } from "./notices.js";
 import { TEXT_MAX_BYTES, tooLarge } from "./project.js";
 
@@ -37,13 +11,6 @@ import { TEXT_MAX_BYTES, tooLarge } from "./project.js";
 /** @import { Problem } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @typedef {{ name: string | undefined, isShown: boolean, mistakes: number }} FileOfScene */
-
-const colours = HighlightStyle.define([
-  { tag: tags.comment, color: "var(--soft)", fontStyle: "italic" },
-  { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: "var(--accent)" },
-  { tag: tags.string, color: "var(--good)" },
-  { tag: [tags.number, tags.bool, tags.atom], color: "var(--felt)" },
-]);
 
 /** A file is called by its name; `undefined` is the scene. */
 export class Editor {
@@ -86,27 +53,8 @@ export class Editor {
       this.onChange(this.#shown, state.doc.toString());
       this.onHistory();
     });
-    const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0" });
-    this.#extensions = [
-      lineNumbers(),
-      lintGutter(),
-      highlightActiveLineGutter(),
-      highlightSpecialChars(),
-      history({ joinToEvent: joinHeld }),
-      drawSelection(),
-      bracketMatching(),
-      closeBrackets(),
-      highlightActiveLine(),
-      StreamLanguage.define(toml),
-      syntaxHighlighting(colours),
-      autocompletion({ override: [completeFrom(schema)] }),
-      EditorView.lineWrapping,
-      EditorState.changeFilter.of((change) => this.#isShortEnough(change)),
-      changed,
-      label,
-      // No Tab: it leaves the editor, as everywhere on the page.
-      keymap.of([...completionKeymap, ...lintKeymap, ...historyKeymap, ...defaultKeymap]),
-    ];
+    const limit = EditorState.changeFilter.of((change) => this.#isShortEnough(change));
+    this.#extensions = [editorExtensions(schema), limit, changed];
     this.#view = new EditorView({ parent, state: this.#newState("") });
   }
 

@@ -10,7 +10,7 @@ import { LayerBoxes } from "./layer_boxes.js";
 import { LayerEdits } from "./layer_edits.js";
 import { layerNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
-import { notify } from "./notices.js";
+import { ModeSwitch } from "./mode_switch.js";
 
 /** @import { Checked, Files } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
@@ -30,15 +30,12 @@ export class Hands {
   #edits;
   #panel = new LayerPanel();
   #surface = element("div", { className: "hands", role: "group", tabIndex: -1, hidden: true, "aria-label": "Layers" });
-  #buttons = ["Feel", "Edit"].map((words) => element("button", { type: "button", "aria-pressed": "false" }, words));
+  #mode = new ModeSwitch();
   /** @type {string | undefined} */
   #selected;
   #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
   /** What moves, resizes and tunes the selected layer. */
   grip;
-  isEditing = false;
-  /** Why the scene that plays cannot be edited here, or "". */
-  #whyNot = "";
   /** The scene that the layers are of, as the project counts them. */
   #opened = 0;
   /** Whether a layer was put behind all others in the text, to be selected once its check is there. */
@@ -62,7 +59,6 @@ export class Hands {
     const { box, onLayout } = parts.map;
     box.append(this.#surface);
     document.body.append(this.#panel.element);
-    this.#makeSwitch();
     new HandDrag(this.#surface, this, parts.map);
     new HandKeys(this.#surface, this, this.#panel.element);
     this.#listen();
@@ -72,18 +68,9 @@ export class Hands {
     };
   }
 
-  #makeSwitch() {
-    const [feel, edit] = this.#buttons;
-    edit.title = "Add, select, move and resize layers on the map";
-    feel.onclick = () => this.setEditing(false);
-    edit.onclick = () => this.setEditing(true);
-    const words = "What a press on the map does";
-    byId("options").before(element("div", { className: "mode", role: "group", "aria-label": words }, feel, edit));
-    this.setEditing(false);
-  }
-
   #listen() {
     const { grip } = this;
+    this.#mode.onChange = () => this.#changeMode();
     grip.selected = () => this.selected;
     grip.onChange = () => this.#draw(false);
     grip.onSay = (sentence) => this.say(sentence);
@@ -106,21 +93,19 @@ export class Hands {
     panel.onPicture = () => this.onPicture();
   }
 
+  get isEditing() {
+    return this.#mode.isEditing;
+  }
+
   /** @param {boolean} isEditing */
   setEditing(isEditing) {
-    if (isEditing && this.#whyNot) {
-      this.#refuse();
-      return;
-    }
+    this.#mode.set(isEditing);
+  }
+
+  #changeMode() {
     this.grip.end();
-    this.isEditing = isEditing;
-    const [feel, edit] = this.#buttons;
-    feel.setAttribute("aria-pressed", String(!isEditing));
-    edit.setAttribute("aria-pressed", String(isEditing));
-    this.#surface.hidden = !isEditing;
-    byId("map").classList.toggle("editing", isEditing);
-    byId("map-finger").inert = isEditing;
-    if (isEditing) this.onEdit();
+    this.#surface.hidden = !this.isEditing;
+    if (this.isEditing) this.onEdit();
     else this.#selected = undefined;
     this.#draw(true);
   }
@@ -139,17 +124,11 @@ export class Hands {
     }
     try {
       this.#take(check, files);
-      this.#whyNot = "";
+      this.#mode.whyNot = "";
     } catch (error) {
-      this.#whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
-      if (this.isEditing) this.#refuse();
+      this.#mode.whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
+      if (this.isEditing) this.setEditing(true);
     }
-  }
-
-  /** Says why there is no mode Edit, and leaves it. */
-  #refuse() {
-    notify(this.#whyNot, undefined, { beside: this.#buttons[1] });
-    this.setEditing(false);
   }
 
   /**

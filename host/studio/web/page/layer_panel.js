@@ -172,6 +172,7 @@ export class LayerPanel {
       );
     }
     this.element.append(this.#additions());
+    this.element.scrollTop = 0;
   }
 
   #actions() {
