@@ -185,6 +185,7 @@ test("a page that closes while a scene is being opened does not lose the one bef
   const close = () => {
     LockManager.prototype.request = () => new Promise(() => {});
     document.getElementById("new").click();
+    document.querySelector("#new-scene .head button").click();
     return new Promise((resolve) => {
       const look = () => {
         if (document.getElementById("scene-name").value !== "untitled") return setTimeout(look);
