@@ -127,64 +127,6 @@ test("the frame of a picture without a region is where the picture is", async ()
   assert.deepEqual(errors, []);
 });
 
-test("a slider of a number that was not written keeps its row, its ends and the drag; then it has them anew", async () => {
-  const { page, errors } = await openEditing();
-  await page.mouse.click(...(await onPage(page, 100, 50)));
-  const rows = () =>
-    page.locator(".layer-number").evaluateAll((all) =>
-      all.map((row) => {
-        const { ariaLabel, min, max } = row.querySelector("[type=range]");
-        return [ariaLabel, min, max].join(" ");
-      }),
-    );
-  const before = await rows();
-  const slider = page.getByLabel("gain of right, ×", { exact: true });
-  const { x, y, width, height } = await slider.boundingBox();
-  await page.mouse.move(x + width * 0.5, y + height / 2);
-  await page.mouse.down();
-  for (const part of [0.45, 0.4, 0.3]) await page.mouse.move(x + width * part, y + height / 2);
-  assert.deepEqual(await rows(), before, "while it is dragged");
-  await page.mouse.up();
-  const [, gain] = /\ngain = ([\d.]+)\n/.exec(await textOf(page));
-  assert.ok(gain > 0.5 && gain < 0.7, gain);
-  await plays(page);
-  await press(page, "Escape", "Escape");
-  await page.mouse.click(...(await onPage(page, 20, 30)));
-  await page.mouse.click(...(await onPage(page, 100, 50)));
-  assert.deepEqual(await rows(), before, "when the layer is selected again");
-  await page.getByLabel("gain of right, ×, as a number").fill("3");
-  await press(page, "Enter");
-  assert.equal(await slider.evaluate(({ max, value }) => `${value} of ${max}`), "3 of 5");
-  assert.deepEqual(errors, []);
-});
-
-test("the right end of a slider of newtons is no more than the drive gives, and is marked", async () => {
-  const { page, errors } = await openEditing();
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
-  await page.mouse.click(...(await onPage(page, 60, 40)));
-  const slider = page.getByLabel("high of grating, N", { exact: true });
-  const { x, y, width, height } = await slider.boundingBox();
-  await page.mouse.move(x + width / 2, y + height / 2);
-  await page.mouse.down();
-  await page.mouse.move(x + width + 40, y + height / 2, { steps: 4 });
-  await page.mouse.up();
-  await plays(page);
-  const [, high] = /high_n = ([\d.]+)\n/.exec(await textOf(page));
-  const { reachN, naturalN, isDraft } = await page.evaluate(async () => {
-    const { engine, editor } = studioPage;
-    return engine.check({ "a.toml": editor.text }, "a.toml", {});
-  });
-  const limitN = reachN - naturalN;
-  assert.ok(!isDraft && high <= limitN && high > limitN - 2e-4, `${high} of ${limitN}`);
-  await slider.focus();
-  await press(page, "ArrowRight");
-  assert.ok((await textOf(page)).includes(`high_n = ${high}\n`), "a key goes no further");
-  const row = page.locator(".layer-number", { has: slider });
-  assert.match(await row.getAttribute("title"), new RegExp(`^most friction; the drive reaches ${high} N$`));
-  assert.ok(await row.locator(".has-limit").isVisible());
-  assert.deepEqual(errors, []);
-});
-
 test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async () => {
   const { page, errors } = await openEditing();
   await drag(page, [20, 30], [25, 30]);
@@ -268,26 +210,6 @@ test("a drag that Escape takes back, or that ends where it began, is no step of 
   assert.deepEqual(errors, []);
 });
 
-test("the panel says whether its layer is felt, also while a number is dragged, and what numbers mean", async () => {
-  const { page, errors } = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
-  const verdict = page.locator(".layer-panel .verdict");
-  const before = await verdict.textContent();
-  const slider = page.getByLabel("friction of left, of reach", { exact: true });
-  const { x, y, width, height } = await slider.boundingBox();
-  await page.mouse.move(x + width / 2, y + height / 2);
-  await page.mouse.down();
-  await page.mouse.move(x + width * 0.1, y + height / 2, { steps: 3 });
-  await page.waitForFunction((before) => document.querySelector(".layer-panel .verdict")?.textContent !== before, before);
-  assert.equal(await verdict.textContent(), "not felt");
-  assert.ok(await page.evaluate(() => studioPage.player.isHeld));
-  await page.mouse.up();
-  await page.mouse.click(...(await onPage(page, 100, 50)));
-  const words = await page.locator(".layer-number small").allTextContents();
-  assert.ok(words.includes("least friction") && words.includes("from one ridge to the next"), `${words}`);
-  assert.deepEqual(errors, []);
-});
-
 test("a text that is too large for the studio is not taken into the editor, and the page says so", async () => {
   const { page, errors } = await openStudio();
   const before = await textOf(page);
@@ -300,5 +222,19 @@ test("a text that is too large for the studio is not taken into the editor, and 
   });
   assert.match(await page.locator("#notice span").textContent(), /^the text has 2\.2 MB, more than the 0\.5 MB/);
   assert.equal(await textOf(page), before);
+  assert.deepEqual(errors, []);
+});
+
+test("layers are taken out one after the other, faster than any check", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "Delete");
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  await press(page, "Delete");
+  assert.doesNotMatch(await textOf(page), /\[\[layer\]\]/);
+  assert.match(await panel(page).textContent(), /^This scene has no layer yet/);
+  await press(page, "Control+z", "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  await plays(page);
   assert.deepEqual(errors, []);
 });

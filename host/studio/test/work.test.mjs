@@ -43,16 +43,16 @@ test("another scene has a history of its own, and the changed one before can be 
   // The way back stays while nobody works on the new scene.
   await page.mouse.move(5, 400);
   await page.evaluate(() => wait(120_000));
-  assert.match(await page.locator("#notice span").innerText(), /^untitled is open\. brick is kept: Open…, Recent scenes\.$/);
+  assert.match(await page.locator("#notice span").innerText(), /^brick is kept in Open\.$/);
   await page.click("text=Back to brick");
   await page.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
   assert.equal(await page.inputValue("#scene-name"), "brick");
   await openEmpty(page);
   await page.locator("#notice >> text=Back to brick").waitFor();
   await change(page, GRATING_OF_3_MM);
-  await page.evaluate(() => wait(20_000));
+  await page.evaluate(() => wait(15_000));
   assert.ok(await page.isVisible("#notice >> text=Back to brick"), "a while");
-  await page.evaluate(() => wait(60_000));
+  await page.evaluate(() => wait(30_000));
   assert.ok(await page.isHidden("#notice"));
   assert.deepEqual(errors, []);
   await close();

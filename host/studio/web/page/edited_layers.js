@@ -151,17 +151,37 @@ export class EditedLayers {
    */
   insert(layer, at) {
     const { file } = layer;
-    const text = this.#editor.textOf(file) ?? "";
-    this.#texts.set(file, text);
-    const toml = new TomlText(text);
+    const { toml, others } = this.#renumbered(file, at, 1);
     const made = this.#describe(layer, toml, at);
-    const others = this.all.map((each) => {
-      if (each.layer.file !== file || each.at === undefined) return each;
-      return this.#describe(each.layer, toml, each.at < at ? each.at : each.at + 1);
-    });
     const before = others.findIndex((each) => each.layer.file === file && each.at === at - 1);
     this.all = others.toSpliced(before < 0 ? others.length : before + 1, 0, made);
     return made;
+  }
+
+  /**
+   * A hand has taken a layer out of its file.
+   * @param {EditedLayer} edited
+   */
+  remove(edited) {
+    this.all = this.all.filter((each) => each !== edited);
+    this.all = this.#renumbered(edited.layer.file, edited.at ?? 0, -1).others;
+  }
+
+  /**
+   * The layers of the text that a file has now, in which those from a number on have another one.
+   * @param {string | undefined} file
+   * @param {number} first
+   * @param {1 | -1} by
+   */
+  #renumbered(file, first, by) {
+    const text = this.#editor.textOf(file) ?? "";
+    this.#texts.set(file, text);
+    const toml = new TomlText(text);
+    const others = this.all.map((each) => {
+      if (each.layer.file !== file || each.at === undefined) return each;
+      return this.#describe(each.layer, toml, each.at < first ? each.at : each.at + by);
+    });
+    return { toml, others };
   }
 
   /**

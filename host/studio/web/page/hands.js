@@ -8,7 +8,7 @@ import { ELSEWHERE, HandGrip } from "./hand_grip.js";
 import { HandKeys } from "./hand_keys.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { LayerEdits } from "./layer_edits.js";
-import { layerNumbers } from "./layer_numbers.js";
+import { layerNumbers, repeatNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
 import { ModeSwitch } from "./mode_switch.js";
 
@@ -317,6 +317,7 @@ export class Hands {
     const { toml, at, layer } = selected ?? {};
     const isTuned = layer && toml && at !== undefined;
     const numbers = isTuned ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
+    if (selected) numbers.push(...repeatNumbers(selected, this.screen));
     if (selected) this.#panel.show(selected, numbers, this.#reach, isNew);
     else this.#panel.showNone(this.#layers.all.length, isNew);
     const around = [byId("numbers"), byId("scope").parentElement ?? box, box.closest(".map-card") ?? box];

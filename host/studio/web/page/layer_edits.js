@@ -97,7 +97,7 @@ export class LayerEdits {
   remove(edited) {
     if (!edited.toml || edited.at === undefined) throw new Error(edited.place.whyNotMoved);
     this.#make(edited.layer.file, edited.toml.removals(edited.at));
-    this.#layers.all = this.#layers.all.filter((each) => each !== edited);
+    this.#layers.remove(edited);
   }
 
   /**

@@ -3,8 +3,9 @@
 
 import { layerFields } from "./completion.js";
 
-/** @import { Reach } from "../engine/types" */
+/** @import { Reach, Screen } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
+/** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { Path } from "./toml_reading.js" */
 /** @import { TomlText } from "./toml_text.js" */
 /** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
@@ -43,6 +44,14 @@ const WORDS = {
   white: "friction where it is white",
   width: "how wide the line is",
 };
+/** @type {["columns" | "rows", string, "x" | "y", "width" | "height", string][]} */
+const REPEATS = [
+  ["columns", "dx_mm", "x", "width", "copies side by side"],
+  ["rows", "dy_mm", "y", "height", "copies below one another"],
+];
+const COPIES_MAX = 64;
+/** A copy that ends at the screen's border fits in spite of its rounding. */
+const CLOSE = 1e-6;
 /** Ends of sliders, times a power of ten. */
 const ROUND = [1, 2, 5, 10];
 /** @type {[ending: string, unit: string, decimals: number, step: number][]} */
@@ -108,6 +117,25 @@ export function layerNumbers(schema, toml, at, kind, reach) {
       min,
       max,
     };
+  });
+}
+
+/**
+ * How many copies a layer has side by side and below one another, as far as the screen has room for more.
+ * @param {EditedLayer} edited
+ * @param {Screen} screen
+ * @returns {LayerNumber[]}
+ */
+export function repeatNumbers({ toml, at, place: { box } }, screen) {
+  if (at === undefined) return [];
+  return REPEATS.flatMap(([name, step, side, along, words]) => {
+    const path = ["layer", at, "repeat", name];
+    const [value, stepMm] = [toml?.value(path), toml?.value(["layer", at, "repeat", step])];
+    if (typeof value !== "number" || typeof stepMm !== "number" || stepMm === 0) return [];
+    const room = stepMm > 0 ? screen[`${along}Mm`] - box[side] - box[along] : box[side];
+    const most = Math.max(value, Math.min(COPIES_MAX, 1 + Math.floor(room / Math.abs(stepMm) + CLOSE)));
+    const whole = { decimals: 0, step: 1, least: 1, most, min: 1, max: COPIES_MAX };
+    return most > 1 ? [{ field: `repeat.${name}`, label: name, words, unit: "", value, path, ...whole }] : [];
   });
 }
 

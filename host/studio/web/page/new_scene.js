@@ -49,9 +49,8 @@ export class NewScene {
       const begin = element("button", { className: "primary" }, `Begin with ${name}`);
       begin.onclick = () => this.#choose(name, text);
       const said = element("p", { className: "fine" }, words);
-      const card = element("article", { className: "scene" }, canvas, element("h3", {}, name), said, begin);
-      if (layer.kind === "bitmap") card.append(this.#own());
-      scenes.append(card);
+      const actions = layer.kind === "bitmap" ? [this.#own(), begin] : [begin];
+      scenes.append(element("article", { className: "scene" }, canvas, element("h3", {}, name), said, ...actions));
       return { canvas, text };
     });
     for (const { canvas, text } of cards) await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);

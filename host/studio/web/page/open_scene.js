@@ -19,7 +19,7 @@ import { isPicture, isToml } from "./project.js";
 /** @import { Works } from "./works.js" */
 
 /** How long the way back to the scene before is offered once the new one is worked on, ms. */
-const BACK_MS = 60_000;
+const BACK_MS = 30_000;
 
 /**
  * @typedef {object} Parts
@@ -199,9 +199,8 @@ export class OpenScene {
    * @param {boolean} isKept Whether Open has it, too.
    */
   #offerBack(before, isKept) {
-    const where = isKept ? ` ${before.name} is kept: Open…, Recent scenes.` : "";
     this.#forgetBack = notify(
-      `${this.#project.name} is open.${where}`,
+      isKept ? `${before.name} is kept in Open.` : `${this.#project.name} is open.`,
       { words: `Back to ${before.name}`, action: () => this.open(before) },
       { isGood: true, isLasting: true, beside: byId("scene-name") },
     );
