@@ -143,9 +143,8 @@ fn corners_m(region: &Region, points: &[Point]) -> Option<[f32; 4]> {
         }
         Region::Polygon { first, count } => {
             let own = points.iter().skip(usize::from(first)).take(usize::from(count));
-            own.map(|point| [point.x, point.y, point.x, point.y]).reduce(|[left, top, right, bottom], [x, y, ..]| {
-                [left.min(x), top.min(y), right.max(x), bottom.max(y)]
-            })
+            own.map(|point| [point.x, point.y, point.x, point.y])
+                .reduce(|[left, top, right, bottom], [x, y, ..]| [left.min(x), top.min(y), right.max(x), bottom.max(y)])
         }
     }
 }

@@ -6,6 +6,7 @@ import { after, afterEach, test } from "node:test";
 import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
 import { cleanUp, endLeftovers } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+import { pageModule } from "./page_module.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
@@ -43,7 +44,23 @@ test("Add puts a layer of each kind where there is room, selected, in one step o
   assert.deepEqual(errors, []);
 });
 
-test("Duplicate puts a copy beside its layer, selected, also of one in an array, and one undo takes it back", async () => {
+test("layers that are added fit screens of any size, and their lengths the layers", async () => {
+  const { BEGINNINGS, addedLayer } = await pageModule("beginnings.js");
+  for (const [widthMm, heightMm] of [[30, 20], [300, 60], [120, 80]]) {
+    for (const beginning of BEGINNINGS.filter(({ layer }) => layer.kind !== "bitmap")) {
+      const { region, ...layer } = addedLayer(beginning, { widthMm, heightMm }, []);
+      const { x_mm: x, y_mm: y, width_mm: width, height_mm: height } = region;
+      const isIn = x >= 0 && y >= 0 && width >= 0.2 * widthMm && x + width <= widthMm && y + height <= heightMm;
+      assert.ok(isIn, JSON.stringify(region));
+      const side = Math.min(width, height);
+      for (const [field, mm] of Object.entries(layer).filter(([name]) => name.endsWith("_mm")))
+        assert.ok(mm > 0 && mm <= side / 4, field);
+      assert.ok(!(layer.wavelength_min_mm >= layer.wavelength_max_mm), "a range of wavelengths");
+    }
+  }
+});
+
+test("Duplicate puts a copy beside its layer, also of one in an array, and one undo takes it back", async () => {
   const { page, errors } = await openEditing();
   await page.mouse.click(...(await onPage(page, 20, 30)));
   await press(page, "Control+d");
@@ -59,7 +76,8 @@ friction_fraction = 0.5`;
   assert.equal(await selected(page), "left 2, constant, 30 by 30 mm at 15, 25");
   await press(page, "Control+z");
   assert.equal(await textOf(page), PLATES);
-  const one = '{ kind = "constant", friction_fraction = 0.5, region = { x_mm = 80, y_mm = 40, width_mm = 40, height_mm = 40 } }';
+  const region = "{ x_mm = 80, y_mm = 40, width_mm = 40, height_mm = 40 }";
+  const one = `{ kind = "constant", friction_fraction = 0.5, region = ${region} }`;
   await page.evaluate((text) => played(text), `version = 2\nlayer = [${one}]\n`);
   await page.mouse.click(...(await onPage(page, 100, 60)));
   await page.getByRole("button", { name: "Duplicate" }).click();
@@ -85,7 +103,7 @@ test("a layer that is taken from the gallery while layers are edited is selected
   assert.deepEqual(errors, []);
 });
 
-test("a picture of one's own begins a scene and is added to one, by its aspect, with a frame that fits it", async () => {
+test("a picture of one's own begins a scene and is added to one, by its aspect, in a frame that fits", async () => {
   const { page, errors } = await openStudio();
   const choose = async (action) => {
     const [chooser] = await Promise.all([page.waitForEvent("filechooser"), action()]);
@@ -117,7 +135,8 @@ test("a picture of one's own begins a scene and is added to one, by its aspect, 
 
 test("the frame of a picture without a region is where the picture is", async () => {
   const { page, errors } = await openEditing();
-  const text = 'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "textures/wood.jpg"\nx_mm = 15\ny_mm = 10\nwidth_mm = 90\n';
+  const layer = 'kind = "bitmap"\npicture = "textures/wood.jpg"\nx_mm = 15\ny_mm = 10\nwidth_mm = 90\n';
+  const text = `version = 2\n[[layer]]\n${layer}`;
   await page.evaluate((text) => played(text), text);
   await page.mouse.click(...(await onPage(page, 60, 40)));
   assert.match(await selected(page), /^bitmap, 90 by [\d.]+ mm at 15, 10$/);

@@ -9,7 +9,7 @@ import { WHOLE_SCREEN_GRATING } from "./page.mjs";
 afterEach(endLeftovers);
 after(cleanUp);
 
-test("a slider of a number that was not written keeps its row, its ends and the drag; then it has them anew", async () => {
+test("a slider of a number that was not written keeps its row and its ends while it is dragged, and then", async () => {
   const { page, errors } = await openEditing();
   await page.mouse.click(...(await onPage(page, 100, 50)));
   const rows = () =>
@@ -77,7 +77,8 @@ test("the panel says whether its layer is felt, also while a number is dragged, 
   await page.mouse.move(x + width / 2, y + height / 2);
   await page.mouse.down();
   await page.mouse.move(x + width * 0.1, y + height / 2, { steps: 3 });
-  await page.waitForFunction((before) => document.querySelector(".layer-panel .verdict")?.textContent !== before, before);
+  const isOther = (before) => document.querySelector(".layer-panel .verdict")?.textContent !== before;
+  await page.waitForFunction(isOther, before);
   assert.equal(await verdict.textContent(), "not felt");
   assert.ok(await page.evaluate(() => studioPage.player.isHeld));
   await page.mouse.up();

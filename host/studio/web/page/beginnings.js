@@ -85,15 +85,16 @@ export function sceneOf(words, layer) {
 export function addedLayer({ layer: { name, kind, region: _, ...fields }, lengths = [] }, screen, taken) {
   const { x, y, width, height } = roomFor(screen.widthMm * PART.width, screen.heightMm * PART.height, screen, taken);
   const most = LENGTH_PART * Math.min(width, height);
-  const shorter = lengths.map((field) => [field, Math.min(Number(fields[field]), most)]);
+  const part = Math.min(1, most / Math.max(...lengths.map((field) => Number(fields[field]))));
+  const shorter = lengths.map((field) => [field, Number(fields[field]) * part]);
   const region = { x_mm: x, y_mm: y, width_mm: width, height_mm: height };
   // The region comes right behind the kind.
   return { name, kind, region, ...fields, ...Object.fromEntries(shorter) };
 }
 
 /**
- * A layer that shows a picture. It has no pitch: the compiler takes the finest that a board has room for, whatever other
- * pictures the scene has.
+ * A layer that shows a picture. It has no pitch: the compiler takes the finest that a board has room for, whatever
+ * other pictures the scene has.
  * @param {string} picture Name of its file.
  * @param {number} aspect Its width over its height.
  * @param {Screen} screen

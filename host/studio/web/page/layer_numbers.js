@@ -80,23 +80,14 @@ export function layerNumbers(schema, toml, at, kind, reach) {
   const blend = own("blend");
   const fields = layerFields(schema, { kind, ...(typeof blend === "string" ? { blend } : {}) });
   const isTotal = kind === "constant" && (blend ?? "replace") === "replace" && own("above") !== "natural";
-  const written = Object.keys(toml.value(["layer", at]) ?? {});
-  // A field of the layer counts before a default in any unit.
-  const has = new Set(written.map(stemOf));
-  const others = [...Object.keys(toml.value(["defaults"]) ?? {}), ...Object.keys(DEFAULTS)];
-  const counting = others.filter((field) => !has.has(stemOf(field)));
-  // Those that count unwritten stay last when a hand writes them: no row moves.
-  const isUsual = (/** @type {string} */ field) => !(field in DEFAULTS);
-  const names = [...new Set([...[...written, ...counting].filter(isUsual), ...Object.keys(DEFAULTS)])].filter(
-    (field) => field in fields && (isUsual(field) || written.includes(field) || counting.includes(field)),
-  );
-  return names.flatMap((field) => {
+  return namesOf(toml, at, fields).flatMap((field) => {
     const about = fields[field];
     const [ending, unit, decimals, step] = UNITS.find(([each]) => field.endsWith(each)) ?? ["", "", 2, 0.01];
     const label = field.slice(0, field.length - ending.length);
     const isPlace = PLACE.includes(label) || field.endsWith("_px") || (kind === "bitmap" && label === "width");
     const value = own(field) ?? DEFAULTS[/** @type {keyof typeof DEFAULTS} */ (field)];
-    if (typeof value !== "number" || !Number.isFinite(value) || isPlace || (about.type !== "number" && about.type !== "integer")) return [];
+    const isNumber = about.type === "number" || about.type === "integer";
+    if (typeof value !== "number" || !Number.isFinite(value) || isPlace || !isNumber) return [];
     const isWhole = about.type === "integer" || field === "number" || field === "seed";
     const { minimum: min = -1e6, maximum: max = 1e6 } = about;
     const [least, most] = ends(field, unit, value, isTotal, reach);
@@ -118,6 +109,25 @@ export function layerNumbers(schema, toml, at, kind, reach) {
       max,
     };
   });
+}
+
+/**
+ * The fields that a hand may tune: those that the layer has, in the order of the text, then those that count unwritten.
+ * @param {TomlText} toml
+ * @param {number} at
+ * @param {Record<string, unknown>} fields That it may have.
+ */
+function namesOf(toml, at, fields) {
+  const written = Object.keys(toml.value(["layer", at]) ?? {});
+  // A field of the layer counts before a default in any unit.
+  const has = new Set(written.map(stemOf));
+  const others = [...Object.keys(toml.value(["defaults"]) ?? {}), ...Object.keys(DEFAULTS)];
+  const counting = others.filter((field) => !has.has(stemOf(field)));
+  // Those that count unwritten stay last when a hand writes them: no row moves.
+  const isUsual = (/** @type {string} */ field) => !(field in DEFAULTS);
+  return [...new Set([...[...written, ...counting].filter(isUsual), ...Object.keys(DEFAULTS)])].filter(
+    (field) => field in fields && (isUsual(field) || written.includes(field) || counting.includes(field)),
+  );
 }
 
 /**

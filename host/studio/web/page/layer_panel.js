@@ -145,7 +145,8 @@ export class LayerPanel {
       const { name, words, layer } = beginning;
       const isPicture = layer.kind === "bitmap";
       const onclick = () => (isPicture ? this.onPicture() : this.onAdd(beginning));
-      return element("button", { type: "button", title: words, "aria-label": `Add ${name}`, onclick }, isPicture ? `${name}…` : name);
+      const about = { title: words, "aria-label": `Add ${name}`, onclick };
+      return element("button", about, isPicture ? `${name}…` : name);
     });
     return element("div", { className: "layer-add", role: "group", "aria-label": "Add a layer" }, "Add", ...buttons);
   }
@@ -158,7 +159,8 @@ export class LayerPanel {
     this.#sides.clear();
     this.#rows.clear();
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
-    const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick: () => this.onClose() }, "✕");
+    const onclick = () => this.onClose();
+    const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
     const title = element("span", {}, element("b", {}, name), name === kind ? "" : ` ${kind}`);
     const head = element("div", { className: "layer-panel-head" }, title, close);
     this.element.replaceChildren(head, this.#note);
@@ -176,10 +178,15 @@ export class LayerPanel {
   }
 
   #actions() {
-    const duplicate = element("button", { title: "A copy beside it (Ctrl+D)", onclick: () => this.onDuplicate() }, "Duplicate");
-    const text = element("button", { title: "To its text (Ctrl+Enter)", onclick: () => this.onText() }, "Text");
-    const gone = element("button", { title: "Take it out (Delete)", onclick: () => this.onDelete() }, "Delete");
-    return element("div", { className: "layer-actions" }, duplicate, text, gone);
+    const action = (/** @type {string} */ words, /** @type {string} */ title, /** @type {() => void} */ onclick) =>
+      element("button", { type: "button", title, onclick }, words);
+    return element(
+      "div",
+      { className: "layer-actions" },
+      action("Duplicate", "A copy beside it (Ctrl+D)", () => this.onDuplicate()),
+      action("Text", "To its text (Ctrl+Enter)", () => this.onText()),
+      action("Delete", "Take it out (Delete)", () => this.onDelete()),
+    );
   }
 
   /**

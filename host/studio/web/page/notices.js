@@ -47,8 +47,8 @@ export function followPresses() {
 
 /**
  * Shows a sentence; with `offer`, also a button that does something about it. `beside` is the control that caused it,
- * the one that was just pressed if it is not given. Good news that is lasting stays. Returns what removes this sentence,
- * unless it has gone.
+ * the one that was just pressed if it is not given. Good news that is lasting stays. Returns what removes this
+ * sentence, unless it has gone.
  * @param {string} sentence
  * @param {Offer} [offer]
  * @param {Manner} manner

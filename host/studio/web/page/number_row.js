@@ -35,10 +35,11 @@ export class NumberRow {
     this.#input = element("input", { type: "number", min, max, step, "aria-label": `${named}, as a number` });
     this.#track = element("span", { className: limit === undefined ? "slider" : "slider has-limit" }, this.#slider);
     this.#showEnds();
-    const says = [words, limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, number), 4)} ${unit}`];
-    const title = says.filter(Boolean).join("; ");
+    const reach = limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, number), 4)} ${unit}`;
+    const title = [words, reach].filter(Boolean).join("; ");
     const said = element("span", {}, label, element("small", {}, words));
-    this.element = element("div", { className: "layer-number", title }, said, this.#track, this.#input, element("span", {}, unit));
+    const behind = element("span", {}, unit);
+    this.element = element("div", { className: "layer-number", title }, said, this.#track, this.#input, behind);
     this.#listen();
   }
 

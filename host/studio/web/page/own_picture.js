@@ -8,7 +8,10 @@ import { read } from "./incoming.js";
 /** @import { Hands } from "./hands.js" */
 /** @import { OpenScene } from "./open_scene.js" */
 
-/** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, aspect: number }} OwnPicture `aspect`: width over height. */
+/**
+ * A picture with its width over its height.
+ * @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, aspect: number }} OwnPicture
+ */
 
 /** The screen of a scene that does not say one. */
 const SCREEN = { widthMm: 120, heightMm: 80 };

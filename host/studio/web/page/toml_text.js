@@ -1,5 +1,4 @@
-// The smallest replacements that change some values of a TOML text: comments, spacing, order and the form of every table
-// stay.
+// The smallest replacements that change values of a TOML text: comments, spacing, order and the form of tables stay.
 // @ts-check
 
 import { TomlReading, isSame, keyOf, lineEnd, lineStart } from "./toml_reading.js";
