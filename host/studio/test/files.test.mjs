@@ -31,6 +31,10 @@ test("bad files and big ones are sentences", async () => {
   await assertSays(page, /large\.zip: .*cannot be read/);
   await give(page, ["broken.zip", png]);
   await assertSays(page, /broken\.zip: .*cannot be read/);
+  const before = await page.evaluate(() => studioPage.editor.text);
+  await give(page, ["empty.toml", Buffer.from(" \n")]);
+  await assertSays(page, /empty\.toml: this file is empty/);
+  assert.equal(await page.evaluate(() => studioPage.editor.text), before);
   await give(page, ["song.mp3", png]);
   await assertSays(page, /song\.mp3: expected a scene/);
   assert.deepEqual(errors, []);

@@ -25,6 +25,7 @@ import { NewScene } from "./page/new_scene.js";
 import { attempt, followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
+import { beginWithPicture, choosePicture } from "./page/own_picture.js";
 import { Player, isPlayable } from "./page/player.js";
 import { showCheck, showOutcome, showStatus } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
@@ -243,9 +244,17 @@ function showWhatIsFelt(parts) {
  * @param {Parts} parts
  * @param {OpenScene} scene
  */
-function takeScenes({ engine, project, editor, gallery }, scene) {
+function takeScenes({ engine, project, editor, gallery, hands }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
-  new NewScene(engine).onScene = gallery.onScene;
+  const begin = new NewScene(engine);
+  begin.onScene = gallery.onScene;
+  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands));
+  hands.onPicture = () =>
+    attempt(async () => {
+      const picture = await choosePicture();
+      if (picture) hands.addPicture(await scene.takePicture(picture), picture.aspect);
+    });
+  scene.onAppend = () => hands.awaitLast();
   gallery.onLayer = (text) => scene.append(text);
   const incoming = new Incoming(async (files, entry) =>
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),

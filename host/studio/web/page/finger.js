@@ -2,6 +2,7 @@
 // @ts-check
 
 import { clock } from "../clock.js";
+import { ARROWS } from "./arrows.js";
 import { colour, contextOf } from "./dom.js";
 
 /** @import { Engine } from "../engine/engine.js" */
@@ -23,8 +24,6 @@ const DRAG_MS = 160;
 const KEY_MM_PER_S = 80;
 /** Load of a pressure of one half, the usual pressure, is that of the finger's profile, N. */
 const LOAD_AT_FULL_PRESSURE_N = 1;
-/** @type {Record<string, [number, number]>} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Finger {
   #canvas;

@@ -70,9 +70,9 @@ export class Ghost {
   /** Whether it may slide now: never with a board, unseen, in a blind comparison, or while layers are edited. */
   get #maySlide() {
     const { link, state } = this.#engine.state;
-    const isOthers = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
+    const isMapTaken = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
     const isThere = state === "active" && this.#map.frictionN.length > 0;
-    return link === "simulator" && isThere && !isOthers && document.visibilityState === "visible";
+    return link === "simulator" && isThere && !isMapTaken && document.visibilityState === "visible";
   }
 
   /** Whether it is drawn at each picture of the screen. */

@@ -7,7 +7,7 @@ import { clock } from "../clock.js";
 import { byId, sentenceOf } from "./dom.js";
 
 /** @typedef {{ words: string, action: () => unknown }} Offer Words of a button, and what it does. */
-/** @typedef {{ isGood?: boolean, beside?: Element }} Manner */
+/** @typedef {{ isGood?: boolean, isLasting?: boolean, beside?: Element }} Manner */
 
 /** How long good news stays, ms: to notice it, and for each of its characters. */
 const NOTICE_MS = 4000;
@@ -25,6 +25,8 @@ let timer;
  * @type {Element | undefined}
  */
 let pressed;
+/** How many sentences were shown. */
+let count = 0;
 /** What the notice that is shown stands beside. @type {Element | undefined} */
 let besideWhat;
 
@@ -45,12 +47,13 @@ export function followPresses() {
 
 /**
  * Shows a sentence; with `offer`, also a button that does something about it. `beside` is the control that caused it,
- * the one that was just pressed if it is not given.
+ * the one that was just pressed if it is not given. Good news that is lasting stays. Returns what removes this
+ * sentence, unless it has gone.
  * @param {string} sentence
  * @param {Offer} [offer]
  * @param {Manner} manner
  */
-export function notify(sentence, offer, { isGood = false, beside = pressed } = {}) {
+export function notify(sentence, offer, { isGood = false, isLasting = false, beside = pressed } = {}) {
   const notice = byId("notice");
   const [said, offered, dismiss] = /** @type {HTMLCollectionOf<HTMLElement>} */ (notice.children);
   said.textContent = sentence;
@@ -67,7 +70,11 @@ export function notify(sentence, offer, { isGood = false, beside = pressed } = {
   besideWhat = beside;
   place(notice, beside);
   clock.cancel(timer);
-  timer = isGood ? clock.later(NOTICE_MS + CHARACTER_MS * sentence.length, () => expire(notice)) : undefined;
+  const readMs = NOTICE_MS + CHARACTER_MS * sentence.length;
+  timer = isGood && !isLasting ? clock.later(readMs, () => expire(notice)) : undefined;
+  count += 1;
+  const own = count;
+  return () => own === count && forgetNotice();
 }
 
 /** Removes the sentence: what it says is over. */
