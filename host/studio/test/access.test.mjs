@@ -130,7 +130,7 @@ test("keys alone reach everything, lead out of the text, and play and stop the b
     reached.push(now);
   }
   const names = reached.map(({ name }) => name);
-  for (const name of ["open-gallery", "new", "save", "share", "toggle-drawer", "stop", "scene-name", "finger", "map-finger",
+  for (const name of ["open-gallery", "new", "save", "share", "toggle-drawer", "stop", "scene-name", "Options", "map-finger",
     "pause", "Text of the scene", "tab-layers", "open-board"])
     assert.ok(names.includes(name), `${name} is not reached: ${names.join(", ")}`);
   assert.ok(names.indexOf("tab-layers") > names.indexOf("Text of the scene"), "Tab leads out of the text");

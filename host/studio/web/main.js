@@ -80,7 +80,10 @@ async function makeParts(engine) {
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   /** @type {HTMLElement | null} */
   const grid = document.querySelector(".feel-grid");
-  map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
+  map.onRoom = (widthPx, heightPx) => {
+    grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
+    grid?.style.setProperty("--map-height", `${Math.ceil(heightPx) + 1}px`);
+  };
   const samples = new Samples();
   const sound = new Sound();
   const finger = new Finger(engine, map, byId("map-finger"));

@@ -7,6 +7,8 @@ import { byId, element } from "./dom.js";
 /** @import { Editor } from "./editor.js" */
 /** @import { Status } from "./player.js" */
 
+/** Words of this many characters stand in small type, on up to three lines. */
+const LONG = 20;
 /** What the last check found: how many mistakes, in words, and whether the simulator plays the scene as a draft. */
 let found = { count: "", isDraft: false };
 /**
@@ -50,7 +52,9 @@ export function showOutcome() {
     loaded: isPlaying ? "plays" : "no mistakes",
   };
   if (found.isDraft) words.loaded = `${found.count}; draft: plays clamped, a board refuses it`;
-  byId("check").textContent = words[status];
+  const check = byId("check");
+  check.textContent = words[status];
+  check.toggleAttribute("data-long", words[status].length > LONG);
 }
 
 /**

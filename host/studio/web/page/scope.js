@@ -12,6 +12,9 @@ import { colour, contextOf, download, element } from "./dom.js";
 const WINDOW_S = 3;
 /** Smallest chart, CSS pixels. */
 const SIZE_MIN_PX = { width: 160, height: 60 };
+/** Least distance of two numbers at an axis of friction or voltage, CSS pixels: in a low chart, and in others. */
+const LINES_PX = { low: 18, other: 36 };
+const LOW_CHART_PX = 150;
 /** Least time between two drawings, ms. */
 const FRAME_MS = 30;
 /** The scope runs on for this long after a lift, s. */
@@ -86,9 +89,9 @@ export class Scope {
       ...SIZE_MIN_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
-        { ...axis, space: 64, values: (_, splits) => splits.map((value) => beforeNow(value)) },
-        { ...axis, scale: "mN", label: "mN", size: 48 },
-        { ...axis, scale: "V", label: "V rms", side: 1, size: 44, grid: { show: false } },
+        { ...axis, size: 34, space: 64, values: (_, splits) => splits.map((value) => beforeNow(value)) },
+        { ...axis, scale: "mN", label: "mN", size: 48, space: linesPx },
+        { ...axis, scale: "V", label: "V rms", side: 1, size: 44, space: linesPx, grid: { show: false } },
       ],
       series: [
         { label: "time", value: (_, value) => (Number.isFinite(value) ? beforeNow(value, 3) : "–") },
@@ -211,6 +214,9 @@ function beforeNow(seconds, digits = 2) {
   if (Math.abs(seconds) < 0.0005) return "now";
   return `${Number(seconds.toFixed(digits))} s`.replace("-", "−");
 }
+
+/** @type {uPlot.Axis.Space} */
+const linesPx = (_chart, _axis, _min, _max, heightPx) => (heightPx < LOW_CHART_PX ? LINES_PX.low : LINES_PX.other);
 
 /**
  * Friction takes the upper part of the chart: what is usual is shown, and more where there is more.
