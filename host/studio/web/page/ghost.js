@@ -16,6 +16,12 @@ const REST_AFTER_MS = 60_000;
 /** One stroke and the pause after it, ms. */
 const STROKE_MS = 1500;
 const PAUSE_MS = 350;
+/**
+ * Between two pictures it goes on by so much time at most, ms: a page that is held up slows it, and makes it no faster.
+ * After a longer pause it comes down anew.
+ */
+const STEP_MAX_MS = 24;
+const STALL_MS = 100;
 /** Part of a stroke in which the finger speeds up, and in which it slows down. */
 const RAMP_PART = 0.15;
 /** A stroke's longest way, and the part of the screen that it crosses at most, and along which lines lie. */
@@ -168,7 +174,9 @@ export class Ghost {
 
   /** @param {number} ms */
   #slide(ms) {
-    this.#slidMs += Math.min(ms - this.#lastMs, 50);
+    this.#slidMs += Math.min(ms - this.#lastMs, STEP_MAX_MS);
+    // It comes down again where it is now, so that no way leads there.
+    if (ms - this.#lastMs > STALL_MS) this.#lift();
     const stroke = Math.floor(this.#slidMs / (STROKE_MS + PAUSE_MS));
     const part = (this.#slidMs % (STROKE_MS + PAUSE_MS)) / STROKE_MS;
     if (part > 1) {
