@@ -139,7 +139,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
     ghost.wake();
   };
   hands.onEdit = () => {
-    ghost.dismiss();
+    ghost.handOver();
   };
 }
 
@@ -153,6 +153,8 @@ function showWhatPlays(parts, scene) {
   const hint = byId("map-hint");
   /** @type {Checked | undefined} */
   let shown;
+  /** The scene whose strokes the scope has, as `Project.opened` counts. */
+  let felt = project.opened;
   player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
@@ -167,6 +169,8 @@ function showWhatPlays(parts, scene) {
   };
   player.onPlay = () => {
     layers.reset();
+    if (felt !== project.opened) scope.clear();
+    felt = project.opened;
     lag.played();
     if (!compare.isRunning && shown) layers.show(shown.layers, shown);
   };

@@ -50,7 +50,7 @@ export class Gallery {
     );
     const cards = sceneNames().map((name) => ({
       name,
-      card: element("article", { className: "scene" }, element("h3", {}, name)),
+      card: element("article", { className: "scene" }, element("h3", {}, name.replaceAll("_", " "))),
     }));
     scenes.append(...cards.map(({ card }) => card));
     for (const { name, card } of cards) await this.#fill(card, name);
@@ -73,6 +73,7 @@ export class Gallery {
       this.#dialog.close();
       attempt(() => this.onScene(name, text));
     };
+    canvas.onclick = () => open.click();
     const layers = element(
       "details",
       {},
@@ -80,7 +81,7 @@ export class Gallery {
       element("ul", {}, ...this.#layers(text, check.layers)),
     );
     const words = element("p", { className: "fine" }, introduction(text));
-    card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
+    card.replaceChildren(canvas, element("h3", {}, name.replaceAll("_", " ")), words, open, layers);
     const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
     contextOf(canvas).putImageData(imageOf(map), 0, 0);
   }

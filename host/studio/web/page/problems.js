@@ -27,12 +27,20 @@ export function showCheck({ ok, isDraft, problems }, editor) {
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
   found = { count: errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`, isDraft: isDraft === true };
   showOutcome();
+  // What is said of layers is of the last version that plays.
+  const isOlder = !ok && !isDraft;
+  for (const id of /** @type {const} */ (["felt", "panel-layers"])) byId(id).toggleAttribute("data-older", isOlder);
   const mistakes = byId("mistakes");
   mistakes.hidden = errors.length === 0;
   mistakes.textContent = `${errors.length}`;
   mistakes.setAttribute("aria-label", found.count);
   byId("problems").replaceChildren(...problems.map((problem) => item(problem, editor)));
   editor.mark(problems);
+}
+
+/** How many mistakes the scene has that was checked last, in words; "" without one, and whether it plays as a draft. */
+export function mistakesFound() {
+  return { count: byId("mistakes").hidden ? "" : found.count, isDraft: found.isDraft };
 }
 
 /** @param {Status} newStatus */

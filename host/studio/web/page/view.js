@@ -4,6 +4,7 @@
 import { byId, element } from "./dom.js";
 import { MOCKUPS, chooseOwnPicture } from "./mockup.js";
 import { attempt } from "./notices.js";
+import { MEANINGS } from "./scope.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Finger } from "./finger.js" */
@@ -100,6 +101,7 @@ function makeScope(scope) {
   };
   byId("save-csv").onclick = () => scope.saveCsv();
   byId("save-png").onclick = () => scope.savePng();
+  byId("scope-meanings").append(...MEANINGS.slice(1).map((meaning) => element("p", {}, meaning)));
 }
 
 /**
