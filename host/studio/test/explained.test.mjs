@@ -76,11 +76,24 @@ test("where nothing is driven nothing is above bare glass, and half a volt is ne
       const [, weber, drive] = [...document.querySelectorAll("#numbers dd span")].map(({ textContent }) => textContent);
       if (/\d/.test(weber)) found.add(`${weber} at ${drive}`);
     });
+    let last;
+    const keep = eachFrame((frame) => (last = frame));
     await slide(10, 50, 40, 60);
+    keep();
+    // The same slide, of a finger that presses harder for a while.
+    const harder = (voltageV) => {
+      const all = (value) => new Float32Array(400).fill(value);
+      const frame = { ...last, feltN: all(0.28), voltageV: all(voltageV), speedMmPerS: all(60), contact: true };
+      studioPage.engine.onFrames({ ...frame, xMm: all(NaN) });
+      return document.querySelectorAll("#numbers dd.felt span")[1].textContent;
+    };
     stop();
-    return [...found];
+    return { found: [...found], harder: harder(0), driven: Number(harder(60)) };
   });
-  assert.ok(said.length > 0 && said.every((each) => /^0\.0 at 0\.\d$/.test(each)), said.join(", "));
+  const { found, harder, driven } = said;
+  assert.ok(found.length > 0 && found.every((each) => /^0\.0 at 0\.\d$/.test(each)), found.join(", "));
+  assert.equal(harder, "0.0");
+  assert.ok(driven > 0.5, `${driven}`);
   const { volts } = await page.evaluate(async () => {
     const { volts } = await import(await studio.moduleUrl("page/dom.js"));
     return { volts: [0, 0.5, 9.96, 150.4].map(volts) };
