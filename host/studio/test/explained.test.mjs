@@ -222,3 +222,20 @@ test("names of layers are whole in the table, and the state beside a name, with 
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("a voltage that the board does not let through is a warning at its line, counted while the text is closed", async () => {
+  const { page, errors, close } = await openStudio();
+  const text = WHOLE_SCREEN_GRATING.replace("version = 2\n", "version = 2\n[drive]\nvoltage_max_v_rms = 1000\n");
+  await page.evaluate((text) => played(text), text);
+  const warning = page.locator("#problems li.warning");
+  await warning.waitFor();
+  assert.match(await warning.innerText(), /^line 3\s*`voltage_max_v_rms = 1000` is more than the board lets through/);
+  assert.match(await warning.innerText(), /211\.0 V rms .* limit of 220 V peak and a peak of 1\.043 times the rms/);
+  await page.click("#toggle-drawer");
+  const count = page.locator("#mistakes");
+  assert.deepEqual([await count.innerText(), await count.getAttribute("aria-label")], ["1", "1 warning"]);
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  assert.ok(await count.isHidden());
+  assert.deepEqual(errors, []);
+  await close();
+});
