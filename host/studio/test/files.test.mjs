@@ -71,6 +71,7 @@ test("a link with rubbish is a sentence, and the first scene plays", async () =>
 test("a shared link and a saved zip bring the scene back", async () => {
   const { page, errors, close } = await openStudio();
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.locator("#options summary").click();
   await page.selectOption("#finger", "dry");
   await page.click("#share");
   await page.waitForFunction(() => location.hash.startsWith("#scene="));

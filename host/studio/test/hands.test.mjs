@@ -342,6 +342,7 @@ test("sliders are for the numbers that count, and end where the finger does", as
   const most = () => page.getByLabel("high of grating, N", { exact: true }).evaluate(({ max }) => max);
   const before = await most();
   const names = await page.locator("#finger option").evaluateAll((all) => all.map(({ value }) => value));
+  await page.locator("#options summary").click();
   await page.selectOption("#finger", names.find((name) => /dry/.test(name)));
   await page.waitForFunction(
     (before) => document.querySelector('[aria-label="high of grating, N"]').max !== before,

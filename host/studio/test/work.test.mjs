@@ -16,6 +16,7 @@ test("a reload brings back the scene, its name and its finger", async () => {
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   await page.fill("#scene-name", "ridges");
   await page.press("#scene-name", "Enter");
+  await page.locator("#options summary").click();
   await page.selectOption("#finger", "dry");
   await page.reload();
   await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");

@@ -81,7 +81,10 @@ async function makeParts(engine) {
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   /** @type {HTMLElement | null} */
   const grid = document.querySelector(".feel-grid");
-  map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
+  map.onRoom = (widthPx, heightPx) => {
+    grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
+    grid?.style.setProperty("--map-height", `${Math.ceil(heightPx) + 1}px`);
+  };
   const samples = new Samples();
   const sound = new Sound();
   const finger = new Finger(engine, map, byId("map-finger"));
@@ -137,7 +140,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
     ghost.wake();
   };
   hands.onEdit = () => {
-    ghost.dismiss();
+    ghost.handOver();
   };
 }
 
@@ -151,6 +154,8 @@ function showWhatPlays(parts, scene) {
   const hint = byId("map-hint");
   /** @type {Checked | undefined} */
   let shown;
+  /** The scene whose strokes the scope has, as `Project.opened` counts. */
+  let felt = project.opened;
   player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
@@ -165,6 +170,8 @@ function showWhatPlays(parts, scene) {
   };
   player.onPlay = () => {
     layers.reset();
+    if (felt !== project.opened) scope.clear();
+    felt = project.opened;
     lag.played();
     if (!compare.isRunning && shown) layers.show(shown.layers, shown);
   };

@@ -49,7 +49,7 @@ export class Gallery {
     );
     const cards = sceneNames().map((name) => ({
       name,
-      card: element("article", { className: "scene" }, element("h3", {}, name)),
+      card: element("article", { className: "scene" }, element("h3", {}, name.replaceAll("_", " "))),
     }));
     scenes.append(...cards.map(({ card }) => card));
     for (const { name, card } of cards) await this.#fill(card, name);
@@ -68,6 +68,7 @@ export class Gallery {
       this.#dialog.close();
       attempt(() => this.onScene(name, text));
     };
+    canvas.onclick = () => open.click();
     const layers = element(
       "details",
       {},
@@ -75,7 +76,7 @@ export class Gallery {
       element("ul", {}, ...this.#layers(text, found)),
     );
     const words = element("p", { className: "fine" }, introduction(text));
-    card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
+    card.replaceChildren(canvas, element("h3", {}, name.replaceAll("_", " ")), words, open, layers);
   }
 
   /**

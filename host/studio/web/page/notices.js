@@ -1,6 +1,7 @@
 // Notices: one sentence at a time, which floats over the page beside the control that it is about.
 //
-// Good news goes by itself once it can have been read. All else stays until it is dismissed, or another one comes.
+// Good news goes by itself once it can have been read, and, unless it offers something, at a press elsewhere. All else
+// stays until it is dismissed, by its button or by Escape, or another one comes.
 // @ts-check
 
 import { clock } from "../clock.js";
@@ -29,6 +30,8 @@ let pressed;
 let count = 0;
 /** What the notice that is shown stands beside. @type {Element | undefined} */
 let besideWhat;
+/** Whether a press elsewhere ends the notice that is shown. */
+let isPassing = false;
 
 /** Notices stand beside what was pressed, and stay there when the window changes. */
 export function followPresses() {
@@ -43,6 +46,13 @@ export function followPresses() {
     );
   }
   addEventListener("resize", () => place(byId("notice"), besideWhat));
+  addEventListener("keydown", ({ key, defaultPrevented }) => {
+    if (key === "Escape" && !defaultPrevented && !document.querySelector("dialog[open]")) forgetNotice();
+  });
+  addEventListener("pointerdown", ({ target }) => {
+    const isInside = target instanceof Node && byId("notice").contains(target);
+    if (isPassing && !isInside) forgetNotice();
+  });
 }
 
 /**
@@ -67,6 +77,7 @@ export function notify(sentence, offer, { isGood = false, isLasting = false, bes
   notice.setAttribute("role", isGood ? "status" : "alert");
   notice.classList.toggle("is-good", isGood);
   notice.hidden = false;
+  isPassing = isGood && offer === undefined;
   besideWhat = beside;
   place(notice, beside);
   clock.cancel(timer);
@@ -91,7 +102,8 @@ function expire(notice) {
 }
 
 /**
- * Puts a notice below its control, or above it where there is more room; without one, below the header.
+ * Puts a notice below its control, or above it where there is more room; without one, below the header. It lies over no
+ * tool of the map.
  * @param {HTMLElement} notice
  * @param {Element | undefined} control
  */
@@ -103,9 +115,13 @@ function place(notice, control) {
   const least = box ? GAP_PX : (header?.bottom ?? 0) + GAP_PX;
   const left = box ? box.left : (innerWidth - width) / 2;
   const below = (box?.bottom ?? 0) + GAP_PX;
-  const top = box && below + height > innerHeight ? box.top - GAP_PX - height : below;
-  notice.style.left = `${Math.max(GAP_PX, Math.min(left, innerWidth - width - GAP_PX))}px`;
-  notice.style.top = `${Math.max(least, Math.min(top, innerHeight - height - GAP_PX))}px`;
+  const wanted = box && below + height > innerHeight ? box.top - GAP_PX - height : below;
+  const x = Math.max(GAP_PX, Math.min(left, innerWidth - width - GAP_PX));
+  const y = Math.max(least, Math.min(wanted, innerHeight - height - GAP_PX));
+  const tools = document.querySelector(".map-tools")?.getBoundingClientRect();
+  const isOver = tools && x < tools.right && tools.left < x + width && y < tools.bottom && tools.top < y + height;
+  notice.style.left = `${x}px`;
+  notice.style.top = `${isOver ? tools.bottom + GAP_PX : y}px`;
 }
 
 /**
