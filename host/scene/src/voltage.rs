@@ -72,7 +72,14 @@ impl Voltage {
                 let whose = if max_v_peak >= board_v_peak { "board" } else { "screen" };
                 log.warn(
                     drive.places.field("voltage_max_v_rms"),
-                    Warning::RmsOutOfReach { found: scene_max_v_rms, whose, max_v_peak, why, peak_per_rms, max_v_rms },
+                    Warning::RmsOutOfReach {
+                        found: drive.voltage_max_v_rms,
+                        whose,
+                        max_v_peak,
+                        why,
+                        peak_per_rms,
+                        max_v_rms,
+                    },
                 );
             } else {
                 let note = format!(
