@@ -1,7 +1,7 @@
 //! The orders that the firmware's main loop hands to its tick, seen as by a debugger.
 
-use super::{PicoRig, no_answer};
 use super::protocol::Request;
+use super::{PicoRig, no_answer};
 use crate::emulated::EmulatorError;
 
 /// Words of an order: the number of its kind, and a track, the largest one.
