@@ -45,7 +45,6 @@ pub use board::Board;
 pub use carrier::CarrierTiming;
 pub use finger::stale_after_ticks;
 pub use io::{Drive, Sense};
-pub use monitor::monitor_wrong_ticks;
 pub use order::{Counters, Order, Status};
 #[cfg(feature = "stream")]
 pub use stream::{STREAM_LEN, StreamBuffer, StreamIntake, StreamStart};

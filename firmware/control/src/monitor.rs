@@ -34,11 +34,6 @@ const RIGHT_PER_WRONG: u32 = 3;
 /// falls anywhere within its tick.
 const EDGE_TICKS: u32 = 2;
 
-/// Ticks at which a monitor that is wrong in every tick has a wrong voltage until it is a fault, the last one included.
-pub fn monitor_wrong_ticks(board: &Board) -> u32 {
-    board.ticks(WRONG_S).max(1)
-}
-
 /// The expected monitor voltage, and the count of ticks at which the monitor read something else.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MonitorCheck {
@@ -98,7 +93,7 @@ impl MonitorCheck {
             switching_ticks: 0,
             ceiling_v: 0.0,
             wrong_count: 0,
-            wrong_count_max: RIGHT_PER_WRONG * monitor_wrong_ticks(board),
+            wrong_count_max: RIGHT_PER_WRONG * board.ticks(WRONG_S).max(1),
             turn_on_ticks: amplifier.turn_on.ticks(board.tick_hz) + EDGE_TICKS,
             turn_off_ticks: amplifier.turn_off.ticks(board.tick_hz) + EDGE_TICKS,
             ready_while_disabled: amplifier.ready_while_disabled,

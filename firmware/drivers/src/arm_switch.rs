@@ -40,7 +40,7 @@ impl<P: InputPin> ArmSwitch<P> {
             state: State::NeverReleased,
             contrary_ticks: 0,
             held_after_ticks: ticks(HELD_AFTER_US, tick_hz),
-            released_after_ticks: released_after_ticks(tick_hz),
+            released_after_ticks: ticks(RELEASED_AFTER_US, tick_hz),
         }
     }
 
@@ -64,11 +64,6 @@ impl<P: InputPin> ArmSwitch<P> {
         }
         self.state == State::Held
     }
-}
-
-/// Ticks at which an open contact is read until the switch counts as released, the last one included.
-pub const fn released_after_ticks(tick_hz: u32) -> u32 {
-    ticks(RELEASED_AFTER_US, tick_hz)
 }
 
 /// The whole ticks in a time.

@@ -313,9 +313,9 @@ pub(super) mod carrier {
     /// Below this frequency the drive is not an alternating carrier. The upper limit depends on the board's ticks.
     pub(crate) const FREQUENCY_HZ: FieldSpec = number(
         "frequency_hz",
-        Range::new(125.0, 100_000.0, " Hz"),
+        Range::new(125.0, 100_000.0, " Hz, and at most an eighth of the board's ticks a second"),
         Number(1_000.0),
-        "rounded to whole ticks for each half period, which is reported; at most an eighth of the board's ticks a second",
+        "rounded to whole ticks for each half period, which is reported",
     );
 }
 

@@ -10,6 +10,7 @@ use super::log::Log;
 use super::mistake::FitMistake;
 use super::reach::Reach;
 use super::springs::Springs;
+use super::warning::Warning;
 
 /// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
 /// the peak limit the tighter one.
@@ -65,13 +66,29 @@ impl Voltage {
         let max_v_peak = drive.voltage_max_v_peak.unwrap_or(needed_v_peak).min(screen_v_peak).min(board_v_peak);
         let max_v_rms = scene_max_v_rms.min(max_v_peak / peak_per_rms);
         if max_v_rms < scene_max_v_rms {
-            let note = format!(
-                "drive: {scene_max_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak{} allows \
-                 {max_v_rms:.1} V rms",
-                peak_per_rms * scene_max_v_rms,
-                if max_v_peak >= board_v_peak { why } else { "" }
-            );
-            log.note(drive.places.field("voltage_max_v_peak"), note);
+            let why = if max_v_peak >= board_v_peak { why } else { "" };
+            // Who writes the rms voltage alone takes it for what is driven.
+            if drive.voltage_max_v_peak.is_none() && drive.places.has("voltage_max_v_rms") {
+                let whose = if max_v_peak >= board_v_peak { "board" } else { "screen" };
+                log.warn(
+                    drive.places.field("voltage_max_v_rms"),
+                    Warning::RmsOutOfReach {
+                        found: drive.voltage_max_v_rms,
+                        whose,
+                        max_v_peak,
+                        why,
+                        peak_per_rms,
+                        max_v_rms,
+                    },
+                );
+            } else {
+                let note = format!(
+                    "drive: {scene_max_v_rms} V rms would need {:.1} V peak; the limit of {max_v_peak} V peak{why} \
+                     allows {max_v_rms:.1} V rms",
+                    peak_per_rms * scene_max_v_rms,
+                );
+                log.note(drive.places.field("voltage_max_v_peak"), note);
+            }
         }
         let slew_v_per_us = screen.slew_v_per_us.unwrap_or(f64::INFINITY).min(drive.slew_v_per_us);
         let hard_max_v_peak = screen_v_peak.min(board_v_peak);

@@ -57,6 +57,25 @@ pub enum Warning {
         /// Largest load of the measurement, N.
         largest_n: f64,
     },
+    /// The scene names a larger rms voltage than the peak limit of board or screen lets through.
+    #[error(
+        "`voltage_max_v_rms = {found}` is more than the {whose} lets through: {max_v_rms:.1} V rms are driven at most, \
+         by its limit of {max_v_peak} V peak{why} and a peak of {peak_per_rms:.3} times the rms"
+    )]
+    RmsOutOfReach {
+        /// The rms voltage of the scene and its screen, V.
+        found: f64,
+        /// Whose limit it is: `board` or `screen`.
+        whose: &'static str,
+        /// The limit, V peak.
+        max_v_peak: f64,
+        /// Where the limit is from, if from the carrier; otherwise empty.
+        why: &'static str,
+        /// Peak voltage over rms voltage of the carrier.
+        peak_per_rms: f64,
+        /// The rms voltage that remains, V.
+        max_v_rms: f64,
+    },
     /// The rim of a button leaves no room for its face.
     #[error(
         "{layer}: a rim of {rim_width_mm} mm on both sides leaves no face on a button of {side_mm} mm: make `rim_width_mm` \

@@ -2,7 +2,7 @@
 
 use frixel_felt::check::feel;
 use frixel_felt::perception::{LayerPerception, Perception, Texture};
-use frixel_layers::range;
+use frixel_layers::{Point, Region, range};
 use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ pub(crate) struct FileLayer {
     file: Option<String>,
     /// First and last line of its table, from 1.
     from: (usize, usize),
-    /// Left, top, width and height of its region, mm; `null` for the whole screen.
+    /// Left, top, width and height of its region, or of the picture that it shows, mm; `null` for the whole screen.
     box_mm: Option<[f64; 4]>,
 }
 
@@ -115,10 +115,38 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
             gain_reach,
             file: (file != entry).then_some(file),
             from: lines,
-            box_mm: bounds_mm,
+            box_mm: bounds_mm.or_else(|| outline_mm(program, number)),
         }
     };
     scene.layer_tables().into_iter().map(describe).collect()
+}
+
+/// Left, top, width and height of the smallest rectangle around what the table with this number became, mm: the
+/// compiler outlines a picture that has no region. `None` where a part of it is the whole screen.
+fn outline_mm(program: &Program, table: usize) -> Option<[f64; 4]> {
+    let own = program.records.iter().zip(&program.titles).filter(|(_, title)| title.number().table == table);
+    let corners = own.map(|(record, _)| corners_m(&record.region, &program.points)).collect::<Option<Vec<_>>>()?;
+    let corners = corners.into_iter().reduce(|[left, top, right, bottom], [other_left, other_top, x, y]| {
+        [left.min(other_left), top.min(other_top), right.max(x), bottom.max(y)]
+    });
+    // They are hundredths of a millimetre, and so not the nearest f32 to them.
+    let [left, top, right, bottom] = corners?.map(|side_m| (1e5 * f64::from(side_m)).round() / 100.0);
+    Some([left, top, right - left, bottom - top])
+}
+
+/// Left, top, right and bottom of a region, m; `None` for the whole screen.
+fn corners_m(region: &Region, points: &[Point]) -> Option<[f32; 4]> {
+    match *region {
+        Region::Screen => None,
+        Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m } => {
+            Some([x_m, y_m, x_m + width_m, y_m + height_m])
+        }
+        Region::Polygon { first, count } => {
+            let own = points.iter().skip(usize::from(first)).take(usize::from(count));
+            own.map(|point| [point.x, point.y, point.x, point.y])
+                .reduce(|[left, top, right, bottom], [x, y, ..]| [left.min(x), top.min(y), right.max(x), bottom.max(y)])
+        }
+    }
 }
 
 /// What is felt of the layer of the table with this number, or of its first copy.

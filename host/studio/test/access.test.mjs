@@ -81,10 +81,12 @@ test("with forced colours, bars, states and the focus are still seen", async () 
       tabs: [colour("#tab-layers", "borderBottomColor"), colour("#tab-sound", "borderBottomColor")],
       state: [colour("#board", "backgroundColor"), getComputedStyle(document.getElementById("board"), "::before").backgroundColor],
       stop: [colour("#stop", "borderStyle"), colour("#stop", "borderTopWidth")],
+      curves: [...document.querySelectorAll(".u-legend .u-marker")].slice(1).map((each) => getComputedStyle(each).borderTopColor),
     };
   });
   for (const name of ["bar", "tabs", "state"]) assert.notEqual(seen[name][0], seen[name][1], JSON.stringify(seen));
   assert.notEqual(seen.stop[0], "none");
+  assert.equal(new Set(seen.curves).size, 3, `the legend tells the curves apart: ${seen.curves}`);
   await page.keyboard.press("Tab");
   const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
   assert.notEqual(outline, "none");
@@ -130,7 +132,7 @@ test("keys alone reach everything, lead out of the text, and play and stop the b
     reached.push(now);
   }
   const names = reached.map(({ name }) => name);
-  for (const name of ["open-gallery", "new", "save", "share", "toggle-drawer", "stop", "scene-name", "finger", "map-finger",
+  for (const name of ["open-gallery", "new", "save", "share", "toggle-drawer", "stop", "scene-name", "Options", "map-finger",
     "pause", "Text of the scene", "tab-layers", "open-board"])
     assert.ok(names.includes(name), `${name} is not reached: ${names.join(", ")}`);
   assert.ok(names.indexOf("tab-layers") > names.indexOf("Text of the scene"), "Tab leads out of the text");

@@ -25,7 +25,7 @@ test("New offers four scenes, each with a picture and one sentence, and each pla
     await page.waitForFunction(() => [...document.querySelectorAll("#new-scene canvas")].every(({ width }) => width === 240));
     const words = await card.locator("p").innerText();
     assert.ok(words.length <= 100 && /^[A-Z][^.!?]*\.$/.test(words), words);
-    await card.locator("button").click();
+    await card.locator("button.primary").click();
     await page.waitForFunction((name) => document.getElementById("scene-name").value === name, name);
     await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
     const text = await page.evaluate(() => studioPage.editor.text);

@@ -50,6 +50,7 @@ test("another finger ends a blind comparison", async () => {
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   await page.click("text=Compare A with the scene now");
   await page.locator("body.blind").waitFor();
+  await page.locator("#options summary").click();
   await page.selectOption("#finger", "dry");
   await page.locator("text=the comparison is over").waitFor();
   assert.equal(await page.locator("body.blind").count(), 0);

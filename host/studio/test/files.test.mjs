@@ -31,6 +31,10 @@ test("bad files and big ones are sentences", async () => {
   await assertSays(page, /large\.zip: .*cannot be read/);
   await give(page, ["broken.zip", png]);
   await assertSays(page, /broken\.zip: .*cannot be read/);
+  const before = await page.evaluate(() => studioPage.editor.text);
+  await give(page, ["empty.toml", Buffer.from(" \n")]);
+  await assertSays(page, /empty\.toml: this file is empty/);
+  assert.equal(await page.evaluate(() => studioPage.editor.text), before);
   await give(page, ["song.mp3", png]);
   await assertSays(page, /song\.mp3: expected a scene/);
   assert.deepEqual(errors, []);
@@ -67,6 +71,7 @@ test("a link with rubbish is a sentence, and the first scene plays", async () =>
 test("a shared link and a saved zip bring the scene back", async () => {
   const { page, errors, close } = await openStudio();
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.locator("#options summary").click();
   await page.selectOption("#finger", "dry");
   await page.click("#share");
   await page.waitForFunction(() => location.hash.startsWith("#scene="));

@@ -215,3 +215,51 @@ test("once a board is connected the words of the simulator go, also when the gho
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("a slide that begins on the words is one on the map, and leads to no other page", async () => {
+  const { page, errors, close } = await openAsStranger();
+  for (const [width, height] of [[390, 844], [1366, 657]]) {
+    await page.setViewportSize({ width, height });
+    const met = await page.evaluate(() =>
+      ["first-sentence", "first-hint", "hear", "first-dismiss"].map((id) => {
+        const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
+        const found = document.elementFromPoint(x + width / 2, y + height / 2);
+        return [found.id, getComputedStyle(found).touchAction];
+      }),
+    );
+    const map = ["map-finger", "none"];
+    assert.deepEqual(met, [map, map, ["hear", "none"], ["first-dismiss", "none"]], `${width}`);
+  }
+  const over = await page.evaluate(() => [document.documentElement, document.querySelector("main")]
+    .map((each) => getComputedStyle(each).overscrollBehaviorX));
+  assert.deepEqual(over, ["none", "none"]);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a page or a board that is held up makes no finger shoot over the map", async () => {
+  const { page, errors, close } = await openAsStranger();
+  for (const name of ["page", "board"]) {
+    const felt = await page.evaluate(async (name) => {
+      // In the middle of a stroke.
+      const isMidway = () => sent.length > 40 && sent.slice(-40).every(({ down }) => down);
+      sent.length = 0;
+      while (!isMidway()) await wait(8);
+      const { samples } = studioPage;
+      const fromS = samples.nowS;
+      if (name === "page") await hang(300);
+      else {
+        const worker = workersOfPage.board.at(-1);
+        worker.step = async () => {};
+        await wait(300);
+        delete worker.step;
+      }
+      await wait(600);
+      const { speedMmPerS, xMm } = samples.since(fromS);
+      return { fastest: Math.max(...speedMmPerS.filter(Number.isFinite)), slid: xMm.filter(Number.isFinite).length };
+    }, name);
+    assert.ok(felt.slid > 200 && felt.fastest < 200, `${name}: ${JSON.stringify(felt)}`);
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});

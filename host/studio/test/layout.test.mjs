@@ -10,9 +10,18 @@ after(cleanUp);
 
 /** Width and height of windows, CSS pixels. */
 const WINDOWS = [[1366, 657], [1440, 789], [1536, 730], [1920, 969], [2560, 1300], [1024, 768], [820, 1180], [390, 844]];
-/** Least part of a window that the screen's picture has, without ruler and scale: on a phone, and otherwise. */
+/** Windows that are too low for all: of a phone whose browser has its bars, and of a laptop at 200 %. */
+const LOW_WINDOWS = [[390, 664], [960, 485]];
+/**
+ * Least part of a window that the screen's picture has, without ruler and scale: on a phone, and otherwise. A screen
+ * that is as wide as the window has what it can have.
+ */
 const PART = { phone: 0.4, other: 0.25 };
 const PHONE_MAX_PX = 480;
+/** What is beside a screen that is as wide as the window, CSS pixels. */
+const AROUND_NARROW_PX = 6;
+/** Least height of the curves, CSS pixels. */
+const PLOT_MIN_PX = 55;
 /** Edges of boxes may lie within a pixel beyond those of the window. */
 const ROUNDING_PX = 1;
 
@@ -45,10 +54,47 @@ async function resize(page, [width, height]) {
 
 const SEEN = ["header", "#stop", "#map-finger", "#numbers", "#scope .u-wrap", "#scope .u-legend"];
 
-for (const colorScheme of ["light", "dark"]) {
-  test(`map, numbers, scope and legend are seen at eight sizes, ${colorScheme}`, async () => {
+const SCHEMES = { brick: "light", velvet: "dark" };
+
+/** What is cut: words that are longer than their box, and tools that lie over each other or beyond their row. */
+function cut() {
+  const cells = document.querySelectorAll("#numbers dd, #numbers dt, .u-legend tr, header button, .map-card h2");
+  const seen = [...cells].filter((each) => each.checkVisibility());
+  const long = seen.filter((each) => each.scrollWidth > each.clientWidth + 1).map((each) => each.outerHTML);
+  for (const row of document.querySelectorAll("header, .map-tools, .scope-card > .tools")) {
+    const boxes = [...row.children].filter((each) => each.checkVisibility()).map((each) => [each, each.getBoundingClientRect()]);
+    const inner = boxes.filter(([, { width }]) => width > 0);
+    for (const [at, [tool, { left, right }]] of inner.entries()) {
+      const end = at + 1 < inner.length ? inner[at + 1][1].left : row.getBoundingClientRect().right;
+      if (right > end + 1 || left < row.getBoundingClientRect().left - 1) long.push(`not in its place: ${tool.outerHTML}`);
+    }
+  }
+  return long;
+}
+
+/** Whether anything is wider than the window, or, with `isHigh`, higher. */
+function scrolls(isHigh) {
+  const over = [document.scrollingElement, document.querySelector("main")];
+  const isOver = ({ scrollWidth, clientWidth, scrollHeight, clientHeight }) =>
+    scrollWidth > clientWidth || (isHigh && scrollHeight > clientHeight);
+  return over.filter(isOver).map(({ tagName, scrollWidth, scrollHeight }) => [tagName, scrollWidth, scrollHeight]);
+}
+
+/** Opens a scene of the gallery, and waits until its map is there. */
+async function openBundled(page, name) {
+  await page.click("#open-gallery");
+  await page.click(`text="Open ${name}"`);
+  await page.waitForFunction((name) => document.getElementById("scene-name").value === name, name);
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await page.waitForFunction(() => !document.getElementById("map").dataset.stale);
+  await page.evaluate(() => document.querySelector("#notice [aria-label=Dismiss]").click());
+}
+
+for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
+  test(`map, numbers, scope and legend are seen at eight sizes, ${scene}, ${colorScheme}`, async () => {
     const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
     await page.emulateMedia({ colorScheme });
+    if (scene !== "brick") await openBundled(page, scene);
     for (const [width, height] of WINDOWS) {
       await resize(page, [width, height]);
       const size = `${width}x${height}`;
@@ -64,23 +110,105 @@ for (const colorScheme of ["light", "dark"]) {
         for (const other of apart.slice(at + 1)) assert.ok(!overlap(one, other), `${size}: ${JSON.stringify([one, other])}`);
       const part = (map.width * map.height) / (width * height);
       const least = width <= PHONE_MAX_PX ? PART.phone : PART.other;
-      assert.ok(part >= least, `${size}: the map has ${part.toFixed(3)} of the window`);
-      const scrolls = () => {
-        const { scrollWidth, clientWidth, scrollHeight, clientHeight } = document.scrollingElement;
-        return scrollWidth > clientWidth || scrollHeight > clientHeight;
-      };
-      assert.ok(!(await page.evaluate(scrolls)), `${size}: the page scrolls`);
-      const isCut = () => {
-        const cells = document.querySelectorAll("#numbers dd, #numbers dt, .u-legend tr, header button, .map-card h2");
-        const seen = [...cells].filter((each) => each.checkVisibility());
-        return seen.filter((each) => each.scrollWidth > each.clientWidth + 1).map((each) => each.outerHTML);
-      };
-      assert.deepEqual(await page.evaluate(isCut), [], `${size}: cut`);
+      const isWidest = map.width >= width - AROUND_NARROW_PX;
+      assert.ok(part >= least || isWidest, `${size}: the map has ${part.toFixed(3)} of the window`);
+      assert.deepEqual(await page.evaluate(scrolls, true), [], `${size}: the page scrolls`);
+      assert.deepEqual(await page.evaluate(cut), [], `${size}: cut`);
+      const { height: plot } = await page.evaluate(boxOf, "#scope .u-over");
+      assert.ok(plot >= PLOT_MIN_PX, `${size}: the curves have ${plot} px`);
     }
     assert.deepEqual(errors, []);
     await close();
   });
 }
+
+test("in a low window the page scrolls below its header, and nothing lies over another", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const parts = ["#map-finger", "#numbers", "#scope .u-wrap", "#scope .u-legend", "#editor", ".side"];
+  for (const scene of Object.keys(SCHEMES)) {
+    if (scene !== "brick") await openBundled(page, scene);
+    for (const isOpen of [false, true]) {
+      if (isOpen !== (await page.locator("#drawer").isVisible())) await page.click("#toggle-drawer");
+      for (const [width, height] of [...LOW_WINDOWS, [390, 844]]) {
+        const where = `${scene}, ${width}x${height}${isOpen ? " with the text" : ""}`;
+        await resize(page, [width, height]);
+        await page.evaluate(() => document.querySelector("main").scrollTo(0, 0));
+        const stop = await page.evaluate(boxOf, "#stop");
+        const found = Object.entries(await boxes(page, parts)).filter(([, box]) => box.width > 0);
+        for (const [at, [name, box]] of found.entries()) {
+          assert.ok(box.left >= 0 && box.right <= width + ROUNDING_PX, `${where}: ${name} ${JSON.stringify(box)}`);
+          for (const [other, its] of found.slice(at + 1)) assert.ok(!overlap(box, its), `${where}: ${name} and ${other}`);
+        }
+        const { "#map-finger": map, "#scope .u-wrap": chart, ".side": side } = Object.fromEntries(found);
+        assert.ok(map.width >= 200 && map.bottom <= height, `${where}: the map ${JSON.stringify(map)}`);
+        if (chart) {
+          const { height: plot } = await page.evaluate(boxOf, "#scope .u-over");
+          assert.ok(plot >= PLOT_MIN_PX, `${where}: the curves have ${plot} px`);
+        }
+        if (isOpen) assert.ok(side.height >= 280, `${where}: the tools have ${side.height} px`);
+        assert.deepEqual(await page.evaluate(cut), [], `${where}: cut`);
+        assert.deepEqual(await page.evaluate(scrolls, false), [], where);
+        await page.evaluate(() => document.querySelector("main").scrollTo(0, 10_000));
+        const last = await page.evaluate(boxOf, isOpen ? ".side" : "#scope");
+        assert.ok(last.bottom <= height + ROUNDING_PX, `${where}: the end is reached, ${JSON.stringify(last)}`);
+        assert.deepEqual(await page.evaluate(boxOf, "#stop"), stop, `${where}: Stop keeps its place`);
+      }
+    }
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** What can be opened: how, what has to be within the window then, and how it is closed. */
+const OPENED = {
+  options: [(page) => page.click("#options summary"), "#options > div", (page) => page.keyboard.press("Escape")],
+  "the scope's menu": [
+    (page) => page.click("#scope-options summary"), "#scope-options > div", (page) => page.keyboard.press("Escape"),
+  ],
+  "the menu": [
+    async (page) => (await page.locator("#toggle-menu").isVisible()) && page.click("#toggle-menu"), "#menu",
+    (page) => page.evaluate(() => document.body.click()),
+  ],
+  "a notice": [
+    (page) => page.evaluate(() => document.getElementById("share").click()), "#notice",
+    (page) => page.evaluate(() => document.querySelector("#notice [aria-label=Dismiss]").click()),
+  ],
+  gallery: [
+    async (page) => {
+      await page.click("#open-gallery");
+      await page.locator("#gallery article button").first().waitFor();
+    }, "#gallery", (page) => page.keyboard.press("Escape"),
+  ],
+  lag: [(page) => page.click("#open-lag"), "#lag", (page) => page.click("#open-lag")],
+  "text and tools": [(page) => page.click("#toggle-drawer"), "#editor", (page) => page.click("#toggle-drawer")],
+};
+
+test("whatever is open, nothing is wider than the window", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  for (const scene of Object.keys(SCHEMES)) {
+    if (scene !== "brick") await openBundled(page, scene);
+    for (const [width, height] of [...WINDOWS, ...LOW_WINDOWS]) {
+      await resize(page, [width, height]);
+      const window = { left: 0, top: 0, right: width, bottom: height };
+      for (const [name, [open, what, shut]] of Object.entries(OPENED)) {
+        const where = `${scene}, ${width}x${height}, ${name}`;
+        await open(page);
+        await page.locator(what).waitFor();
+        await resize(page, [width, height]);
+        const box = await page.evaluate(boxOf, what);
+        assert.ok(isWithin(box, window), `${where}: ${JSON.stringify(box)}`);
+        assert.deepEqual(await page.evaluate(scrolls, false), [], where);
+        if (name === "lag") {
+          const { height: plot } = await page.evaluate(boxOf, "#scope .u-over");
+          assert.ok(plot >= PLOT_MIN_PX, `${where}: the curves have ${plot} px`);
+        }
+        await shut(page);
+      }
+    }
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
 
 test("text and tools are closed at the first visit, and later as they were left", async () => {
   const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
@@ -97,8 +225,9 @@ test("text and tools are closed at the first visit, and later as they were left"
   for (const size of WINDOWS) {
     await resize(page, size);
     const { "#drawer": box, "#map-finger": map } = await boxes(page, ["#drawer", "#map-finger"]);
-    const window = { left: 0, top: 0, right: size[0], bottom: size[1] };
+    const window = { left: 0, top: 0, right: size[0], bottom: size[0] > PHONE_MAX_PX ? size[1] : Infinity };
     assert.ok(isWithin(box, window) && isWithin(map, window) && !overlap(box, map), `${size}: ${JSON.stringify([box, map])}`);
+    assert.ok(box.top < size[1] - 200, `${size}: the text is seen, ${JSON.stringify(box)}`);
   }
   await toggle.click();
   await page.reload();

@@ -1,10 +1,8 @@
-// The page in a browser: what it tells a person, where, and for how long; and what is kept over Share, Ctrl+S and a reload.
+// The page in a browser: what it tells a person, where, and for how long; and what Ctrl+S saves.
 
 import assert from "node:assert/strict";
-import fs from "node:fs";
-import { fileURLToPath } from "node:url";
 import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers, openPage, pageUrl } from "./harness.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, give, openStudio } from "./page.mjs";
 
 afterEach(endLeftovers);
@@ -33,13 +31,16 @@ const boxesOf = (page) => Promise.all(PARTS.map((part) => boxOf(page, part)));
 test("good news floats beside its control and goes, bad news stays", async () => {
   const { page, errors, close } = await openStudio();
   const notice = page.locator("#notice");
+  await page.waitForFunction(() => studioPage.map.frictionN.length > 0);
   const before = await boxesOf(page);
   await page.click("#share");
   await notice.waitFor();
   assert.deepEqual(await boxesOf(page), before, "nothing moves");
   assert.equal(await notice.getAttribute("role"), "status");
-  const beside = distance(await boxOf(page, "#notice"), await boxOf(page, "#share"));
-  assert.ok(beside <= BESIDE_MAX_PX, `${beside} px from Share`);
+  // Between both are the map's tools.
+  const [said, share, tools] = await Promise.all(["#notice", "#share", ".map-tools"].map((each) => boxOf(page, each)));
+  const below = { ...share, bottom: tools.bottom };
+  assert.ok(distance(said, below) <= BESIDE_MAX_PX, `${JSON.stringify([said, share])}: away from Share`);
   await page.mouse.move(5, 400);
   await page.evaluate((ms) => wait(ms), GONE_AFTER_MS);
   assert.ok(await notice.isHidden(), "good news goes");
@@ -59,6 +60,70 @@ test("good news floats beside its control and goes, bad news stays", async () =>
   assert.ok(await notice.isVisible(), "bad news stays");
   await page.click("#notice >> [aria-label=Dismiss]");
   assert.ok(await notice.isHidden());
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a notice lies over no tool of the map, is whole, and goes at Escape or, where it is good news, at a press elsewhere", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const notice = page.locator("#notice");
+  const share = () => page.evaluate(() => document.getElementById("share").click());
+  for (const [width, height] of [[1440, 789], [1024, 768], [390, 844], [390, 664]]) {
+    await page.setViewportSize({ width, height });
+    await share();
+    await notice.waitFor();
+    const [box, tools, header] = await Promise.all(["#notice", ".map-tools", "header"].map((each) => boxOf(page, each)));
+    const size = `${width}x${height}: ${JSON.stringify([box, tools])}`;
+    assert.ok(box.top >= tools.bottom || box.left >= tools.right, size);
+    assert.ok(box.top >= header.bottom && box.bottom <= height && box.left >= 0 && box.right <= width, size);
+    const isCut = await page.evaluate(() => {
+      const said = document.querySelector("#notice span");
+      return said.scrollHeight > said.clientHeight;
+    });
+    assert.ok(!isCut, size);
+    await page.keyboard.press("Escape");
+    assert.ok(await notice.isHidden(), "Escape removes it");
+    await share();
+    await notice.waitFor();
+    await page.mouse.click(box.left + 20, (box.top + box.bottom) / 2);
+    assert.ok(await notice.isVisible(), "it is read under the pointer");
+    await page.mouse.click(width / 2, height - 4);
+    assert.ok(await notice.isHidden(), "a press elsewhere removes it");
+  }
+  await page.evaluate(() => {
+    studioPage.engine.stop = () => Promise.reject(new Error("the board does not answer"));
+  });
+  await page.click("#stop");
+  await notice.waitFor();
+  await page.mouse.click(195, 660);
+  assert.ok(await notice.isVisible(), "what failed stays");
+  await page.keyboard.press("Escape");
+  assert.ok(await notice.isHidden());
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a serial port that nobody chose is no failure, and a browser that gives none is a sentence", async () => {
+  const { page, errors, close } = await openStudio();
+  const choose = async (name) => {
+    await page.evaluate((name) => {
+      globalThis.asked = false;
+      const requestPort = () => {
+        globalThis.asked = true;
+        return Promise.reject(new DOMException("No port selected by the user.", name));
+      };
+      Object.defineProperty(navigator, "serial", { value: { requestPort, getPorts: async () => [] }, configurable: true });
+    }, name);
+    await page.click("#open-board");
+    await page.click("text=Board on a USB port");
+    await page.waitForFunction(() => globalThis.asked);
+    await page.evaluate(() => wait(300));
+  };
+  await choose("NotFoundError");
+  assert.ok(await page.locator("#notice").isHidden());
+  assert.equal(await page.textContent("#board"), "Simulator: playing");
+  await choose("SecurityError");
+  assert.equal(await page.textContent("#notice span"), "The browser does not let this page use a serial port.");
   assert.deepEqual(errors, []);
   await close();
 });
@@ -85,33 +150,6 @@ test("Ctrl+S saves, wherever the focus is", async () => {
     assert.equal(saved.suggestedFilename(), "brick.zip");
   }
   assert.deepEqual(errors, []);
-  await close();
-});
-
-test("Share and a reload keep the bridge of the command, and the link does not have its token", async () => {
-  const { page, close } = await openPage("about:blank", { isSimulated: true });
-  const body = fs.readFileSync(fileURLToPath(pageUrl));
-  await page.route("http://127.0.0.1:9/**", (route) => route.fulfill({ body, contentType: "text/html" }));
-  await page.goto("http://127.0.0.1:9/#bridge=0123abcd");
-  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
-  const bridge = page.locator("#board-dialog button", { hasText: "Board of frixel studio" });
-  const assertBridge = async (when) => {
-    await page.click("#open-board");
-    assert.equal(await bridge.count(), 1, when);
-    await page.click("#board-dialog >> text=Close");
-  };
-  await assertBridge("at the start");
-  await page.click("#share");
-  await page.waitForFunction(() => location.hash.startsWith("#scene="));
-  assert.ok(!page.url().includes("0123abcd"), page.url());
-  await page.reload();
-  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
-  await assertBridge("after Share and a reload");
-  const url = await page.evaluate(async () => {
-    const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-    return bridgeUrl();
-  });
-  assert.equal(url, "ws://127.0.0.1:9/serial?token=0123abcd");
   await close();
 });
 

@@ -99,8 +99,8 @@ async function changeAll(more) {
           JSON.stringify(layers.filter(({ index }) => index !== layer.index).map((each) => each.boxMm));
         const known = before.problems.map(({ message }) => message);
         const problems = after.problems.map(({ message }) => message).filter((each) => !known.includes(each));
-        const isOthers = others(after) === others(before);
-        found.push({ ...about, what, expected, actual: boxMm, problems, isOthers });
+        const areOthersSame = others(after) === others(before);
+        found.push({ ...about, what, expected, actual: boxMm, problems, areOthersSame });
       };
       const { x, y, width, height } = bounds(place.box, place.copies);
       if (!place.whyNotMoved) {
@@ -121,10 +121,10 @@ async function changeAll(more) {
 test("the place of a layer in its text is the compiler's, also after it was moved and resized", async () => {
   const { page, errors } = await openStudio();
   const found = await page.evaluate(changeAll, MORE);
-  for (const { name, what, expected, actual, isWhole, problems = [], isOthers = true } of found) {
+  for (const { name, what, expected, actual, isWhole, problems = [], areOthersSame = true } of found) {
     const about = `${name}, ${what}: ${JSON.stringify({ expected, actual, problems })}`;
     assert.deepEqual(problems.filter((problem) => !FELT.test(problem)), [], about);
-    assert.ok(isOthers, `other layers stay, ${about}`);
+    assert.ok(areOthersSame, `other layers stay, ${about}`);
     if ((isWhole && what === "place") || expected === null) assert.equal(actual, null, about);
     // A pixel of the design is 0.1 mm wide and 0.2 mm high.
     else for (const [side, mm] of expected.entries()) assert.ok(Math.abs(mm - actual[side]) < 0.11, about);

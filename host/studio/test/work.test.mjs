@@ -16,6 +16,7 @@ test("a reload brings back the scene, its name and its finger", async () => {
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   await page.fill("#scene-name", "ridges");
   await page.press("#scene-name", "Enter");
+  await page.locator("#options summary").click();
   await page.selectOption("#finger", "dry");
   await page.reload();
   await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
@@ -39,10 +40,32 @@ test("another scene has a history of its own, and the changed one before can be 
   await openEmpty(page);
   await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
   assert.ok(await page.isDisabled("#undo"), "undo does not lead into the scene before");
-  assert.match(await page.evaluate(() => studioPage.editor.text), /^version = 2\n\n# Type/);
+  assert.match(await page.evaluate(() => studioPage.editor.text), /^version = 2\n\n# Edit adds layers/);
+  // The way back stays while nobody works on the new scene.
+  await page.mouse.move(5, 400);
+  await page.evaluate(() => wait(120_000));
+  assert.match(await page.locator("#notice span").innerText(), /^brick is kept in Open\.$/);
   await page.click("text=Back to brick");
   await page.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
   assert.equal(await page.inputValue("#scene-name"), "brick");
+  await openEmpty(page);
+  await page.locator("#notice >> text=Back to brick").waitFor();
+  await change(page, GRATING_OF_3_MM);
+  await page.evaluate(() => wait(15_000));
+  assert.ok(await page.isVisible("#notice >> text=Back to brick"), "a while");
+  await page.evaluate(() => wait(30_000));
+  assert.ok(await page.isHidden("#notice"));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a scene has a name that every file system takes", async () => {
+  const { page, errors, close } = await openStudio();
+  for (const [typed, name] of [["a:b/c?", "a-b-c-"], ["con", "con-"], ["end. .", "end"], ["..", "scene"], ["größe 2", "größe 2"]]) {
+    await page.fill("#scene-name", typed);
+    await page.press("#scene-name", "Enter");
+    assert.equal(await page.inputValue("#scene-name"), name);
+  }
   assert.deepEqual(errors, []);
   await close();
 });
@@ -163,6 +186,7 @@ test("a page that closes while a scene is being opened does not lose the one bef
   const close = () => {
     LockManager.prototype.request = () => new Promise(() => {});
     document.getElementById("new").click();
+    document.querySelector("#new-scene .head button").click();
     return new Promise((resolve) => {
       const look = () => {
         if (document.getElementById("scene-name").value !== "untitled") return setTimeout(look);

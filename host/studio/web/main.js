@@ -25,6 +25,7 @@ import { NewScene } from "./page/new_scene.js";
 import { attempt, followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
 import { OpenScene } from "./page/open_scene.js";
+import { beginWithPicture, choosePicture } from "./page/own_picture.js";
 import { Player, isPlayable } from "./page/player.js";
 import { showCheck, showOutcome, showStatus } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
@@ -80,7 +81,10 @@ async function makeParts(engine) {
   const map = new FrictionMap(byId("map"), byId("map-picture"));
   /** @type {HTMLElement | null} */
   const grid = document.querySelector(".feel-grid");
-  map.onRoom = (widthPx) => grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
+  map.onRoom = (widthPx, heightPx) => {
+    grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
+    grid?.style.setProperty("--map-height", `${Math.ceil(heightPx) + 1}px`);
+  };
   const samples = new Samples();
   const sound = new Sound();
   const finger = new Finger(engine, map, byId("map-finger"));
@@ -136,7 +140,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
     ghost.wake();
   };
   hands.onEdit = () => {
-    ghost.dismiss();
+    ghost.handOver();
   };
 }
 
@@ -150,6 +154,8 @@ function showWhatPlays(parts, scene) {
   const hint = byId("map-hint");
   /** @type {Checked | undefined} */
   let shown;
+  /** The scene whose strokes the scope has, as `Project.opened` counts. */
+  let felt = project.opened;
   player.onCheck = (check, files) => {
     if (compare.isRunning) return;
     showCheck(check, editor);
@@ -164,6 +170,8 @@ function showWhatPlays(parts, scene) {
   };
   player.onPlay = () => {
     layers.reset();
+    if (felt !== project.opened) scope.clear();
+    felt = project.opened;
     lag.played();
     if (!compare.isRunning && shown) layers.show(shown.layers, shown);
   };
@@ -243,9 +251,17 @@ function showWhatIsFelt(parts) {
  * @param {Parts} parts
  * @param {OpenScene} scene
  */
-function takeScenes({ engine, project, editor, gallery }, scene) {
+function takeScenes({ engine, project, editor, gallery, hands }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
-  new NewScene(engine).onScene = gallery.onScene;
+  const begin = new NewScene(engine);
+  begin.onScene = gallery.onScene;
+  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands));
+  hands.onPicture = () =>
+    attempt(async () => {
+      const picture = await choosePicture();
+      if (picture) hands.addPicture(await scene.takePicture(picture), picture.aspect);
+    });
+  scene.onAppend = () => hands.awaitLast();
   gallery.onLayer = (text) => scene.append(text);
   const incoming = new Incoming(async (files, entry) =>
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),

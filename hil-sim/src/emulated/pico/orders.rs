@@ -1,7 +1,7 @@
 //! The orders that the firmware's main loop hands to its tick, seen as by a debugger.
 
-use super::PicoRig;
 use super::protocol::Request;
+use super::{PicoRig, no_answer};
 use crate::emulated::EmulatorError;
 
 /// Words of an order: the number of its kind, and a track, the largest one.
@@ -54,10 +54,12 @@ impl PicoRig {
             rest = after;
             if *function == TICK {
                 watched.ticks += 1;
-            } else if let Some((words, after)) = rest.split_first_chunk().filter(|_| *function == APPLY) {
-                watched.orders.push(AppliedOrder { tick: watched.ticks + 1, words: *words });
-                rest = after;
+                continue;
             }
+            let order = rest.split_first_chunk().filter(|_| *function == APPLY);
+            let (words, after) = order.ok_or_else(|| no_answer("which orders the tick took"))?;
+            watched.orders.push(AppliedOrder { tick: watched.ticks + 1, words: *words });
+            rest = after;
         }
         Ok(watched)
     }

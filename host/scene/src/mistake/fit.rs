@@ -165,7 +165,7 @@ pub enum FitMistake {
         why: &'static str,
     },
     /// The carrier is too fast for the board's tick.
-    #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected at most {max} Hz")]
+    #[error("`frequency_hz = {found}` is too fast for {tick_hz} ticks a second: expected 125 to {max} Hz")]
     CarrierTooFast {
         /// The frequency, as written, Hz.
         found: f64,

@@ -82,8 +82,19 @@ fn the_largest_voltage_keeps_every_limit() {
     let (rms, peak, notes) = reached("[drive]\nvoltage_max_v_peak = 100");
     close(&[rms, peak], &[100.0 * edges, 100.0], 1e-4);
     assert_eq!(notes, ["drive: 150 V rms would need 156.4 V peak; the limit of 100 V peak allows 95.9 V rms"]);
-    let (rms, peak, _) = reached("[drive]\nvoltage_max_v_rms = 400");
+    let (rms, peak, notes) = reached("[drive]\nvoltage_max_v_rms = 400");
     close(&[rms, peak], &[220.0 * edges, 220.0], 1e-4);
+    assert!(notes.is_empty(), "it is a warning: {notes:?}");
+    let program =
+        compile_text(&HEAD.replace("# layers follow", "[drive]\nvoltage_max_v_rms = 400")).expect("it compiles");
+    let warnings: Vec<_> = program.warnings().map(ToString::to_string).collect();
+    assert_eq!(
+        warnings,
+        [
+            "`voltage_max_v_rms = 400` is more than the board lets through: 211.0 V rms are driven at most, by its limit of \
+          220 V peak and a peak of 1.043 times the rms"
+        ]
+    );
     // A sine of 20 ticks per half period, held for a tick at a time, of which each is 1.25 time constants long.
     let (lags, cosine) = (1.25_f64, (std::f64::consts::PI / 20.0).cos());
     let left = 1.0 - (1.0 - cosine) * lags.sinh() / (lags * (lags.cosh() - cosine));

@@ -67,6 +67,8 @@ function step() {
   }
   let ticks = Math.floor(tickAt(now) - engine.plain("simulator_tick"));
   if (ticks > LAG_MAX_MS * TICKS_PER_MS) {
+    // The finger's way in the time that is skipped would be slid at once: it comes down again where it is then.
+    if (!replay) engine.plain("simulator_lift");
     setClock(clock.rate);
     ticks = STEP_MS * TICKS_PER_MS;
   }

@@ -60,7 +60,7 @@ export type Layer = {
   file?: string;
   /** First and last line. */
   from: [number, number];
-  /** Left, top, width, height; null for the whole screen. */
+  /** Left, top, width, height of its region, or of the picture that it shows; null for the whole screen. */
   boxMm: [number, number, number, number] | null;
 };
 

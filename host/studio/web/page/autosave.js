@@ -77,6 +77,11 @@ export class Autosave {
     return { id: this.#id, isEdited: this.isEdited, changedMs: this.#changedMs };
   }
 
+  /** Whether the browser keeps the scene, as far as is known. */
+  get isKept() {
+    return this.#problem === undefined;
+  }
+
   /** The scene was changed by hand. */
   changed() {
     this.isEdited = true;

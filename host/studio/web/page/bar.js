@@ -5,6 +5,7 @@ import { projectOf, zipOf } from "./archive.js";
 import { byId, download } from "./dom.js";
 import { attempt, notify } from "./notices.js";
 import { Open } from "./open.js";
+import { mistakesFound } from "./problems.js";
 import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 
 /** @import { Editor } from "./editor.js" */
@@ -17,6 +18,7 @@ import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 export function makeBar({ scene, gallery, works, editor, project }) {
   const dialog = new Open(works, () => byId("files").click());
   dialog.onWork = async (id) => scene.open(await scene.work(id));
+  dialog.onLink = (fragment) => scene.open(sceneOf(fragment));
   makeMenu();
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
   byId("undo").onclick = () => editor.undo();
@@ -63,6 +65,7 @@ async function save(scene, project, editor) {
   download(`${project.name}.zip`, zip, "application/zip");
   // Throws what a person is told where the studio would not open the zip again.
   projectOf(zip);
+  notify(`${project.name}.zip is among your downloads.`, undefined, { isGood: true, beside: byId("save") });
 }
 
 /**
@@ -77,7 +80,10 @@ async function share(project, editor) {
     () => "The link stands in the address line: copy it from there.",
   );
   const said = `${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`;
-  notify(said, undefined, { isGood: true, beside: byId("share") });
+  const { count, isDraft } = mistakesFound();
+  const plays = isDraft ? "it plays as a draft only" : "it does not play before that is mended";
+  const warned = count && `The scene has ${count}: whoever opens the link sees the text, and ${plays}. `;
+  notify(`${warned}${said}`, undefined, { isGood: count === "", beside: byId("share") });
 }
 
 /**
@@ -99,6 +105,9 @@ export function followLinks(scene) {
     if (fragment === undefined) return;
     event.preventDefault();
     event.stopPropagation();
+    /** @type {NodeListOf<HTMLDialogElement>} */
+    const dialogs = document.querySelectorAll("dialog[open]");
+    for (const dialog of dialogs) dialog.close();
     attempt(() => scene.open(sceneOf(fragment)));
   };
   addEventListener("paste", paste, { capture: true });

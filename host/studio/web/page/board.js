@@ -118,7 +118,11 @@ export class Board {
 
   #open() {
     const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
-    const serial = async () => this.#engine.connectSerial(await navigator.serial.requestPort());
+    const serial = async () => {
+      const port = await chosenPort();
+      if (port) await this.#engine.connectSerial(port);
+      return port !== undefined;
+    };
     const hasSerial = "serial" in navigator;
     const whySerial = hasSerial ? "over Web Serial" : "this browser has no Web Serial (Chrome 89 or newer has it)";
     const choices = [
@@ -144,9 +148,9 @@ export class Board {
   }
 
   /**
-   * A board to connect; `connect` is false where the browser cannot.
+   * A board to connect; `connect` is false where the browser cannot, and resolves to false where nothing was chosen.
    * @param {string} words
-   * @param {false | (() => Promise<void>)} connect
+   * @param {false | (() => Promise<boolean | void>)} connect
    * @param {string} why
    */
   #choice(words, connect, why) {
@@ -154,9 +158,20 @@ export class Board {
     button.onclick = () =>
       attempt(async () => {
         this.#dialog.close();
-        if (connect) await connect();
-        this.onBoard();
+        if (connect && (await connect()) !== false) this.onBoard();
       });
     return element("p", { className: "row" }, button, element("span", { className: "soft" }, why));
+  }
+}
+
+/** The port that a person chooses, or undefined if none was chosen. */
+async function chosenPort() {
+  try {
+    return await navigator.serial.requestPort();
+  } catch (error) {
+    const { name } = /** @type {DOMException} */ (error);
+    // The browser's dialog was closed, and said itself where there is no port.
+    if (name === "NotFoundError") return undefined;
+    throw new Error("The browser does not let this page use a serial port.");
   }
 }

@@ -52,6 +52,14 @@ export function download(name, content, type) {
   clock.later(10_000, () => URL.revokeObjectURL(url));
 }
 
+/**
+ * A voltage, V rms: a small one with a digit behind the point, so that half a volt is no whole one, and not none.
+ * @param {number} value
+ */
+export function volts(value) {
+  return value.toFixed(value < 9.95 ? 1 : 0);
+}
+
 /** Longest name of a scene, and most of a longer name that is shown, characters. */
 export const NAME_MAX = 64;
 

@@ -11,7 +11,7 @@ export class Drawer {
   #toggle = byId("toggle-drawer");
 
   constructor() {
-    this.#toggle.onclick = () => this.#show(!this.isOpen);
+    this.#toggle.onclick = () => (this.isOpen ? this.#show(false) : this.open());
     this.#show(settings.get(SETTING) === "open");
   }
 
@@ -20,7 +20,10 @@ export class Drawer {
   }
 
   open() {
-    if (!this.isOpen) this.#show(true);
+    if (this.isOpen) return;
+    this.#show(true);
+    // In a low or narrow window it stands below what is felt.
+    this.#drawer.scrollIntoView({ block: "nearest" });
   }
 
   /** @param {boolean} isOpen */

@@ -40,6 +40,11 @@ export class EditedLayers {
     return this.all.find((each) => each.key === key);
   }
 
+  /** The last layer in the text of the scene. */
+  get last() {
+    return this.all.findLast(({ at, layer }) => at !== undefined && layer.file === undefined);
+  }
+
   /**
    * The layer that is now what a layer of the texts before was, if that is sure.
    * @param {EditedLayer} before
@@ -126,6 +131,57 @@ export class EditedLayers {
       const boxMm = all ? /** @type {Layer["boxMm"]} */ ([all.x, all.y, all.width, all.height]) : each.layer.boxMm;
       return this.#describe({ ...each.layer, boxMm }, toml, each.at);
     });
+  }
+
+  /**
+   * A hand is changing a layer: what is felt of the layers now.
+   * @param {Layer[]} layers
+   */
+  feel(layers) {
+    for (const each of this.all) {
+      const now = layers.find(({ index }) => index === each.layer.index);
+      if (now) Object.assign(each.layer, { perceived: now.perceived, felt: now.felt });
+    }
+  }
+
+  /**
+   * A hand has put a layer into its file, with this number among those of the file. Returns it.
+   * @param {Layer} layer
+   * @param {number} at
+   */
+  insert(layer, at) {
+    const { file } = layer;
+    const { toml, others } = this.#renumbered(file, at, 1);
+    const made = this.#describe(layer, toml, at);
+    const before = others.findIndex((each) => each.layer.file === file && each.at === at - 1);
+    this.all = others.toSpliced(before < 0 ? others.length : before + 1, 0, made);
+    return made;
+  }
+
+  /**
+   * A hand has taken a layer out of its file.
+   * @param {EditedLayer} edited
+   */
+  remove(edited) {
+    this.all = this.all.filter((each) => each !== edited);
+    this.all = this.#renumbered(edited.layer.file, edited.at ?? 0, -1).others;
+  }
+
+  /**
+   * The layers of the text that a file has now, in which those from a number on have another one.
+   * @param {string | undefined} file
+   * @param {number} first
+   * @param {1 | -1} by
+   */
+  #renumbered(file, first, by) {
+    const text = this.#editor.textOf(file) ?? "";
+    this.#texts.set(file, text);
+    const toml = new TomlText(text);
+    const others = this.all.map((each) => {
+      if (each.layer.file !== file || each.at === undefined) return each;
+      return this.#describe(each.layer, toml, each.at < first ? each.at : each.at + by);
+    });
+    return { toml, others };
   }
 
   /**

@@ -1,47 +1,16 @@
 // The editor of the scene's text and of the files that belong to it: colours, completion, mistakes in place, undo.
 // @ts-check
 
-import {
-  EditorState,
-  EditorView,
-  HighlightStyle,
-  StreamLanguage,
-  autocompletion,
-  bracketMatching,
-  closeBrackets,
-  completionKeymap,
-  defaultKeymap,
-  drawSelection,
-  highlightActiveLine,
-  highlightActiveLineGutter,
-  highlightSpecialChars,
-  history,
-  historyKeymap,
-  keymap,
-  lineNumbers,
-  lintGutter,
-  lintKeymap,
-  redo,
-  setDiagnostics,
-  syntaxHighlighting,
-  tags,
-  toml,
-  undo,
-} from "../vendor/studio-vendor.js";
-import { completeFrom } from "./completion.js";
-import { HeldChange, joinHeld } from "./held_change.js";
+import { EditorState, EditorView, redo, setDiagnostics, undo } from "../vendor/studio-vendor.js";
+import { editorExtensions } from "./editor_setup.js";
+import { HeldChange } from "./held_change.js";
+import { notify } from "./notices.js";
+import { TEXT_MAX_BYTES, tooLarge } from "./project.js";
 
-/** @import { StateCommand } from "../vendor/studio-vendor.js" */
+/** @import { StateCommand, Transaction } from "../vendor/studio-vendor.js" */
 /** @import { Problem } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @typedef {{ name: string | undefined, isShown: boolean, mistakes: number }} FileOfScene */
-
-const colours = HighlightStyle.define([
-  { tag: tags.comment, color: "var(--soft)", fontStyle: "italic" },
-  { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: "var(--accent)" },
-  { tag: tags.string, color: "var(--good)" },
-  { tag: [tags.number, tags.bool, tags.atom], color: "var(--felt)" },
-]);
 
 /** A file is called by its name; `undefined` is the scene. */
 export class Editor {
@@ -84,27 +53,20 @@ export class Editor {
       this.onChange(this.#shown, state.doc.toString());
       this.onHistory();
     });
-    const label = EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0" });
-    this.#extensions = [
-      lineNumbers(),
-      lintGutter(),
-      highlightActiveLineGutter(),
-      highlightSpecialChars(),
-      history({ joinToEvent: joinHeld }),
-      drawSelection(),
-      bracketMatching(),
-      closeBrackets(),
-      highlightActiveLine(),
-      StreamLanguage.define(toml),
-      syntaxHighlighting(colours),
-      autocompletion({ override: [completeFrom(schema)] }),
-      EditorView.lineWrapping,
-      changed,
-      label,
-      // No Tab: it leaves the editor, as everywhere on the page.
-      keymap.of([...completionKeymap, ...lintKeymap, ...historyKeymap, ...defaultKeymap]),
-    ];
+    const limit = EditorState.changeFilter.of((change) => this.#isShortEnough(change));
+    this.#extensions = [editorExtensions(schema), limit, changed];
     this.#view = new EditorView({ parent, state: this.#newState("") });
+  }
+
+  /**
+   * Whether a change leaves no more text than the studio can check while a person types.
+   * @param {Transaction} change
+   */
+  #isShortEnough({ newDoc, startState }) {
+    const { length } = newDoc;
+    if (length <= TEXT_MAX_BYTES || length <= startState.doc.length) return true;
+    notify(tooLarge("text", length, TEXT_MAX_BYTES));
+    return false;
   }
 
   /** @param {string} doc */
@@ -230,7 +192,7 @@ export class Editor {
    */
   hold(file) {
     this.show(file);
-    return new HeldChange(this.#view);
+    return new HeldChange(this.#view, () => this.onHistory());
   }
 
   /** @param {string} text */
@@ -250,7 +212,7 @@ export class Editor {
    * @param {string | undefined} file
    * @param {number} number
    */
-  goTo(file, number) {
+  goTo(file, number, { focuses = true } = {}) {
     this.onReveal();
     this.show(file);
     const line = this.#view.state.doc.line(Math.max(1, Math.min(number, this.#view.state.doc.lines)));
@@ -258,7 +220,7 @@ export class Editor {
       selection: { anchor: line.from },
       effects: EditorView.scrollIntoView(line.from, { y: "center" }),
     });
-    this.#view.focus();
+    if (focuses) this.#view.focus();
   }
 
   undo() {

@@ -2,6 +2,7 @@
 // @ts-check
 
 import { byId, element, shortName } from "./dom.js";
+import { notify } from "./notices.js";
 
 /** @import { Checked, Layer, Perceived } from "../engine/types" */
 /** @typedef {{ naturalN: number, reachN: number }} Scale Friction of bare glass, and the most that can be reached, N. */
@@ -11,12 +12,31 @@ const REMARKS = ["draft", "warning", "out of reach", "alike", "note"];
 /** Lines on single layers, which the table has. */
 const OF_LAYERS = ["not felt", "unknown", "maybe", "felt", "more"];
 
+/** What the numbers of layers are: one line, where they are shown. */
+const CONTRAST =
+  "Contrast: from the least to the most friction inside a layer, in Weber steps. A step is a factor of 1.11, about the " +
+  "smallest change that a finger feels.";
+/** @type {Record<string, string>} */
+const MEANINGS = {
+  reachable: "what this board and finger can give; the map's colours end there",
+  targets: "the least and the most that the scene asks for anywhere on the screen",
+};
+
 /**
- * Whether something is felt, in the words of the check.
+ * Whether something is felt, in the words of the check; a press says the whole sentence.
  * @param {string} verdict
+ * @param {string} sentence
  */
-function chip(verdict) {
-  return element("span", { className: `verdict ${verdict.replaceAll(" ", "-")}` }, verdict);
+function chip(verdict, sentence) {
+  const className = `verdict ${verdict.replaceAll(" ", "-")}`;
+  const button = element("button", { type: "button", className, title: sentence }, verdict);
+  button.onclick = () => notify(sentence, undefined, { isGood: true, beside: button });
+  return button;
+}
+
+/** What the numbers of layers are. */
+export function contrastLine() {
+  return element("p", { className: "fine contrast" }, CONTRAST);
 }
 
 /** @param {number} newtons */
@@ -49,8 +69,8 @@ function weber({ weberSteps }) {
  */
 export function feltLine({ perceived, felt }, scale) {
   if (!perceived) return element("span", { className: "felt-line soft" }, "hidden by the layers above");
-  const line = element("span", { className: "felt-line", title: felt }, chip(perceived.verdict));
-  line.append(stepBar(perceived, scale), element("span", {}, weber(perceived), element("small", {}, " Weber steps")));
+  const line = element("span", { className: "felt-line", title: felt }, chip(perceived.verdict, felt));
+  line.append(stepBar(perceived, scale), element("span", {}, element("small", {}, "contrast "), weber(perceived)));
   const { texture } = perceived;
   if (texture) line.append(element("span", {}, `${Math.round(texture.frequencyHz)}`, element("small", {}, " Hz")));
   return line;
@@ -68,7 +88,7 @@ export function showFelt({ layers, report, ...scale }) {
   });
   const remarks = named.filter(({ name, text }) => REMARKS.includes(name) && text !== "nothing");
   remarks.sort((one, other) => REMARKS.indexOf(one.name) - REMARKS.indexOf(other.name));
-  const head = ["Layer", "Felt?", "Friction", "Weber steps", "Texture"].map((words) => element("th", { scope: "col" }, words));
+  const head = ["Layer", "Felt?", "Friction, up to", "Contrast", "Texture"].map((words) => element("th", { scope: "col" }, words));
   const table = element(
     "table",
     { className: "felt-table" },
@@ -76,12 +96,18 @@ export function showFelt({ layers, report, ...scale }) {
     element("tbody", {}, ...layers.map((layer) => row(layer, scale))),
   );
   const board = named.filter(({ name }) => ![...REMARKS, ...OF_LAYERS].includes(name));
-  byId("felt").replaceChildren(
+  const felt = byId("felt");
+  const open = [...felt.querySelectorAll("details[open] summary")].map(({ textContent }) => textContent);
+  felt.replaceChildren(
     layers.length > 0 ? table : element("p", { className: "soft" }, "This scene has no layer yet."),
+    ...(layers.length > 0 ? [contrastLine()] : []),
     ...remarks.map(({ name, text }) => element("p", { className: "remark" }, element("b", {}, name), ` ${text}`)),
     fold("What a board needs for it", pairs(board)),
     fold("In words, as frixel scene check says it", pairs(named.filter(({ name }) => OF_LAYERS.includes(name)))),
   );
+  // What a person has unfolded stays so.
+  for (const details of felt.querySelectorAll("details"))
+    details.open = open.includes(details.querySelector("summary")?.textContent ?? "");
 }
 
 /**
@@ -93,8 +119,9 @@ function row({ name, perceived, felt }, scale) {
   if (!perceived) return element("tr", {}, title, element("td", { colSpan: 4, className: "soft" }, "hidden"));
   const { texture } = perceived;
   const hertz = texture ? `${Math.round(texture.frequencyHz)} Hz at ${texture.speedMmPerS} mm/s` : "–";
-  const friction = element("td", {}, stepBar(perceived, scale), ` ${millinewtons(perceived.toN)} mN`);
-  const cells = [chip(perceived.verdict), weber(perceived), hertz].map((content) => element("td", {}, content));
+  const most = millinewtons(Math.max(perceived.fromN, perceived.toN));
+  const friction = element("td", {}, stepBar(perceived, scale), " ", element("span", { className: "number" }, `${most} mN`));
+  const cells = [chip(perceived.verdict, felt), weber(perceived), hertz].map((content) => element("td", {}, content));
   return element("tr", {}, title, cells[0], friction, cells[1], cells[2]);
 }
 
@@ -109,6 +136,8 @@ function fold(summary, content) {
 /** @param {{ name: string, text: string }[]} lines */
 function pairs(lines) {
   const row = (/** @type {{ name: string, text: string }} */ { name, text }) =>
-    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, text));
+    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, text, meaning(name)));
+  const meaning = (/** @type {string} */ name) =>
+    element("span", { className: "soft" }, MEANINGS[name] ? `: ${MEANINGS[name]}` : "");
   return element("table", { className: "felt-table" }, element("tbody", {}, ...lines.map(row)));
 }

@@ -2,6 +2,7 @@
 // @ts-check
 
 import { clock } from "../clock.js";
+import { ARROWS } from "./arrows.js";
 import { colour, contextOf } from "./dom.js";
 
 /** @import { Engine } from "../engine/engine.js" */
@@ -16,6 +17,8 @@ import { colour, contextOf } from "./dom.js";
 /** How long a trail stays, s. */
 const TRAIL_S = 2.5;
 const TRAIL_STEPS = 4;
+/** A point of the trail for so many samples. */
+const TRAIL_EVERY = 8;
 /** The drawn finger follows within this time on bare glass, and as much longer at the largest friction, ms. */
 const FOLLOW_MS = 12;
 const DRAG_MS = 160;
@@ -23,8 +26,6 @@ const DRAG_MS = 160;
 const KEY_MM_PER_S = 80;
 /** Load of a pressure of one half, the usual pressure, is that of the finger's profile, N. */
 const LOAD_AT_FULL_PRESSURE_N = 1;
-/** @type {Record<string, [number, number]>} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Finger {
   #canvas;
@@ -203,9 +204,10 @@ export class Finger {
    */
   feel(frame, reach) {
     const span = Math.max(reach.highN - reach.lowN, 1e-9);
-    for (let at = 0; at < frame.feltN.length; at += 8) {
+    for (let at = 0; at < frame.feltN.length; at += TRAIL_EVERY) {
       const felt = Number.isFinite(frame.feltN[at]) ? frame.feltN[at] : frame.referenceN[at];
-      if (!Number.isFinite(frame.xMm[at])) this.#trail.push(null);
+      // A finger that was up, for however short, left no trail there.
+      if (!frame.xMm.subarray(at, at + TRAIL_EVERY).every(Number.isFinite)) this.#trail.push(null);
       else {
         this.#friction = Math.max(0, Math.min(1.2, (felt - reach.lowN) / span));
         this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: clock.nowMs() });

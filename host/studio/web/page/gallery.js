@@ -1,11 +1,10 @@
 // The gallery: bundled scenes to start from, whole or layer by layer.
 // @ts-check
 
-import { carriedFiles, sceneNames } from "./bundled.js";
-import { imageOf } from "./colors.js";
-import { byId, contextOf, element, shortName } from "./dom.js";
-import { mapSizePx } from "./map.js";
+import { sceneNames, sceneText } from "./bundled.js";
+import { byId, element, shortName } from "./dom.js";
 import { attempt } from "./notices.js";
+import { drawScene } from "./scene_picture.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Layer } from "../engine/types" */
@@ -50,7 +49,7 @@ export class Gallery {
     );
     const cards = sceneNames().map((name) => ({
       name,
-      card: element("article", { className: "scene" }, element("h3", {}, name)),
+      card: element("article", { className: "scene" }, element("h3", {}, name.replaceAll("_", " "))),
     }));
     scenes.append(...cards.map(({ card }) => card));
     for (const { name, card } of cards) await this.#fill(card, name);
@@ -61,28 +60,23 @@ export class Gallery {
    * @param {string} name
    */
   async #fill(card, name) {
-    const files = await carriedFiles();
-    const entry = `${name}.toml`;
-    const text = new TextDecoder().decode(files[entry]);
-    const check = await this.#engine.check(files, entry, {});
-    if (!("screen" in check)) throw new Error(check.problems.map(({ message }) => message).join("\n"));
-    const size = mapSizePx(check.screen, LONG_SIDE_PX);
-    const canvas = element("canvas", { width: size.widthPx, height: size.heightPx, "aria-hidden": "true" });
+    const text = await sceneText(name);
+    const canvas = element("canvas", { "aria-hidden": "true" });
+    const found = await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {
       this.#dialog.close();
       attempt(() => this.onScene(name, text));
     };
+    canvas.onclick = () => open.click();
     const layers = element(
       "details",
       {},
       element("summary", {}, "Layers"),
-      element("ul", {}, ...this.#layers(text, check.layers)),
+      element("ul", {}, ...this.#layers(text, found)),
     );
     const words = element("p", { className: "fine" }, introduction(text));
-    card.replaceChildren(canvas, element("h3", {}, name), words, open, layers);
-    const map = await this.#engine.map(files, entry, {}, { ...size, speedMmPerS: 100 });
-    contextOf(canvas).putImageData(imageOf(map), 0, 0);
+    card.replaceChildren(canvas, element("h3", {}, name.replaceAll("_", " ")), words, open, layers);
   }
 
   /**

@@ -16,6 +16,12 @@ const REST_AFTER_MS = 60_000;
 /** One stroke and the pause after it, ms. */
 const STROKE_MS = 1500;
 const PAUSE_MS = 350;
+/**
+ * Between two pictures it goes on by so much time at most, ms: a page that is held up slows it, and makes it no faster.
+ * After a longer pause it comes down anew.
+ */
+const STEP_MAX_MS = 24;
+const STALL_MS = 100;
 /** Part of a stroke in which the finger speeds up, and in which it slows down. */
 const RAMP_PART = 0.15;
 /** A stroke's longest way, and the part of the screen that it crosses at most, and along which lines lie. */
@@ -41,6 +47,7 @@ export class Ghost {
   #note = byId("first-words");
   #isEnded = false;
   #isDismissed = false;
+  #sound;
   #isDown = false;
   #isStarted = false;
   /** Whether each picture of the screen moves it. */
@@ -59,8 +66,9 @@ export class Ghost {
     this.#engine = engine;
     this.#map = map;
     this.#finger = finger;
+    this.#sound = sound;
     finger.overlays.push(this);
-    this.#offerSound(sound);
+    this.#offerSound();
     byId("first-dismiss").onclick = () => this.dismiss();
     for (const type of /** @type {const} */ (["pointerdown", "click", "keydown"]))
       map.box.addEventListener(type, (event) => this.#touched(event), { capture: true });
@@ -70,9 +78,9 @@ export class Ghost {
   /** Whether it may slide now: never with a board, unseen, in a blind comparison, or while layers are edited. */
   get #maySlide() {
     const { link, state } = this.#engine.state;
-    const isOthers = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
+    const isMapTaken = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
     const isThere = state === "active" && this.#map.frictionN.length > 0;
-    return link === "simulator" && isThere && !isOthers && document.visibilityState === "visible";
+    return link === "simulator" && isThere && !isMapTaken && document.visibilityState === "visible";
   }
 
   /** Whether it is drawn at each picture of the screen. */
@@ -82,7 +90,7 @@ export class Ghost {
 
   /** Begins, where a person has not asked for less motion: then nothing moves before a press. */
   start() {
-    this.#note.hidden = this.#isDismissed;
+    this.#show();
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.end();
     if (this.#isEnded) return;
     this.#isStarted = true;
@@ -112,7 +120,19 @@ export class Ghost {
   dismiss() {
     this.end();
     this.#isDismissed = true;
-    this.#note.hidden = true;
+    this.#show();
+  }
+
+  /** The map is a person's: the ghost ends for good, and of the words only sound is still offered. */
+  handOver() {
+    if (!this.#isEnded) this.end();
+    this.#note.classList.add("taken");
+  }
+
+  /** Sound that is on can be turned off, whatever was dismissed. */
+  #show() {
+    this.#note.hidden = this.#isDismissed && !this.#sound.isOn;
+    if (this.#isDismissed) this.#note.classList.add("taken");
   }
 
   /** The board plays, or another one: what the words say is of the simulator. */
@@ -126,13 +146,13 @@ export class Ghost {
     byId("first-hint").textContent = words;
   }
 
-  /** @param {Sound} sound */
-  #offerSound(sound) {
+  #offerSound() {
+    const sound = this.#sound;
     const hear = byId("hear");
     hear.onclick = () => attempt(() => (sound.isOn ? sound.stop() : sound.start()));
     sound.onChange = () => {
-      hear.textContent = sound.isOn ? "Sound off" : "♪ Hear it";
-      hear.setAttribute("aria-pressed", String(sound.isOn));
+      hear.textContent = sound.isOn ? "♪ Turn sound off" : "♪ Hear it";
+      this.#show();
     };
     sound.onChange();
   }
@@ -144,8 +164,7 @@ export class Ghost {
   #touched(event) {
     const isInNote = event.target instanceof Node && this.#note.contains(event.target);
     if (isInNote || (event instanceof KeyboardEvent && PASSIVE_KEYS.includes(event.key))) return;
-    if (!this.#isEnded) this.end();
-    this.#note.classList.add("taken");
+    this.handOver();
   }
 
   /** @param {number} ms */
@@ -168,7 +187,9 @@ export class Ghost {
 
   /** @param {number} ms */
   #slide(ms) {
-    this.#slidMs += Math.min(ms - this.#lastMs, 50);
+    this.#slidMs += Math.min(ms - this.#lastMs, STEP_MAX_MS);
+    // It comes down again where it is now, so that no way leads there.
+    if (ms - this.#lastMs > STALL_MS) this.#lift();
     const stroke = Math.floor(this.#slidMs / (STROKE_MS + PAUSE_MS));
     const part = (this.#slidMs % (STROKE_MS + PAUSE_MS)) / STROKE_MS;
     if (part > 1) {

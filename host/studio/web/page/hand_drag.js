@@ -91,29 +91,33 @@ export class HandDrag {
     if (event.pointerId !== press.pointerId) return;
     const isFar = Math.hypot(event.clientX - press.clientX, event.clientY - press.clientY) >= CLICK_PX;
     if (!press.hasMoved && !isFar) return;
-    if (!press.hasMoved) press.place = this.#hands.grip()?.place;
+    if (!press.hasMoved) press.place = this.#hands.grip.begin()?.place;
     press.hasMoved = true;
     // What was taken back by a key, or whose text has gone, is not dragged on.
-    if (this.#hands.isHolding) this.#drag(press, this.#at(event), event.shiftKey ? FINE_GRID_MM : GRID_MM);
+    if (this.#hands.grip.isHolding) this.#drag(press, this.#at(event), event);
   }
 
   /**
+   * With Alt or Ctrl sides rest anywhere, with Shift a layer moves along one axis, and a corner keeps its sides' ratio.
    * @param {Press} press
    * @param {Point} point
-   * @param {number} grid
+   * @param {PointerEvent} keys
    */
-  #drag({ place, start, handle }, { xMm, yMm }, grid) {
+  #drag({ place, start, handle }, { xMm, yMm }, { altKey, ctrlKey, metaKey, shiftKey }) {
     if (!place) return;
-    const [dx, dy] = [xMm - start.xMm, yMm - start.yMm];
+    const grid = altKey || ctrlKey || metaKey ? FINE_GRID_MM : GRID_MM;
+    let [dx, dy] = [xMm - start.xMm, yMm - start.yMm];
+    if (shiftKey && !handle) [dx, dy] = Math.abs(dx) >= Math.abs(dy) ? [dx, 0] : [0, dy];
     const { box } = place;
-    if (handle) this.#hands.resize(resized(place, handle, dx, dy, this.#hands.screen, grid));
-    else if (place.isWholeScreen) this.#hands.move(snapped(dx, grid), snapped(dy, grid));
+    const keepsRatio = place.keepsRatio || (shiftKey && handle?.length === 2);
+    if (handle) this.#hands.grip.resize(resized({ ...place, keepsRatio }, handle, dx, dy, this.#hands.screen, grid));
+    else if (place.isWholeScreen) this.#hands.grip.move(snapped(dx, grid), snapped(dy, grid));
     else {
       const { widthMm, heightMm } = this.#hands.screen;
       const all = bounds(box, place.copies);
       const left = clamp(snapped(box.x + dx, grid), box.x - all.x, widthMm - all.x - all.width + box.x);
       const top = clamp(snapped(box.y + dy, grid), box.y - all.y, heightMm - all.y - all.height + box.y);
-      this.#hands.move(left - box.x, top - box.y);
+      this.#hands.grip.move(left - box.x, top - box.y);
     }
   }
 
@@ -122,9 +126,9 @@ export class HandDrag {
     const press = this.#press;
     if (!press || event.pointerId !== press.pointerId) return;
     this.#press = undefined;
-    if (event.type === "pointercancel") this.#hands.cancel();
+    if (event.type === "pointercancel") this.#hands.grip.cancel();
     else if (!press.hasMoved && press.next) this.#hands.focus(press.next.key);
-    this.#hands.end();
+    this.#hands.grip.end();
   }
 }
 

@@ -1,50 +1,58 @@
 // The keys of the map while it is edited: all that mouse and touch do.
 // @ts-check
 
+import { ARROWS } from "./arrows.js";
 import { element } from "./dom.js";
 
 /** @import { Hands } from "./hands.js" */
 
 /** What is read out at each layer. */
 const WORDS =
-  "Arrow keys move it by 1 mm, with Shift by 0.1 mm. Tab: next layer. Space: its numbers. Enter: its text. " +
-  "Delete removes it. Escape deselects it.";
-/** @type {Record<string, [number, number]>} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+  "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Tab: next layer. Space: its numbers. " +
+  "Enter shows its text, Ctrl+Enter goes there. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
 const STEP_MM = 1;
+const LARGE_STEP_MM = 5;
 const FINE_STEP_MM = 0.1;
+/** Where keys write, and Ctrl+Z is that of the field. */
+const FIELDS = ".cm-editor, textarea, select, input:not([type=range], [type=checkbox])";
 
 export class HandKeys {
   #hands;
+  #panel;
   /** How far the arrow keys have moved the layer since they are held. */
   #movedMm = [0, 0];
 
   /**
    * @param {HTMLElement} surface The element around the layers.
    * @param {Hands} hands
-   * @param {HTMLElement[]} parts Where Ctrl+Z undoes.
+   * @param {HTMLElement} panel Whose fields write into the text of the scene at once.
    */
-  constructor(surface, hands, parts) {
+  constructor(surface, hands, panel) {
     this.#hands = hands;
+    this.#panel = panel;
     surface.append(element("p", { id: "hands-keys", hidden: true }, WORDS));
     surface.addEventListener("keydown", (event) => this.#down(event));
-    surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.#hands.end());
-    for (const part of parts) part.addEventListener("keydown", (event) => this.#undo(event), { capture: true });
+    surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.#hands.grip.end());
+    addEventListener("keydown", (event) => this.#shortcut(event), { capture: true });
   }
 
   /** @param {KeyboardEvent} event */
   #down(event) {
-    const { key, shiftKey } = event;
+    const { key, shiftKey, altKey } = event;
     const hands = this.#hands;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (key in ARROWS && hands.selected) this.#move(ARROWS[key], shiftKey ? FINE_STEP_MM : STEP_MM);
+    const isCommand = event.ctrlKey || event.metaKey;
+    if (key === "Enter" && isCommand && !altKey) hands.toText();
+    else if (isCommand) return;
+    else if (key in ARROWS && hands.selected) {
+      this.#move(ARROWS[key], altKey ? FINE_STEP_MM : shiftKey ? LARGE_STEP_MM : STEP_MM);
+    } else if (altKey) return;
     else if (key === "Tab") {
       if (!hands.focusNeighbour(shiftKey ? -1 : 1)) return;
-    } else if (key === "Enter") hands.toText();
+    } else if (key === "Enter") hands.showText();
     else if (key === " ") hands.focusPanel();
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
-      if (hands.isHeld) hands.cancel();
+      if (hands.isHeld) hands.grip.cancel();
       else hands.focus(undefined);
     } else return;
     event.preventDefault();
@@ -55,17 +63,25 @@ export class HandKeys {
    * @param {number} stepMm
    */
   #move(direction, stepMm) {
-    if (!this.#hands.isHolding) this.#movedMm = [0, 0];
+    if (!this.#hands.grip.isHolding) this.#movedMm = [0, 0];
     this.#movedMm = this.#movedMm.map((mm, along) => mm + stepMm * direction[along]);
     const [dx, dy] = this.#movedMm;
-    this.#hands.move(dx, dy);
+    this.#hands.grip.move(dx, dy);
   }
 
-  /** @param {KeyboardEvent} event */
-  #undo(event) {
+  /**
+   * Keys that act wherever the focus is, but in a field or a dialog.
+   * @param {KeyboardEvent} event
+   */
+  #shortcut(event) {
+    const { target, ctrlKey, metaKey, altKey, shiftKey } = event;
+    if (!(ctrlKey || metaKey) || altKey || !(target instanceof Element)) return;
+    if (!this.#panel.contains(target) && target.closest(`${FIELDS}, dialog`)) return;
     const key = event.key.toLowerCase();
-    if (!(event.ctrlKey || event.metaKey) || (key !== "z" && key !== "y")) return;
+    if (key === "z" || key === "y") this.#hands.goBack(key === "y" || shiftKey ? "redo" : "undo");
+    else if (key === "d" && this.#hands.selected) this.#hands.duplicate();
+    else return;
     event.preventDefault();
-    this.#hands.goBack(key === "y" || event.shiftKey ? "redo" : "undo");
+    event.stopPropagation();
   }
 }

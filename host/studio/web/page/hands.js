@@ -3,52 +3,47 @@
 
 import { byId, element, sentenceOf } from "./dom.js";
 import { EditedLayers } from "./edited_layers.js";
-import { HandDrag, withSide } from "./hand_drag.js";
+import { HandDrag } from "./hand_drag.js";
+import { ELSEWHERE, HandGrip } from "./hand_grip.js";
 import { HandKeys } from "./hand_keys.js";
 import { LayerBoxes } from "./layer_boxes.js";
-import { layerNumbers } from "./layer_numbers.js";
+import { LayerEdits } from "./layer_edits.js";
+import { layerNumbers, repeatNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
-import { notify } from "./notices.js";
+import { ModeSwitch } from "./mode_switch.js";
 
 /** @import { Checked, Files } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { Editor } from "./editor.js" */
-/** @import { HeldChange } from "./held_change.js" */
 /** @import { Most } from "./layer_numbers.js" */
 /** @import { Area, FrictionMap } from "./map.js" */
-/** @import { Box } from "./place.js" */
 /** @import { Player } from "./player.js" */
 /** @import { Project } from "./project.js" */
-/** @import { Change } from "./toml_text.js" */
 /** @typedef {{ map: FrictionMap, editor: Editor, player: Player, project: Project }} Parts */
-/**
- * A change that a hand is making: of which layer, as it was before.
- * @typedef {{ held: HeldChange, from: EditedLayer }} Grip
- */
-
-const ELSEWHERE = "The text has changed: its layers are read again once it has no mistake.";
 
 export class Hands {
   #parts;
   #schema;
   #layers;
   #boxes;
+  #edits;
   #panel = new LayerPanel();
   #surface = element("div", { className: "hands", role: "group", tabIndex: -1, hidden: true, "aria-label": "Layers" });
-  #buttons = ["Feel", "Edit"].map((words) => element("button", { type: "button", "aria-pressed": "false" }, words));
+  #mode = new ModeSwitch();
   /** @type {string | undefined} */
   #selected;
-  /** @type {Grip | undefined} */
-  #grip;
   #reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
-  isEditing = false;
-  /** Why the scene that plays cannot be edited here, or "". */
-  #whyNot = "";
+  /** What moves, resizes and tunes the selected layer. */
+  grip;
   /** The scene that the layers are of, as the project counts them. */
   #opened = 0;
+  /** Whether a layer was put behind all others in the text, to be selected once its check is there. */
+  #isLastAwaited = false;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
+  /** A picture is wanted as a layer. */
+  onPicture = () => {};
 
   /**
    * @param {Parts} parts
@@ -59,13 +54,13 @@ export class Hands {
     this.#schema = schema;
     this.#layers = new EditedLayers(parts.editor);
     this.#boxes = new LayerBoxes(this.#surface);
+    this.#edits = new LayerEdits(parts.editor, this.#layers);
+    this.grip = new HandGrip(parts, this.#layers);
     const { box, onLayout } = parts.map;
-    const words = "Press a layer to select it. Drag it to move it, its handles to resize it.";
-    box.append(this.#surface, element("p", { className: "hint hands-hint" }, words));
+    box.append(this.#surface);
     document.body.append(this.#panel.element);
-    this.#makeSwitch();
     new HandDrag(this.#surface, this, parts.map);
-    new HandKeys(this.#surface, this, [box, this.#panel.element]);
+    new HandKeys(this.#surface, this, this.#panel.element);
     this.#listen();
     parts.map.onLayout = (area) => {
       onLayout(area);
@@ -73,47 +68,44 @@ export class Hands {
     };
   }
 
-  #makeSwitch() {
-    const [feel, edit] = this.#buttons;
-    edit.title = "Select, move and resize the layers on the map";
-    feel.onclick = () => this.setEditing(false);
-    edit.onclick = () => this.setEditing(true);
-    const words = "What a press on the map does";
-    byId("options").before(element("div", { className: "mode", role: "group", "aria-label": words }, feel, edit));
-    this.setEditing(false);
-  }
-
   #listen() {
-    this.#surface.addEventListener("focusout", () => this.end());
+    const { grip } = this;
+    this.#mode.onChange = () => this.#changeMode();
+    grip.selected = () => this.selected;
+    grip.onChange = () => this.#draw(false);
+    grip.onSay = (sentence) => this.say(sentence);
+    this.#surface.addEventListener("focusout", () => grip.end());
     this.#panel.element.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
-      this.end();
+      grip.end();
       this.#boxes.focus(this.#selected);
     });
     this.#boxes.onFocus = (key) => this.select(key);
-    this.#panel.onNumber = ({ path, decimals }, value) => this.change([{ path, value, decimals }]);
-    this.#panel.onSide = (side, mm) => this.#toSide(side, mm);
-    this.#panel.onEnd = () => this.end();
-    this.#panel.onText = () => this.toText();
-    this.#panel.onDelete = () => this.delete();
-    this.#panel.onClose = () => this.focus(undefined);
+    const panel = this.#panel;
+    panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
+    panel.onSide = (side, mm) => grip.setSide(side, mm);
+    panel.onEnd = () => grip.end();
+    panel.onText = () => this.toText();
+    panel.onDuplicate = () => this.duplicate();
+    panel.onDelete = () => this.delete();
+    panel.onClose = () => this.focus(undefined);
+    panel.onAdd = (beginning) => this.#edit(() => this.#edits.add(beginning));
+    panel.onPicture = () => this.onPicture();
+  }
+
+  get isEditing() {
+    return this.#mode.isEditing;
   }
 
   /** @param {boolean} isEditing */
   setEditing(isEditing) {
-    if (isEditing && this.#whyNot) {
-      this.#refuse();
-      return;
-    }
-    this.end();
-    this.isEditing = isEditing;
-    const [feel, edit] = this.#buttons;
-    feel.setAttribute("aria-pressed", String(!isEditing));
-    edit.setAttribute("aria-pressed", String(isEditing));
-    this.#surface.hidden = !isEditing;
-    byId("map").classList.toggle("editing", isEditing);
-    byId("map-finger").inert = isEditing;
-    if (isEditing) this.onEdit();
+    this.#mode.set(isEditing);
+  }
+
+  #changeMode() {
+    this.grip.end();
+    this.#surface.hidden = !this.isEditing;
+    if (this.isEditing) this.onEdit();
     else this.#selected = undefined;
     this.#draw(true);
   }
@@ -125,20 +117,18 @@ export class Hands {
    * @param {Files} files That were checked.
    */
   show(check, files) {
-    if (this.isHolding) return;
+    if (this.grip.isHolding) {
+      this.#layers.feel(check.layers);
+      this.#draw(false);
+      return;
+    }
     try {
       this.#take(check, files);
-      this.#whyNot = "";
+      this.#mode.whyNot = "";
     } catch (error) {
-      this.#whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
-      if (this.isEditing) this.#refuse();
+      this.#mode.whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
+      if (this.isEditing) this.setEditing(true);
     }
-  }
-
-  /** Says why there is no mode Edit, and leaves it. */
-  #refuse() {
-    notify(this.#whyNot, undefined, { beside: this.#buttons[1] });
-    this.setEditing(false);
   }
 
   /**
@@ -153,9 +143,18 @@ export class Hands {
     const isSameScene = project.opened === this.#opened;
     this.#opened = project.opened;
     const after = before && isSameScene ? this.#layers.successor(before) : undefined;
-    this.#reselect(after?.key);
+    const last = this.#isLastAwaited ? this.#layers.last : undefined;
+    this.#isLastAwaited = false;
+    this.#reselect((last ?? after)?.key);
+    // What was said was about the layers before.
+    this.say(this.selected?.at === undefined ? (this.selected?.place.whyNotMoved ?? "") : "");
     // What is selected stands in the text that is shown.
     if (!editor.has(this.selected?.layer.file)) this.#panel.hide();
+  }
+
+  /** A layer comes behind all others in the text of the scene: while layers are edited, it is selected. */
+  awaitLast() {
+    this.#isLastAwaited = this.isEditing;
   }
 
   /**
@@ -180,10 +179,14 @@ export class Hands {
     return this.#layers.find(this.#selected);
   }
 
+  get screen() {
+    return this.#layers.screen;
+  }
+
   /** @param {string | undefined} key */
   select(key) {
     if (key === this.#selected) return;
-    this.end();
+    this.grip.end();
     this.#selected = key;
     this.#draw(true);
   }
@@ -218,103 +221,9 @@ export class Hands {
     this.#panel.note = sentence;
   }
 
-  get isHolding() {
-    return this.#grip !== undefined && !this.#grip.held.isOver;
-  }
-
-  /**
-   * Begins a change of the layer that is selected, or goes on with it; returns what it was before. Where it cannot be
-   * changed now, says why.
-   */
-  grip() {
-    if (this.#grip && this.isHolding) return this.#grip.from;
-    if (this.#grip) this.end();
-    const from = this.selected;
-    if (!from || from.at === undefined) return undefined;
-    if (!this.#layers.isCurrent) {
-      this.say(ELSEWHERE);
-      return undefined;
-    }
-    this.#grip = { from, held: this.#parts.editor.hold(from.layer.file) };
-    return from;
-  }
-
-  /**
-   * Makes changes of the layer as it was before, in place of those that this hand made last.
-   * @param {Change[]} changes
-   * @param {Box} [box] Where its first copy is then, where its text does not say that.
-   */
-  change(changes, box) {
-    const from = this.grip();
-    if (!from?.toml || !this.#grip) return;
-    const { player } = this.#parts;
-    const replacements = from.toml.replacements(changes);
-    if (replacements.length === 0 && !player.isHeld) return;
-    player.hold();
-    this.#grip.held.make(replacements);
-    this.#layers.reread(from, box);
-    this.#draw(false);
-  }
-
-  /** Takes back what this hand has changed since it began. */
-  cancel() {
-    if (this.#grip && this.#parts.player.isHeld) this.change([], this.#grip.from.place.box);
-    this.end();
-  }
-
-  /** The hand lets go: the scene plays as it is now. */
-  end() {
-    const grip = this.#grip;
-    if (!grip) return;
-    this.#grip = undefined;
-    grip.held.end();
-    const { player, editor } = this.#parts;
-    if (player.isHeld) player.release(editor.text);
-  }
-
-  /**
-   * Moves the selected layer from where it was when the change began.
-   * @param {number} dxMm
-   * @param {number} dyMm
-   */
-  move(dxMm, dyMm) {
-    const place = this.grip()?.place;
-    if (!place) return;
-    if (place.whyNotMoved) {
-      this.say(place.whyNotMoved);
-      return;
-    }
-    const { x, y, width, height } = place.box;
-    this.change(place.move(dxMm, dyMm), place.isWholeScreen ? undefined : { x: x + dxMm, y: y + dyMm, width, height });
-  }
-
-  /** @param {Box} box */
-  resize(box) {
-    const place = this.grip()?.place;
-    if (!place) return;
-    if (place.whyNotResized) this.say(place.whyNotResized);
-    else this.change(place.resize(box), box);
-  }
-
-  get screen() {
-    return this.#layers.screen;
-  }
-
-  /**
-   * @param {keyof Box} side
-   * @param {number} mm
-   */
-  #toSide(side, mm) {
-    const place = this.grip()?.place;
-    if (!place) return;
-    const isMove = (side === "x" || side === "y") && !place.isWholeScreen;
-    if (isMove) this.move(side === "x" ? mm - place.box.x : 0, side === "y" ? mm - place.box.y : 0);
-    else this.resize(withSide(place, side, mm, this.screen));
-  }
-
   /** @param {"undo" | "redo"} what */
   goBack(what) {
-    this.end();
+    this.grip.end();
     this.#parts.editor[what]();
   }
 
@@ -332,25 +241,57 @@ export class Hands {
     this.#panel.focus();
   }
 
+  /** Goes to the lines of the selected layer in the text. */
   toText() {
+    this.showText({ focuses: true });
+  }
+
+  /** Shows them: the keys act on the layer still, unless it `focuses` the text. */
+  showText({ focuses = false } = {}) {
     const { editor } = this.#parts;
     const { selected } = this;
     if (!selected || !editor.has(selected.layer.file)) return;
-    this.end();
+    this.grip.end();
     const [first] = selected.at === undefined ? selected.layer.from : (selected.toml?.layerLines(selected.at) ?? [1]);
-    editor.goTo(selected.layer.file, first);
+    editor.goTo(selected.layer.file, first, { focuses });
+  }
+
+  /**
+   * Adds a picture of the scene as a layer.
+   * @param {string} name
+   * @param {number} aspect Its width over its height.
+   */
+  addPicture(name, aspect) {
+    this.#edit(() => this.#edits.addPicture(name, aspect));
+  }
+
+  duplicate() {
+    const { selected } = this;
+    if (selected) this.#edit(() => this.#edits.duplicate(selected));
   }
 
   delete() {
-    this.end();
-    const from = this.grip();
-    const grip = this.#grip;
-    if (!from?.toml || from.at === undefined || !grip) return;
-    this.#grip = undefined;
-    grip.held.make(from.toml.removals(from.at));
-    grip.held.end();
-    this.#layers.all = this.#layers.all.filter((each) => each !== from);
-    this.focus(undefined);
+    const { selected } = this;
+    if (selected) this.#edit(() => this.#edits.remove(selected));
+  }
+
+  /**
+   * Adds or takes out a layer, in one step of undo, and selects what came of it.
+   * @param {() => EditedLayer | void} edit
+   */
+  #edit(edit) {
+    this.grip.end();
+    if (!this.#layers.isCurrent) {
+      this.say(ELSEWHERE);
+      return;
+    }
+    try {
+      const made = edit();
+      this.#draw(false);
+      this.focus(made?.key);
+    } catch (error) {
+      this.say(sentenceOf(error));
+    }
   }
 
   /** @param {Area} area */
@@ -373,15 +314,14 @@ export class Hands {
     const { scale, box } = this.#parts.map;
     this.#boxes.show(this.#layers.all, this.#selected, scale);
     const { selected } = this;
-    box.classList.toggle("has-selection", selected !== undefined);
-    if (!selected) {
-      this.#panel.hide();
-      return;
-    }
-    const { toml, at, layer } = selected;
-    const numbers = toml && at !== undefined ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
-    this.#panel.show(selected, numbers, this.#reach, isNew);
-    const felt = [byId("numbers"), byId("scope").parentElement ?? box].map((each) => each.getBoundingClientRect());
-    this.#panel.place(felt, (box.closest(".map-card") ?? box).getBoundingClientRect());
+    const { toml, at, layer } = selected ?? {};
+    const isTuned = layer && toml && at !== undefined;
+    const numbers = isTuned ? layerNumbers(this.#schema, toml, at, layer.kind, this.#reach) : [];
+    if (selected) numbers.push(...repeatNumbers(selected, this.screen));
+    if (selected) this.#panel.show(selected, numbers, this.#reach, isNew);
+    else this.#panel.showNone(this.#layers.all.length, isNew);
+    const around = [byId("numbers"), byId("scope").parentElement ?? box, box.closest(".map-card") ?? box];
+    const [numbersRect, scope, map] = around.map((each) => each.getBoundingClientRect());
+    this.#panel.place(numbersRect, scope, map);
   }
 }

@@ -6,8 +6,8 @@ import { Annotation, Transaction, isolateHistory } from "../vendor/studio-vendor
 /** @import { ChangeSet, EditorView } from "../vendor/studio-vendor.js" */
 /** @import { Replacement } from "./toml_text.js" */
 
-/** Marks changes that go on with the step of undo before. */
-const goesOn = Annotation.define();
+/** Marks changes that belong to the step of undo before. */
+const continuesStep = Annotation.define();
 
 /**
  * For CodeMirror's history: whether a change joins the step before, which is not long ago.
@@ -15,11 +15,12 @@ const goesOn = Annotation.define();
  * @param {boolean} isAdjacent
  */
 export function joinHeld(transaction, isAdjacent) {
-  return isAdjacent || transaction.annotation(goesOn) === true;
+  return isAdjacent || transaction.annotation(continuesStep) === true;
 }
 
 export class HeldChange {
   #view;
+  #onRestored;
   #start;
   #now;
   /** @type {ChangeSet} */
@@ -27,9 +28,13 @@ export class HeldChange {
   /** @type {number | undefined} */
   #beganMs;
 
-  /** @param {EditorView} view */
-  constructor(view) {
+  /**
+   * @param {EditorView} view
+   * @param {() => void} onRestored There is no step of undo: the change was taken back.
+   */
+  constructor(view, onRestored = () => {}) {
     this.#view = view;
+    this.#onRestored = onRestored;
     this.#start = view.state;
     this.#now = view.state.doc;
     this.#made = view.state.changes([]);
@@ -52,7 +57,7 @@ export class HeldChange {
     // The history joins changes of one time: the hand may rest as long as it likes.
     const annotations = this.#beganMs === undefined
       ? [isolateHistory.of("before")]
-      : [goesOn.of(true), Transaction.time.of(this.#beganMs)];
+      : [continuesStep.of(true), Transaction.time.of(this.#beganMs)];
     this.#beganMs ??= Date.now();
     if (annotations.length === 1) annotations.push(Transaction.time.of(this.#beganMs));
     this.#view.dispatch({ changes, annotations });
@@ -60,8 +65,18 @@ export class HeldChange {
     this.#now = this.#view.state.doc;
   }
 
-  /** The hand lets go: what comes next is another step. */
+  /** The hand lets go: what comes next is another step. Where nothing has changed in the end, there is no step. */
   end() {
-    if (this.#beganMs !== undefined && !this.isOver) this.#view.dispatch({ annotations: isolateHistory.of("full") });
+    if (this.#beganMs === undefined || this.isOver) return;
+    if (this.#made.empty) this.#restore();
+    else this.#view.dispatch({ annotations: isolateHistory.of("full") });
+  }
+
+  /** Brings back what could be undone and redone before. */
+  #restore() {
+    const { scrollTop } = this.#view.scrollDOM;
+    this.#view.setState(this.#start);
+    this.#view.scrollDOM.scrollTop = scrollTop;
+    this.#onRestored();
   }
 }

@@ -4,7 +4,7 @@
 import { projectOf, UNPACKED_MAX_BYTES } from "./archive.js";
 import { byId, sentenceOf, shortName } from "./dom.js";
 import { forgetNotice, notify } from "./notices.js";
-import { isPicture } from "./project.js";
+import { TEXT_MAX_BYTES, isPicture, tooLarge } from "./project.js";
 
 /** @import { Files } from "../engine/types" */
 /** @import { Kind } from "./profiles.js" */
@@ -16,7 +16,7 @@ import { isPicture } from "./project.js";
  * Largest text, picture and zip, bytes.
  * @type {Record<string, number>}
  */
-const MAX_BYTES = { toml: 500_000, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: UNPACKED_MAX_BYTES };
+const MAX_BYTES = { toml: TEXT_MAX_BYTES, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: UNPACKED_MAX_BYTES };
 const JPEG = [0xff, 0xd8, 0xff];
 /**
  * The first bytes of pictures, by the ending of their names.
@@ -131,17 +131,15 @@ export class Incoming {
 }
 
 /**
+ * What stands in a file, if it can be taken.
  * @param {File} file
  * @param {Found} found
  * @returns {Promise<Partial<Found>>}
  */
-async function read(file, found) {
+export async function read(file, found) {
   const ending = /\.(toml|png|jpe?g|zip)$/i.exec(file.name)?.[1].toLowerCase();
   if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png, .jpg) or a saved project (.zip)");
-  if (file.size > MAX_BYTES[ending]) {
-    const [size, most] = [file.size, MAX_BYTES[ending]].map((bytes) => (bytes / 1e6).toFixed(1));
-    throw new Error(`the file has ${size} MB, more than the ${most} MB that the studio opens`);
-  }
+  if (file.size > MAX_BYTES[ending]) throw new Error(tooLarge("file", file.size, MAX_BYTES[ending]));
   const bytes = new Uint8Array(await file.arrayBuffer());
   if (ending === "zip") return { scene: projectOf(bytes) };
   if (isPicture(file.name)) {
@@ -151,7 +149,9 @@ async function read(file, found) {
       throw new Error("this PNG picture is cut off: its end is missing; save or copy it anew");
     return { files: [...found.files, [file.name, bytes]] };
   }
-  return { texts: [...found.texts, [file.name, textOf(bytes)]] };
+  const text = textOf(bytes);
+  if (text.trim() === "") throw new Error("this file is empty: it has no scene");
+  return { texts: [...found.texts, [file.name, text]] };
 }
 
 /** @param {Uint8Array} bytes */

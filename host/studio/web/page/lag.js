@@ -74,6 +74,8 @@ export class Lag {
     byId("open-lag").setAttribute("aria-expanded", String(isOpen));
     this.#forget();
     this.#say();
+    // In a low window the chart with its lag reaches below the edge.
+    if (isOpen) byId("lag").parentElement?.scrollIntoView({ block: "nearest" });
     if (isOpen || byId("prediction").checked) return;
     // Nothing else says that friction comes late.
     this.#predict(true);

@@ -3,20 +3,57 @@
 
 import { layerFields } from "./completion.js";
 
-/** @import { Reach } from "../engine/types" */
+/** @import { Reach, Screen } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
-/** @import { Path, TomlText } from "./toml_text.js" */
+/** @import { EditedLayer } from "./edited_layers.js" */
+/** @import { Path } from "./toml_reading.js" */
+/** @import { TomlText } from "./toml_text.js" */
 /** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
 /**
- * A number of a layer. `least` and `most` are the ends of a slider; `min` and `max` what a scene may have.
- * @typedef {{ field: string, label: string, unit: string, value: number, path: Path, decimals: number, step: number,
- *   least: number, most: number, min: number, max: number }} LayerNumber
+ * A number of a layer, and what it means in a few words. `least` and `most` are the ends of a slider, `limit` the most
+ * that the drive can give, where there is one; `min` and `max` are what a scene may have.
+ * @typedef {{ field: string, label: string, words: string, unit: string, value: number, path: Path, decimals: number,
+ *   step: number, least: number, most: number, limit?: number, min: number, max: number }} LayerNumber
  */
 
 /** What a place is made of, which a hand drags. */
 const PLACE = ["x", "y", "height"];
 /** Fields that count without being written, with their defaults. */
 const DEFAULTS = { angle_deg: 0, gain: 1 };
+/** What numbers mean, by their labels. @type {Record<string, string>} */
+const WORDS = {
+  along: "friction along its direction",
+  against: "friction against it",
+  angle: "turn of the pattern",
+  black: "friction where it is black",
+  click: "friction of the click",
+  duty: "part of a wave that is high",
+  face: "friction inside the rim",
+  friction: "friction all over it",
+  gain: "all of its friction, times this",
+  high: "most friction",
+  low: "least friction",
+  number: "how many around",
+  ridge: "friction on the line",
+  rim: "friction at the border",
+  "rim width": "how wide the border is",
+  seed: "another number, another pattern",
+  wavelength: "from one ridge to the next",
+  "wavelength max": "coarsest grain",
+  "wavelength min": "finest grain",
+  white: "friction where it is white",
+  width: "how wide the line is",
+};
+/** @type {["columns" | "rows", string, "x" | "y", "width" | "height", string][]} */
+const REPEATS = [
+  ["columns", "dx_mm", "x", "width", "copies side by side"],
+  ["rows", "dy_mm", "y", "height", "copies below one another"],
+];
+const COPIES_MAX = 64;
+/** A copy that ends at the screen's border fits in spite of its rounding. */
+const CLOSE = 1e-6;
+/** Ends of sliders, times a power of ten. */
+const ROUND = [1, 2, 5, 10];
 /** @type {[ending: string, unit: string, decimals: number, step: number][]} */
 const UNITS = [
   ["_mm_per_s", "mm/s", 1, 1],
@@ -43,25 +80,24 @@ export function layerNumbers(schema, toml, at, kind, reach) {
   const blend = own("blend");
   const fields = layerFields(schema, { kind, ...(typeof blend === "string" ? { blend } : {}) });
   const isTotal = kind === "constant" && (blend ?? "replace") === "replace" && own("above") !== "natural";
-  const written = Object.keys(toml.value(["layer", at]) ?? {});
-  // A field of the layer counts before a default in any unit.
-  const has = new Set(written.map(stemOf));
-  const others = [...Object.keys(toml.value(["defaults"]) ?? {}), ...Object.keys(DEFAULTS)];
-  const counting = others.filter((field) => !has.has(stemOf(field)));
-  const names = [...new Set([...written, ...counting])].filter((field) => field in fields);
-  return names.flatMap((field) => {
+  return namesOf(toml, at, fields).flatMap((field) => {
     const about = fields[field];
     const [ending, unit, decimals, step] = UNITS.find(([each]) => field.endsWith(each)) ?? ["", "", 2, 0.01];
     const label = field.slice(0, field.length - ending.length);
     const isPlace = PLACE.includes(label) || field.endsWith("_px") || (kind === "bitmap" && label === "width");
     const value = own(field) ?? DEFAULTS[/** @type {keyof typeof DEFAULTS} */ (field)];
-    if (typeof value !== "number" || !Number.isFinite(value) || isPlace || (about.type !== "number" && about.type !== "integer")) return [];
+    const isNumber = about.type === "number" || about.type === "integer";
+    if (typeof value !== "number" || !Number.isFinite(value) || isPlace || !isNumber) return [];
     const isWhole = about.type === "integer" || field === "number" || field === "seed";
     const { minimum: min = -1e6, maximum: max = 1e6 } = about;
     const [least, most] = ends(field, unit, value, isTotal, reach);
+    const name = field === "gain" ? "gain" : label.replaceAll("_", " ");
+    const isLimited = unit === "N" || unit === "of reach";
     return {
       field,
-      label: field === "gain" ? "gain" : label.replaceAll("_", " "),
+      label: name,
+      words: WORDS[name] ?? "",
+      ...(isLimited && most > 0 && { limit: most }),
       unit: field === "gain" ? "×" : unit,
       value,
       path: ["layer", at, field],
@@ -72,6 +108,44 @@ export function layerNumbers(schema, toml, at, kind, reach) {
       min,
       max,
     };
+  });
+}
+
+/**
+ * The fields that a hand may tune: those that the layer has, in the order of the text, then those that count unwritten.
+ * @param {TomlText} toml
+ * @param {number} at
+ * @param {Record<string, unknown>} fields That it may have.
+ */
+function namesOf(toml, at, fields) {
+  const written = Object.keys(toml.value(["layer", at]) ?? {});
+  // A field of the layer counts before a default in any unit.
+  const has = new Set(written.map(stemOf));
+  const others = [...Object.keys(toml.value(["defaults"]) ?? {}), ...Object.keys(DEFAULTS)];
+  const counting = others.filter((field) => !has.has(stemOf(field)));
+  // Those that count unwritten stay last when a hand writes them: no row moves.
+  const isUsual = (/** @type {string} */ field) => !(field in DEFAULTS);
+  return [...new Set([...[...written, ...counting].filter(isUsual), ...Object.keys(DEFAULTS)])].filter(
+    (field) => field in fields && (isUsual(field) || written.includes(field) || counting.includes(field)),
+  );
+}
+
+/**
+ * How many copies a layer has side by side and below one another, as far as the screen has room for more.
+ * @param {EditedLayer} edited
+ * @param {Screen} screen
+ * @returns {LayerNumber[]}
+ */
+export function repeatNumbers({ toml, at, place: { box } }, screen) {
+  if (at === undefined) return [];
+  return REPEATS.flatMap(([name, step, side, along, words]) => {
+    const path = ["layer", at, "repeat", name];
+    const [value, stepMm] = [toml?.value(path), toml?.value(["layer", at, "repeat", step])];
+    if (typeof value !== "number" || typeof stepMm !== "number" || stepMm === 0) return [];
+    const room = stepMm > 0 ? screen[`${along}Mm`] - box[side] - box[along] : box[side];
+    const most = Math.max(value, Math.min(COPIES_MAX, 1 + Math.floor(room / Math.abs(stepMm) + CLOSE)));
+    const whole = { decimals: 0, step: 1, least: 1, most, min: 1, max: COPIES_MAX };
+    return most > 1 ? [{ field: `repeat.${name}`, label: name, words, unit: "", value, path, ...whole }] : [];
   });
 }
 
@@ -93,26 +167,37 @@ function stemOf(field) {
  * @returns {[number, number]}
  */
 function ends(field, unit, value, isTotal, { naturalN, reachN }) {
-  const twice = 2 * Math.abs(value);
   switch (unit) {
     case "N":
       return isTotal ? [naturalN, reachN] : [value < 0 ? naturalN - reachN : 0, reachN - naturalN];
     case "of reach":
       return [value < 0 ? -1 : 0, 1];
     case "×":
-      return [0, Math.max(2, twice)];
+      return [0, roundAbove(2, value)];
     case "°":
       return [-180, 180];
     case "mm":
-      return [0.5, Math.max(20, twice)];
+      return [0.5, roundAbove(20, value)];
     case "mm/s":
       return [-100, 100];
     case "Hz":
-      return [1, Math.max(300, twice)];
+      return [1, roundAbove(300, value)];
     case "ms":
-      return [1, Math.max(100, twice)];
+      return [1, roundAbove(100, value)];
     default:
       if (field === "duty") return [0, 1];
-      return [0, field === "gain" ? Math.max(2, twice) : Math.max(40, twice)];
+      return [0, field === "gain" ? roundAbove(2, value) : roundAbove(40, value)];
   }
+}
+
+/**
+ * The end of a slider, which stays while a hand moves a value within it: the usual one, or a round number above.
+ * @param {number} usual
+ * @param {number} value
+ */
+function roundAbove(usual, value) {
+  const size = Math.abs(value);
+  if (size <= usual) return usual;
+  const power = 10 ** Math.floor(Math.log10(size));
+  return power * (ROUND.find((each) => each * power > size) ?? 10);
 }

@@ -1,10 +1,15 @@
-// The panel at the layer that is selected on the map: its place and its numbers as fields and sliders.
+// The panel of the mode Edit: place and numbers of the layer that is selected, and layers to add.
 // @ts-check
 
+import { BEGINNINGS } from "./beginnings.js";
 import { element } from "./dom.js";
-import { clamp } from "./place.js";
+import { feltLine } from "./felt.js";
+import { UNCHECKED } from "./layer_edits.js";
+import { NumberRow } from "./number_row.js";
 import { numberText } from "./toml_text.js";
 
+/** @import { Layer } from "../engine/types" */
+/** @import { Beginning } from "./beginnings.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { LayerNumber, Most } from "./layer_numbers.js" */
 /** @import { Side } from "./place.js" */
@@ -13,17 +18,21 @@ import { numberText } from "./toml_text.js";
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
 /** Least height of the panel, CSS pixels. */
 const LEAST_PX = 220;
-/** Places that a slider has at least. */
-const POSITIONS = 100;
+/** A scope of this height has room for it, CSS pixels. */
+const HIGH_PX = 380;
+const HINT = "Press a layer to select it. Drag it to move it, its handles to resize it.";
+const EMPTY_HINT = "This scene has no layer yet: add one.";
 
 export class LayerPanel {
   element = element("div", { className: "layer-panel", role: "group", hidden: true });
-  #note = element("p", { className: "fine", role: "status" });
-  /** The fields, by name, for the layer that they were made for. */
-  #fields = /** @type {Map<string, HTMLInputElement[]>} */ (new Map());
+  #note = element("p", { className: "fine note", role: "status" });
+  #felt = element("div", { className: "layer-felt" });
+  /** The fields of the sides of the box. */
+  #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
+  /** The rows of the numbers, by field. */
+  #rows = /** @type {Map<string, NumberRow>} */ (new Map());
+  /** For what the panel was made. */
   #madeFor = "";
-  /** What the text has, by field, as it was shown last. */
-  #shown = /** @type {Map<string, string>} */ (new Map());
   /**
    * A number of the layer is being changed: `onNumber(number, value)`, until `onEnd()`.
    * @type {(number: LayerNumber, value: number) => void}
@@ -36,8 +45,16 @@ export class LayerPanel {
   onSide = () => {};
   onEnd = () => {};
   onText = () => {};
+  onDuplicate = () => {};
   onDelete = () => {};
   onClose = () => {};
+  /**
+   * A layer is to be added.
+   * @type {(beginning: Beginning) => void}
+   */
+  onAdd = () => {};
+  /** Likewise a picture, which has to be chosen first. */
+  onPicture = () => {};
 
   constructor() {
     // A key that is held is let go elsewhere, where no keyup is heard.
@@ -49,7 +66,7 @@ export class LayerPanel {
    * @param {string} sentence
    */
   set note(sentence) {
-    this.#note.textContent = sentence;
+    if (this.#note.textContent !== sentence) this.#note.textContent = sentence;
   }
 
   focus() {
@@ -62,21 +79,58 @@ export class LayerPanel {
    * @param {Most} reach That the ends of the sliders are for.
    * @param {boolean} isNew Whether another layer was selected before.
    */
-  show(edited, numbers, { naturalN, reachN }, isNew) {
+  show(edited, numbers, reach, isNew) {
     const { layer, place, at } = edited;
-    const fields = numbers.map(({ field }) => field);
-    const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, fields, naturalN, reachN]);
+    // While a layer is selected, its rows stay in their order, and its sliders keep their ends.
+    const fields = numbers.map(({ field }) => field).sort();
+    const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, fields, reach.naturalN, reach.reachN]);
     if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
     if (madeFor !== this.#madeFor) this.#make(edited, numbers);
     this.#madeFor = madeFor;
-    for (const [side] of SIDES) {
+    for (const [side, input] of this.#sides) {
       // A layer of the whole screen is not moved, but gets a region from either side.
       const isMoved = (side === "x" || side === "y") && !place.isWholeScreen;
       const why = isMoved ? place.whyNotMoved : place.whyNotResized;
-      const isKept = side === "height" && place.keepsRatio;
-      this.#update(side, numberText(place.box[side], 2), why !== "" || isKept, why);
+      const text = numberText(place.box[side], 2);
+      if (input !== document.activeElement || Number(input.value) !== Number(text)) input.value = text;
+      input.disabled = why !== "" || (side === "height" && place.keepsRatio);
+      input.title = why;
     }
-    for (const number of numbers) this.#update(number.field, numberText(number.value, number.decimals), false, "");
+    for (const number of numbers) this.#rows.get(number.field)?.show(number);
+    this.#showFelt(layer, reach);
+    this.element.hidden = false;
+  }
+
+  /**
+   * Says whether the layer is felt, as the last check of the scene found.
+   * @param {Layer} layer
+   * @param {Most} reach
+   */
+  #showFelt(layer, reach) {
+    const { felt, perceived, index } = layer;
+    if (index === UNCHECKED) {
+      this.#felt.replaceChildren();
+      return;
+    }
+    // The sentence begins with the verdict, which the line shows.
+    const why = felt.replace(`${perceived?.verdict}: `, "");
+    this.#felt.replaceChildren(feltLine(layer, reach), element("p", { className: "fine" }, why));
+  }
+
+  /**
+   * Shows what there is to do while no layer is selected.
+   * @param {number} count Of the scene's layers.
+   * @param {boolean} isNew Whether a layer was selected before.
+   */
+  showNone(count, isNew) {
+    const madeFor = `none of ${Math.min(count, 1)}`;
+    if (isNew) this.note = "";
+    if (madeFor !== this.#madeFor) {
+      this.element.setAttribute("aria-label", "Layers to add");
+      const hint = element("p", { className: "soft" }, count > 0 ? HINT : EMPTY_HINT);
+      this.element.replaceChildren(hint, this.#note, this.#additions());
+    }
+    this.#madeFor = madeFor;
     this.element.hidden = false;
   }
 
@@ -85,19 +139,16 @@ export class LayerPanel {
     this.#madeFor = "";
   }
 
-  /**
-   * @param {string} name
-   * @param {string} text
-   * @param {boolean} isDisabled
-   * @param {string} why
-   */
-  #update(name, text, isDisabled, why) {
-    this.#shown.set(name, text);
-    for (const input of this.#fields.get(name) ?? []) {
-      if (input !== document.activeElement || Number(input.value) !== Number(text)) input.value = text;
-      input.disabled = isDisabled;
-      input.title = why;
-    }
+  /** The buttons that add layers. */
+  #additions() {
+    const buttons = BEGINNINGS.map((beginning) => {
+      const { name, words, layer } = beginning;
+      const isPicture = layer.kind === "bitmap";
+      const onclick = () => (isPicture ? this.onPicture() : this.onAdd(beginning));
+      const about = { title: words, "aria-label": `Add ${name}`, onclick };
+      return element("button", about, isPicture ? `${name}…` : name);
+    });
+    return element("div", { className: "layer-add", role: "group", "aria-label": "Add a layer" }, "Add", ...buttons);
   }
 
   /**
@@ -105,24 +156,37 @@ export class LayerPanel {
    * @param {LayerNumber[]} numbers
    */
   #make({ layer: { name, kind }, at }, numbers) {
-    this.#fields.clear();
+    this.#sides.clear();
+    this.#rows.clear();
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
-    const text = element("button", { title: "To its text (Enter)", onclick: () => this.onText() }, "Text");
-    const gone = element("button", { title: "Take it out (Delete)", onclick: () => this.onDelete() }, "Delete");
-    const close = element("button", { "aria-label": "Deselect", onclick: () => this.onClose() }, "✕");
+    const onclick = () => this.onClose();
+    const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
     const title = element("span", {}, element("b", {}, name), name === kind ? "" : ` ${kind}`);
-    const head = element("div", { className: "layer-panel-head" }, title);
+    const head = element("div", { className: "layer-panel-head" }, title, close);
     this.element.replaceChildren(head, this.#note);
     if (at !== undefined) {
-      head.append(text, gone);
       const sides = SIDES.map(([side, label]) => this.#side(side, label, name));
-      const rows = numbers.map((number) => this.#row(number, name));
       this.element.append(
+        this.#felt,
         element("div", { className: "layer-sides" }, ...sides),
-        element("div", { className: "layer-numbers" }, ...rows),
+        element("div", { className: "layer-numbers" }, ...numbers.map((number) => this.#row(number, name))),
+        this.#actions(),
       );
     }
-    head.append(close);
+    this.element.append(this.#additions());
+    this.element.scrollTop = 0;
+  }
+
+  #actions() {
+    const action = (/** @type {string} */ words, /** @type {string} */ title, /** @type {() => void} */ onclick) =>
+      element("button", { type: "button", title, onclick }, words);
+    return element(
+      "div",
+      { className: "layer-actions" },
+      action("Duplicate", "A copy beside it (Ctrl+D)", () => this.onDuplicate()),
+      action("Text", "To its text (Ctrl+Enter)", () => this.onText()),
+      action("Delete", "Take it out (Delete)", () => this.onDelete()),
+    );
   }
 
   /**
@@ -136,7 +200,7 @@ export class LayerPanel {
       if (input.value !== "" && Number.isFinite(input.valueAsNumber)) this.onSide(side, input.valueAsNumber);
     };
     input.onchange = () => this.onEnd();
-    this.#fields.set(side, [input]);
+    this.#sides.set(side, input);
     return element("label", {}, label, input);
   }
 
@@ -145,54 +209,30 @@ export class LayerPanel {
    * @param {string} layer
    */
   #row(number, layer) {
-    const { field, label, unit, min, max, step, least, most, decimals } = number;
-    const words = unit ? `${label} of ${layer}, ${unit}` : `${label} of ${layer}`;
-    const slider = element("input", { type: "range", min: least, max: most, step: "any", "aria-label": words });
-    const input = element("input", { type: "number", min, max, step, "aria-label": `${words}, as a number` });
-    const places = Math.min(decimals, Math.max(0, Math.ceil(-Math.log10((most - least) / POSITIONS))));
-    slider.oninput = () => this.onNumber(number, Number(slider.valueAsNumber.toFixed(places)));
-    // An arrow key moves a slider without steps by next to nothing.
-    slider.onkeydown = (event) => {
-      const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
-      if (by === undefined) return;
-      event.preventDefault();
-      const value = clamp(Number((slider.valueAsNumber + by * step).toFixed(decimals)), least, most);
-      this.onNumber(number, value);
-    };
-    slider.onkeyup = () => this.onEnd();
-    input.oninput = () => {
-      if (input.value !== "" && input.valueAsNumber >= min && input.valueAsNumber <= max)
-        this.onNumber(number, input.valueAsNumber);
-    };
-    slider.onchange = () => this.onEnd();
-    input.onchange = () => {
-      this.onEnd();
-      // What no scene may have was not taken.
-      input.value = this.#shown.get(field) ?? "";
-    };
-    this.#fields.set(field, [slider, input]);
-    const [before, behind] = [element("span", {}, label), element("span", {}, unit)];
-    return element("div", { className: "layer-number" }, before, slider, input, behind);
+    const row = new NumberRow(number, layer);
+    row.onNumber = (changed, value) => this.onNumber(changed, value);
+    row.onEnd = () => this.onEnd();
+    this.#rows.set(number.field, row);
+    return row.element;
   }
 
   /**
-   * Puts the panel over what shows what a finger feels: nothing is felt while layers are edited, and neither map nor
-   * text is covered. Where all of that is hidden, it lies over what is below the map.
-   * @param {DOMRect[]} felt
+   * Puts the panel over the scope, or where that is low over the numbers, too: nothing is felt while layers are edited,
+   * and neither map nor text is covered. Where all of that is hidden, it lies over what is below the map.
+   * @param {DOMRect} numbers
+   * @param {DOMRect} scope
    * @param {DOMRect} map
    */
-  place(felt, map) {
-    const seen = felt.filter(({ width }) => width > 0);
-    const covered = seen.length > 0 ? seen : [new DOMRect(map.left, map.bottom, map.width, LEAST_PX)];
-    const left = Math.min(...covered.map((each) => each.left));
-    const top = Math.min(...covered.map((each) => each.top));
-    const right = Math.max(...covered.map((each) => each.right));
-    const bottom = Math.max(...covered.map((each) => each.bottom));
+  place(numbers, scope, map) {
+    const isSeen = scope.width > 0;
+    const below = new DOMRect(map.left, map.bottom, map.width, LEAST_PX);
+    const first = isSeen ? (scope.height >= HIGH_PX ? scope : numbers) : below;
+    const last = isSeen ? scope : below;
     Object.assign(this.element.style, {
-      left: `${left + scrollX}px`,
-      top: `${top + scrollY}px`,
-      width: `${right - left}px`,
-      maxHeight: `${Math.max(bottom - top, LEAST_PX)}px`,
+      left: `${Math.min(first.left, last.left) + scrollX}px`,
+      top: `${first.top + scrollY}px`,
+      width: `${Math.max(first.right, last.right) - Math.min(first.left, last.left)}px`,
+      maxHeight: `${Math.max(last.bottom - first.top, LEAST_PX)}px`,
     });
   }
 }

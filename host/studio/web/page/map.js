@@ -73,8 +73,9 @@ export class FrictionMap {
    */
   onLayout = () => {};
   /**
-   * `onRoom(widthPx)`: the map would be so wide, with what is around it, if its height alone limited it.
-   * @type {(widthPx: number) => void}
+   * `onRoom(widthPx, heightPx)`: the map would be so wide, with what is around it, if its height alone limited it, and
+   * so high, if its width did.
+   * @type {(widthPx: number, heightPx: number) => void}
    */
   onRoom = () => {};
 
@@ -148,8 +149,9 @@ export class FrictionMap {
     this.#around = clientWidth < NARROW_BOX_PX ? AROUND_PX.narrow : AROUND_PX.wide;
     const { left, top, right, bottom } = this.#around;
     const scaleByHeight = (clientHeight - top - bottom) / heightMm;
-    const fitted = Math.min((clientWidth - left - right) / widthMm, scaleByHeight);
-    this.onRoom(left + right + widthMm * scaleByHeight);
+    const scaleByWidth = (clientWidth - left - right) / widthMm;
+    const fitted = Math.min(scaleByWidth, scaleByHeight);
+    this.onRoom(left + right + widthMm * scaleByHeight, top + bottom + heightMm * scaleByWidth);
     this.scale = this.realSize ?? Math.max(0.5, fitted);
     const width = left + right + widthMm * this.scale;
     const height = top + bottom + heightMm * this.scale;

@@ -1,81 +1,18 @@
-// The dialog of New: four small scenes to begin with, and an empty one.
+// The dialog of New: four small scenes to begin with, one of them with a picture of one's own, and an empty one.
 // @ts-check
 
-import { carriedFiles } from "./bundled.js";
-import { imageOf } from "./colors.js";
-import { byId, contextOf, element } from "./dom.js";
-import { mapSizePx } from "./map.js";
+import { BEGINNINGS, sceneOf } from "./beginnings.js";
+import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
+import { drawScene } from "./scene_picture.js";
 
 /** @import { Engine } from "../engine/engine.js" */
-/** @typedef {{ name: string, text: string }} Beginning */
 
 /** Longer side of a scene's picture, pixels. */
 const LONG_SIDE_PX = 240;
-
-/** @type {Beginning[]} */
-export const BEGINNINGS = [
-  {
-    name: "stripes",
-    text: `# Broad stripes across the screen: a finger that slides over them meets one ridge after another.
-version = 2
-
-[[layer]]
-name = "stripes"
-kind = "grating"
-wave = "sine"
-wavelength_mm = 10
-low_fraction = 0
-high_fraction = 0.8
-`,
-  },
-  {
-    name: "button",
-    text: `# One button: a rim that holds the finger back, and a rougher face inside of it.
-version = 2
-
-[[layer]]
-name = "button"
-kind = "button"
-region = { x_mm = 35, y_mm = 20, width_mm = 50, height_mm = 40 }
-rim_width_mm = 5
-rim_fraction = 0.9
-face_fraction = 0.35
-`,
-  },
-  {
-    name: "picture",
-    text: `# The grain of a photo of wood, rough where it is bright: drop a picture of yours and name it here.
-version = 2
-
-[[layer]]
-name = "wood"
-kind = "bitmap"
-picture = "textures/wood.jpg"
-x_mm = 15
-y_mm = 10
-width_mm = 90
-`,
-  },
-  {
-    name: "noise",
-    text: `# An uneven ground like coarse sand: no two places of it are alike.
-version = 2
-
-[[layer]]
-name = "sand"
-kind = "noise"
-wavelength_min_mm = 3
-wavelength_max_mm = 8
-low_fraction = 0
-high_fraction = 0.9
-`,
-  },
-];
-
 const EMPTY = `version = 2
 
-# Type [[layer]], then Ctrl+Space for what a layer can have; or take layers from the Gallery.
+# Edit adds layers, and so does the Gallery; or type [[layer]], then Ctrl+Space for what a layer can have.
 `;
 
 export class NewScene {
@@ -86,6 +23,8 @@ export class NewScene {
    * @type {(name: string, text: string) => unknown}
    */
   onScene = () => {};
+  /** A scene with a picture of one's own is wanted. */
+  onPicture = () => {};
 
   /** @param {Engine} engine */
   constructor(engine) {
@@ -104,29 +43,27 @@ export class NewScene {
       element("p", { className: "soft" }, "Begin with one of these, and change it."),
       scenes,
     );
-    const cards = BEGINNINGS.map(({ name, text }) => {
+    const cards = BEGINNINGS.map(({ name, words, layer }) => {
+      const text = sceneOf(words, layer);
       const canvas = element("canvas", { "aria-hidden": "true" });
       const begin = element("button", { className: "primary" }, `Begin with ${name}`);
       begin.onclick = () => this.#choose(name, text);
-      const words = element("p", { className: "fine" }, text.slice(2, text.indexOf("\n")));
-      scenes.append(element("article", { className: "scene" }, canvas, element("h3", {}, name), words, begin));
+      const said = element("p", { className: "fine" }, words);
+      const actions = layer.kind === "bitmap" ? [this.#own(), begin] : [begin];
+      scenes.append(element("article", { className: "scene" }, canvas, element("h3", {}, name), said, ...actions));
       return { canvas, text };
     });
-    for (const { canvas, text } of cards) await this.#draw(canvas, text);
+    for (const { canvas, text } of cards) await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
   }
 
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {string} text
-   */
-  async #draw(canvas, text) {
-    const files = { ...(await carriedFiles()), "new.toml": text };
-    const check = await this.#engine.check(files, "new.toml", {});
-    if (!("screen" in check)) throw new Error(check.problems.map(({ message }) => message).join("\n"));
-    const size = { ...mapSizePx(check.screen, LONG_SIDE_PX), speedMmPerS: 100 };
-    const map = await this.#engine.map(files, "new.toml", {}, size);
-    Object.assign(canvas, { width: map.widthPx, height: map.heightPx });
-    contextOf(canvas).putImageData(imageOf(map), 0, 0);
+  /** The button that lets a person choose a picture. */
+  #own() {
+    const choose = element("button", {}, "Choose a picture…");
+    choose.onclick = () => {
+      this.#dialog.close();
+      this.onPicture();
+    };
+    return choose;
   }
 
   /**

@@ -1,13 +1,14 @@
 // Notices: one sentence at a time, which floats over the page beside the control that it is about.
 //
-// Good news goes by itself once it can have been read. All else stays until it is dismissed, or another one comes.
+// Good news goes by itself once it can have been read, and, unless it offers something, at a press elsewhere. All else
+// stays until it is dismissed, by its button or by Escape, or another one comes.
 // @ts-check
 
 import { clock } from "../clock.js";
 import { byId, sentenceOf } from "./dom.js";
 
 /** @typedef {{ words: string, action: () => unknown }} Offer Words of a button, and what it does. */
-/** @typedef {{ isGood?: boolean, beside?: Element }} Manner */
+/** @typedef {{ isGood?: boolean, isLasting?: boolean, beside?: Element }} Manner */
 
 /** How long good news stays, ms: to notice it, and for each of its characters. */
 const NOTICE_MS = 4000;
@@ -25,8 +26,12 @@ let timer;
  * @type {Element | undefined}
  */
 let pressed;
+/** How many sentences were shown. */
+let count = 0;
 /** What the notice that is shown stands beside. @type {Element | undefined} */
 let besideWhat;
+/** Whether a press elsewhere ends the notice that is shown. */
+let isPassing = false;
 
 /** Notices stand beside what was pressed, and stay there when the window changes. */
 export function followPresses() {
@@ -41,16 +46,24 @@ export function followPresses() {
     );
   }
   addEventListener("resize", () => place(byId("notice"), besideWhat));
+  addEventListener("keydown", ({ key, defaultPrevented }) => {
+    if (key === "Escape" && !defaultPrevented && !document.querySelector("dialog[open]")) forgetNotice();
+  });
+  addEventListener("pointerdown", ({ target }) => {
+    const isInside = target instanceof Node && byId("notice").contains(target);
+    if (isPassing && !isInside) forgetNotice();
+  });
 }
 
 /**
  * Shows a sentence; with `offer`, also a button that does something about it. `beside` is the control that caused it,
- * the one that was just pressed if it is not given.
+ * the one that was just pressed if it is not given. Good news that is lasting stays. Returns what removes this
+ * sentence, unless it has gone.
  * @param {string} sentence
  * @param {Offer} [offer]
  * @param {Manner} manner
  */
-export function notify(sentence, offer, { isGood = false, beside = pressed } = {}) {
+export function notify(sentence, offer, { isGood = false, isLasting = false, beside = pressed } = {}) {
   const notice = byId("notice");
   const [said, offered, dismiss] = /** @type {HTMLCollectionOf<HTMLElement>} */ (notice.children);
   said.textContent = sentence;
@@ -64,10 +77,15 @@ export function notify(sentence, offer, { isGood = false, beside = pressed } = {
   notice.setAttribute("role", isGood ? "status" : "alert");
   notice.classList.toggle("is-good", isGood);
   notice.hidden = false;
+  isPassing = isGood && offer === undefined;
   besideWhat = beside;
   place(notice, beside);
   clock.cancel(timer);
-  timer = isGood ? clock.later(NOTICE_MS + CHARACTER_MS * sentence.length, () => expire(notice)) : undefined;
+  const readMs = NOTICE_MS + CHARACTER_MS * sentence.length;
+  timer = isGood && !isLasting ? clock.later(readMs, () => expire(notice)) : undefined;
+  count += 1;
+  const own = count;
+  return () => own === count && forgetNotice();
 }
 
 /** Removes the sentence: what it says is over. */
@@ -84,7 +102,8 @@ function expire(notice) {
 }
 
 /**
- * Puts a notice below its control, or above it where there is more room; without one, below the header.
+ * Puts a notice below its control, or above it where there is more room; without one, below the header. It lies over no
+ * tool of the map.
  * @param {HTMLElement} notice
  * @param {Element | undefined} control
  */
@@ -96,9 +115,13 @@ function place(notice, control) {
   const least = box ? GAP_PX : (header?.bottom ?? 0) + GAP_PX;
   const left = box ? box.left : (innerWidth - width) / 2;
   const below = (box?.bottom ?? 0) + GAP_PX;
-  const top = box && below + height > innerHeight ? box.top - GAP_PX - height : below;
-  notice.style.left = `${Math.max(GAP_PX, Math.min(left, innerWidth - width - GAP_PX))}px`;
-  notice.style.top = `${Math.max(least, Math.min(top, innerHeight - height - GAP_PX))}px`;
+  const wanted = box && below + height > innerHeight ? box.top - GAP_PX - height : below;
+  const x = Math.max(GAP_PX, Math.min(left, innerWidth - width - GAP_PX));
+  const y = Math.max(least, Math.min(wanted, innerHeight - height - GAP_PX));
+  const tools = document.querySelector(".map-tools")?.getBoundingClientRect();
+  const isOver = tools && x < tools.right && tools.left < x + width && y < tools.bottom && tools.top < y + height;
+  notice.style.left = `${x}px`;
+  notice.style.top = `${isOver ? tools.bottom + GAP_PX : y}px`;
 }
 
 /**

@@ -1,13 +1,16 @@
 // The numbers that people want: friction in mN and in Weber steps, volts, speed.
 // @ts-check
 
-import { byId, element } from "./dom.js";
+import { byId, element, volts } from "./dom.js";
+import { notify } from "./notices.js";
 
 /** @import { Frame } from "../engine/types" */
 /** @typedef {{ friction?: number, weber?: number, voltage?: number, speed?: number }} Shown */
 
 /** Smallest change of friction that a finger feels: a factor of 1.11 (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). */
 const WEBER_STEP = Math.log(1.11);
+/** Below this voltage, V rms, the drive adds nothing: what is felt beside bare glass is the finger's own noise. */
+const DRIVES_ABOVE = 1;
 /** Numbers are means over this many samples, so that they can be read. */
 const SAMPLES = 40;
 /**
@@ -35,7 +38,7 @@ export class Numbers {
         element(
           "div",
           { title: meaning },
-          element("dt", {}, title),
+          element("dt", {}, explained(title, meaning)),
           element("dd", { className: kind }, value, " ", unitShown),
         ),
       );
@@ -43,9 +46,10 @@ export class Numbers {
     const wanders = "It wanders with the simulated finger's load and noise, also below the map's scale.";
     add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
     const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
-    add("weber", "Above bare glass", "Weber steps", `${step} ${wanders}`, "felt");
+    const above = "How much more friction is felt now than on bare glass, in Weber steps; none where nothing is driven.";
+    add("weber", "Above bare glass", "Weber steps", `${above} ${step}`, "felt");
     add("voltage", "Drive", "V rms", "Voltage on the electrode: it adds friction, and takes none away.", "voltage");
-    add("speed", "Speed", "mm/s", "Speed of the simulated finger.");
+    add("speed", "Speed", "mm/s", "Speed of the simulated finger. Below 5 mm/s no friction is shown.");
     this.#show({});
   }
 
@@ -60,7 +64,7 @@ export class Numbers {
     if (this.#isSliding) {
       const felt = this.#mean("felt", feltN);
       if (felt !== undefined)
-        Object.assign(values, { friction: felt * 1000, weber: Math.log(felt / naturalN) / WEBER_STEP });
+        Object.assign(values, { friction: felt * 1000, weber: weberSteps(felt, naturalN, values.voltage) });
     }
     this.#show(contact ? values : { voltage: 0 });
     if (contact) return;
@@ -99,7 +103,7 @@ export class Numbers {
     const isStill = speed !== undefined && friction === undefined;
     this.#write("friction", friction, 0, isStill);
     this.#write("weber", weber, 1, isStill);
-    this.#write("voltage", voltage, 0);
+    this.#write("voltage", voltage, volts);
     this.#write("speed", speed, 0);
   }
 
@@ -107,12 +111,13 @@ export class Numbers {
    * Writes a number, or what to do to get one.
    * @param {string} name
    * @param {number | undefined} number
-   * @param {number} digits
+   * @param {number | ((number: number) => string)} digits How many digits, or what writes it.
    */
   #write(name, number, digits, isStill = false) {
     const { value, unit } = this.#fields[name];
     // Where nothing is added, noise takes what is felt below bare glass: never below zero.
-    const text = number !== undefined && Number.isFinite(number) ? Math.max(0, number).toFixed(digits) : "–";
+    const write = typeof digits === "number" ? (/** @type {number} */ value) => value.toFixed(digits) : digits;
+    const text = number !== undefined && Number.isFinite(number) ? write(Math.max(0, number)) : "–";
     const shown = isStill ? SLIDE_TO_FEEL : text;
     // What has not changed is not drawn again.
     if (value.textContent === shown) return;
@@ -120,4 +125,25 @@ export class Numbers {
     value.parentElement?.classList.toggle("words", isStill);
     unit.hidden = isStill;
   }
+}
+
+/**
+ * Weber steps above bare glass.
+ * @param {number} feltN
+ * @param {number} naturalN
+ * @param {number} [voltageVRms]
+ */
+function weberSteps(feltN, naturalN, voltageVRms = Infinity) {
+  return voltageVRms < DRIVES_ABOVE ? 0 : Math.log(feltN / naturalN) / WEBER_STEP;
+}
+
+/**
+ * The name of a number: a press on it, or on the number, says what it means.
+ * @param {string} title
+ * @param {string} meaning
+ */
+function explained(title, meaning) {
+  const button = element("button", { type: "button", className: "why" }, title);
+  button.onclick = () => notify(`${title}: ${meaning}`, undefined, { isGood: true, beside: button });
+  return button;
 }

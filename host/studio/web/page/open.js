@@ -3,6 +3,7 @@
 
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
+import { fragmentIn } from "./share.js";
 
 /** @import { Work, Works } from "./works.js" */
 
@@ -16,6 +17,11 @@ export class Open {
    * @type {(id: string) => unknown}
    */
   onWork = () => {};
+  /**
+   * A link is pasted: `onLink(fragment)`.
+   * @type {(fragment: string) => unknown}
+   */
+  onLink = () => {};
 
   /**
    * `choose()` lets a person choose files.
@@ -44,6 +50,7 @@ export class Open {
     this.#dialog.replaceChildren(
       element("div", { className: "head" }, element("h2", {}, "Open"), files, close),
       element("p", { className: "soft" }, "Files: a scene with its files, pictures, profiles, or a saved zip."),
+      this.#link(),
       element("h3", {}, "Recent scenes"),
       list,
     );
@@ -52,6 +59,24 @@ export class Open {
     const edited = works.filter(({ isEdited }) => isEdited);
     if (edited.length > 0) list.append(...edited.map((work) => this.#card(work)));
     else list.append("A scene that you change is kept here by this browser. None is kept yet.");
+  }
+
+  /** A field for the link of a scene: on a phone there is no other way to paste one. */
+  #link() {
+    const field = element("input", { type: "text", placeholder: "Paste a link…", "aria-label": "Link of a scene" });
+    const said = element("p", { className: "fine", hidden: true, role: "alert" });
+    const open = element("button", { type: "submit" }, "Open the link");
+    const form = element("form", { className: "row link-row" }, field, open, said);
+    form.onsubmit = (event) => {
+      event.preventDefault();
+      const fragment = fragmentIn(field.value.trim());
+      said.hidden = fragment !== undefined;
+      said.textContent = "This is no link of a scene: one that Share made has #scene= in it.";
+      if (fragment === undefined) return;
+      this.#dialog.close();
+      attempt(() => this.onLink(fragment));
+    };
+    return form;
   }
 
   /** @param {Work} work */

@@ -1,6 +1,7 @@
 // The scene that is open: its name, its files, and how another one takes its place.
 // @ts-check
 
+import { clock } from "../clock.js";
 import { Autosave } from "./autosave.js";
 import { byId } from "./dom.js";
 import { forgetNotice, notify } from "./notices.js";
@@ -11,10 +12,14 @@ import { isPicture, isToml } from "./project.js";
 /** @import { Compare } from "./compare.js" */
 /** @import { Editor } from "./editor.js" */
 /** @import { Found } from "./incoming.js" */
+/** @import { OwnPicture } from "./own_picture.js" */
 /** @import { Player } from "./player.js" */
 /** @import { Profiles } from "./profiles.js" */
 /** @import { Project, SavedScene, SceneToOpen } from "./project.js" */
 /** @import { Works } from "./works.js" */
+
+/** How long the way back to the scene before is offered once the new one is worked on, ms. */
+const BACK_MS = 30_000;
 
 /**
  * @typedef {object} Parts
@@ -35,6 +40,12 @@ export class OpenScene {
   #compare;
   #profiles;
   #autosave;
+  /** Takes the offer away that leads back to the scene before. @type {() => void} */
+  #forgetBack = () => {};
+  /** Whether the scene was changed since it was opened over another. */
+  #isWorkedOn = true;
+  /** A layer is about to come behind the others of the scene. */
+  onAppend = () => {};
 
   /** @param {Parts} parts */
   constructor({ engine, project, player, editor, compare, profiles, works }) {
@@ -47,6 +58,7 @@ export class OpenScene {
     this.#autosave = new Autosave(works, () => this.saved);
     editor.onChange = (file, text) => {
       compare.cancel();
+      this.#workOn();
       if (file !== undefined) project.files.set(file, text);
       this.#autosave.changed();
       player.later(editor.text);
@@ -107,7 +119,23 @@ export class OpenScene {
    * @param {string} text
    */
   append(text) {
-    return this.#bringIn(async () => this.#editor.append(text));
+    return this.#bringIn(async () => {
+      this.onAppend();
+      this.#editor.append(text);
+    });
+  }
+
+  /**
+   * Takes a picture for a layer; resolves to the name that it has in the scene.
+   * @param {OwnPicture} picture
+   */
+  takePicture({ name, bytes }) {
+    return this.#bringIn(async () => {
+      const free = this.#project.freeName(name, bytes);
+      this.#project.add(free, bytes);
+      this.#filesChanged();
+      return free;
+    });
   }
 
   /**
@@ -131,13 +159,14 @@ export class OpenScene {
   /**
    * Runs an action that brings something from elsewhere into the scene. A real board is disarmed before, and nothing
    * can be armed until it has the scene that is shown then.
-   * @param {() => Promise<void>} action
+   * @template Value
+   * @param {() => Promise<Value>} action
    */
   #bringIn(action) {
     return this.#player.expect(async () => {
       try {
         await this.#engine.forget();
-        await action();
+        return await action();
       } catch (error) {
         // The board gets the scene back that is still shown.
         this.replay();
@@ -152,19 +181,38 @@ export class OpenScene {
     const before = { ...this.saved, ...autosave.state };
     forgetNotice();
     await autosave.leave();
+    const { isKept } = autosave;
     await project.replaceFiles(files);
     project.name = name;
     this.#showName();
     if (profiles) this.#profiles.choose(profiles);
     this.#editor.open(text);
+    this.#isWorkedOn = true;
     this.#showFiles();
     await autosave.opened(work);
-    if (before.isEdited)
-      notify(
-        `${project.name} is open.`,
-        { words: `Back to ${before.name}`, action: () => this.open(before) },
-        { isGood: true, beside: byId("scene-name") },
-      );
+    if (before.isEdited) this.#offerBack(before, isKept);
+  }
+
+  /**
+   * Offers the scene before, until it is dismissed or a person has worked on the new one for a while.
+   * @param {SceneToOpen} before
+   * @param {boolean} isKept Whether Open has it, too.
+   */
+  #offerBack(before, isKept) {
+    this.#forgetBack = notify(
+      isKept ? `${before.name} is kept in Open.` : `${this.#project.name} is open.`,
+      { words: `Back to ${before.name}`, action: () => this.open(before) },
+      { isGood: true, isLasting: true, beside: byId("scene-name") },
+    );
+    this.#isWorkedOn = false;
+  }
+
+  /** A person works on the scene: after a while the one before is not missed. */
+  #workOn() {
+    if (this.#isWorkedOn) return;
+    this.#isWorkedOn = true;
+    const forget = this.#forgetBack;
+    clock.later(BACK_MS, () => forget());
   }
 
   #showName() {
@@ -195,10 +243,15 @@ export class OpenScene {
 
   #showFiles() {
     const { files } = this.#project;
-    showPictures(this.#project, this.#editor, (name) => {
+    const remove = (/** @type {string} */ name) => {
       files.delete(name);
       this.#filesChanged();
-    });
+    };
+    const add = (/** @type {string} */ layer) => {
+      this.onAppend();
+      this.#editor.append(layer);
+    };
+    showPictures(this.#project, add, remove);
     /** @type {[string, string][]} */
     const texts = [];
     for (const [name, content] of files) if (isToml(name) && typeof content === "string") texts.push([name, content]);

@@ -1,26 +1,23 @@
 // The pictures of the project: a list, with a layer for each at a press.
 // @ts-check
 
+import { pictureLayer } from "./beginnings.js";
 import { byId, element, shortName } from "./dom.js";
 import { isPicture } from "./project.js";
+import { tableText } from "./toml_text.js";
 
-/** @import { Screen } from "../engine/types" */
-/** @import { Editor } from "./editor.js" */
 /** @import { Project } from "./project.js" */
-
-/** Largest part of the screen's width and height that a picture is added with. */
-const PART_OF_SCREEN = 0.75;
 
 /**
  * @param {Project} project
- * @param {Editor} editor
+ * @param {(layer: string) => void} onAdd A layer with this text is wanted.
  * @param {(name: string) => void} onRemove
  */
-export function showPictures(project, editor, onRemove) {
+export function showPictures(project, onAdd, onRemove) {
   const panel = byId("panel-pictures");
   for (const image of panel.querySelectorAll("img")) URL.revokeObjectURL(image.src);
   const pictures = [...project.files].filter(([name]) => isPicture(name));
-  panel.replaceChildren(...pictures.map(([name, bytes]) => row(name, bytes, project, editor, onRemove)));
+  panel.replaceChildren(...pictures.map(([name, bytes]) => row(name, bytes, project, onAdd, onRemove)));
   panel.append(
     element(
       "p",
@@ -37,17 +34,17 @@ export function showPictures(project, editor, onRemove) {
  * @param {string} name
  * @param {BlobPart} bytes
  * @param {Project} project
- * @param {Editor} editor
+ * @param {(layer: string) => void} onAdd A layer with this text is wanted.
  * @param {(name: string) => void} onRemove
  */
-function row(name, bytes, project, editor, onRemove) {
+function row(name, bytes, project, onAdd, onRemove) {
   const url = URL.createObjectURL(new Blob([bytes], { type: /\.png$/i.test(name) ? "image/png" : "image/jpeg" }));
   const image = element("img", { src: url, alt: "" });
   image.onerror = () => (image.hidden = true);
   const add = element("button", {}, "Add as a layer");
   add.onclick = () => {
     const { naturalWidth, naturalHeight } = image;
-    editor.append(layerOf(name, naturalWidth / naturalHeight || 1, project.screen));
+    onAdd(tableText(pictureLayer(name, naturalWidth / naturalHeight || 1, project.screen)));
   };
   const remove = element("button", { onclick: () => onRemove(name), "aria-label": `Remove ${name}` }, "Remove");
   return element(
@@ -58,23 +55,5 @@ function row(name, bytes, project, editor, onRemove) {
     element("span", { className: "gap" }),
     add,
     remove,
-  );
-}
-
-/**
- * A layer that shows a picture in the middle of a screen. It has no pitch: the compiler takes the finest that a board has
- * room for, whatever other pictures the scene has.
- * @param {string} name
- * @param {number} aspect Width over height of the picture.
- * @param {Screen} screen
- */
-function layerOf(name, aspect, { widthMm, heightMm }) {
-  const width = PART_OF_SCREEN * Math.min(widthMm, heightMm * aspect);
-  const tenths = (/** @type {number} */ mm) => Math.round(10 * mm) / 10;
-  const title = JSON.stringify(name.replace(/\.\w+$/, ""));
-  return (
-    `[[layer]]\nname = ${title}\nkind = "bitmap"\npicture = ${JSON.stringify(name)}\n` +
-    `x_mm = ${tenths((widthMm - width) / 2)}\ny_mm = ${tenths((heightMm - width / aspect) / 2)}\n` +
-    `width_mm = ${Math.max(0.1, tenths(width))}\n`
   );
 }

@@ -7,6 +7,8 @@ import { byId, element } from "./dom.js";
 /** @import { Editor } from "./editor.js" */
 /** @import { Status } from "./player.js" */
 
+/** Words of this many characters stand in small type, on up to three lines. */
+const LONG = 20;
 /** What the last check found: how many mistakes, in words, and whether the simulator plays the scene as a draft. */
 let found = { count: "", isDraft: false };
 /**
@@ -23,15 +25,32 @@ export function showCheck({ ok, isDraft, problems }, editor) {
   const errors = problems.filter(({ severity }) => severity === "error");
   byId("check").dataset.bad = String(!ok);
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
-  found = { count: errors.length === 1 ? "1 mistake" : `${errors.length} mistakes`, isDraft: isDraft === true };
+  found = { count: counted(errors.length, "mistake"), isDraft: isDraft === true };
   showOutcome();
+  // What is said of layers is of the last version that plays.
+  const isOlder = !ok && !isDraft;
+  for (const id of /** @type {const} */ (["felt", "panel-layers"])) byId(id).toggleAttribute("data-older", isOlder);
   const mistakes = byId("mistakes");
-  mistakes.hidden = errors.length === 0;
-  mistakes.textContent = `${errors.length}`;
-  mistakes.setAttribute("aria-label", found.count);
+  // Warnings are counted where there is no mistake: a scene that plays may play otherwise than its text says.
+  const isWarned = errors.length === 0;
+  mistakes.hidden = problems.length === 0;
+  mistakes.classList.toggle("is-warning", isWarned);
+  mistakes.textContent = `${isWarned ? problems.length : errors.length}`;
+  mistakes.setAttribute("aria-label", isWarned ? counted(problems.length, "warning") : found.count);
   byId("problems").replaceChildren(...problems.map((problem) => item(problem, editor)));
   editor.mark(problems);
 }
+
+/** How many mistakes the scene has that was checked last, in words; "" without one, and whether it plays as a draft. */
+export function mistakesFound() {
+  return { count: byId("check").dataset.bad === "true" ? found.count : "", isDraft: found.isDraft };
+}
+
+/**
+ * @param {number} count
+ * @param {string} what
+ */
+const counted = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
 
 /** @param {Status} newStatus */
 export function showStatus(newStatus) {
@@ -50,7 +69,9 @@ export function showOutcome() {
     loaded: isPlaying ? "plays" : "no mistakes",
   };
   if (found.isDraft) words.loaded = `${found.count}; draft: plays clamped, a board refuses it`;
-  byId("check").textContent = words[status];
+  const check = byId("check");
+  check.textContent = words[status];
+  check.toggleAttribute("data-long", words[status].length > LONG);
 }
 
 /**

@@ -24,6 +24,12 @@ import { NAME_MAX } from "./dom.js";
  * @typedef {SavedScene & Partial<OpenWork>} SceneToOpen
  */
 
+/** Longest text that the studio takes, bytes. */
+export const TEXT_MAX_BYTES = 500_000;
+/** What file systems refuse in a name, and names that Windows keeps for itself. */
+const NOT_IN_NAMES = /[<>:"/\\|?*\p{Cc}]/gu;
+const RESERVED = /^(con|prn|aux|nul|com\d|lpt\d)$/i;
+
 export class Project {
   #engine;
   #name = "scene";
@@ -56,7 +62,8 @@ export class Project {
   }
 
   set name(name) {
-    this.#name = [...name.replaceAll(/[/\\]/g, "-")].slice(0, NAME_MAX).join("") || "scene";
+    const allowed = [...name.replaceAll(NOT_IN_NAMES, "-")].slice(0, NAME_MAX).join("").replace(/[. ]+$/, "");
+    this.#name = RESERVED.test(allowed) ? `${allowed}-` : allowed || "scene";
   }
 
   /** Name of the scene's file. */
@@ -83,6 +90,19 @@ export class Project {
   add(name, content) {
     const text = isToml(name) && typeof content !== "string" ? new TextDecoder().decode(content) : content;
     this.files.set(name, isToml(name) && typeof text === "string" ? text.replaceAll(/\r\n?/g, "\n") : text);
+  }
+
+  /**
+   * The name, or one like it, under which a file can be added without taking the place of another.
+   * @param {string} name
+   * @param {Content} content
+   */
+  freeName(name, content) {
+    const [base, ending] = [name.replace(/\.\w+$/, ""), /\.\w+$/.exec(name)?.[0] ?? ""];
+    let free = name;
+    for (let number = 2; this.files.has(free) && !isSame(this.files.get(free), content); number += 1)
+      free = `${base}-${number}${ending}`;
+    return free;
   }
 
   /**
@@ -116,6 +136,17 @@ export class Project {
   }
 }
 
+/**
+ * Says that a file or a text is not taken.
+ * @param {string} what
+ * @param {number} bytes
+ * @param {number} mostBytes
+ */
+export function tooLarge(what, bytes, mostBytes) {
+  const [size, most] = [bytes, mostBytes].map((each) => (each / 1e6).toFixed(1));
+  return `the ${what} has ${size} MB, more than the ${most} MB that the studio opens`;
+}
+
 /** @param {string} name */
 export function isToml(name) {
   return /\.toml$/i.test(name);
@@ -127,10 +158,10 @@ export function isPicture(name) {
 }
 
 /**
- * @param {Content} content
+ * @param {Content | undefined} content
  * @param {Content | undefined} other
  */
 function isSame(content, other) {
-  if (typeof content === "string" || typeof other !== "object") return false;
+  if (typeof content !== "object" || typeof other !== "object") return false;
   return content.length === other.length && content.every((byte, at) => byte === other[at]);
 }

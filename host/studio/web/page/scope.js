@@ -3,7 +3,7 @@
 
 import { clock } from "../clock.js";
 import { uPlot, uPlotStyle } from "../vendor/chart-vendor.js";
-import { colour, contextOf, download, element } from "./dom.js";
+import { colour, contextOf, download, element, volts } from "./dom.js";
 
 /** @import { Frame } from "../engine/types" */
 /** @import { Samples } from "./samples.js" */
@@ -12,6 +12,9 @@ import { colour, contextOf, download, element } from "./dom.js";
 const WINDOW_S = 3;
 /** Smallest chart, CSS pixels. */
 const SIZE_MIN_PX = { width: 160, height: 60 };
+/** Least distance of two numbers at an axis of friction or voltage, CSS pixels: in a low chart, and in others. */
+const LINES_PX = { low: 18, other: 36 };
+const LOW_CHART_PX = 150;
 /** Least time between two drawings, ms. */
 const FRAME_MS = 30;
 /** The scope runs on for this long after a lift, s. */
@@ -19,8 +22,8 @@ const AFTER_LIFT_S = 0.3;
 /** Height of the words above a saved chart, CSS pixels. */
 const HEAD_PX = 30;
 
-/** What time and series mean. */
-const MEANINGS = [
+/** What time and series mean: in the titles of the legend, and in the scope's menu. */
+export const MEANINGS = [
   "time before the newest sample, s",
   "reference: the friction that the scene asks for where the finger is, mN",
   "felt: the friction that the simulated finger feels; it wanders with the finger's load and noise, mN",
@@ -79,16 +82,17 @@ export class Scope {
       labelFont: "13px system-ui, sans-serif",
       labelSize: 18,
     };
-    /** @type {(unit: string, count: number) => uPlot.Series["value"]} */
-    const digits = (unit, count) => (_, value) => (Number.isFinite(value) ? `${value.toFixed(count)} ${unit}` : "–");
+    /** @type {(unit: string, write: (value: number) => string) => uPlot.Series["value"]} */
+    const digits = (unit, write) => (_, value) => (Number.isFinite(value) ? `${write(value)} ${unit}` : "–");
+    const tenths = (/** @type {number} */ value) => value.toFixed(1);
     /** @type {uPlot.Options} */
     const options = {
       ...SIZE_MIN_PX,
       scales: { x: { time: false }, mN: { range: upper }, V: { range: lower } },
       axes: [
-        { ...axis, space: 64, values: (_, splits) => splits.map((value) => beforeNow(value)) },
-        { ...axis, scale: "mN", label: "mN", size: 48 },
-        { ...axis, scale: "V", label: "V rms", side: 1, size: 44, grid: { show: false } },
+        { ...axis, size: 34, space: 64, values: (_, splits) => splits.map((value) => beforeNow(value)) },
+        { ...axis, scale: "mN", label: "mN", size: 48, space: linesPx, values: (_, splits) => splits.map(notBelowZero) },
+        { ...axis, scale: "V", label: "V rms", side: 1, size: 44, space: linesPx, grid: { show: false } },
       ],
       series: [
         { label: "time", value: (_, value) => (Number.isFinite(value) ? beforeNow(value, 3) : "–") },
@@ -98,10 +102,10 @@ export class Scope {
           stroke: colour("reference", this.#box),
           width: 2,
           dash: [6, 4],
-          value: digits("mN", 1),
+          value: digits("mN", tenths),
         },
-        { label: "felt", scale: "mN", stroke: colour("felt", this.#box), width: 2, value: digits("mN", 1) },
-        { label: "voltage", scale: "V", stroke: colour("voltage", this.#box), width: 1.5, value: digits("V", 0) },
+        { label: "felt", scale: "mN", stroke: colour("felt", this.#box), width: 2, value: digits("mN", tenths) },
+        { label: "voltage", scale: "V", stroke: colour("voltage", this.#box), width: 1.5, value: digits("V rms", volts) },
       ],
       cursor: { drag: { x: true, y: false } },
       hooks: { setSelect: [({ select }) => select.width > 0 && this.pause(true)] },
@@ -129,6 +133,13 @@ export class Scope {
     this.#plot.destroy();
     this.#plot = this.#made();
     this.#fit();
+    this.#draw();
+  }
+
+  /** Another scene is open: what was felt of the one before is not of it. */
+  clear() {
+    this.#samples.clear();
+    this.#touchedS = 0;
     this.#draw();
   }
 
@@ -211,6 +222,15 @@ function beforeNow(seconds, digits = 2) {
   if (Math.abs(seconds) < 0.0005) return "now";
   return `${Number(seconds.toFixed(digits))} s`.replace("-", "−");
 }
+
+/**
+ * Friction is drawn above the voltage: the axis goes on below zero, where there is none.
+ * @param {number} mN
+ */
+export const notBelowZero = (mN) => (mN < 0 ? "" : `${mN}`);
+
+/** @type {uPlot.Axis.Space} */
+const linesPx = (_chart, _axis, _min, _max, heightPx) => (heightPx < LOW_CHART_PX ? LINES_PX.low : LINES_PX.other);
 
 /**
  * Friction takes the upper part of the chart: what is usual is shown, and more where there is more.

@@ -30,7 +30,7 @@ export class Sound {
 
   constructor() {
     if (!(this.#mode in MODES)) this.#mode = "headphones";
-    this.#toggle = element("button", { className: "primary", "aria-pressed": "false" }, "Sound on");
+    this.#toggle = element("button", { className: "primary" }, "Turn sound on");
     this.#toggle.onclick = () => attempt(() => (this.isOn ? this.stop() : this.start()));
     const volume = element("input", { type: "range", min: 0, max: 1, step: 0.01, value: this.#volume, id: "volume" });
     volume.oninput = () => this.setVolume(Number(volume.value));
@@ -79,8 +79,7 @@ export class Sound {
   }
 
   #label() {
-    this.#toggle.textContent = this.isOn ? "Sound off" : "Sound on";
-    this.#toggle.setAttribute("aria-pressed", String(this.isOn));
+    this.#toggle.textContent = this.isOn ? "Turn sound off" : "Turn sound on";
     this.onChange();
   }
 

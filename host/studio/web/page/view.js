@@ -4,6 +4,7 @@
 import { byId, element } from "./dom.js";
 import { MOCKUPS, chooseOwnPicture } from "./mockup.js";
 import { attempt } from "./notices.js";
+import { MEANINGS } from "./scope.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Finger } from "./finger.js" */
@@ -28,16 +29,48 @@ export function makeView({ map, finger, scope, engine }) {
   makeReplay(engine);
 }
 
+/** Least distance of an open menu from the edges of the window, CSS pixels. */
+const EDGE_PX = 8;
+/** Room between a menu's button and the menu, CSS pixels. */
+const BELOW_PX = 6;
+
+/**
+ * Puts an open menu below its button, or above it where there is more room, whole within the window.
+ * @param {HTMLDetailsElement} menu
+ */
+function placeMenu(menu) {
+  const list = /** @type {HTMLElement | null} */ (menu.querySelector(":scope > div"));
+  if (!menu.open || !list) return;
+  list.style.maxHeight = "";
+  const button = menu.getBoundingClientRect();
+  const { width, height } = list.getBoundingClientRect();
+  const least = (document.querySelector("header")?.getBoundingClientRect().bottom ?? 0) + EDGE_PX;
+  const [above, below] = [button.top - BELOW_PX - least, innerHeight - EDGE_PX - button.bottom - BELOW_PX];
+  const isBelow = height <= below || below >= above;
+  const shown = Math.min(height, Math.max(above, below));
+  const top = isBelow ? button.bottom + BELOW_PX : button.top - BELOW_PX - shown;
+  const left = Math.max(EDGE_PX, Math.min(button.left, innerWidth - EDGE_PX - width));
+  Object.assign(list.style, {
+    maxHeight: `${shown}px`,
+    left: `${left - button.left}px`,
+    top: `${top - button.top}px`,
+  });
+}
+
 /**
  * A press elsewhere, or Escape, closes the menu.
  * @param {HTMLDetailsElement} menu
  */
 function makeMenu(menu) {
+  menu.addEventListener("toggle", () => placeMenu(menu));
+  addEventListener("resize", () => placeMenu(menu));
   document.addEventListener("pointerdown", ({ target }) => {
     if (!(target instanceof Node && menu.contains(target))) menu.open = false;
   });
   menu.addEventListener("keydown", ({ key }) => {
-    if (key === "Escape") menu.open = false;
+    if (key !== "Escape" || !menu.open) return;
+    menu.open = false;
+    menu.querySelector("summary")?.focus();
   });
 }
 
@@ -68,6 +101,7 @@ function makeScope(scope) {
   };
   byId("save-csv").onclick = () => scope.saveCsv();
   byId("save-png").onclick = () => scope.savePng();
+  byId("scope-meanings").append(...MEANINGS.slice(1).map((meaning) => element("p", {}, meaning)));
 }
 
 /**

@@ -1,0 +1,259 @@
+// The page in a browser: layers come into a scene and out of it on the map, and what the panel of a layer says.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { after, afterEach, test } from "node:test";
+import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+import { pageModule } from "./page_module.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+const EMPTY = "version = 2\n";
+const JPEG = new URL("../../../scenes/textures/wood.jpg", import.meta.url).pathname;
+const panel = (page) => page.locator(".layer-panel");
+const note = (page) => panel(page).locator("[role=status]").textContent();
+/** Where the layers are, as the map shows them, and whether any two of them overlap. */
+const boxes = (page) =>
+  page.locator(".layer-box").evaluateAll((all) => all.map((each) => each.getBoundingClientRect().toJSON()));
+const overlap = (one, other) =>
+  one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
+
+test("Add puts a layer of each kind where there is room, selected, in one step of undo, and each is felt", async () => {
+  const { page, errors } = await openEditing(EMPTY);
+  assert.match(await panel(page).textContent(), /^This scene has no layer yet: add one\./);
+  const texts = [EMPTY];
+  for (const [name, kind] of [["stripes", "grating"], ["button", "button"], ["noise", "noise"]]) {
+    await page.getByRole("button", { name: `Add ${name}`, exact: true }).click();
+    assert.match(await selected(page), new RegExp(`, ${kind}, 30 by 28 mm|^button, 30 by 28 mm`));
+    texts.push(await textOf(page));
+    await plays(page);
+    await page.locator(".layer-panel .verdict").waitFor();
+    assert.match(await page.locator(".layer-panel .verdict").textContent(), /^(felt|maybe)$/, name);
+  }
+  const found = await boxes(page);
+  for (const [at, one] of found.entries())
+    for (const other of found.slice(at + 1)) assert.ok(!overlap(one, other), JSON.stringify([one, other]));
+  assert.ok(texts[3].startsWith(texts[2]) && texts[2].startsWith(texts[1]) && texts[1].startsWith(EMPTY));
+  for (const text of texts.slice(0, 3).reverse()) {
+    await press(page, "Control+z");
+    assert.equal(await textOf(page), text);
+  }
+  assert.deepEqual(errors, []);
+});
+
+test("layers that are added fit screens of any size, and their lengths the layers", async () => {
+  const { BEGINNINGS, addedLayer } = await pageModule("beginnings.js");
+  for (const [widthMm, heightMm] of [[30, 20], [300, 60], [120, 80]]) {
+    for (const beginning of BEGINNINGS.filter(({ layer }) => layer.kind !== "bitmap")) {
+      const { region, ...layer } = addedLayer(beginning, { widthMm, heightMm }, []);
+      const { x_mm: x, y_mm: y, width_mm: width, height_mm: height } = region;
+      const isIn = x >= 0 && y >= 0 && width >= 0.2 * widthMm && x + width <= widthMm && y + height <= heightMm;
+      assert.ok(isIn, JSON.stringify(region));
+      const side = Math.min(width, height);
+      for (const [field, mm] of Object.entries(layer).filter(([name]) => name.endsWith("_mm")))
+        assert.ok(mm > 0 && mm <= side / 4, field);
+      assert.ok(!(layer.wavelength_min_mm >= layer.wavelength_max_mm), "a range of wavelengths");
+    }
+  }
+});
+
+test("Duplicate puts a copy beside its layer, also of one in an array, and one undo takes it back", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "Control+d");
+  const copy = `[[layer]]
+name = "left 2"     # its name
+kind = "constant"
+region = {x_mm = 15.0, y_mm = 25, width_mm = 30, height_mm = 30} # a box
+friction_fraction = 0.5`;
+  const at = PLATES.indexOf("\n\n# The upper");
+  assert.equal(await textOf(page), `${PLATES.slice(0, at)}\n\n${copy}${PLATES.slice(at)}`);
+  assert.equal(await selected(page), "left 2, constant, 30 by 30 mm at 15, 25");
+  await plays(page);
+  assert.equal(await selected(page), "left 2, constant, 30 by 30 mm at 15, 25");
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  const region = "{ x_mm = 80, y_mm = 40, width_mm = 40, height_mm = 40 }";
+  const one = `{ kind = "constant", friction_fraction = 0.5, region = ${region} }`;
+  await page.evaluate((text) => played(text), `version = 2\nlayer = [${one}]\n`);
+  await page.mouse.click(...(await onPage(page, 100, 60)));
+  await page.getByRole("button", { name: "Duplicate" }).click();
+  const moved = one.replace("x_mm = 80, y_mm = 40", "x_mm = 75, y_mm = 35");
+  assert.equal(await textOf(page), `version = 2\nlayer = [${one}, ${moved}]\n`);
+  await plays(page);
+  assert.equal(await page.locator(".layer-box").count(), 2);
+  assert.deepEqual(errors, []);
+});
+
+test("a layer that is taken from the gallery while layers are edited is selected", async () => {
+  const { page, errors } = await openEditing();
+  await page.click("#open-gallery");
+  const card = page.locator("#gallery article", { has: page.locator('h3:text-is("constant")') });
+  await card.locator("summary").click();
+  const take = card.locator("li button").first();
+  const name = (await take.getAttribute("aria-label")).replace("Take over ", "");
+  await take.click();
+  await page.locator("#gallery >> text=Close").click();
+  await page.waitForFunction(() => document.querySelectorAll(".layer-box").length === 3);
+  await plays(page);
+  assert.ok((await selected(page)).startsWith(name), await selected(page));
+  assert.deepEqual(errors, []);
+});
+
+test("a picture of one's own begins a scene and is added to one, by its aspect, in a frame that fits", async () => {
+  const { page, errors } = await openStudio();
+  const choose = async (action) => {
+    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), action()]);
+    await chooser.setFiles([{ name: "my wood.jpg", mimeType: "image/jpeg", buffer: fs.readFileSync(JPEG) }]);
+  };
+  await page.click("#new");
+  await choose(() => page.click("text=Choose a picture…"));
+  await page.waitForFunction(() => studioPage.editor.text.includes('picture = "my wood.jpg"'));
+  await plays(page);
+  assert.equal(await page.inputValue("#scene-name"), "my wood");
+  await page.locator(".layer-box[aria-current=true]").waitFor();
+  const [, width, height] = /^my wood, bitmap, ([\d.]+) by ([\d.]+) mm at/.exec(await selected(page));
+  const aspect = await page.evaluate(async () => {
+    const image = await createImageBitmap(new Blob([await studio.bytes("scenes/textures/wood.jpg")]));
+    return image.width / image.height;
+  });
+  assert.ok(Math.abs(width / height / aspect - 1) < 0.01, `${width} by ${height}, ${aspect}`);
+  await choose(() => page.click("[aria-label='Add picture']"));
+  await page.locator(".layer-box").nth(1).waitFor();
+  await plays(page);
+  assert.match(await selected(page), /^my wood 2, bitmap/);
+  // The same file again is the same file.
+  assert.equal((await textOf(page)).match(/picture = "my wood\.jpg"/g).length, 2);
+  await press(page, "Control+z");
+  await plays(page);
+  assert.equal(await page.locator(".layer-box").count(), 1);
+  assert.deepEqual(errors, []);
+});
+
+test("the frame of a picture without a region is where the picture is", async () => {
+  const { page, errors } = await openEditing();
+  const layer = 'kind = "bitmap"\npicture = "textures/wood.jpg"\nx_mm = 15\ny_mm = 10\nwidth_mm = 90\n';
+  const text = `version = 2\n[[layer]]\n${layer}`;
+  await page.evaluate((text) => played(text), text);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  assert.match(await selected(page), /^bitmap, 90 by [\d.]+ mm at 15, 10$/);
+  await drag(page, [60, 40], [50, 35]);
+  assert.equal(await textOf(page), text.replace("x_mm = 15\ny_mm = 10", "x_mm = 5\ny_mm = 5"));
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async () => {
+  const { page, errors } = await openEditing();
+  await drag(page, [20, 30], [25, 30]);
+  const moved = await textOf(page);
+  await page.evaluate(() => document.activeElement.blur());
+  assert.equal(await page.evaluate(() => document.activeElement.tagName), "BODY");
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  await press(page, "Control+Shift+z");
+  assert.equal(await textOf(page), moved);
+  await page.locator("#scene-name").focus();
+  await press(page, "Control+z");
+  await page.click("#open-about");
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), moved);
+  assert.deepEqual(errors, []);
+});
+
+test("Enter shows the text and leaves the keys to the layer; an arrow says why a layer does not move", async () => {
+  const { page, errors } = await openEditing();
+  await page.click("#toggle-drawer");
+  await settled(page);
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "Enter");
+  assert.ok(await page.locator("#drawer").isVisible());
+  await press(page, "ArrowRight");
+  assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 11.0"));
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  await press(page, "ArrowRight");
+  assert.match(await note(page), /covers the whole screen: drag a corner/);
+  // What was said is over once it has a place.
+  await page.getByLabel("width of grating, mm").fill("60");
+  await press(page, "Enter");
+  assert.equal(await note(page), "");
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("with Shift a layer moves along one axis, and a corner keeps the ratio; with Alt it rests anywhere", async () => {
+  const { page, errors } = await openEditing();
+  await page.keyboard.down("Shift");
+  await drag(page, [20, 30], [32, 33]);
+  await page.keyboard.up("Shift");
+  assert.equal(await selected(page), "left, constant, 30 by 30 mm at 22, 20");
+  await page.keyboard.down("Alt");
+  await drag(page, [30, 30], [28.7, 30]);
+  await page.keyboard.up("Alt");
+  assert.equal(await selected(page), "left, constant, 30 by 30 mm at 20.7, 20");
+  await page.keyboard.down("Shift");
+  await dragHandle(page, "se", -10, 0);
+  await page.keyboard.up("Shift");
+  const [, width, height] = /30 by 30|([\d.]+) by ([\d.]+) mm/.exec(await selected(page));
+  assert.ok(width === height && width < 21, `${width} by ${height}`);
+  assert.deepEqual(errors, []);
+});
+
+test("a drag that Escape takes back, or that ends where it began, is no step of undo", async () => {
+  const { page, errors } = await openEditing();
+  const isUndone = () => page.isEnabled("#undo");
+  await drag(page, [20, 30], [25, 30]);
+  await press(page, "Control+z");
+  const [text, redo] = [await textOf(page), await page.isEnabled("#redo")];
+  assert.ok(redo);
+  const before = await isUndone();
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, 40, 30)));
+  await press(page, "Escape");
+  await page.mouse.up();
+  assert.deepEqual([await textOf(page), await isUndone(), await page.isEnabled("#redo")], [text, before, true]);
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  for (const x of [40, 20]) await page.mouse.move(...(await onPage(page, x, 30)));
+  await page.mouse.up();
+  assert.deepEqual([await textOf(page), await isUndone(), await page.isEnabled("#redo")], [text, before, true]);
+  await plays(page);
+  await press(page, "Control+y");
+  assert.match(await textOf(page), /x_mm = 15\.0/);
+  assert.deepEqual(errors, []);
+});
+
+test("a text that is too large for the studio is not taken into the editor, and the page says so", async () => {
+  const { page, errors } = await openStudio();
+  const before = await textOf(page);
+  await page.locator(".cm-content").focus();
+  await page.evaluate(() => {
+    const data = new DataTransfer();
+    data.setData("text/plain", "# a line of a comment\n".repeat(100_000));
+    const paste = new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true });
+    document.querySelector(".cm-content").dispatchEvent(paste);
+  });
+  assert.match(await page.locator("#notice span").textContent(), /^the text has 2\.2 MB, more than the 0\.5 MB/);
+  assert.equal(await textOf(page), before);
+  assert.deepEqual(errors, []);
+});
+
+test("layers are taken out one after the other, faster than any check", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "Delete");
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  await press(page, "Delete");
+  assert.doesNotMatch(await textOf(page), /\[\[layer\]\]/);
+  assert.match(await panel(page).textContent(), /^This scene has no layer yet/);
+  await press(page, "Control+z", "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  await plays(page);
+  assert.deepEqual(errors, []);
+});

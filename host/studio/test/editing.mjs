@@ -1,0 +1,91 @@
+// What the tests of the mode Edit share: a scene that is edited, and drags on its map.
+
+import assert from "node:assert/strict";
+import { openStudio } from "./page.mjs";
+
+export const PLATES = `# Two plates.
+version = 2
+
+# The lower one.
+[[layer]]
+name = "left"     # its name
+kind = "constant"
+region = {x_mm = 10.0, y_mm = 20, width_mm = 30, height_mm = 30} # a box
+friction_fraction = 0.5
+
+# The upper one.
+[[layer]]
+name = "right"
+kind = "rings"
+region.x_mm = 70
+region.y_mm = 20 # from above
+region.width_mm = 40
+region.height_mm = 40
+x_mm = 90
+y_mm = 40.0
+wavelength_mm = 4
+low_fraction = 0
+high_fraction = 0.9
+`;
+
+/** Opens the page with a scene, in the mode Edit. */
+export async function openEditing(text = PLATES) {
+  const opened = await openStudio();
+  await opened.page.evaluate((text) => played(text), text);
+  await opened.page.getByRole("button", { name: "Edit", exact: true }).click();
+  // The screen has another size than that of the first scene.
+  await opened.page.waitForFunction(() => studioPage.map.screen.heightMm === 80);
+  await settled(opened.page);
+  return opened;
+}
+
+/** Waits until the map has found its place. */
+export function settled(page) {
+  return page.evaluate(async () => {
+    const place = () => JSON.stringify(document.querySelector(".hands").getBoundingClientRect());
+    for (let before = ""; before !== place(); ) {
+      before = place();
+      for (let frames = 0; frames < 4; frames += 1) await new Promise(requestAnimationFrame);
+    }
+  });
+}
+
+/** Where a place of the screen is in the window, CSS pixels. */
+export function onPage(page, xMm, yMm) {
+  return page.evaluate(
+    ([xMm, yMm]) => {
+      const { left, top } = document.getElementById("map-finger").getBoundingClientRect();
+      const { scale } = studioPage.map;
+      return [left + xMm * scale, top + yMm * scale];
+    },
+    [xMm, yMm],
+  );
+}
+
+/** Drags with the mouse from one place to another, mm, and lifts. */
+export async function drag(page, from, to) {
+  await page.mouse.move(...(await onPage(page, ...from)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, ...to)), { steps: 6 });
+  await page.mouse.up();
+}
+
+/** Drags a handle of the layer that is selected by so many mm. */
+export async function dragHandle(page, side, dx, dy) {
+  const { x, y, width, height } = await page.locator(`.layer-handle[data-side=${side}]`).boundingBox();
+  assert.ok(width >= 24 && height >= 24, `a handle of ${width} x ${height} pixels`);
+  const [left, top] = await onPage(page, 0, 0);
+  const [right, bottom] = await onPage(page, dx, dy);
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + right - left, y + height / 2 + bottom - top, { steps: 6 });
+  await page.mouse.up();
+}
+
+export const textOf = (page) => page.evaluate(() => studioPage.editor.text);
+export const plays = (page) =>
+  page.waitForFunction(() => !studioPage.player.isHeld && document.getElementById("check").textContent === "plays");
+export const selected = (page) => page.locator(".layer-box[aria-current=true]").getAttribute("aria-label");
+export const press = async (page, ...keys) => {
+  for (const key of keys) await page.keyboard.press(key);
+};

@@ -1,0 +1,241 @@
+// The page in a browser: each number says what it is, to a press and to keys, and nothing is said of another scene.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { KEYS, WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+/** Stripes on the right half; bare glass on the left. */
+const RIGHT_HALF = `${WHOLE_SCREEN_GRATING}region = { x_mm = 60, y_mm = 0, width_mm = 60, height_mm = 80 }\n`;
+
+test("a press on a number, and a key, say what it is", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const notice = page.locator("#notice");
+  const meanings = {
+    "Felt friction": /simulated finger feels/,
+    "Above bare glass": /Weber step is a factor of 1\.11/,
+    Drive: /adds friction, and takes none away/,
+    Speed: /Speed of the simulated finger/,
+  };
+  for (const [width, height] of [[1366, 657], [390, 844]]) {
+    await page.setViewportSize({ width, height });
+    for (const [at, [title, meaning]] of Object.entries(meanings).entries()) {
+      const { x, y, width: wide } = await page.locator("#numbers div").nth(at).boundingBox();
+      await page.mouse.click(x + wide - 8, y + 30);
+      await notice.waitFor();
+      assert.match(await notice.innerText(), meaning);
+      await page.keyboard.press("Escape");
+      await page.getByRole("button", { name: title, exact: true }).press("Enter");
+      assert.match(await notice.innerText(), meaning);
+      await page.keyboard.press("Escape");
+    }
+  }
+  await page.click("#scope-options summary");
+  const words = await page.innerText("#scope-options > div");
+  for (const word of [/reference: the friction that the scene asks for/, /felt: /, /voltage: .*V rms/, /Replay: /]) assert.match(words, word);
+  await page.keyboard.press("Escape");
+  await page.click("#open-lag");
+  const lag = await page.innerText("#lag");
+  assert.match(lag, /How far past a line the finger is when its friction comes/);
+  assert.match(lag, /– with prediction\s+– without/, "both in one unit and one word");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("steps above bare glass and contrast inside a layer have names of their own, each explained in a line", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  for (const panel of ["layers", "report"]) {
+    await page.click(`#tab-${panel}`);
+    const words = await page.innerText(`#panel-${panel}`);
+    assert.match(words, /contrast/i);
+    assert.match(words, /from the least to the most friction inside a layer, in Weber steps. A step is a factor of 1\.11/);
+    await page.locator(`#panel-${panel} .verdict`).first().click();
+    assert.match(await page.innerText("#notice span"), /^felt: .*mN/);
+    await page.keyboard.press("Escape");
+  }
+  await page.click("text=What a board needs for it");
+  const needs = await page.innerText("#felt");
+  assert.match(needs, /targets.*the least and the most that the scene asks for anywhere/);
+  assert.match(needs, /reachable.*the map's colours end there/);
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING.replace("= 2\nlow", "= 3\nlow"));
+  assert.ok(await page.locator("#felt details").first().evaluate(({ open }) => open), "what was unfolded stays so");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("where nothing is driven nothing is above bare glass, and half a volt is neither none nor one", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), RIGHT_HALF);
+  const said = await page.evaluate(async () => {
+    const found = new Set();
+    const stop = eachFrame(() => {
+      const [, weber, drive] = [...document.querySelectorAll("#numbers dd span")].map(({ textContent }) => textContent);
+      if (/\d/.test(weber)) found.add(`${weber} at ${drive}`);
+    });
+    let last;
+    const keep = eachFrame((frame) => (last = frame));
+    await slide(10, 50, 40, 60);
+    keep();
+    // The same slide, of a finger that presses harder for a while.
+    const harder = (voltageV) => {
+      const all = (value) => new Float32Array(400).fill(value);
+      const frame = { ...last, feltN: all(0.28), voltageV: all(voltageV), speedMmPerS: all(60), contact: true };
+      studioPage.engine.onFrames({ ...frame, xMm: all(NaN) });
+      return document.querySelectorAll("#numbers dd.felt span")[1].textContent;
+    };
+    stop();
+    return { found: [...found], harder: harder(0), driven: Number(harder(60)) };
+  });
+  const { found, harder, driven } = said;
+  assert.ok(found.length > 0 && found.every((each) => /^0\.0 at 0\.\d$/.test(each)), found.join(", "));
+  assert.equal(harder, "0.0");
+  assert.ok(driven > 0.5, `${driven}`);
+  const { volts } = await page.evaluate(async () => {
+    const { volts } = await import(await studio.moduleUrl("page/dom.js"));
+    return { volts: [0, 0.5, 9.96, 150.4].map(volts) };
+  });
+  assert.deepEqual(volts, ["0.0", "0.5", "10", "150"]);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("what is said of layers is marked while the text has mistakes", async () => {
+  const { page, errors, close } = await openStudio();
+  const marks = () =>
+    page.evaluate(() => ["felt", "panel-layers"].map((id) => getComputedStyle(document.getElementById(id), "::before").content));
+  assert.deepEqual(await marks(), ["none", "none"]);
+  await page.evaluate((text) => (studioPage.editor.text = text), WHOLE_SCREEN_GRATING.replace("grating", "gratin"));
+  await page.locator("#problems li.error").waitFor();
+  for (const mark of await marks()) assert.match(mark, /the version before/);
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  assert.deepEqual(await marks(), ["none", "none"]);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the button of the sound says what it does, and stays as long as there is sound", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const hear = page.locator("#hear");
+  await hear.click();
+  await hear.locator("text=Turn sound off").waitFor();
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  assert.ok(await hear.isVisible(), "after Edit");
+  await hear.click();
+  await hear.locator("text=Hear it").waitFor();
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a scene that opens has none of the curves of the one before, and friction no numbers below zero", async () => {
+  const { page, errors, close } = await openStudio();
+  await wholeStroke(page, 40);
+  assert.ok(await page.evaluate(() => studioPage.samples.count > 0));
+  await page.evaluate(() => wait(1500));
+  await page.click("#open-gallery");
+  await page.click('text="Open grating"');
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "grating");
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  const kept = await page.evaluate(() => studioPage.samples.since(0).xMm.filter(Number.isFinite).length);
+  assert.equal(kept, 0);
+  const axis = await page.evaluate(async () => {
+    const { notBelowZero } = await import(await studio.moduleUrl("page/scope.js"));
+    return [-10, 0, 20].map(notBelowZero);
+  });
+  assert.deepEqual(axis, ["", "0", "20"]);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a slide that leaves the map selects no text, and a selection is read in light and dark", async () => {
+  const { page, errors, close } = await openStudio();
+  const from = await page.locator("#map-picture").boundingBox();
+  const to = await page.locator("#editor").boundingBox();
+  await page.mouse.move(from.x + 4, from.y + 4);
+  await page.mouse.down();
+  await page.mouse.move(to.x + 60, to.y + 90, { steps: 5 });
+  await page.mouse.up();
+  assert.equal(await page.evaluate(() => String(getSelection())), "");
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme });
+    await page.click("#editor .cm-content");
+    await page.keyboard.press("Control+a");
+    const part = await page.evaluate(() => {
+      const canvas = new OffscreenCanvas(1, 1).getContext("2d");
+      const light = (colour) => {
+        canvas.fillStyle = colour;
+        canvas.fillRect(0, 0, 1, 1);
+        const [red, green, blue] = [...canvas.getImageData(0, 0, 1, 1).data].map((value) => (value / 255) ** 2.2);
+        return 0.2126 * red + 0.7152 * green + 0.0722 * blue + 0.05;
+      };
+      const [behind, ink] = [".cm-selectionBackground", ".cm-content"].map((each) => getComputedStyle(document.querySelector(each)));
+      const [one, other] = [light(behind.backgroundColor), light(ink.color)];
+      return Math.max(one, other) / Math.min(one, other);
+    });
+    assert.ok(part >= 4.5, `${colorScheme}: ${part}`);
+  }
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("in the gallery the picture opens its scene, names read as words, and Close stays in sight", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.click("#open-gallery");
+  await page.locator("#gallery button", { hasText: "Open velvet" }).waitFor();
+  assert.deepEqual((await page.locator("#gallery h3").allTextContents()).filter((name) => name.includes("_")), []);
+  await page.evaluate(() => document.getElementById("gallery").scrollTo(0, 10_000));
+  const box = await page.locator("#gallery .head button").boundingBox();
+  assert.ok(box.y >= 0 && box.y + box.height <= 844, JSON.stringify(box));
+  await page.locator("#gallery article", { hasText: "Open velvet" }).locator("canvas").click();
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "velvet");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("names of layers are whole in the table, and the state beside a name, with the text open", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.setViewportSize({ width: 1366, height: 657 });
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "stripes"\nkind = "grating"'));
+  await page.click("#tab-report");
+  const lines = await page.evaluate(() =>
+    [...document.querySelectorAll("#felt tbody th, #felt .verdict, #felt .number")]
+      .filter((each) => each.checkVisibility())
+      .map((each) => {
+        const range = document.createRange();
+        range.selectNodeContents(each);
+        return [each.textContent, new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size];
+      }),
+  );
+  assert.ok(lines.length >= 3 && lines.every(([, count]) => count === 1), JSON.stringify(lines));
+  await page.evaluate((text) => (studioPage.editor.text = text), KEYS.replace("bitmap", "bitmop"));
+  await page.locator("#problems li.error").waitFor();
+  const check = await page.evaluate(() => {
+    const found = document.getElementById("check");
+    return [found.scrollHeight <= found.clientHeight + 1, found.scrollWidth <= found.clientWidth + 1, found.textContent];
+  });
+  assert.deepEqual(check.slice(0, 2), [true, true], check[2]);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a voltage that the board does not let through is a warning at its line, counted while the text is closed", async () => {
+  const { page, errors, close } = await openStudio();
+  const text = WHOLE_SCREEN_GRATING.replace("version = 2\n", "version = 2\n[drive]\nvoltage_max_v_rms = 1000\n");
+  await page.evaluate((text) => played(text), text);
+  const warning = page.locator("#problems li.warning");
+  await warning.waitFor();
+  assert.match(await warning.innerText(), /^line 3\s*`voltage_max_v_rms = 1000` is more than the board lets through/);
+  assert.match(await warning.innerText(), /211\.0 V rms .* limit of 220 V peak and a peak of 1\.043 times the rms/);
+  await page.click("#toggle-drawer");
+  const count = page.locator("#mistakes");
+  assert.deepEqual([await count.innerText(), await count.getAttribute("aria-label")], ["1", "1 warning"]);
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  assert.ok(await count.isHidden());
+  assert.deepEqual(errors, []);
+  await close();
+});

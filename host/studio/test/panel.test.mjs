@@ -1,0 +1,117 @@
+// The page in a browser: the numbers of a layer in the panel of the mode Edit.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { onPage, openEditing, plays, press, selected, textOf } from "./editing.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+test("a slider of a number that was not written keeps its row and its ends while it is dragged, and then", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const rows = () =>
+    page.locator(".layer-number").evaluateAll((all) =>
+      all.map((row) => {
+        const { ariaLabel, min, max } = row.querySelector("[type=range]");
+        return [ariaLabel, min, max].join(" ");
+      }),
+    );
+  const before = await rows();
+  const slider = page.getByLabel("gain of right, ×", { exact: true });
+  const { x, y, width, height } = await slider.boundingBox();
+  await page.mouse.move(x + width * 0.5, y + height / 2);
+  await page.mouse.down();
+  for (const part of [0.45, 0.4, 0.3]) await page.mouse.move(x + width * part, y + height / 2);
+  assert.deepEqual(await rows(), before, "while it is dragged");
+  await page.mouse.up();
+  const [, gain] = /\ngain = ([\d.]+)\n/.exec(await textOf(page));
+  assert.ok(gain > 0.5 && gain < 0.7, gain);
+  await plays(page);
+  await press(page, "Escape", "Escape");
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  assert.deepEqual(await rows(), before, "when the layer is selected again");
+  await page.getByLabel("gain of right, ×, as a number").fill("3");
+  await press(page, "Enter");
+  assert.equal(await slider.evaluate(({ max, value }) => `${value} of ${max}`), "3 of 5");
+  assert.deepEqual(errors, []);
+});
+
+test("the right end of a slider of newtons is no more than the drive gives, and is marked", async () => {
+  const { page, errors } = await openEditing();
+  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const slider = page.getByLabel("high of grating, N", { exact: true });
+  const { x, y, width, height } = await slider.boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width + 40, y + height / 2, { steps: 4 });
+  await page.mouse.up();
+  await plays(page);
+  const [, high] = /high_n = ([\d.]+)\n/.exec(await textOf(page));
+  const { reachN, naturalN, isDraft } = await page.evaluate(async () => {
+    const { engine, editor } = studioPage;
+    return engine.check({ "a.toml": editor.text }, "a.toml", {});
+  });
+  const limitN = reachN - naturalN;
+  assert.ok(!isDraft && high <= limitN && high > limitN - 2e-4, `${high} of ${limitN}`);
+  await slider.focus();
+  await press(page, "ArrowRight");
+  assert.ok((await textOf(page)).includes(`high_n = ${high}\n`), "a key goes no further");
+  const row = page.locator(".layer-number", { has: slider });
+  assert.match(await row.getAttribute("title"), new RegExp(`^most friction; the drive reaches ${high} N$`));
+  assert.ok(await row.locator(".has-limit").isVisible());
+  assert.deepEqual(errors, []);
+});
+
+test("the panel says whether its layer is felt, also while a number is dragged, and what numbers mean", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const verdict = page.locator(".layer-panel .verdict");
+  const before = await verdict.textContent();
+  const slider = page.getByLabel("friction of left, of reach", { exact: true });
+  const { x, y, width, height } = await slider.boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width * 0.1, y + height / 2, { steps: 3 });
+  const isOther = (before) => document.querySelector(".layer-panel .verdict")?.textContent !== before;
+  await page.waitForFunction(isOther, before);
+  assert.equal(await verdict.textContent(), "not felt");
+  assert.ok(await page.evaluate(() => studioPage.player.isHeld));
+  await page.mouse.up();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const words = await page.locator(".layer-number small").allTextContents();
+  assert.ok(words.includes("least friction") && words.includes("from one ridge to the next"), `${words}`);
+  assert.deepEqual(errors, []);
+});
+
+test("the copies of a layer are numbers of its panel, as many as the screen has room for", async () => {
+  const { page, errors } = await openEditing();
+  const text = `version = 2
+[[layer]]
+name = "key"
+kind = "constant"
+friction_fraction = 0.8
+region = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }
+repeat = { columns = 3, rows = 2, dx_mm = 30, dy_mm = 25 }
+`;
+  await page.evaluate((text) => played(text), text);
+  await page.mouse.click(...(await onPage(page, 15, 15)));
+  const slider = (name) => page.getByLabel(`${name} of key`, { exact: true });
+  const most = (name) => slider(name).evaluate(({ max }) => Number(max));
+  assert.deepEqual([await most("columns"), await most("rows")], [4, 3]);
+  for (const name of ["columns", "rows"]) {
+    await slider(name).focus();
+    await press(page, "ArrowLeft", "ArrowLeft");
+  }
+  assert.equal(await textOf(page), text.replace("columns = 3, rows = 2", "columns = 1, rows = 1"));
+  await plays(page);
+  assert.match(await selected(page), /^key, constant, 20 by 20 mm at 10, 10$/);
+  for (let times = 0; times < 6; times += 1) await press(page, "ArrowRight");
+  assert.match(await textOf(page), /columns = 1, rows = 3,/);
+  await plays(page);
+  assert.deepEqual(errors, []);
+});

@@ -1,0 +1,88 @@
+// The page in a browser: a scene as a link, and as a zip: what is said of it, and how it comes back.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { fileURLToPath } from "node:url";
+import { after, afterEach, test } from "node:test";
+import { cleanUp, endLeftovers, openPage, pageUrl } from "./harness.mjs";
+import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+test("Share and a reload keep the bridge of the command, and the link does not have its token", async () => {
+  const { page, close } = await openPage("about:blank", { isSimulated: true });
+  const body = fs.readFileSync(fileURLToPath(pageUrl));
+  await page.route("http://127.0.0.1:9/**", (route) => route.fulfill({ body, contentType: "text/html" }));
+  await page.goto("http://127.0.0.1:9/#bridge=0123abcd");
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  const bridge = page.locator("#board-dialog button", { hasText: "Board of frixel studio" });
+  const assertBridge = async (when) => {
+    await page.click("#open-board");
+    assert.equal(await bridge.count(), 1, when);
+    await page.click("#board-dialog >> text=Close");
+  };
+  await assertBridge("at the start");
+  await page.click("#share");
+  await page.waitForFunction(() => location.hash.startsWith("#scene="));
+  assert.ok(!page.url().includes("0123abcd"), page.url());
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
+  await assertBridge("after Share and a reload");
+  const url = await page.evaluate(async () => {
+    const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
+    return bridgeUrl();
+  });
+  assert.equal(url, "ws://127.0.0.1:9/serial?token=0123abcd");
+  await close();
+});
+
+test("Share says that the scene has a mistake, and Save where the file is", async () => {
+  const { page, errors, close } = await openStudio();
+  const said = page.locator("#notice span");
+  await page.click("#share");
+  await said.filter({ hasText: "holds the whole scene" }).waitFor();
+  assert.doesNotMatch(await said.innerText(), /mistake/);
+  await page.evaluate((text) => (studioPage.editor.text = text), WHOLE_SCREEN_GRATING.replace("grating", "gratin"));
+  await page.locator("#problems li.error").waitFor();
+  await page.click("#share");
+  await said.filter({ hasText: "The scene has 1 mistake: whoever opens the link" }).waitFor();
+  assert.equal(await page.getAttribute("#notice", "role"), "alert");
+  await Promise.all([page.waitForEvent("download"), page.click("#save")]);
+  await said.filter({ hasText: "brick.zip is among your downloads" }).waitFor();
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a link is pasted into Open, also on a phone, and what is none is a sentence", async () => {
+  const { page, errors, close } = await openStudio();
+  const link = await page.evaluate(async (text) => {
+    const { linkOf } = await import(await studio.moduleUrl("page/share.js"));
+    return linkOf("ridges", text, []);
+  }, WHOLE_SCREEN_GRATING);
+  await page.setViewportSize({ width: 390, height: 844 });
+  const open = async () => {
+    await page.evaluate(() => document.getElementById("open-files").click());
+    await page.locator("#open h3").first().waitFor();
+  };
+  await open();
+  const field = page.getByLabel("Link of a scene");
+  await field.fill("https://example.org/");
+  await page.click("text=Open the link");
+  assert.match(await page.innerText("#open [role=alert]"), /no link of a scene/);
+  await field.fill(` ${link} `);
+  await field.press("Enter");
+  await page.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
+  assert.equal(await page.inputValue("#scene-name"), "ridges");
+  assert.ok(await page.locator("#open").isHidden());
+  await open();
+  await page.evaluate((link) => {
+    const clipboardData = new DataTransfer();
+    clipboardData.setData("text/plain", link);
+    const field = document.querySelector("#open input");
+    field.dispatchEvent(new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true }));
+  }, link);
+  await page.locator("#open").waitFor({ state: "hidden" });
+  assert.deepEqual(errors, []);
+  await close();
+});

@@ -1,0 +1,161 @@
+// Layers that are added to a scene on the map, doubled, or taken out of it: each is one step of undo.
+// @ts-check
+
+import { addedLayer, freeName, pictureLayer } from "./beginnings.js";
+import { bounds, clamp, placeOf } from "./place.js";
+import { TomlText, replaced } from "./toml_text.js";
+
+/** @import { Layer } from "../engine/types" */
+/** @import { Beginning, Fields } from "./beginnings.js" */
+/** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
+/** @import { Editor } from "./editor.js" */
+/** @import { Box } from "./place.js" */
+/** @import { Replacement } from "./toml_text.js" */
+
+/** How far a copy lies from its layer, along both sides, mm. */
+const COPY_MM = 5;
+/** Number of a layer that no check has seen yet. */
+export const UNCHECKED = 0;
+const OLD_VERSION = "Scenes of version 1 are edited in their text.";
+
+export class LayerEdits {
+  #editor;
+  #layers;
+
+  /**
+   * @param {Editor} editor
+   * @param {EditedLayers} layers
+   */
+  constructor(editor, layers) {
+    this.#editor = editor;
+    this.#layers = layers;
+  }
+
+  /**
+   * Adds a layer where there is room, above all others; returns it.
+   * @param {Beginning} beginning
+   */
+  add(beginning) {
+    const fields = addedLayer(beginning, this.#layers.screen, this.#taken());
+    const { x_mm: x, y_mm: y, width_mm: width, height_mm: height } = fields.region;
+    return this.#add(fields, [x, y, width, height]);
+  }
+
+  /**
+   * Likewise a picture that the scene has.
+   * @param {string} name
+   * @param {number} aspect Its width over its height.
+   */
+  addPicture(name, aspect) {
+    const fields = pictureLayer(name, aspect, this.#layers.screen, this.#taken());
+    const { x_mm: x, y_mm: y, width_mm: width } = fields;
+    return this.#add(fields, [x, y, width, width / aspect]);
+  }
+
+  /**
+   * @param {Fields} fields
+   * @param {[number, number, number, number]} boxMm
+   */
+  #add(fields, boxMm) {
+    const toml = new TomlText(this.#editor.text);
+    if (toml.value(["version"]) !== 2) throw new Error(OLD_VERSION);
+    const name = freeName(String(fields.name), this.#names());
+    const layers = toml.value(["layer"]);
+    const at = Array.isArray(layers) ? layers.length : 0;
+    this.#make(undefined, [toml.addition({ ...fields, name })]);
+    return this.#layers.insert(newLayer(name, String(fields.kind), boxMm), at);
+  }
+
+  /**
+   * Puts a copy of a layer beside it, right above it; returns the copy.
+   * @param {EditedLayer} edited
+   */
+  duplicate({ layer, toml, at, place }) {
+    if (!toml || at === undefined) throw new Error(place.whyNotMoved);
+    const insertion = toml.copy(at);
+    const text = replaced(toml.text, [insertion]);
+    const copied = new TomlText(text);
+    const own = copied.value(["layer", at + 1, "name"]);
+    const name = typeof own === "string" ? freeName(own, this.#names()) : layer.name;
+    const { screen } = this.#layers;
+    const to = placeOf(copied, at + 1, layer, screen, false);
+    const all = bounds(place.box, place.copies);
+    const dx = aside(all.x, screen.widthMm - all.x - all.width);
+    const dy = aside(all.y, screen.heightMm - all.y - all.height);
+    const changes = place.whyNotMoved ? [] : to.move(dx, dy);
+    if (typeof own === "string") changes.push({ path: ["layer", at + 1, "name"], value: name, decimals: 0 });
+    const made = replaced(text, copied.replacements(changes));
+    const { from, insert } = insertion;
+    const end = from + insert.length + made.length - text.length;
+    this.#make(layer.file, [{ from, to: from, insert: made.slice(from, end) }]);
+    const [x, y, width, height] = layer.boxMm ?? [0, 0, 0, 0];
+    const boxMm = layer.boxMm && /** @type {Layer["boxMm"]} */ ([x + dx, y + dy, width, height]);
+    return this.#layers.insert({ ...layer, index: UNCHECKED, name, boxMm }, at + 1);
+  }
+
+  /** @param {EditedLayer} edited */
+  remove(edited) {
+    if (!edited.toml || edited.at === undefined) throw new Error(edited.place.whyNotMoved);
+    this.#make(edited.layer.file, edited.toml.removals(edited.at));
+    this.#layers.remove(edited);
+  }
+
+  /**
+   * @param {string | undefined} file
+   * @param {Replacement[]} replacements
+   */
+  #make(file, replacements) {
+    const held = this.#editor.hold(file);
+    held.make(replacements);
+    held.end();
+  }
+
+  #names() {
+    return this.#layers.all.map(({ layer }) => layer.name);
+  }
+
+  /** Where the layers are that do not cover the whole screen. */
+  #taken() {
+    const placed = this.#layers.all.filter(({ place }) => !place.isWholeScreen);
+    return placed.flatMap(({ place: { box, copies } }) =>
+      copies.map(([dx, dy]) => /** @type {Box} */ ({ ...box, x: box.x + dx, y: box.y + dy })),
+    );
+  }
+}
+
+/**
+ * How far a copy moves along an axis: to where there is more room.
+ * @param {number} before
+ * @param {number} behind
+ */
+function aside(before, behind) {
+  const by = behind >= Math.min(COPY_MM, before) ? COPY_MM : -COPY_MM;
+  return clamp(by, -before, behind);
+}
+
+/**
+ * What is known of a layer that no check has seen yet.
+ * @param {string} name
+ * @param {string} kind
+ * @param {[number, number, number, number]} boxMm
+ * @returns {Layer}
+ */
+function newLayer(name, kind, boxMm) {
+  return {
+    index: UNCHECKED,
+    name,
+    kind,
+    felt: "",
+    perceived: null,
+    isLive: false,
+    whyNotLive: "",
+    startsOn: true,
+    gain: 1,
+    gainMin: 0,
+    gainMax: 1,
+    gainReach: null,
+    controls: [],
+    from: [1, 1],
+    boxMm,
+  };
+}

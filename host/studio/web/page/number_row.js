@@ -1,0 +1,120 @@
+// A number of a layer as a slider and a field.
+// @ts-check
+
+import { element } from "./dom.js";
+import { clamp } from "./place.js";
+import { numberText } from "./toml_text.js";
+
+/** @import { LayerNumber } from "./layer_numbers.js" */
+
+/** Places that a slider has at least. */
+const POSITIONS = 100;
+/** An end that is a multiple of the last decimal is met in spite of its rounding. */
+const CLOSE = 1e-9;
+
+export class NumberRow {
+  #number;
+  #slider;
+  #track;
+  #input;
+  /** @type {HTMLElement} */
+  element;
+  /** The number is being changed: `onNumber(number, value)`, until `onEnd()`. */
+  onNumber = (/** @type {LayerNumber} */ _number, /** @type {number} */ _value) => {};
+  onEnd = () => {};
+
+  /**
+   * @param {LayerNumber} number
+   * @param {string} layer
+   */
+  constructor(number, layer) {
+    const { label, unit, min, max, step, limit, words } = number;
+    this.#number = number;
+    const named = unit ? `${label} of ${layer}, ${unit}` : `${label} of ${layer}`;
+    this.#slider = element("input", { type: "range", step: "any", "aria-label": named });
+    this.#input = element("input", { type: "number", min, max, step, "aria-label": `${named}, as a number` });
+    this.#track = element("span", { className: limit === undefined ? "slider" : "slider has-limit" }, this.#slider);
+    this.#showEnds();
+    const reach = limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, number), 4)} ${unit}`;
+    const title = [words, reach].filter(Boolean).join("; ");
+    const said = element("span", {}, label, element("small", {}, words));
+    const behind = element("span", {}, unit);
+    this.element = element("div", { className: "layer-number", title }, said, this.#track, this.#input, behind);
+    this.#listen();
+  }
+
+  #listen() {
+    const [slider, input] = [this.#slider, this.#input];
+    slider.oninput = () => this.#change(slider.valueAsNumber, this.#places);
+    // An arrow key moves a slider without steps by next to nothing.
+    slider.onkeydown = (event) => {
+      const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+      if (by === undefined) return;
+      event.preventDefault();
+      this.#change(slider.valueAsNumber + by * this.#number.step, this.#number.decimals);
+    };
+    slider.onkeyup = () => this.onEnd();
+    slider.onchange = () => this.onEnd();
+    input.oninput = () => {
+      const { min, max } = this.#number;
+      if (input.value !== "" && input.valueAsNumber >= min && input.valueAsNumber <= max)
+        this.onNumber(this.#number, input.valueAsNumber);
+    };
+    input.onchange = () => {
+      this.onEnd();
+      // What no scene may have was not taken.
+      input.value = this.#text;
+    };
+  }
+
+  /** Decimals that a drag gives: as many as the slider has places for. */
+  get #places() {
+    const { decimals, least, most } = this.#number;
+    return Math.min(decimals, Math.max(0, Math.ceil(-Math.log10((most - least) / POSITIONS))));
+  }
+
+  /**
+   * The slider is at this value: rounded, but not beyond its ends.
+   * @param {number} value
+   * @param {number} places
+   */
+  #change(value, places) {
+    const { least, most } = this.#number;
+    const rounded = Number(clamp(value, least, most).toFixed(places));
+    const isBeyond = rounded < least || rounded > most;
+    this.onNumber(this.#number, isBeyond ? inwards(value, this.#number) : rounded);
+  }
+
+  get #text() {
+    return numberText(this.#number.value, this.#number.decimals);
+  }
+
+  /**
+   * Shows what the text has now. The ends of the slider stay, unless the number lies beyond them.
+   * @param {LayerNumber} number
+   */
+  show({ value, path, least, most }) {
+    const before = this.#number;
+    this.#number = { ...before, value, path, least: Math.min(before.least, least), most: Math.max(before.most, most) };
+    this.#showEnds();
+    for (const input of [this.#slider, this.#input])
+      if (input !== document.activeElement || Number(input.value) !== Number(this.#text)) input.value = this.#text;
+  }
+
+  #showEnds() {
+    const { least, most, limit } = this.#number;
+    Object.assign(this.#slider, { min: String(least), max: String(most) });
+    if (limit !== undefined) this.#track.style.setProperty("--limit", String((limit - least) / (most - least)));
+  }
+}
+
+/**
+ * A value near the end of a slider, rounded so that it does not lie beyond.
+ * @param {number} value
+ * @param {LayerNumber} number
+ */
+function inwards(value, { least, most, decimals }) {
+  const unit = 10 ** decimals;
+  const [first, last] = [Math.ceil(least * unit - CLOSE) / unit, Math.floor(most * unit + CLOSE) / unit];
+  return clamp(Math.round(value * unit) / unit, first, last);
+}

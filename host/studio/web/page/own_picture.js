@@ -1,0 +1,62 @@
+// A picture of one's own that a person chooses, for a layer.
+// @ts-check
+
+import { pictureLayer, sceneOf } from "./beginnings.js";
+import { element } from "./dom.js";
+import { read } from "./incoming.js";
+
+/** @import { Hands } from "./hands.js" */
+/** @import { OpenScene } from "./open_scene.js" */
+
+/**
+ * A picture with its width over its height.
+ * @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, aspect: number }} OwnPicture
+ */
+
+/** The screen of a scene that does not say one. */
+const SCREEN = { widthMm: 120, heightMm: 80 };
+const WORDS = "A picture: black is bare glass, white the most that the drive can add.";
+
+/** Lets a person choose a picture; resolves to undefined if none is chosen. */
+export async function choosePicture() {
+  const input = element("input", { type: "file", accept: "image/png,image/jpeg", hidden: true });
+  // Firefox opens no dialog of an input that is in no document.
+  document.body.append(input);
+  const file = await new Promise((/** @type {(file: File | undefined) => void} */ resolve) => {
+    input.onchange = () => resolve(input.files?.[0]);
+    input.addEventListener("cancel", () => resolve(undefined));
+    input.click();
+  });
+  input.remove();
+  return file && pictureIn(file);
+}
+
+/**
+ * @param {File} file
+ * @returns {Promise<OwnPicture>}
+ */
+async function pictureIn(file) {
+  const { files = [] } = await read(file, { texts: [], files: [], profiles: [] });
+  const [name, bytes] = files[0] ?? [];
+  if (!name || typeof bytes !== "object") throw new Error(`${file.name}: expected a picture (.png, .jpg)`);
+  // The compiler does not turn a photo as its camera says.
+  const image = await createImageBitmap(new Blob([bytes]), { imageOrientation: "none" });
+  const aspect = image.width / image.height;
+  image.close();
+  return { name, bytes, aspect };
+}
+
+/**
+ * Opens a scene with a picture that a person chooses, whose layer is selected.
+ * @param {OpenScene} scene
+ * @param {Hands} hands
+ */
+export async function beginWithPicture(scene, hands) {
+  const picture = await choosePicture();
+  if (!picture) return;
+  const { name, bytes, aspect } = picture;
+  const text = sceneOf(WORDS, pictureLayer(name, aspect, SCREEN));
+  await scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] });
+  hands.setEditing(true);
+  hands.awaitLast();
+}
