@@ -100,6 +100,27 @@ fn a_report_that_was_read_in_part_is_skipped() {
     }
 }
 
+/// After an outage of a second, none of its reports is taken for the finger's place, however many wait.
+#[test]
+fn reports_of_a_long_outage_are_not_reported() {
+    let module = ZForceModule::new(0);
+    let mut frame = ZForce::new(module.bus(), module.data_ready(), PolledDelay);
+    assert!(poll_for(pin!(frame.next_touch()), 100).is_none());
+    module.connect(false);
+    for x in 0..200 {
+        module.touch(TouchEvent::Move, x, 20);
+    }
+    assert!(poll_for(pin!(frame.next_touch()), 200).is_some_and(|touch| touch.is_err()));
+    module.connect(true);
+    for _ in 0..3 {
+        assert_eq!(poll_for(pin!(frame.next_touch()), 200), Some(Err(zforce::Error::Waiting)));
+    }
+    let mut touch = pin!(frame.next_touch());
+    assert!(poll_for(touch.as_mut(), 100).is_none());
+    module.touch(TouchEvent::Up, 10, 20);
+    assert_eq!(poll_for(touch, 100), Some(Ok(Touch::Up)));
+}
+
 /// Clears a bus and returns whether that succeeded.
 fn clear(bus: &HeldBus) -> bool {
     let (mut scl, mut sda, mut delay) = (bus.scl(), bus.sda(), PolledDelay);

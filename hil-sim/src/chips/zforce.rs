@@ -139,6 +139,12 @@ impl ZForceModule {
         self.0.borrow().frequency_hz
     }
 
+    /// Whether the host has enabled its reports since it has started.
+    #[must_use]
+    pub fn is_enabled(&self) -> bool {
+        self.0.borrow().is_enabled
+    }
+
     /// Reports a finger at a place, in tenths of a millimetre. Does nothing unless the module is enabled.
     pub fn touch(&self, event: TouchEvent, x: u16, y: u16) {
         let mut module = self.0.borrow_mut();

@@ -12,8 +12,8 @@ use frixel_wire::fault::State;
 use super::bench::{BOARD, Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
-/// From the last report to zero: 40 ms until it is stale, and a tick.
-const ZERO_WITHIN: Duration = Duration::from_micros(40_000 + 2 * 125);
+/// From the last report to zero: 40 ms until it is stale, the tick that begins meanwhile, and the one that puts out zero.
+const ZERO_WITHIN: Duration = Duration::from_millis(40).saturating_add(TICK.saturating_mul(2));
 /// From a frame that works again to the drive: a pause of the driver of 100 ms, at most 50 until it has discarded what
 /// waits, and 60 until reports have come.
 const BACK_WITHIN: Duration = Duration::from_millis(210);
@@ -31,7 +31,7 @@ fn frame<R>(bench: &Bench, work: impl FnOnce(&mut TouchFrame) -> R) -> R {
     bench.with(|rig| work(rig.frame_mut().unwrap()))
 }
 
-/// A board that drives, under a finger that slides along a line far from `PLACE_Y_M`.
+/// A board that drives, under a finger that slides to and fro at `PLACE_Y_M`.
 fn playing(image: &Image) -> (Bench, Host) {
     let [left, right] = [(60e-3, f64::from(PLACE_Y_M)), (116e-3, f64::from(PLACE_Y_M))];
     let [left, right] = [left, right].map(|(x_m, y_m)| Point { x_m, y_m });
@@ -80,8 +80,8 @@ fn suffers(
     events
 }
 
-/// The board has followed nothing but the finger, and has no fault.
-fn has_followed_the_finger(bench: &Bench, host: Host) {
+/// Every track lies on the finger's line, and the board has no fault.
+fn has_stayed_on_the_line(bench: &Bench, host: Host) {
     let watched = bench.with(|rig| rig.take_watched().unwrap());
     let tracks: Vec<_> = watched.orders.iter().filter(|order| order.words[0] == TRACK).collect();
     assert!(!tracks.is_empty());
@@ -108,7 +108,7 @@ fn a_frame_that_does_not_acknowledge_stops_the_output_until_it_does() {
         suffers(&bench, &mut host, |frame| frame.module().connect(false), |frame| frame.module().connect(true));
     let asked = events.iter().filter(|event| matches!(event, WireEvent::I2cAddress { .. })).count();
     assert!((2..=3).contains(&asked), "it is asked again every 0.1 s, not {asked} times");
-    has_followed_the_finger(&bench, host);
+    has_stayed_on_the_line(&bench, host);
 }
 
 #[test]
@@ -132,11 +132,13 @@ fn a_clock_that_is_held_stops_the_output_until_it_is_released() {
     let (bench, mut host) = playing(&image);
     suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
     // In the middle of a report.
+    let begin = bench.now();
     while !is_reading(&bench) {
+        assert!(bench.now().saturating_sub(begin) <= BACK_WITHIN, "no report is read");
         host.wait(TICK, &mut |_| ()).unwrap();
     }
     suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
-    has_followed_the_finger(&bench, host);
+    has_stayed_on_the_line(&bench, host);
 }
 
 /// Whether a byte was read in the last tick, and the transfer has not ended.
@@ -159,7 +161,7 @@ fn a_short_of_the_data_line_stops_the_output_until_it_is_gone() {
     let tries = short.pulses() / 9;
     assert!((2..=3).contains(&tries) && short.pulses().is_multiple_of(9), "{} clocks", short.pulses());
     assert_eq!(count(&events, WireEvent::Scl(true)), short.pulses() as usize);
-    has_followed_the_finger(&bench, host);
+    has_stayed_on_the_line(&bench, host);
 }
 
 /// A frame that was left in the middle of a byte: by a disturbance of the clock, or by a reset of the board.
@@ -178,11 +180,12 @@ fn a_frame_that_holds_the_data_line_is_freed_by_clocks() {
             assert!(frame(&bench, |frame| frame.module().frequency_hz()).is_some());
         } else {
             host.wait(BACK_WITHIN, &mut |_| ()).unwrap();
-            comes_back(&bench, &mut host);
+            // The clocks come before a report is missed.
+            assert_eq!(bench.with(|rig| rig.zero_since()), None, "the board drives on");
         }
         assert!((1..=9).contains(&left.pulses()), "{transfer:?}: {} clocks", left.pulses());
         if !resets {
-            has_followed_the_finger(&bench, host);
+            has_stayed_on_the_line(&bench, host);
         }
     }
 }
@@ -193,7 +196,10 @@ fn a_report_that_is_cut_off_moves_no_finger() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let (bench, mut host) = playing(&image);
     for bytes in 0..REPORT_LEN {
-        while frame(&bench, |frame| frame.module().waiting() > 0) {
+        // What the frame is asked at a restart is answered, so that a report is cut off.
+        let begin = bench.now();
+        while frame(&bench, |frame| !frame.module().is_enabled() || frame.module().waiting() > 0) {
+            assert!(bench.now().saturating_sub(begin) <= BACK_WITHIN, "the frame is not set up");
             host.wait(TICK, &mut |_| ()).unwrap();
         }
         frame(&bench, |frame| frame.restarts_after = Some(bytes));
@@ -205,5 +211,5 @@ fn a_report_that_is_cut_off_moves_no_finger() {
         }
     }
     comes_back(&bench, &mut host);
-    has_followed_the_finger(&bench, host);
+    has_stayed_on_the_line(&bench, host);
 }

@@ -79,16 +79,17 @@ pub fn parse(message: &[u8]) -> Message {
     }
 }
 
-/// A module that stops in the middle of a report releases the bus, and the rest of the bytes are ones: so a touch whose
-/// last byte is that, a confidence that no module states, is ignored. Its place may be half of the finger's.
+/// A module that stops in the middle of a report releases the bus, and the rest of the bytes are ones: so a place is
+/// ignored if the last byte of its report is that. It may be half of the finger's, and the byte is a confidence of 255,
+/// which is assumed not to be stated. A lift that was read stands.
 fn parse_touch(touch: &[u8]) -> Message {
     match *touch {
+        [_, EVENT_UP, ..] => Message::Touch(Touch::Up),
         [.., RELEASED] => Message::Other,
         [_, EVENT_DOWN | EVENT_MOVE, x_high, x_low, y_high, y_low, ..] => Message::Touch(Touch::Down {
             x_m: f32::from(u16::from_be_bytes([x_high, x_low])) * M_PER_UNIT,
             y_m: f32::from(u16::from_be_bytes([y_high, y_low])) * M_PER_UNIT,
         }),
-        [_, EVENT_UP, ..] => Message::Touch(Touch::Up),
         _ => Message::Other,
     }
 }
@@ -156,11 +157,16 @@ mod tests {
     /// The module restarts in the middle of a report: what follows is read from a released bus.
     #[test]
     fn a_touch_that_is_cut_off_is_not_a_touch() {
-        let whole = one_touch(1, 1234, 300);
-        for cut in 0..whole.len() {
-            let mut message = whole.clone();
-            message[cut..].fill(0xff);
-            assert_eq!(parse(&message), Message::Other, "after {cut} bytes");
+        for event in [EVENT_DOWN, EVENT_MOVE, EVENT_UP] {
+            let whole = one_touch(event, 1234, 300);
+            for cut in 0..whole.len() {
+                let mut message = whole.clone();
+                message[cut..].fill(0xff);
+                // The event is the byte at 11.
+                let is_lift = event == EVENT_UP && cut > 11;
+                let expected = if is_lift { Message::Touch(Touch::Up) } else { Message::Other };
+                assert_eq!(parse(&message), expected, "event {event} after {cut} bytes");
+            }
         }
     }
 

@@ -22,8 +22,7 @@ use crate::polling::yield_now;
 const PAUSE_MS: u32 = 100;
 /// Bytes of a transfer that is discarded: a report of two fingers.
 const DISCARDED_LEN: usize = 32;
-/// Most transfers that are discarded before the module is set up, 50 ms at 400 kHz: one whose data-ready pin stays high
-/// is set up all the same.
+/// Most transfers that are discarded between two pauses, 50 ms at 400 kHz: more than a module has reported in a pause.
 const DISCARDED_MAX: u32 = 64;
 
 /// The module: its bus, its data-ready pin (high while a message waits), and a delay.
@@ -43,6 +42,8 @@ pub enum Error<E> {
     I2c(E),
     /// The data-ready pin could not be read.
     DataReady,
+    /// Messages wait however many are read.
+    Waiting,
     /// Invalid header: expected `ee` and a length from 1 to 127.
     Length([u8; LENGTH_LEN]),
 }
@@ -52,6 +53,11 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
         match self {
             Self::I2c(error) => write!(f, "the touch frame's bus failed: {error:?}; check its supply, SCL and SDA"),
             Self::DataReady => f.write_str("the touch frame's data-ready pin could not be read; check its wire"),
+            Self::Waiting => write!(
+                f,
+                "the touch frame has messages after {DISCARDED_MAX} of {DISCARDED_LEN} bytes were discarded, expected \
+                 none; if this goes on, check the wire of its data-ready pin"
+            ),
             Self::Length([transport, len]) => {
                 write!(
                     f,
@@ -123,11 +129,11 @@ impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
     async fn discard_waiting(&mut self) -> Result<(), Error<B::Error>> {
         for _ in 0..DISCARDED_MAX {
             if !self.is_data_ready()? {
-                break;
+                return Ok(());
             }
             self.bus.read(I2C_ADDRESS, &mut [0; DISCARDED_LEN]).await?;
         }
-        Ok(())
+        Err(Error::Waiting)
     }
 
     fn is_data_ready(&mut self) -> Result<bool, Error<B::Error>> {
