@@ -33,7 +33,7 @@ let shown;
 /** The last one that is lasting and was not dismissed. @type {Notice | undefined} */
 let lasting;
 
-/** Notices stand beside what was pressed, and stay there when the window changes. */
+/** Notices stand beside what was pressed, and stay there when the window changes or something is scrolled. */
 export function followPresses() {
   for (const type of ["click", "change", "input"]) {
     addEventListener(
@@ -45,7 +45,8 @@ export function followPresses() {
       { capture: true },
     );
   }
-  addEventListener("resize", () => place(byId("notice"), shown?.manner.beside));
+  for (const type of ["resize", "scroll"])
+    addEventListener(type, () => place(byId("notice"), shown?.manner.beside), { capture: true });
   addEventListener("keydown", ({ key, defaultPrevented }) => {
     if (key === "Escape" && !defaultPrevented && !document.querySelector("dialog[open]")) forgetNotice();
   });
@@ -115,26 +116,28 @@ function expire(notice) {
 }
 
 /**
- * Puts a notice below its control, or above it where there is more room; without one, below the header. It lies over no
- * tool of the map.
+ * Puts a notice below its control, or above it where there is more room; without one, below the header. It stays within
+ * the window, and lies over no tool of the map and, unless it is about a control there, not over the header.
  * @param {HTMLElement} notice
  * @param {Element | undefined} control
  */
 function place(notice, control) {
   if (notice.hidden) return;
-  const header = document.querySelector("header")?.getBoundingClientRect();
+  const header = document.querySelector("header");
   const { width, height } = notice.getBoundingClientRect();
   const box = control?.isConnected && control.checkVisibility() ? control.getBoundingClientRect() : undefined;
-  const least = box ? GAP_PX : (header?.bottom ?? 0) + GAP_PX;
+  const isOfHeader = box && header?.contains(control ?? null);
+  const least = isOfHeader ? GAP_PX : (header?.getBoundingClientRect().bottom ?? 0) + GAP_PX;
   const left = box ? box.left : (innerWidth - width) / 2;
   const below = (box?.bottom ?? 0) + GAP_PX;
   const wanted = box && below + height > innerHeight ? box.top - GAP_PX - height : below;
   const x = Math.max(GAP_PX, Math.min(left, innerWidth - width - GAP_PX));
-  const y = Math.max(least, Math.min(wanted, innerHeight - height - GAP_PX));
+  const within = (/** @type {number} */ top) => Math.max(least, Math.min(top, innerHeight - height - GAP_PX));
+  const y = within(wanted);
   const tools = document.querySelector(".map-tools")?.getBoundingClientRect();
   const isOver = tools && x < tools.right && tools.left < x + width && y < tools.bottom && tools.top < y + height;
   notice.style.left = `${x}px`;
-  notice.style.top = `${isOver ? tools.bottom + GAP_PX : y}px`;
+  notice.style.top = `${isOver ? within(tools.bottom + GAP_PX) : y}px`;
 }
 
 /**
