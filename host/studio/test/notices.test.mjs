@@ -131,7 +131,7 @@ test("one Escape closes one thing: a menu before the notice, and in Edit the not
 
 test("a notice follows its control when the page scrolls, and stays below the header", async () => {
   const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
-  await page.setViewportSize({ width: 390, height: 664 });
+  await page.setViewportSize({ width: 390, height: 480 });
   const scroll = (to) => page.evaluate(async (to) => {
     document.querySelector("main").scrollTo(0, to);
     for (let frames = 0; frames < 2; frames += 1) await new Promise(requestAnimationFrame);
