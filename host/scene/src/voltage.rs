@@ -67,7 +67,7 @@ impl Voltage {
         let max_v_rms = scene_max_v_rms.min(max_v_peak / peak_per_rms);
         if max_v_rms < scene_max_v_rms {
             let why = if max_v_peak >= board_v_peak { why } else { "" };
-            // Who writes the rms voltage alone takes it for what is driven.
+            // A scene that has no peak voltage reads as if its rms voltage were driven: that it is not is a warning.
             if drive.voltage_max_v_peak.is_none() && drive.places.has("voltage_max_v_rms") {
                 let whose = if max_v_peak >= board_v_peak { "board" } else { "screen" };
                 log.warn(

@@ -10,6 +10,14 @@ after(cleanUp);
 
 /** Stripes on the right half; bare glass on the left. */
 const RIGHT_HALF = `${WHOLE_SCREEN_GRATING}region = { x_mm = 60, y_mm = 0, width_mm = 60, height_mm = 80 }\n`;
+/** A layer of one friction. */
+const PLATE = `version = 2
+
+[[layer]]
+kind = "constant"
+friction_fraction = 0.9
+region = { x_mm = 60, y_mm = 20, width_mm = 40, height_mm = 40 }
+`;
 
 test("a press on a number, and a key, say what it is", async () => {
   const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
@@ -45,14 +53,15 @@ test("a press on a number, and a key, say what it is", async () => {
   await close();
 });
 
-test("steps above bare glass and contrast inside a layer have names of their own, each explained in a line", async () => {
+test("steps above bare glass and the largest step of a layer have names of their own, each explained in a line", async () => {
   const { page, errors, close } = await openStudio();
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   for (const panel of ["layers", "report"]) {
     await page.click(`#tab-${panel}`);
     const words = await page.innerText(`#panel-${panel}`);
-    assert.match(words, /contrast/i);
-    assert.match(words, /from the least to the most friction inside a layer, in Weber steps. A step is a factor of 1\.11/);
+    assert.match(words, /Step: the largest step of friction, inside the layer or at its border, in Weber steps/);
+    assert.match(words, /A Weber step is a factor of 1\.11/);
+    assert.doesNotMatch(words, /contrast/i);
     await page.locator(`#panel-${panel} .verdict`).first().click();
     assert.match(await page.innerText("#notice span"), /^felt: .*mN/);
     await page.keyboard.press("Escape");
@@ -63,6 +72,17 @@ test("steps above bare glass and contrast inside a layer have names of their own
   assert.match(needs, /reachable.*the map's colours end there/);
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING.replace("= 2\nlow", "= 3\nlow"));
   assert.ok(await page.locator("#felt details").first().evaluate(({ open }) => open), "what was unfolded stays so");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a layer of one friction has the step at its border", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.evaluate((text) => played(text), PLATE);
+  await page.click("#tab-report");
+  const cells = await page.locator("#felt tbody tr").first().locator("td").allInnerTexts();
+  assert.equal(cells.length, 4, cells.join(" | "));
+  assert.ok(Number(cells[2]) > 1, `${cells[2]} steps`);
   assert.deepEqual(errors, []);
   await close();
 });

@@ -14,7 +14,7 @@ const WINDOWS = [[1366, 657], [1440, 789], [1536, 730], [1920, 969], [2560, 1300
 const LOW_WINDOWS = [[390, 664], [960, 485]];
 /**
  * Least part of a window that the screen's picture has, without ruler and scale: on a phone, and otherwise. A screen
- * that is as wide as the window has what it can have.
+ * whose shape leaves it no such part of the window's width has all of that width.
  */
 const PART = { phone: 0.4, other: 0.25 };
 const PHONE_MAX_PX = 480;
@@ -110,8 +110,11 @@ for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
         for (const other of apart.slice(at + 1)) assert.ok(!overlap(one, other), `${size}: ${JSON.stringify([one, other])}`);
       const part = (map.width * map.height) / (width * height);
       const least = width <= PHONE_MAX_PX ? PART.phone : PART.other;
-      const isWidest = map.width >= width - AROUND_NARROW_PX;
-      assert.ok(part >= least || isWidest, `${size}: the map has ${part.toFixed(3)} of the window`);
+      const widest = width - AROUND_NARROW_PX;
+      const most = (widest * widest * map.height) / map.width / (width * height);
+      if (most >= least) assert.ok(part >= least, `${size}: the map has ${part.toFixed(3)} of the window`);
+      else assert.ok(map.width >= widest, `${size}: the map is ${map.width} px wide`);
+      if (scene === "brick") assert.ok(most >= least, `${size}: a screen of 120 by 110 mm can have its part`);
       assert.deepEqual(await page.evaluate(scrolls, true), [], `${size}: the page scrolls`);
       assert.deepEqual(await page.evaluate(cut), [], `${size}: cut`);
       const { height: plot } = await page.evaluate(boxOf, "#scope .u-over");
@@ -120,6 +123,25 @@ for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
     assert.deepEqual(errors, []);
     await close();
   });
+}
+
+/** The panel of Edit follows what is scrolled, lies beside the map, and is reached down to its last button. */
+async function assertPanelScrolls(page, where, [, height]) {
+  await page.evaluate(() => document.querySelector("main").scrollTo(0, 0));
+  await page.click("text='Edit'");
+  await page.locator(".layer-box").first().focus();
+  const places = async () => {
+    const { "#map-finger": map, ".layer-panel": panel } = await boxes(page, ["#map-finger", ".layer-panel"]);
+    assert.ok(!overlap(map, panel), `${where}: the panel over the map, ${JSON.stringify([map, panel])}`);
+    return panel.top - map.top;
+  };
+  const before = await places();
+  await page.evaluate(() => document.querySelector("main").scrollTo(0, 10_000));
+  assert.ok(Math.abs((await places()) - before) <= ROUNDING_PX, `${where}: the panel stays behind`);
+  await page.locator(".layer-add button").last().focus();
+  const bottom = await page.evaluate(() => document.activeElement.getBoundingClientRect().bottom);
+  assert.ok(bottom <= height, `${where}: the panel's last button is at ${bottom}`);
+  await page.click("text='Feel'");
 }
 
 test("in a low window the page scrolls below its header, and nothing lies over another", async () => {
@@ -152,6 +174,8 @@ test("in a low window the page scrolls below its header, and nothing lies over a
         const last = await page.evaluate(boxOf, isOpen ? ".side" : "#scope");
         assert.ok(last.bottom <= height + ROUNDING_PX, `${where}: the end is reached, ${JSON.stringify(last)}`);
         assert.deepEqual(await page.evaluate(boxOf, "#stop"), stop, `${where}: Stop keeps its place`);
+        await assertPanelScrolls(page, where, [width, height]);
+        assert.deepEqual(await page.evaluate(boxOf, "#stop"), stop, `${where}: Stop keeps its place beside the panel`);
       }
     }
   }
@@ -180,6 +204,17 @@ const OPENED = {
     }, "#gallery", (page) => page.keyboard.press("Escape"),
   ],
   lag: [(page) => page.click("#open-lag"), "#lag", (page) => page.click("#open-lag")],
+  "Edit's panel": [
+    async (page) => {
+      await page.click("text='Edit'");
+      await page.locator(".layer-box").first().focus();
+      await page.locator(".layer-add button").last().focus();
+    }, ".layer-panel",
+    async (page) => {
+      await page.click("text='Feel'");
+      await page.evaluate(() => document.querySelector("main").scrollTo(0, 0));
+    },
+  ],
   "text and tools": [(page) => page.click("#toggle-drawer"), "#editor", (page) => page.click("#toggle-drawer")],
 };
 
@@ -195,6 +230,8 @@ test("whatever is open, nothing is wider than the window", async () => {
         await open(page);
         await page.locator(what).waitFor();
         await resize(page, [width, height]);
+        const { top } = await page.evaluate(boxOf, "header");
+        assert.equal(top, 0, `${where}: the header leaves the window`);
         const box = await page.evaluate(boxOf, what);
         assert.ok(isWithin(box, window), `${where}: ${JSON.stringify(box)}`);
         assert.deepEqual(await page.evaluate(scrolls, false), [], where);

@@ -34,7 +34,8 @@ test("good news floats beside its control and goes, bad news stays", async () =>
   await page.waitForFunction(() => studioPage.map.frictionN.length > 0);
   const before = await boxesOf(page);
   await page.click("#share");
-  await notice.waitFor();
+  // The page's time goes on while the test measures: a notice under the pointer stays.
+  await notice.hover();
   assert.deepEqual(await boxesOf(page), before, "nothing moves");
   assert.equal(await notice.getAttribute("role"), "status");
   // Between both are the map's tools.
@@ -99,6 +100,58 @@ test("a notice lies over no tool of the map, is whole, and goes at Escape or, wh
   assert.ok(await notice.isVisible(), "what failed stays");
   await page.keyboard.press("Escape");
   assert.ok(await notice.isHidden());
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("one Escape closes one thing: a menu before the notice, and in Edit the notice where no layer is selected", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const notice = page.locator("#notice");
+  const fail = () => page.evaluate(async () => {
+    const { notify } = await import(await studio.moduleUrl("page/notices.js"));
+    notify("It failed.");
+  });
+  await page.click("#options summary");
+  await fail();
+  await page.keyboard.press("Escape");
+  assert.ok(!(await page.locator("#options").evaluate(({ open }) => open)), "the menu is closed");
+  assert.ok(await notice.isVisible(), "and the notice stays");
+  await page.keyboard.press("Escape");
+  assert.ok(await notice.isHidden());
+  await page.click("text='Edit'");
+  await page.locator(".layer-box").first().focus();
+  await fail();
+  await page.keyboard.press("Escape");
+  assert.ok(await notice.isVisible(), "a layer is deselected");
+  await page.keyboard.press("Escape");
+  assert.ok(await notice.isHidden(), "and then the notice goes");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("a notice follows its control when the page scrolls, and stays below the header", async () => {
+  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  await page.setViewportSize({ width: 390, height: 480 });
+  const scroll = (to) => page.evaluate(async (to) => {
+    document.querySelector("main").scrollTo(0, to);
+    for (let frames = 0; frames < 2; frames += 1) await new Promise(requestAnimationFrame);
+  }, to);
+  await scroll(10_000);
+  await page.evaluate(async () => {
+    const { notify } = await import(await studio.moduleUrl("page/notices.js"));
+    notify("It failed.", undefined, { beside: document.getElementById("pause") });
+  });
+  for (const to of [10_000, 60, 10_000]) {
+    await scroll(to);
+    const [said, pause] = await Promise.all(["#notice", "#pause"].map((each) => boxOf(page, each)));
+    assert.ok(distance(said, pause) <= BESIDE_MAX_PX, `${to}: ${JSON.stringify([said, pause])}`);
+  }
+  await page.evaluate(async () => {
+    const { notify } = await import(await studio.moduleUrl("page/notices.js"));
+    notify("It failed.", undefined, { beside: document.getElementById("scene-name") });
+  });
+  const [said, header] = await Promise.all(["#notice", "header"].map((each) => boxOf(page, each)));
+  assert.ok(said.top >= header.bottom, JSON.stringify([said, header]));
   assert.deepEqual(errors, []);
   await close();
 });

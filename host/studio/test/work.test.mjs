@@ -45,6 +45,16 @@ test("another scene has a history of its own, and the changed one before can be 
   await page.mouse.move(5, 400);
   await page.evaluate(() => wait(120_000));
   assert.match(await page.locator("#notice span").innerText(), /^brick is kept in Open\.$/);
+  // Another sentence takes its place only as long as that is shown.
+  const replaced = await page.evaluate(async () => {
+    const { notify, forgetNotice } = await import(await studio.moduleUrl("page/notices.js"));
+    notify("Another sentence.");
+    const said = document.getElementById("notice").innerText;
+    forgetNotice();
+    return said;
+  });
+  assert.match(replaced, /^Another sentence\./);
+  assert.doesNotMatch(replaced, /Back to brick/);
   await page.click("text=Back to brick");
   await page.waitForFunction((text) => studioPage.editor.text === text, WHOLE_SCREEN_GRATING);
   assert.equal(await page.inputValue("#scene-name"), "brick");
@@ -61,7 +71,7 @@ test("another scene has a history of its own, and the changed one before can be 
 
 test("a scene has a name that every file system takes", async () => {
   const { page, errors, close } = await openStudio();
-  for (const [typed, name] of [["a:b/c?", "a-b-c-"], ["con", "con-"], ["end. .", "end"], ["..", "scene"], ["größe 2", "größe 2"]]) {
+  for (const [typed, name] of [["a:b/c?", "a-b-c-"], ["con", "con-"], ["con.x", "con-.x"], ["cone", "cone"], ["end. .", "end"], ["..", "scene"], ["größe 2", "größe 2"]]) {
     await page.fill("#scene-name", typed);
     await page.press("#scene-name", "Enter");
     assert.equal(await page.inputValue("#scene-name"), name);
@@ -305,7 +315,7 @@ test("a blind comparison is answered after both were felt, and can be cancelled"
   assert.ok(await page.isDisabled("text=X is better"));
   await page.click("text=Feel Y");
   assert.ok(await page.isEnabled("text=X is better"));
-  await page.click("text=Turn sound on");
+  await page.click("#panel-compare >> text=Turn sound on");
   await page.waitForFunction(() => studioPage.sound.isOn);
   await page.click("#panel-compare >> text=Cancel");
   await page.locator("text=it does not count").waitFor();

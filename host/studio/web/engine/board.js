@@ -67,7 +67,7 @@ function step() {
   }
   let ticks = Math.floor(tickAt(now) - engine.plain("simulator_tick"));
   if (ticks > LAG_MAX_MS * TICKS_PER_MS) {
-    // The finger's way in the time that is skipped would be slid at once: it comes down again where it is then.
+    // The finger does not slide its way of the skipped time at once: it is lifted, and comes down where that ends.
     if (!replay) engine.plain("simulator_lift");
     setClock(clock.rate);
     ticks = STEP_MS * TICKS_PER_MS;

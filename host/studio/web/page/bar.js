@@ -5,17 +5,20 @@ import { projectOf, zipOf } from "./archive.js";
 import { byId, download } from "./dom.js";
 import { attempt, notify } from "./notices.js";
 import { Open } from "./open.js";
-import { mistakesFound } from "./problems.js";
+import { mistakesIn } from "./problems.js";
 import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 
+/** @import { Engine } from "../engine/engine.js" */
 /** @import { Editor } from "./editor.js" */
 /** @import { Gallery } from "./gallery.js" */
 /** @import { OpenScene } from "./open_scene.js" */
 /** @import { Project } from "./project.js" */
 /** @import { Works } from "./works.js" */
 
-/** @param {{ scene: OpenScene, gallery: Gallery, works: Works, editor: Editor, project: Project }} parts */
-export function makeBar({ scene, gallery, works, editor, project }) {
+/** @typedef {{ gallery: Gallery, works: Works, editor: Editor, engine: Engine, project: Project }} Parts */
+
+/** @param {Parts & { scene: OpenScene }} parts */
+export function makeBar({ scene, gallery, works, editor, engine, project }) {
   const dialog = new Open(works, () => byId("files").click());
   dialog.onWork = async (id) => scene.open(await scene.work(id));
   dialog.onLink = (fragment) => scene.open(sceneOf(fragment));
@@ -28,7 +31,7 @@ export function makeBar({ scene, gallery, works, editor, project }) {
     byId("redo").disabled = !editor.canRedo;
   };
   byId("save").onclick = () => attempt(() => save(scene, project, editor));
-  byId("share").onclick = () => attempt(() => share(project, editor));
+  byId("share").onclick = () => attempt(() => share(engine, project, editor.text));
   addEventListener("keydown", (event) => {
     if (event.key.toLowerCase() !== "s" || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return;
     event.preventDefault();
@@ -47,8 +50,9 @@ function makeMenu() {
     const isToggled = target instanceof Node && toggle.contains(target);
     show(isToggled && !menu.classList.contains("is-open"));
   });
-  menu.parentElement?.addEventListener("keydown", ({ key }) => {
-    if (key !== "Escape" || !menu.classList.contains("is-open")) return;
+  menu.parentElement?.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !menu.classList.contains("is-open")) return;
+    event.preventDefault();
     show(false);
     toggle.focus();
   });
@@ -69,21 +73,26 @@ async function save(scene, project, editor) {
 }
 
 /**
+ * @param {Engine} engine
  * @param {Project} project
- * @param {Editor} editor
+ * @param {string} text
  */
-async function share(project, editor) {
-  const link = linkOf(project.name, editor.text, await project.filesForLink(editor.text));
+async function share(engine, project, text) {
+  const { name, entry, profiles } = project;
+  // The check that is shown may be of an older text.
+  const checking = project.filesFor(text).then((files) => engine.check(files, entry, { ...profiles }));
+  const link = linkOf(name, text, await project.filesForLink(text));
   history.replaceState(null, "", new URL(link).hash);
   const place = await navigator.clipboard.writeText(link).then(
     () => "The link is copied.",
     () => "The link stands in the address line: copy it from there.",
   );
   const said = `${place} It holds the whole scene; nothing is uploaded. ${whoCanOpen(location)}`;
-  const { count, isDraft } = mistakesFound();
+  const check = await checking;
+  const { count, isDraft } = mistakesIn(check);
   const plays = isDraft ? "it plays as a draft only" : "it does not play before that is mended";
-  const warned = count && `The scene has ${count}: whoever opens the link sees the text, and ${plays}. `;
-  notify(`${warned}${said}`, undefined, { isGood: count === "", beside: byId("share") });
+  const warned = check.ok ? "" : `The scene has ${count}: whoever opens the link sees the text, and ${plays}. `;
+  notify(`${warned}${said}`, undefined, { isGood: check.ok, beside: byId("share") });
 }
 
 /**

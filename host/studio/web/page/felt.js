@@ -13,9 +13,9 @@ const REMARKS = ["draft", "warning", "out of reach", "alike", "note"];
 const OF_LAYERS = ["not felt", "unknown", "maybe", "felt", "more"];
 
 /** What the numbers of layers are: one line, where they are shown. */
-const CONTRAST =
-  "Contrast: from the least to the most friction inside a layer, in Weber steps. A step is a factor of 1.11, about the " +
-  "smallest change that a finger feels.";
+const STEP =
+  "Step: the largest step of friction, inside the layer or at its border, in Weber steps. A Weber step is a factor of " +
+  "1.11, about the smallest change that a finger feels.";
 /** @type {Record<string, string>} */
 const MEANINGS = {
   reachable: "what this board and finger can give; the map's colours end there",
@@ -35,8 +35,8 @@ function chip(verdict, sentence) {
 }
 
 /** What the numbers of layers are. */
-export function contrastLine() {
-  return element("p", { className: "fine contrast" }, CONTRAST);
+export function stepLine() {
+  return element("p", { className: "fine step-words" }, STEP);
 }
 
 /** @param {number} newtons */
@@ -70,7 +70,7 @@ function weber({ weberSteps }) {
 export function feltLine({ perceived, felt }, scale) {
   if (!perceived) return element("span", { className: "felt-line soft" }, "hidden by the layers above");
   const line = element("span", { className: "felt-line", title: felt }, chip(perceived.verdict, felt));
-  line.append(stepBar(perceived, scale), element("span", {}, element("small", {}, "contrast "), weber(perceived)));
+  line.append(stepBar(perceived, scale), element("span", {}, element("small", {}, "step "), weber(perceived)));
   const { texture } = perceived;
   if (texture) line.append(element("span", {}, `${Math.round(texture.frequencyHz)}`, element("small", {}, " Hz")));
   return line;
@@ -88,7 +88,7 @@ export function showFelt({ layers, report, ...scale }) {
   });
   const remarks = named.filter(({ name, text }) => REMARKS.includes(name) && text !== "nothing");
   remarks.sort((one, other) => REMARKS.indexOf(one.name) - REMARKS.indexOf(other.name));
-  const head = ["Layer", "Felt?", "Friction, up to", "Contrast", "Texture"].map((words) => element("th", { scope: "col" }, words));
+  const head = ["Layer", "Felt?", "Friction, up to", "Step", "Texture"].map((words) => element("th", { scope: "col" }, words));
   const table = element(
     "table",
     { className: "felt-table" },
@@ -100,7 +100,7 @@ export function showFelt({ layers, report, ...scale }) {
   const open = [...felt.querySelectorAll("details[open] summary")].map(({ textContent }) => textContent);
   felt.replaceChildren(
     layers.length > 0 ? table : element("p", { className: "soft" }, "This scene has no layer yet."),
-    ...(layers.length > 0 ? [contrastLine()] : []),
+    ...(layers.length > 0 ? [stepLine()] : []),
     ...remarks.map(({ name, text }) => element("p", { className: "remark" }, element("b", {}, name), ` ${text}`)),
     fold("What a board needs for it", pairs(board)),
     fold("In words, as frixel scene check says it", pairs(named.filter(({ name }) => OF_LAYERS.includes(name)))),

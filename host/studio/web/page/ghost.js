@@ -188,7 +188,7 @@ export class Ghost {
   /** @param {number} ms */
   #slide(ms) {
     this.#slidMs += Math.min(ms - this.#lastMs, STEP_MAX_MS);
-    // It comes down again where it is now, so that no way leads there.
+    // After a stall the finger comes down at its new place, and does not slide there at once.
     if (ms - this.#lastMs > STALL_MS) this.#lift();
     const stroke = Math.floor(this.#slidMs / (STROKE_MS + PAUSE_MS));
     const part = (this.#slidMs % (STROKE_MS + PAUSE_MS)) / STROKE_MS;

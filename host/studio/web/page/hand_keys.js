@@ -53,7 +53,8 @@ export class HandKeys {
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
       if (hands.isHeld) hands.grip.cancel();
-      else hands.focus(undefined);
+      else if (hands.selected) hands.focus(undefined);
+      else return;
     } else return;
     event.preventDefault();
   }

@@ -58,7 +58,7 @@ export class Hands {
     this.grip = new HandGrip(parts, this.#layers);
     const { box, onLayout } = parts.map;
     box.append(this.#surface);
-    document.body.append(this.#panel.element);
+    box.closest("main")?.append(this.#panel.element);
     new HandDrag(this.#surface, this, parts.map);
     new HandKeys(this.#surface, this, this.#panel.element);
     this.#listen();

@@ -20,6 +20,8 @@ const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "heig
 const LEAST_PX = 220;
 /** A scope of this height has room for it, CSS pixels. */
 const HIGH_PX = 380;
+/** Distance from the edges of what scrolls it, CSS pixels. */
+const EDGE_PX = 12;
 const HINT = "Press a layer to select it. Drag it to move it, its handles to resize it.";
 const EMPTY_HINT = "This scene has no layer yet: add one.";
 
@@ -57,7 +59,7 @@ export class LayerPanel {
   onPicture = () => {};
 
   constructor() {
-    // A key that is held is let go elsewhere, where no keyup is heard.
+    // A key that is held when the focus leaves is released elsewhere: no keyup is heard here.
     this.element.addEventListener("focusout", () => this.onEnd());
   }
 
@@ -218,7 +220,8 @@ export class LayerPanel {
 
   /**
    * Puts the panel over the scope, or where that is low over the numbers, too: nothing is felt while layers are edited,
-   * and neither map nor text is covered. Where all of that is hidden, it lies over what is below the map.
+   * and neither map nor text is covered. Where all of that is hidden, it lies over what is below the map. It scrolls with
+   * them, and is never higher than what scrolls them shows.
    * @param {DOMRect} numbers
    * @param {DOMRect} scope
    * @param {DOMRect} map
@@ -228,11 +231,14 @@ export class LayerPanel {
     const below = new DOMRect(map.left, map.bottom, map.width, LEAST_PX);
     const first = isSeen ? (scope.height >= HIGH_PX ? scope : numbers) : below;
     const last = isSeen ? scope : below;
+    const around = /** @type {HTMLElement} */ (this.element.parentElement);
+    const { left, top } = around.getBoundingClientRect();
+    const height = Math.max(last.bottom - first.top, LEAST_PX);
     Object.assign(this.element.style, {
-      left: `${Math.min(first.left, last.left) + scrollX}px`,
-      top: `${first.top + scrollY}px`,
+      left: `${Math.min(first.left, last.left) - left + around.scrollLeft}px`,
+      top: `${first.top - top + around.scrollTop}px`,
       width: `${Math.max(first.right, last.right) - Math.min(first.left, last.left)}px`,
-      maxHeight: `${Math.max(last.bottom - first.top, LEAST_PX)}px`,
+      maxHeight: `${Math.min(height, around.clientHeight - 2 * EDGE_PX)}px`,
     });
   }
 }

@@ -2,7 +2,7 @@
 // @ts-check
 
 import { byId, element, shortName } from "./dom.js";
-import { contrastLine, feltLine } from "./felt.js";
+import { feltLine, stepLine } from "./felt.js";
 import { attempt, notify } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
@@ -48,7 +48,7 @@ export class Layers {
     const focused = panel.contains(active) ? active?.getAttribute("aria-label") : undefined;
     this.#shown = layers;
     panel.replaceChildren(...layers.map((layer) => this.#row(layer, scale)));
-    if (layers.length > 0) panel.append(contrastLine());
+    if (layers.length > 0) panel.append(stepLine());
     else panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
     if (!focused) return;
     /** @type {HTMLElement | null} */

@@ -179,6 +179,7 @@ export class OpenScene {
   async #replace({ name, text, files = [], profiles, ...work }) {
     const [autosave, project] = [this.#autosave, this.#project];
     const before = { ...this.saved, ...autosave.state };
+    this.#forgetBack();
     forgetNotice();
     await autosave.leave();
     const { isKept } = autosave;

@@ -21,11 +21,12 @@ let status = "loading";
  * @param {Check} check
  * @param {Editor} editor
  */
-export function showCheck({ ok, isDraft, problems }, editor) {
+export function showCheck(check, editor) {
+  const { ok, isDraft, problems } = check;
   const errors = problems.filter(({ severity }) => severity === "error");
   byId("check").dataset.bad = String(!ok);
   document.documentElement.toggleAttribute("data-draft", isDraft === true);
-  found = { count: counted(errors.length, "mistake"), isDraft: isDraft === true };
+  found = mistakesIn(check);
   showOutcome();
   // What is said of layers is of the last version that plays.
   const isOlder = !ok && !isDraft;
@@ -41,9 +42,13 @@ export function showCheck({ ok, isDraft, problems }, editor) {
   editor.mark(problems);
 }
 
-/** How many mistakes the scene has that was checked last, in words; "" without one, and whether it plays as a draft. */
-export function mistakesFound() {
-  return { count: byId("check").dataset.bad === "true" ? found.count : "", isDraft: found.isDraft };
+/**
+ * How many mistakes a check found, in words, and whether the scene plays as a draft all the same.
+ * @param {Check} check
+ */
+export function mistakesIn({ isDraft, problems }) {
+  const { length } = problems.filter(({ severity }) => severity === "error");
+  return { count: counted(length, "mistake"), isDraft: isDraft === true };
 }
 
 /**

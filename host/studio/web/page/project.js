@@ -28,7 +28,7 @@ import { NAME_MAX } from "./dom.js";
 export const TEXT_MAX_BYTES = 500_000;
 /** What file systems refuse in a name, and names that Windows keeps for itself. */
 const NOT_IN_NAMES = /[<>:"/\\|?*\p{Cc}]/gu;
-const RESERVED = /^(con|prn|aux|nul|com\d|lpt\d)$/i;
+const RESERVED = /^(con|prn|aux|nul|com\d|lpt\d)(?=\.|$)/i;
 
 export class Project {
   #engine;
@@ -63,7 +63,7 @@ export class Project {
 
   set name(name) {
     const allowed = [...name.replaceAll(NOT_IN_NAMES, "-")].slice(0, NAME_MAX).join("").replace(/[. ]+$/, "");
-    this.#name = RESERVED.test(allowed) ? `${allowed}-` : allowed || "scene";
+    this.#name = allowed.replace(RESERVED, "$1-") || "scene";
   }
 
   /** Name of the scene's file. */
