@@ -38,8 +38,12 @@ export class Hands {
   grip;
   /** The scene that the layers are of, as the project counts them. */
   #opened = 0;
-  /** Whether a layer was put behind all others in the text, to be selected once its check is there. */
-  #isLastAwaited = false;
+  /**
+   * A layer is put behind all others in the text, of which there are so many in that scene, to be selected once its
+   * check is there. For a scene that is about to open, the mode Edit begins then.
+   * @type {{ opened: number, count: number, isNew?: boolean } | undefined}
+   */
+  #awaited;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
   /** A picture is wanted as a layer. */
@@ -77,7 +81,11 @@ export class Hands {
     this.#surface.addEventListener("focusout", () => grip.end());
     this.#panel.element.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
-      grip.end();
+      if (grip.isHolding) {
+        event.preventDefault();
+        grip.cancel();
+        letGo(event.target);
+      }
       this.#boxes.focus(this.#selected);
     });
     this.#boxes.onFocus = (key) => this.select(key);
@@ -143,8 +151,14 @@ export class Hands {
     const isSameScene = project.opened === this.#opened;
     this.#opened = project.opened;
     const after = before && isSameScene ? this.#layers.successor(before) : undefined;
-    const last = this.#isLastAwaited ? this.#layers.last : undefined;
-    this.#isLastAwaited = false;
+    const awaited = this.#awaited?.opened === project.opened ? this.#awaited : undefined;
+    const last = awaited && this.#layers.all.length > awaited.count ? this.#layers.last : undefined;
+    // What is awaited of a scene that is not open yet stays so.
+    if (this.#awaited && this.#awaited.opened <= project.opened) this.#awaited = undefined;
+    if (awaited?.isNew && !this.isEditing) {
+      this.#mode.whyNot = "";
+      this.setEditing(true);
+    }
     this.#reselect((last ?? after)?.key);
     // What was said was about the layers before.
     this.say(this.selected?.at === undefined ? (this.selected?.place.whyNotMoved ?? "") : "");
@@ -153,8 +167,24 @@ export class Hands {
   }
 
   /** A layer comes behind all others in the text of the scene: while layers are edited, it is selected. */
-  awaitLast() {
-    this.#isLastAwaited = this.isEditing;
+  selectLastAfterCheck() {
+    const { opened } = this.#parts.project;
+    this.#awaited = this.isEditing ? { opened, count: this.#layers.all.length } : undefined;
+  }
+
+  /**
+   * Runs an action that opens another scene, whose last layer is selected in the mode Edit.
+   * @param {() => Promise<unknown>} open
+   */
+  async editNext(open) {
+    const awaited = { opened: this.#parts.project.opened + 1, count: 0, isNew: true };
+    this.#awaited = awaited;
+    try {
+      await open();
+    } catch (error) {
+      if (this.#awaited === awaited) this.#awaited = undefined;
+      throw error;
+    }
   }
 
   /**
@@ -324,4 +354,14 @@ export class Hands {
     const [numbersRect, scope, map] = around.map((each) => each.getBoundingClientRect());
     this.#panel.place(numbersRect, scope, map);
   }
+}
+
+/**
+ * A slider that is dragged follows the pointer no more.
+ * @param {EventTarget | null} target
+ */
+function letGo(target) {
+  if (!(target instanceof HTMLInputElement) || target.type !== "range") return;
+  target.disabled = true;
+  target.disabled = false;
 }

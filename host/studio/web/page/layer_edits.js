@@ -106,8 +106,9 @@ export class LayerEdits {
    */
   #make(file, replacements) {
     const held = this.#editor.hold(file);
-    held.make(replacements);
+    const isMade = held.make(replacements);
     held.end();
+    if (!isMade) throw new Error("The text has no room for this layer.");
   }
 
   #names() {

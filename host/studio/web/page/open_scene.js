@@ -6,7 +6,7 @@ import { Autosave } from "./autosave.js";
 import { byId } from "./dom.js";
 import { forgetNotice, notify } from "./notices.js";
 import { showPictures } from "./pictures.js";
-import { isPicture, isToml } from "./project.js";
+import { assertTextsFit, isPicture, isToml } from "./project.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Compare } from "./compare.js" */
@@ -177,6 +177,7 @@ export class OpenScene {
 
   /** @param {SceneToOpen} scene */
   async #replace({ name, text, files = [], profiles, ...work }) {
+    assertTextsFit({ name, text, files });
     const [autosave, project] = [this.#autosave, this.#project];
     const before = { ...this.saved, ...autosave.state };
     forgetNotice();

@@ -56,7 +56,5 @@ export async function beginWithPicture(scene, hands) {
   if (!picture) return;
   const { name, bytes, aspect } = picture;
   const text = sceneOf(WORDS, pictureLayer(name, aspect, SCREEN));
-  await scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] });
-  hands.setEditing(true);
-  hands.awaitLast();
+  await hands.editNext(() => scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] }));
 }

@@ -143,8 +143,25 @@ export class Project {
  * @param {number} mostBytes
  */
 export function tooLarge(what, bytes, mostBytes) {
-  const [size, most] = [bytes, mostBytes].map((each) => (each / 1e6).toFixed(1));
+  // A little more than the most is more in words, too.
+  const [size, most] = [bytes, mostBytes].map((each) => (Math.ceil(each / 1e5) / 10).toFixed(1));
   return `the ${what} has ${size} MB, more than the ${most} MB that the studio opens`;
+}
+
+/**
+ * Throws a sentence where a scene has a text that is longer than the studio takes.
+ * @param {SavedScene} scene
+ */
+export function assertTextsFit({ name, text, files }) {
+  for (const [file, content] of [/** @type {NamedFile} */ ([`${name}.toml`, text]), ...files]) {
+    const bytes = isToml(file) ? bytesOf(content) : 0;
+    if (bytes > TEXT_MAX_BYTES) throw new Error(`${file}: ${tooLarge("text", bytes, TEXT_MAX_BYTES)}`);
+  }
+}
+
+/** @param {Content} content */
+export function bytesOf(content) {
+  return typeof content === "string" ? new TextEncoder().encode(content).length : content.length;
 }
 
 /** @param {string} name */
