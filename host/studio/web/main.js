@@ -261,12 +261,14 @@ function takeScenes({ engine, project, editor, gallery, hands }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
   const begin = new NewScene(engine);
   begin.onScene = gallery.onScene;
-  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands));
+  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands, project));
   hands.onPicture = () =>
     attempt(async () => {
+      if (!hands.canEdit()) return;
       const picture = await choosePicture();
       if (picture) hands.addPicture(await scene.takePicture(picture), picture.aspect);
     });
+  hands.onAdd = (add) => attempt(() => scene.add(add));
   scene.onAppend = () => hands.selectLastAfterCheck();
   gallery.onLayer = (text) => scene.append(text);
   const incoming = new Incoming(async (files, entry) =>

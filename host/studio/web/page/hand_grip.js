@@ -26,6 +26,8 @@ export class HandGrip {
   selected = () => undefined;
   /** The layers have changed. */
   onChange = () => {};
+  /** A hand has let go. */
+  onEnd = () => {};
   /** Says a sentence at the layer; "" once what it said is over. @type {(sentence: string) => void} */
   onSay = () => {};
 
@@ -90,6 +92,7 @@ export class HandGrip {
     this.#held = undefined;
     grip.held.end();
     if (this.#player.isHeld) this.#player.release(this.#editor.text);
+    this.onEnd();
   }
 
   /**

@@ -44,8 +44,15 @@ export class Hands {
    * @type {{ opened: number, count: number, isNew?: boolean } | undefined}
    */
   #awaited;
+  /** A check that came while a hand held a layer, which may let go without a change. @type {[Checked, Files] | undefined} */
+  #heldBack;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
+  /**
+   * A layer that is not of the scene is added by this action.
+   * @type {(add: () => void) => unknown}
+   */
+  onAdd = (add) => add();
   /** A picture is wanted as a layer. */
   onPicture = () => {};
 
@@ -77,6 +84,9 @@ export class Hands {
     this.#mode.onChange = () => this.#changeMode();
     grip.selected = () => this.selected;
     grip.onChange = () => this.#draw(false);
+    grip.onEnd = () => {
+      if (this.#heldBack) this.show(...this.#heldBack);
+    };
     grip.onSay = (sentence) => this.say(sentence);
     this.#surface.addEventListener("focusout", () => grip.end());
     this.#panel.element.addEventListener("keydown", (event) => {
@@ -97,7 +107,9 @@ export class Hands {
     panel.onDuplicate = () => this.duplicate();
     panel.onDelete = () => this.delete();
     panel.onClose = () => this.focus(undefined);
-    panel.onAdd = (beginning) => this.#edit(() => this.#edits.add(beginning));
+    panel.onAdd = (beginning) => {
+      if (this.canEdit()) this.onAdd(() => this.#edit(() => this.#edits.add(beginning)));
+    };
     panel.onPicture = () => this.onPicture();
   }
 
@@ -125,7 +137,8 @@ export class Hands {
    * @param {Files} files That were checked.
    */
   show(check, files) {
-    if (this.grip.isHolding) {
+    this.#heldBack = this.grip.isHolding ? [check, files] : undefined;
+    if (this.#heldBack) {
       this.#layers.feel(check.layers);
       this.#draw(false);
       return;
@@ -295,6 +308,18 @@ export class Hands {
     this.#edit(() => this.#edits.addPicture(name, aspect));
   }
 
+  /** Whether layers can come and go now; where not, says why. */
+  canEdit() {
+    try {
+      if (!this.#layers.isCurrent) throw new Error(ELSEWHERE);
+      this.#edits.assertVersion();
+      return true;
+    } catch (error) {
+      this.say(sentenceOf(error));
+      return false;
+    }
+  }
+
   duplicate() {
     const { selected } = this;
     if (selected) this.#edit(() => this.#edits.duplicate(selected));
@@ -311,10 +336,7 @@ export class Hands {
    */
   #edit(edit) {
     this.grip.end();
-    if (!this.#layers.isCurrent) {
-      this.say(ELSEWHERE);
-      return;
-    }
+    if (!this.canEdit()) return;
     try {
       const made = edit();
       this.#draw(false);
@@ -343,6 +365,8 @@ export class Hands {
     }
     const { scale, box } = this.#parts.map;
     this.#boxes.show(this.#layers.all, this.#selected, scale);
+    // Where there is no layer, the keys lead from the map to what adds one.
+    this.#surface.tabIndex = this.#layers.all.length > 0 ? -1 : 0;
     const { selected } = this;
     const { toml, at, layer } = selected ?? {};
     const isTuned = layer && toml && at !== undefined;

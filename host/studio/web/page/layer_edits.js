@@ -31,6 +31,11 @@ export class LayerEdits {
     this.#layers = layers;
   }
 
+  /** Throws a sentence where layers come and go in the text alone. */
+  assertVersion() {
+    if (new TomlText(this.#editor.text).value(["version"]) !== 2) throw new Error(OLD_VERSION);
+  }
+
   /**
    * Adds a layer where there is room, above all others; returns it.
    * @param {Beginning} beginning
@@ -58,7 +63,6 @@ export class LayerEdits {
    */
   #add(fields, boxMm) {
     const toml = new TomlText(this.#editor.text);
-    if (toml.value(["version"]) !== 2) throw new Error(OLD_VERSION);
     const name = freeName(String(fields.name), this.#names());
     const layers = toml.value(["layer"]);
     const at = Array.isArray(layers) ? layers.length : 0;
@@ -80,9 +84,10 @@ export class LayerEdits {
     const { screen } = this.#layers;
     const to = placeOf(copied, at + 1, layer, screen, false);
     const all = bounds(place.box, place.copies);
-    const dx = aside(all.x, screen.widthMm - all.x - all.width);
-    const dy = aside(all.y, screen.heightMm - all.y - all.height);
-    const changes = place.whyNotMoved ? [] : to.move(dx, dy);
+    const isMoved = !place.whyNotMoved;
+    const dx = isMoved ? aside(all.x, screen.widthMm - all.x - all.width) : 0;
+    const dy = isMoved ? aside(all.y, screen.heightMm - all.y - all.height) : 0;
+    const changes = isMoved ? to.move(dx, dy) : [];
     if (typeof own === "string") changes.push({ path: ["layer", at + 1, "name"], value: name, decimals: 0 });
     const made = replaced(text, copied.replacements(changes));
     const { from, insert } = insertion;

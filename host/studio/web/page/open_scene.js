@@ -4,7 +4,7 @@
 import { clock } from "../clock.js";
 import { Autosave } from "./autosave.js";
 import { byId } from "./dom.js";
-import { forgetNotice, notify } from "./notices.js";
+import { attempt, forgetNotice, notify } from "./notices.js";
 import { showPictures } from "./pictures.js";
 import { assertTextsFit, isPicture, isToml } from "./project.js";
 
@@ -122,6 +122,17 @@ export class OpenScene {
     return this.#bringIn(async () => {
       this.onAppend();
       this.#editor.append(text);
+    });
+  }
+
+  /**
+   * Likewise a layer that this action puts into the text, or not.
+   * @param {() => void} action
+   */
+  add(action) {
+    return this.#bringIn(async () => {
+      action();
+      this.replay();
     });
   }
 
@@ -248,10 +259,7 @@ export class OpenScene {
       files.delete(name);
       this.#filesChanged();
     };
-    const add = (/** @type {string} */ layer) => {
-      this.onAppend();
-      this.#editor.append(layer);
-    };
+    const add = (/** @type {string} */ layer) => attempt(() => this.append(layer));
     showPictures(this.#project, add, remove);
     /** @type {[string, string][]} */
     const texts = [];

@@ -26,6 +26,8 @@ import { NAME_MAX } from "./dom.js";
 
 /** Longest text that the studio takes, bytes. */
 export const TEXT_MAX_BYTES = 500_000;
+/** The screen of a scene that does not say one. */
+const DEFAULT_SCREEN = { widthMm: 120, heightMm: 80 };
 /** What file systems refuse in a name, and names that Windows keeps for itself. */
 const NOT_IN_NAMES = /[<>:"/\\|?*\p{Cc}]/gu;
 const RESERVED = /^(con|prn|aux|nul|com\d|lpt\d)$/i;
@@ -47,7 +49,7 @@ export class Project {
    * The screen of the scene that was checked last.
    * @type {Screen}
    */
-  screen = { widthMm: 120, heightMm: 80 };
+  screen = DEFAULT_SCREEN;
   /** How many scenes were opened: what was begun for one may be ready when another is open. */
   opened = 0;
 
@@ -69,6 +71,11 @@ export class Project {
   /** Name of the scene's file. */
   get entry() {
     return `${this.#name}.toml`;
+  }
+
+  /** The screen that a scene which says none is played with. */
+  get screenOfNew() {
+    return this.profiles.screen ? this.screen : DEFAULT_SCREEN;
   }
 
   /**
