@@ -78,7 +78,7 @@ export class HandKeys {
     if (!(ctrlKey || metaKey) || altKey || !(target instanceof Element)) return;
     if (document.querySelector("dialog[open]") || (!this.#panel.contains(target) && target.closest(FIELDS))) return;
     const key = event.key.toLowerCase();
-    if (key === "z" || key === "y") this.#hands.goBack(key === "y" || shiftKey ? "redo" : "undo");
+    if (key === "z" || key === "y") this.#hands.undoOrRedo(key === "y" || shiftKey ? "redo" : "undo");
     else if (key === "d" && !shiftKey && this.#hands.selected) {
       // A key that is held makes one copy.
       if (!repeat) this.#hands.duplicate();

@@ -4,7 +4,7 @@
 import { byId, element, sentenceOf } from "./dom.js";
 import { EditedLayers } from "./edited_layers.js";
 import { HandDrag } from "./hand_drag.js";
-import { ELSEWHERE, HandGrip } from "./hand_grip.js";
+import { TEXT_CHANGED, HandGrip } from "./hand_grip.js";
 import { HandKeys } from "./hand_keys.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { LayerEdits } from "./layer_edits.js";
@@ -265,7 +265,7 @@ export class Hands {
   }
 
   /** @param {"undo" | "redo"} what */
-  goBack(what) {
+  undoOrRedo(what) {
     this.grip.end();
     this.#parts.editor[what]();
   }
@@ -311,7 +311,7 @@ export class Hands {
   /** Whether layers can come and go now; where not, says why. */
   canEdit() {
     try {
-      if (!this.#layers.isCurrent) throw new Error(ELSEWHERE);
+      if (!this.#layers.isCurrent) throw new Error(TEXT_CHANGED);
       this.#edits.assertVersion();
       return true;
     } catch (error) {

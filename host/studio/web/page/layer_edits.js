@@ -1,7 +1,7 @@
 // Layers that are added to a scene on the map, doubled, or taken out of it: each is one step of undo.
 // @ts-check
 
-import { addedLayer, freeName, pictureLayer } from "./beginnings.js";
+import { addedLayer, freeLayerName, pictureLayer } from "./beginnings.js";
 import { bounds, clamp, placeOf } from "./place.js";
 import { TomlText, replaced } from "./toml_text.js";
 
@@ -63,7 +63,7 @@ export class LayerEdits {
    */
   #add(fields, boxMm) {
     const toml = new TomlText(this.#editor.text);
-    const name = freeName(String(fields.name), this.#names());
+    const name = freeLayerName(String(fields.name), this.#names());
     const layers = toml.value(["layer"]);
     const at = Array.isArray(layers) ? layers.length : 0;
     this.#make(undefined, [toml.addition({ ...fields, name })]);
@@ -80,7 +80,7 @@ export class LayerEdits {
     const text = replaced(toml.text, [insertion]);
     const copied = new TomlText(text);
     const own = copied.value(["layer", at + 1, "name"]);
-    const name = typeof own === "string" ? freeName(own, this.#names()) : layer.name;
+    const name = typeof own === "string" ? freeLayerName(own, this.#names()) : layer.name;
     const { screen } = this.#layers;
     const to = placeOf(copied, at + 1, layer, screen, false);
     const all = bounds(place.box, place.copies);

@@ -1,7 +1,7 @@
 // A picture of one's own that a person chooses, for a layer.
 // @ts-check
 
-import { pictureLayer, sceneOf } from "./beginnings.js";
+import { pictureLayer, sceneWith } from "./beginnings.js";
 import { element } from "./dom.js";
 import { read } from "./incoming.js";
 
@@ -57,6 +57,6 @@ export async function beginWithPicture(scene, hands, project) {
   const picture = await choosePicture();
   if (!picture) return;
   const { name, bytes, aspect } = picture;
-  const text = sceneOf(WORDS, pictureLayer(name, aspect, project.screenOfNew));
+  const text = sceneWith(WORDS, pictureLayer(name, aspect, project.screenOfNew));
   await hands.editNext(() => scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] }));
 }
