@@ -44,7 +44,10 @@ export class Hands {
    * @type {{ opened: number, count: number, isNew?: boolean } | undefined}
    */
   #awaited;
-  /** A check that came while a hand held a layer, which may let go without a change. @type {[Checked, Files] | undefined} */
+  /**
+   * A check that came while a hand held a layer, which may let go without a change.
+   * @type {[Checked, Files] | undefined}
+   */
   #heldBack;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
