@@ -160,6 +160,7 @@ test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async (
   await page.locator("#scene-name").focus();
   await press(page, "Control+z");
   await page.click("#open-about");
+  await page.locator("#about").waitFor();
   await press(page, "Control+z");
   assert.equal(await textOf(page), moved);
   assert.deepEqual(errors, []);
@@ -239,7 +240,7 @@ test("a text that is too large for the studio is not taken into the editor, and 
     const paste = new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true });
     document.querySelector(".cm-content").dispatchEvent(paste);
   });
-  assert.match(await page.locator("#notice span").textContent(), /^the text has 2\.2 MB, more than the 0\.5 MB/);
+  assert.match(await page.locator("#notice span").textContent(), /^the text has 2\.3 MB, more than the 0\.5 MB/);
   assert.equal(await textOf(page), before);
   assert.deepEqual(errors, []);
 });

@@ -108,6 +108,10 @@ test("a board with an electrode waits for a press, and foreign scenes disarm it"
       await scene.locator("text=Take over").first().click();
       await page.click("#gallery >> text=Close");
     },
+    async "a layer that the mode Edit adds"() {
+      await page.getByRole("button", { name: "Edit", exact: true }).click();
+      await page.getByRole("button", { name: "Add stripes", exact: true }).click();
+    },
   };
   for (const [how, open] of Object.entries(foreign)) {
     await pressArm();

@@ -60,7 +60,13 @@ async function start() {
   takeScenes(parts, scene);
   followLinks(scene);
   const last = await scene.last();
-  await scene.open(last ?? { name: FIRST_SCENE, text: await sceneText(FIRST_SCENE), files: [] });
+  const first = { name: FIRST_SCENE, text: await sceneText(FIRST_SCENE), files: [] };
+  await scene.open(last ?? first).catch(async (error) => {
+    if (!last) throw error;
+    // What the browser keeps stays under Open.
+    await scene.open(first);
+    notify(sentenceOf(error));
+  });
   // A reload keeps what was changed since the link was opened.
   const [navigation] = performance.getEntriesByType("navigation");
   const isReload = navigation instanceof PerformanceNavigationTiming && navigation.type === "reload";
@@ -255,13 +261,15 @@ function takeScenes({ engine, project, editor, gallery, hands }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
   const begin = new NewScene(engine);
   begin.onScene = gallery.onScene;
-  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands));
+  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands, project));
   hands.onPicture = () =>
     attempt(async () => {
+      if (!hands.canEdit()) return;
       const picture = await choosePicture();
       if (picture) hands.addPicture(await scene.takePicture(picture), picture.aspect);
     });
-  scene.onAppend = () => hands.awaitLast();
+  hands.onAdd = (add) => attempt(() => scene.add(add));
+  scene.onAppend = () => hands.selectLastAfterCheck();
   gallery.onLayer = (text) => scene.append(text);
   const incoming = new Incoming(async (files, entry) =>
     engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),

@@ -72,7 +72,7 @@ const PLACES = 24;
  * @param {string} words What a finger meets, one sentence.
  * @param {Fields} layer
  */
-export function sceneOf(words, layer) {
+export function sceneWith(words, layer) {
   return `# ${words}\nversion = 2\n\n${tableText(layer)}\n`;
 }
 
@@ -117,14 +117,14 @@ export function pictureLayer(picture, aspect, screen, taken) {
  * @returns {Box}
  */
 export function roomFor(widthMm, heightMm, screen, taken) {
-  const [width, height] = [widthMm, heightMm].map((mm) => Math.max(GRID_MM, snapped(mm)));
+  const [width, height] = [widthMm, heightMm].map((mm) => Math.max(GRID_MM, roundedDown(mm)));
   const room = { x: screen.widthMm - width, y: screen.heightMm - height };
   const steps = Array.from({ length: PLACES + 1 }, (_, step) => step / PLACES);
   let best = { x: 0, y: 0, width, height };
   let least = Infinity;
   for (const down of steps) {
     for (const across of steps) {
-      const box = { x: snapped(room.x * across), y: snapped(room.y * down), width, height };
+      const box = { x: roundedDown(room.x * across), y: roundedDown(room.y * down), width, height };
       const covered = taken.reduce((sum, other) => sum + overlap(wider(box, GAP_MM), other), 0);
       // Of places that cover the same, the middle one; a covered square millimetre counts for more than any way.
       const cost = covered * 1000 + Math.hypot(across - 0.5, down - 0.5);
@@ -135,7 +135,7 @@ export function roomFor(widthMm, heightMm, screen, taken) {
 }
 
 /** @param {number} mm */
-function snapped(mm) {
+function roundedDown(mm) {
   return Math.floor(mm / GRID_MM) * GRID_MM;
 }
 
@@ -164,7 +164,7 @@ function overlap(one, other) {
  * @param {string} name
  * @param {string[]} taken
  */
-export function freeName(name, taken) {
+export function freeLayerName(name, taken) {
   const base = name.replace(/ \d+$/, "");
   let free = name;
   for (let number = 2; taken.includes(free); number += 1) free = `${base} ${number}`;

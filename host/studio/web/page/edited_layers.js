@@ -134,13 +134,16 @@ export class EditedLayers {
   }
 
   /**
-   * A hand is changing a layer: what is felt of the layers now.
-   * @param {Layer[]} layers
+   * A hand is changing a layer: what is felt of the layers now. A check of a text with other layers says nothing.
+   * @param {Layer[]} layers In the order of the text.
    */
   feel(layers) {
-    for (const each of this.all) {
-      const now = layers.find(({ index }) => index === each.layer.index);
-      if (now) Object.assign(each.layer, { perceived: now.perceived, felt: now.felt });
+    const isSame = (/** @type {EditedLayer} */ { layer }, /** @type {number} */ at) =>
+      layer.name === layers[at].name && layer.kind === layers[at].kind;
+    if (layers.length !== this.all.length || !this.all.every(isSame)) return;
+    for (const [at, { layer }] of this.all.entries()) {
+      const { index, perceived, felt } = layers[at];
+      Object.assign(layer, { index, perceived, felt });
     }
   }
 

@@ -5,7 +5,7 @@ import { EditorState, EditorView, redo, setDiagnostics, undo } from "../vendor/s
 import { editorExtensions } from "./editor_setup.js";
 import { HeldChange } from "./held_change.js";
 import { notify } from "./notices.js";
-import { TEXT_MAX_BYTES, tooLarge } from "./project.js";
+import { TEXT_MAX_BYTES, bytesOf, tooLarge } from "./project.js";
 
 /** @import { StateCommand, Transaction } from "../vendor/studio-vendor.js" */
 /** @import { Problem } from "../engine/types" */
@@ -63,9 +63,11 @@ export class Editor {
    * @param {Transaction} change
    */
   #isShortEnough({ newDoc, startState }) {
-    const { length } = newDoc;
-    if (length <= TEXT_MAX_BYTES || length <= startState.doc.length) return true;
-    notify(tooLarge("text", length, TEXT_MAX_BYTES));
+    // A character has three bytes at most.
+    if (newDoc.length * 3 <= TEXT_MAX_BYTES) return true;
+    const [bytes, before] = [newDoc, startState.doc].map((doc) => bytesOf(doc.toString()));
+    if (bytes <= TEXT_MAX_BYTES || bytes <= before) return true;
+    notify(tooLarge("text", bytes, TEXT_MAX_BYTES));
     return false;
   }
 

@@ -9,6 +9,7 @@ import { SIDE_MIN_MM, bounds, clamp } from "./place.js";
 /** @import { FrictionMap } from "./map.js" */
 /** @import { Box, Place, Side } from "./place.js" */
 /** @typedef {{ xMm: number, yMm: number }} Point */
+/** @typedef {{ x: [number, number], y: [number, number] }} Room Where the first copy can be, mm. */
 /**
  * A press that has not been lifted: where it began, what it dragged from there, and which layer a click would select.
  * @typedef {{ pointerId: number, start: Point, clientX: number, clientY: number, handle: string | undefined,
@@ -151,22 +152,17 @@ function snapped(mm, grid) {
  */
 function resized({ box, copies, keepsRatio }, handle, dx, dy, screen, grid) {
   const all = bounds({ ...box, width: 0, height: 0 }, copies);
-  const [left, right] = dragged(
-    [box.x, box.x + box.width],
-    [handle.includes("w"), handle.includes("e")],
-    dx,
-    [box.x - all.x, screen.widthMm - (all.x + all.width - box.x)],
-    grid,
-  );
-  const [top, bottom] = dragged(
-    [box.y, box.y + box.height],
-    [handle.includes("n"), handle.includes("s")],
-    dy,
-    [box.y - all.y, screen.heightMm - (all.y + all.height - box.y)],
-    grid,
-  );
+  /** @type {Room} */
+  const room = {
+    x: [box.x - all.x, screen.widthMm - (all.x + all.width - box.x)],
+    y: [box.y - all.y, screen.heightMm - (all.y + all.height - box.y)],
+  };
+  const areX = /** @type {[boolean, boolean]} */ ([handle.includes("w"), handle.includes("e")]);
+  const areY = /** @type {[boolean, boolean]} */ ([handle.includes("n"), handle.includes("s")]);
+  const [left, right] = dragged([box.x, box.x + box.width], areX, dx, room.x, grid);
+  const [top, bottom] = dragged([box.y, box.y + box.height], areY, dy, room.y, grid);
   const made = { x: left, y: top, width: right - left, height: bottom - top };
-  return keepsRatio ? inRatio(box, made, handle, screen) : made;
+  return keepsRatio ? inRatio(box, made, handle, room) : made;
 }
 
 /**
@@ -185,17 +181,24 @@ function dragged([low, high], [isLow, isHigh], by, [least, most], grid) {
 }
 
 /**
- * A picture's box, whose height follows from its width.
+ * A box whose sides keep their ratio: the side that was dragged further counts.
  * @param {Box} before
  * @param {Box} made
  * @param {string} handle
- * @param {Screen} screen
+ * @param {Room} room
  * @returns {Box}
  */
-function inRatio(before, made, handle, screen) {
+function inRatio(before, made, handle, room) {
   const ratio = before.height / before.width;
-  const room = handle.includes("n") ? before.y + before.height : screen.heightMm - before.y;
-  const width = Math.min(made.width, room / ratio);
+  const widths = [made.width, made.height / ratio];
+  const [byWidth, byHeight] = widths.map((width) => Math.abs(width - before.width));
+  const most = {
+    x: handle.includes("w") ? before.x + before.width - room.x[0] : room.x[1] - before.x,
+    y: handle.includes("n") ? before.y + before.height - room.y[0] : room.y[1] - before.y,
+  };
+  // A picture that is smaller already stays as it is.
+  const least = Math.min(before.width, Math.max(SIDE_MIN_MM, SIDE_MIN_MM / ratio));
+  const width = clamp(byWidth >= byHeight ? widths[0] : widths[1], least, Math.min(most.x, most.y / ratio));
   const height = width * ratio;
   const x = handle.includes("w") ? before.x + before.width - width : before.x;
   const y = handle.includes("n") ? before.y + before.height - height : before.y;

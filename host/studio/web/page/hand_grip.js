@@ -11,7 +11,7 @@ import { withSide } from "./hand_drag.js";
 /** @import { Change } from "./toml_text.js" */
 
 /** Why nothing can be changed while the layers are not those of the text. */
-export const ELSEWHERE = "The text has changed: its layers are read again once it has no mistake.";
+export const TEXT_CHANGED = "The text has changed: its layers are read again once it has no mistake.";
 
 export class HandGrip {
   #editor;
@@ -26,6 +26,8 @@ export class HandGrip {
   selected = () => undefined;
   /** The layers have changed. */
   onChange = () => {};
+  /** A hand has let go. */
+  onEnd = () => {};
   /** Says a sentence at the layer; "" once what it said is over. @type {(sentence: string) => void} */
   onSay = () => {};
 
@@ -53,7 +55,7 @@ export class HandGrip {
     const from = this.selected();
     if (!from || from.at === undefined) return undefined;
     if (!this.#layers.isCurrent) {
-      this.onSay(ELSEWHERE);
+      this.onSay(TEXT_CHANGED);
       return undefined;
     }
     this.#held = { from, held: this.#editor.hold(from.layer.file) };
@@ -90,6 +92,7 @@ export class HandGrip {
     this.#held = undefined;
     grip.held.end();
     if (this.#player.isHeld) this.#player.release(this.#editor.text);
+    this.onEnd();
   }
 
   /**

@@ -75,13 +75,15 @@ export class HandKeys {
    * @param {KeyboardEvent} event
    */
   #shortcut(event) {
-    const { target, ctrlKey, metaKey, altKey, shiftKey } = event;
+    const { target, ctrlKey, metaKey, altKey, shiftKey, repeat } = event;
     if (!(ctrlKey || metaKey) || altKey || !(target instanceof Element)) return;
-    if (!this.#panel.contains(target) && target.closest(`${FIELDS}, dialog`)) return;
+    if (document.querySelector("dialog[open]") || (!this.#panel.contains(target) && target.closest(FIELDS))) return;
     const key = event.key.toLowerCase();
-    if (key === "z" || key === "y") this.#hands.goBack(key === "y" || shiftKey ? "redo" : "undo");
-    else if (key === "d" && this.#hands.selected) this.#hands.duplicate();
-    else return;
+    if (key === "z" || key === "y") this.#hands.undoOrRedo(key === "y" || shiftKey ? "redo" : "undo");
+    else if (key === "d" && !shiftKey && this.#hands.selected) {
+      // A key that is held makes one copy.
+      if (!repeat) this.#hands.duplicate();
+    } else return;
     event.preventDefault();
     event.stopPropagation();
   }

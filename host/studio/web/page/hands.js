@@ -4,7 +4,7 @@
 import { byId, element, sentenceOf } from "./dom.js";
 import { EditedLayers } from "./edited_layers.js";
 import { HandDrag } from "./hand_drag.js";
-import { ELSEWHERE, HandGrip } from "./hand_grip.js";
+import { TEXT_CHANGED, HandGrip } from "./hand_grip.js";
 import { HandKeys } from "./hand_keys.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { LayerEdits } from "./layer_edits.js";
@@ -38,10 +38,24 @@ export class Hands {
   grip;
   /** The scene that the layers are of, as the project counts them. */
   #opened = 0;
-  /** Whether a layer was put behind all others in the text, to be selected once its check is there. */
-  #isLastAwaited = false;
+  /**
+   * A layer is put behind all others in the text, of which there are so many in that scene, to be selected once its
+   * check is there. For a scene that is about to open, the mode Edit begins then.
+   * @type {{ opened: number, count: number, isNew?: boolean } | undefined}
+   */
+  #awaited;
+  /**
+   * A check that came while a hand held a layer, which may let go without a change.
+   * @type {[Checked, Files] | undefined}
+   */
+  #heldBack;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
+  /**
+   * A layer that is not of the scene is added by this action.
+   * @type {(add: () => void) => unknown}
+   */
+  onAdd = (add) => add();
   /** A picture is wanted as a layer. */
   onPicture = () => {};
 
@@ -73,11 +87,18 @@ export class Hands {
     this.#mode.onChange = () => this.#changeMode();
     grip.selected = () => this.selected;
     grip.onChange = () => this.#draw(false);
+    grip.onEnd = () => {
+      if (this.#heldBack) this.show(...this.#heldBack);
+    };
     grip.onSay = (sentence) => this.say(sentence);
     this.#surface.addEventListener("focusout", () => grip.end());
     this.#panel.element.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
-      grip.end();
+      if (grip.isHolding) {
+        event.preventDefault();
+        grip.cancel();
+        letGo(event.target);
+      }
       this.#boxes.focus(this.#selected);
     });
     this.#boxes.onFocus = (key) => this.select(key);
@@ -89,7 +110,9 @@ export class Hands {
     panel.onDuplicate = () => this.duplicate();
     panel.onDelete = () => this.delete();
     panel.onClose = () => this.focus(undefined);
-    panel.onAdd = (beginning) => this.#edit(() => this.#edits.add(beginning));
+    panel.onAdd = (beginning) => {
+      if (this.canEdit()) this.onAdd(() => this.#edit(() => this.#edits.add(beginning)));
+    };
     panel.onPicture = () => this.onPicture();
   }
 
@@ -117,7 +140,8 @@ export class Hands {
    * @param {Files} files That were checked.
    */
   show(check, files) {
-    if (this.grip.isHolding) {
+    this.#heldBack = this.grip.isHolding ? [check, files] : undefined;
+    if (this.#heldBack) {
       this.#layers.feel(check.layers);
       this.#draw(false);
       return;
@@ -143,8 +167,14 @@ export class Hands {
     const isSameScene = project.opened === this.#opened;
     this.#opened = project.opened;
     const after = before && isSameScene ? this.#layers.successor(before) : undefined;
-    const last = this.#isLastAwaited ? this.#layers.last : undefined;
-    this.#isLastAwaited = false;
+    const awaited = this.#awaited?.opened === project.opened ? this.#awaited : undefined;
+    const last = awaited && this.#layers.all.length > awaited.count ? this.#layers.last : undefined;
+    // What is awaited of a scene that is not open yet stays so.
+    if (this.#awaited && this.#awaited.opened <= project.opened) this.#awaited = undefined;
+    if (awaited?.isNew && !this.isEditing) {
+      this.#mode.whyNot = "";
+      this.setEditing(true);
+    }
     this.#reselect((last ?? after)?.key);
     // What was said was about the layers before.
     this.say(this.selected?.at === undefined ? (this.selected?.place.whyNotMoved ?? "") : "");
@@ -153,8 +183,24 @@ export class Hands {
   }
 
   /** A layer comes behind all others in the text of the scene: while layers are edited, it is selected. */
-  awaitLast() {
-    this.#isLastAwaited = this.isEditing;
+  selectLastAfterCheck() {
+    const { opened } = this.#parts.project;
+    this.#awaited = this.isEditing ? { opened, count: this.#layers.all.length } : undefined;
+  }
+
+  /**
+   * Runs an action that opens another scene, whose last layer is selected in the mode Edit.
+   * @param {() => Promise<unknown>} open
+   */
+  async editNext(open) {
+    const awaited = { opened: this.#parts.project.opened + 1, count: 0, isNew: true };
+    this.#awaited = awaited;
+    try {
+      await open();
+    } catch (error) {
+      if (this.#awaited === awaited) this.#awaited = undefined;
+      throw error;
+    }
   }
 
   /**
@@ -222,7 +268,7 @@ export class Hands {
   }
 
   /** @param {"undo" | "redo"} what */
-  goBack(what) {
+  undoOrRedo(what) {
     this.grip.end();
     this.#parts.editor[what]();
   }
@@ -265,6 +311,18 @@ export class Hands {
     this.#edit(() => this.#edits.addPicture(name, aspect));
   }
 
+  /** Whether layers can come and go now; where not, says why. */
+  canEdit() {
+    try {
+      if (!this.#layers.isCurrent) throw new Error(TEXT_CHANGED);
+      this.#edits.assertVersion();
+      return true;
+    } catch (error) {
+      this.say(sentenceOf(error));
+      return false;
+    }
+  }
+
   duplicate() {
     const { selected } = this;
     if (selected) this.#edit(() => this.#edits.duplicate(selected));
@@ -281,10 +339,7 @@ export class Hands {
    */
   #edit(edit) {
     this.grip.end();
-    if (!this.#layers.isCurrent) {
-      this.say(ELSEWHERE);
-      return;
-    }
+    if (!this.canEdit()) return;
     try {
       const made = edit();
       this.#draw(false);
@@ -313,6 +368,8 @@ export class Hands {
     }
     const { scale, box } = this.#parts.map;
     this.#boxes.show(this.#layers.all, this.#selected, scale);
+    // Where there is no layer, the keys lead from the map to what adds one.
+    this.#surface.tabIndex = this.#layers.all.length > 0 ? -1 : 0;
     const { selected } = this;
     const { toml, at, layer } = selected ?? {};
     const isTuned = layer && toml && at !== undefined;
@@ -324,4 +381,14 @@ export class Hands {
     const [numbersRect, scope, map] = around.map((each) => each.getBoundingClientRect());
     this.#panel.place(numbersRect, scope, map);
   }
+}
+
+/**
+ * A slider that is dragged follows the pointer no more.
+ * @param {EventTarget | null} target
+ */
+function letGo(target) {
+  if (!(target instanceof HTMLInputElement) || target.type !== "range") return;
+  target.disabled = true;
+  target.disabled = false;
 }

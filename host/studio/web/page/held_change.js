@@ -46,23 +46,24 @@ export class HeldChange {
   }
 
   /**
-   * Makes these replacements of the text before, in place of those that were made last.
+   * Makes these replacements of the text before, in place of those that were made last. Returns whether the text has
+   * them: the editor takes no text that is too long.
    * @param {Replacement[]} replacements
    */
   make(replacements) {
-    if (this.isOver) return;
+    if (this.isOver) return false;
     const next = this.#start.changes(replacements);
     const changes = this.#made.invert(this.#start.doc).compose(next);
-    if (changes.empty) return;
+    if (changes.empty) return true;
     // The history joins changes of one time: the hand may rest as long as it likes.
-    const annotations = this.#beganMs === undefined
-      ? [isolateHistory.of("before")]
-      : [continuesStep.of(true), Transaction.time.of(this.#beganMs)];
-    this.#beganMs ??= Date.now();
-    if (annotations.length === 1) annotations.push(Transaction.time.of(this.#beganMs));
-    this.#view.dispatch({ changes, annotations });
+    const beganMs = this.#beganMs ?? Date.now();
+    const step = this.#beganMs === undefined ? isolateHistory.of("before") : continuesStep.of(true);
+    this.#view.dispatch({ changes, annotations: [step, Transaction.time.of(beganMs)] });
+    if (!this.isOver) return false;
+    this.#beganMs = beganMs;
     this.#made = next;
     this.#now = this.#view.state.doc;
+    return true;
   }
 
   /** The hand lets go: what comes next is another step. Where nothing has changed in the end, there is no step. */

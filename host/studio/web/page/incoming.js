@@ -22,7 +22,7 @@ const JPEG = [0xff, 0xd8, 0xff];
  * The first bytes of pictures, by the ending of their names.
  * @type {Record<string, number[]>}
  */
-const BEGINNINGS = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
+const SIGNATURES = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
 /** The last chunk of a PNG, and in how many bytes at the end it is looked for. */
 const PNG_END = "IEND";
 const PNG_END_BYTES = 64;
@@ -143,7 +143,7 @@ export async function read(file, found) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   if (ending === "zip") return { scene: projectOf(bytes) };
   if (isPicture(file.name)) {
-    if (BEGINNINGS[ending].some((byte, at) => bytes[at] !== byte))
+    if (SIGNATURES[ending].some((byte, at) => bytes[at] !== byte))
       throw new Error(`this is no ${ending === "png" ? "PNG" : "JPEG"} picture, whatever its name says`);
     if (ending === "png" && !String.fromCharCode(...bytes.slice(-PNG_END_BYTES)).includes(PNG_END))
       throw new Error("this PNG picture is cut off: its end is missing; save or copy it anew");

@@ -1,7 +1,7 @@
 // Layers that are added to a scene on the map, doubled, or taken out of it: each is one step of undo.
 // @ts-check
 
-import { addedLayer, freeName, pictureLayer } from "./beginnings.js";
+import { addedLayer, freeLayerName, pictureLayer } from "./beginnings.js";
 import { bounds, clamp, placeOf } from "./place.js";
 import { TomlText, replaced } from "./toml_text.js";
 
@@ -31,6 +31,11 @@ export class LayerEdits {
     this.#layers = layers;
   }
 
+  /** Throws a sentence where layers come and go in the text alone. */
+  assertVersion() {
+    if (new TomlText(this.#editor.text).value(["version"]) !== 2) throw new Error(OLD_VERSION);
+  }
+
   /**
    * Adds a layer where there is room, above all others; returns it.
    * @param {Beginning} beginning
@@ -58,8 +63,7 @@ export class LayerEdits {
    */
   #add(fields, boxMm) {
     const toml = new TomlText(this.#editor.text);
-    if (toml.value(["version"]) !== 2) throw new Error(OLD_VERSION);
-    const name = freeName(String(fields.name), this.#names());
+    const name = freeLayerName(String(fields.name), this.#names());
     const layers = toml.value(["layer"]);
     const at = Array.isArray(layers) ? layers.length : 0;
     this.#make(undefined, [toml.addition({ ...fields, name })]);
@@ -76,13 +80,14 @@ export class LayerEdits {
     const text = replaced(toml.text, [insertion]);
     const copied = new TomlText(text);
     const own = copied.value(["layer", at + 1, "name"]);
-    const name = typeof own === "string" ? freeName(own, this.#names()) : layer.name;
+    const name = typeof own === "string" ? freeLayerName(own, this.#names()) : layer.name;
     const { screen } = this.#layers;
     const to = placeOf(copied, at + 1, layer, screen, false);
     const all = bounds(place.box, place.copies);
-    const dx = aside(all.x, screen.widthMm - all.x - all.width);
-    const dy = aside(all.y, screen.heightMm - all.y - all.height);
-    const changes = place.whyNotMoved ? [] : to.move(dx, dy);
+    const isMoved = !place.whyNotMoved;
+    const dx = isMoved ? aside(all.x, screen.widthMm - all.x - all.width) : 0;
+    const dy = isMoved ? aside(all.y, screen.heightMm - all.y - all.height) : 0;
+    const changes = isMoved ? to.move(dx, dy) : [];
     if (typeof own === "string") changes.push({ path: ["layer", at + 1, "name"], value: name, decimals: 0 });
     const made = replaced(text, copied.replacements(changes));
     const { from, insert } = insertion;
@@ -106,8 +111,9 @@ export class LayerEdits {
    */
   #make(file, replacements) {
     const held = this.#editor.hold(file);
-    held.make(replacements);
+    const isMade = held.make(replacements);
     held.end();
+    if (!isMade) throw new Error("The text has no room for this layer.");
   }
 
   #names() {

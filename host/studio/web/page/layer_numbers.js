@@ -143,9 +143,9 @@ export function repeatNumbers({ toml, at, place: { box } }, screen) {
     const [value, stepMm] = [toml?.value(path), toml?.value(["layer", at, "repeat", step])];
     if (typeof value !== "number" || typeof stepMm !== "number" || stepMm === 0) return [];
     const room = stepMm > 0 ? screen[`${along}Mm`] - box[side] - box[along] : box[side];
-    const most = Math.max(value, Math.min(COPIES_MAX, 1 + Math.floor(room / Math.abs(stepMm) + CLOSE)));
+    const most = Math.max(value, 1, Math.min(COPIES_MAX, 1 + Math.floor(room / Math.abs(stepMm) + CLOSE)));
     const whole = { decimals: 0, step: 1, least: 1, most, min: 1, max: COPIES_MAX };
-    return most > 1 ? [{ field: `repeat.${name}`, label: name, words, unit: "", value, path, ...whole }] : [];
+    return [{ field: `repeat.${name}`, label: name, words, unit: "", value, path, ...whole }];
   });
 }
 

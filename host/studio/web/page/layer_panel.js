@@ -33,6 +33,8 @@ export class LayerPanel {
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
   /** The rows of the numbers, by field. */
   #rows = /** @type {Map<string, NumberRow>} */ (new Map());
+  /** For what the verdict was made. */
+  #feltFor = "";
   /** For what the panel was made. */
   #madeFor = "";
   /**
@@ -72,7 +74,8 @@ export class LayerPanel {
   }
 
   focus() {
-    this.element.querySelector("input")?.focus();
+    const first = this.element.querySelector("input") ?? this.element.querySelector("button");
+    first?.focus();
   }
 
   /**
@@ -110,6 +113,10 @@ export class LayerPanel {
    */
   #showFelt(layer, reach) {
     const { felt, perceived, index } = layer;
+    // A person may be about to press what stands there.
+    const feltFor = JSON.stringify([index === UNCHECKED, felt, perceived, reach]);
+    if (feltFor === this.#feltFor) return;
+    this.#feltFor = feltFor;
     if (index === UNCHECKED) {
       this.#felt.replaceChildren();
       return;

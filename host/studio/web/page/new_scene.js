@@ -1,7 +1,7 @@
 // The dialog of New: four small scenes to begin with, one of them with a picture of one's own, and an empty one.
 // @ts-check
 
-import { BEGINNINGS, sceneOf } from "./beginnings.js";
+import { BEGINNINGS, sceneWith } from "./beginnings.js";
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
 import { drawScene } from "./scene_picture.js";
@@ -44,7 +44,7 @@ export class NewScene {
       scenes,
     );
     const cards = BEGINNINGS.map(({ name, words, layer }) => {
-      const text = sceneOf(words, layer);
+      const text = sceneWith(words, layer);
       const canvas = element("canvas", { "aria-hidden": "true" });
       const begin = element("button", { className: "primary" }, `Begin with ${name}`);
       begin.onclick = () => this.#choose(name, text);

@@ -4,9 +4,9 @@
 import { clock } from "../clock.js";
 import { Autosave } from "./autosave.js";
 import { byId } from "./dom.js";
-import { forgetNotice, notify } from "./notices.js";
+import { attempt, forgetNotice, notify } from "./notices.js";
 import { showPictures } from "./pictures.js";
-import { isPicture, isToml } from "./project.js";
+import { assertTextsFit, isPicture, isToml } from "./project.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Compare } from "./compare.js" */
@@ -126,6 +126,17 @@ export class OpenScene {
   }
 
   /**
+   * Likewise a layer that this action puts into the text, or not.
+   * @param {() => void} action
+   */
+  add(action) {
+    return this.#bringIn(async () => {
+      action();
+      this.replay();
+    });
+  }
+
+  /**
    * Takes a picture for a layer; resolves to the name that it has in the scene.
    * @param {OwnPicture} picture
    */
@@ -177,6 +188,7 @@ export class OpenScene {
 
   /** @param {SceneToOpen} scene */
   async #replace({ name, text, files = [], profiles, ...work }) {
+    assertTextsFit({ name, text, files });
     const [autosave, project] = [this.#autosave, this.#project];
     const before = { ...this.saved, ...autosave.state };
     this.#forgetBack();
@@ -248,10 +260,7 @@ export class OpenScene {
       files.delete(name);
       this.#filesChanged();
     };
-    const add = (/** @type {string} */ layer) => {
-      this.onAppend();
-      this.#editor.append(layer);
-    };
+    const add = (/** @type {string} */ layer) => attempt(() => this.append(layer));
     showPictures(this.#project, add, remove);
     /** @type {[string, string][]} */
     const texts = [];

@@ -1,20 +1,19 @@
 // A picture of one's own that a person chooses, for a layer.
 // @ts-check
 
-import { pictureLayer, sceneOf } from "./beginnings.js";
+import { pictureLayer, sceneWith } from "./beginnings.js";
 import { element } from "./dom.js";
 import { read } from "./incoming.js";
 
 /** @import { Hands } from "./hands.js" */
 /** @import { OpenScene } from "./open_scene.js" */
+/** @import { Project } from "./project.js" */
 
 /**
  * A picture with its width over its height.
  * @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, aspect: number }} OwnPicture
  */
 
-/** The screen of a scene that does not say one. */
-const SCREEN = { widthMm: 120, heightMm: 80 };
 const WORDS = "A picture: black is bare glass, white the most that the drive can add.";
 
 /** Lets a person choose a picture; resolves to undefined if none is chosen. */
@@ -40,7 +39,9 @@ async function pictureIn(file) {
   const [name, bytes] = files[0] ?? [];
   if (!name || typeof bytes !== "object") throw new Error(`${file.name}: expected a picture (.png, .jpg)`);
   // The compiler does not turn a photo as its camera says.
-  const image = await createImageBitmap(new Blob([bytes]), { imageOrientation: "none" });
+  const image = await createImageBitmap(new Blob([bytes]), { imageOrientation: "none" }).catch(() => {
+    throw new Error(`${name}: this picture cannot be read`);
+  });
   const aspect = image.width / image.height;
   image.close();
   return { name, bytes, aspect };
@@ -50,13 +51,12 @@ async function pictureIn(file) {
  * Opens a scene with a picture that a person chooses, whose layer is selected.
  * @param {OpenScene} scene
  * @param {Hands} hands
+ * @param {Project} project
  */
-export async function beginWithPicture(scene, hands) {
+export async function beginWithPicture(scene, hands, project) {
   const picture = await choosePicture();
   if (!picture) return;
   const { name, bytes, aspect } = picture;
-  const text = sceneOf(WORDS, pictureLayer(name, aspect, SCREEN));
-  await scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] });
-  hands.setEditing(true);
-  hands.awaitLast();
+  const text = sceneWith(WORDS, pictureLayer(name, aspect, project.screenOfNew));
+  await hands.editNext(() => scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] }));
 }

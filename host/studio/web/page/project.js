@@ -26,6 +26,8 @@ import { NAME_MAX } from "./dom.js";
 
 /** Longest text that the studio takes, bytes. */
 export const TEXT_MAX_BYTES = 500_000;
+/** The screen of a scene that does not say one. */
+const DEFAULT_SCREEN = { widthMm: 120, heightMm: 80 };
 /** What file systems refuse in a name, and names that Windows keeps for itself. */
 const NOT_IN_NAMES = /[<>:"/\\|?*\p{Cc}]/gu;
 const RESERVED = /^(con|prn|aux|nul|com\d|lpt\d)(?=\.|$)/i;
@@ -47,7 +49,7 @@ export class Project {
    * The screen of the scene that was checked last.
    * @type {Screen}
    */
-  screen = { widthMm: 120, heightMm: 80 };
+  screen = DEFAULT_SCREEN;
   /** How many scenes were opened: what was begun for one may be ready when another is open. */
   opened = 0;
 
@@ -69,6 +71,11 @@ export class Project {
   /** Name of the scene's file. */
   get entry() {
     return `${this.#name}.toml`;
+  }
+
+  /** The screen that a scene which says none is played with. */
+  get screenOfNew() {
+    return this.profiles.screen ? this.screen : DEFAULT_SCREEN;
   }
 
   /**
@@ -143,8 +150,25 @@ export class Project {
  * @param {number} mostBytes
  */
 export function tooLarge(what, bytes, mostBytes) {
-  const [size, most] = [bytes, mostBytes].map((each) => (each / 1e6).toFixed(1));
+  // A little more than the most is more in words, too.
+  const [size, most] = [bytes, mostBytes].map((each) => (Math.ceil(each / 1e5) / 10).toFixed(1));
   return `the ${what} has ${size} MB, more than the ${most} MB that the studio opens`;
+}
+
+/**
+ * Throws a sentence where a scene has a text that is longer than the studio takes.
+ * @param {SavedScene} scene
+ */
+export function assertTextsFit({ name, text, files }) {
+  for (const [file, content] of [/** @type {NamedFile} */ ([`${name}.toml`, text]), ...files]) {
+    const bytes = isToml(file) ? bytesOf(content) : 0;
+    if (bytes > TEXT_MAX_BYTES) throw new Error(`${file}: ${tooLarge("text", bytes, TEXT_MAX_BYTES)}`);
+  }
+}
+
+/** @param {Content} content */
+export function bytesOf(content) {
+  return typeof content === "string" ? new TextEncoder().encode(content).length : content.length;
 }
 
 /** @param {string} name */
