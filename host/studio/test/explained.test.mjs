@@ -184,6 +184,7 @@ test("a slide that leaves the map selects no text, and a selection is read in li
     await page.emulateMedia({ colorScheme });
     await page.click("#editor .cm-content");
     await page.keyboard.press("Control+a");
+    await page.locator(".cm-selectionBackground").first().waitFor({ state: "attached" });
     const part = await page.evaluate(() => {
       const canvas = new OffscreenCanvas(1, 1).getContext("2d");
       const light = (colour) => {

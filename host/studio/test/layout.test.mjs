@@ -194,7 +194,11 @@ const OPENED = {
     (page) => page.evaluate(() => document.body.click()),
   ],
   "a notice": [
-    (page) => page.evaluate(() => document.getElementById("share").click()), "#notice",
+    // Bad news, which stays until it is measured.
+    (page) => page.evaluate(async () => {
+      const { notify } = await import(await studio.moduleUrl("page/notices.js"));
+      notify("A long sentence about what went wrong. ".repeat(6), undefined, { beside: document.getElementById("share") });
+    }), "#notice",
     (page) => page.evaluate(() => document.querySelector("#notice [aria-label=Dismiss]").click()),
   ],
   gallery: [
