@@ -30,8 +30,8 @@ fn a_playing_tick_sends_its_code_and_then_kicks_the_enable() {
     assert!(matches!(of_tick(&board)[..], [Event::Sent(_), Event::Kicked]));
 }
 
-/// The monitor soon follows the code that the DAC has just put out. That an order does not come first either, the rig of
-/// the Pico shows.
+/// The monitor soon follows the code that the DAC has just put out. That an order does not come first either, the rig
+/// of the Pico shows.
 #[test]
 fn a_tick_reads_the_monitor_before_it_counts() {
     let mut board = Board::playing();

@@ -59,8 +59,8 @@ pub struct BrokenInputs {
 ///
 /// Time is virtual: it passes in [`Self::step`] only, so it waits for a host however busy the machine is. The world
 /// advances by a tick with each frame that the board sends at its beat, and at the same rate without frames. The board
-/// takes touch reports from its host; here the touch source sends them over the same line, between the host's frames. An
-/// image with an optical frame takes them from [`Self::attach_frame`].
+/// takes touch reports from its host; here the touch source sends them over the same line, between the host's frames.
+/// An image with an optical frame takes them from [`Self::attach_frame`].
 #[derive(Debug)]
 pub struct PicoRig {
     process: Process,

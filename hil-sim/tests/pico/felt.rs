@@ -19,7 +19,7 @@ use crate::script::Script;
 const ERROR_MAX: f64 = 0.25;
 const CORRELATION_MIN: f64 = 0.9;
 const SPURIOUS_MAX_DB: f64 = 6.0;
-/// What the line and the main loop, which hear a report some ticks later, may add to the error of the in-process rig.
+/// Largest error beyond that of the in-process rig: line and main loop take a report some ticks later.
 const LINE_ERROR_MAX: f64 = 0.02;
 /// Ticks between two pings of the in-process rig's host: less than its timeout of 250 ms.
 const PING_TICKS: u64 = 800;
@@ -57,7 +57,7 @@ fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
 /// How to switch a board on: with its image, in a world like this, with a finger that makes a stroke, and a seed.
 type SwitchOn = fn(&Image, &WorldConfig, Stroke, u64) -> Bench;
 
-/// What is felt of a stroke on the Pico, and the tick of the world at which it begins.
+/// The fidelity of a stroke on the Pico, and the tick of the world at which the stroke begins.
 fn on_the_pico(image: &Image, switch_on: SwitchOn, seconds: f64, seed: u64) -> (Fidelity, u64) {
     let bench = switch_on(image, &world(), stroke(seconds, seed), seed);
     let mut host = bench.connect();

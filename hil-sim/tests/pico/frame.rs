@@ -1,5 +1,5 @@
-//! A board that takes the finger's place from an optical frame on I2C, with a frame that does not answer, holds the bus,
-//! or stops in the middle of a report.
+//! A board that takes the finger's place from an optical frame on I2C, with a frame that does not answer, holds the
+//! bus, or stops in the middle of a report.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -12,7 +12,8 @@ use frixel_wire::fault::State;
 use super::bench::{BOARD, Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
-/// From the last report to zero: 40 ms until it is stale, the tick that begins meanwhile, and the one that puts out zero.
+/// From the last report to zero: 40 ms until it is stale, the tick that begins meanwhile, and the one that puts out
+/// zero.
 const ZERO_WITHIN: Duration = Duration::from_millis(40).saturating_add(TICK.saturating_mul(2));
 /// From a frame that works again to the drive: a pause of the driver of 100 ms, at most 50 until it has discarded what
 /// waits, and 60 until reports have come.

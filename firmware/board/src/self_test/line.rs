@@ -138,8 +138,8 @@ mod tests {
     }
 
     proptest! {
-        /// A byte that is lost, doubled or changed costs at most the two blocks that it is between. The byte at 0 ends what was
-        /// on the line before, so that nothing is lost with it.
+        /// A byte that is lost, doubled or changed costs at most the two blocks that it is between. The byte at 0 ends
+        /// what was on the line before, so that nothing is lost with it.
         #[test]
         fn a_disturbed_byte_is_counted(at in 1_usize..1500, kind in 0..3) {
             let mut sent = bytes(4000);

@@ -28,7 +28,7 @@ const BOOT_COMPLETE: u8 = 0x63;
 const EVENT_DOWN: u8 = 0;
 const EVENT_MOVE: u8 = 1;
 const EVENT_UP: u8 = 2;
-/// What is read of a bus that nobody drives.
+/// A byte that is read while nobody drives the bus.
 const RELEASED: u8 = 0xff;
 /// Coordinates are in tenths of a millimetre.
 const M_PER_UNIT: f32 = 1e-4;

@@ -13,7 +13,7 @@ use super::protocol::{Ended, FRAME_READY, Ran, Request, SCL_HELD, SDA_HELD, Stam
 use crate::chips::{HeldBus, TouchEvent, ZForceModule};
 use crate::emulated::EmulatorError;
 
-/// What SDA shows while nobody drives it.
+/// The byte that SDA shows while nobody drives it.
 const RELEASED: u8 = 0xff;
 /// Units of the frame in a metre.
 const UNITS_PER_M: f32 = 1e4;
@@ -22,7 +22,7 @@ const UNITS_PER_M: f32 = 1e4;
 #[derive(Debug)]
 pub struct TouchFrame {
     module: ZForceModule,
-    /// What holds SDA low, as if the module had been left in a transfer; `None` for nothing.
+    /// A device that holds SDA low, as a module does that was left in a transfer; `None` if SDA is free.
     pub holds_sda: Option<HeldBus>,
     /// Whether the module holds SCL low.
     pub holds_scl: bool,
@@ -76,7 +76,7 @@ impl TouchFrame {
         inputs.into_iter().map(|(is_set, input)| if is_set { input } else { 0 }).sum()
     }
 
-    /// What the module answers to an event on its bus: a byte, or 1 for an acknowledgement.
+    /// Returns the module's answer to an event on its bus: a byte, or 1 for an acknowledgement.
     fn answer(&mut self, event: WireEvent) -> Option<u8> {
         match event {
             WireEvent::I2cAddress { address, .. } => {

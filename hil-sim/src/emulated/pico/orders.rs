@@ -22,7 +22,7 @@ pub struct AppliedOrder {
     pub words: [u32; ORDER_WORDS],
 }
 
-/// What the board was told, and what its tick has made of it.
+/// The bytes that the board has received, and the orders that its tick has taken.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Watched {
     /// The bytes that were sent to it: frames of the host and of the touch source.
@@ -34,7 +34,7 @@ pub struct Watched {
 }
 
 impl PicoRig {
-    /// Watches from now on, until the next start of the board, what it is told and which orders its tick takes. Returns
+    /// Notes every byte that the board receives and every order that its tick takes, until its next start. Returns
     /// `false` if the image does not name the functions.
     pub fn watch_orders(&mut self) -> Result<bool, EmulatorError> {
         for (name, words) in NAMES {
@@ -45,7 +45,7 @@ impl PicoRig {
         Ok(true)
     }
 
-    /// What was watched so far, after which nothing is.
+    /// Returns the notes, and ends them.
     pub fn take_watched(&mut self) -> Result<Watched, EmulatorError> {
         let words = self.process.request(Request::TakeCalls, &[])?;
         let mut watched = Watched { bytes: self.watched_bytes.take().unwrap_or_default(), ..Watched::default() };
