@@ -50,6 +50,22 @@ test("from a file, bundled scenes and scenes inside of the element play", async 
   await close();
 });
 
+test("what stands below a scene stays in its place when the scene comes", async () => {
+  const scene = '<frixel-scene scene="constant"><img alt="before the script is here"></frixel-scene>';
+  const folder = documentOf(`${scene}<h1 id="below">Below</h1>`);
+  const url = pathToFileURL(path.join(folder, "index.html")).href;
+  const init = () => {
+    const top = () => document.getElementById("below").getBoundingClientRect().top;
+    customElements.whenDefined("frixel-scene").then(() => (globalThis.topsPx = [top()]));
+    addEventListener("ready", () => topsPx.push(top()), { capture: true });
+  };
+  const { page, close } = await openPage(url, { init, isSimulated: true });
+  await page.waitForFunction(() => globalThis.topsPx?.length === 2);
+  const [before, after] = await page.evaluate(() => topsPx);
+  assert.ok(Math.abs(after - before) < 1, `from ${before} to ${after} px`);
+  await close();
+});
+
 test("from a server, `src` names a scene with its files", async (context) => {
   const part = 'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "wall.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n';
   const folder = documentOf('<frixel-scene id="there" src="scenes/mine.toml"></frixel-scene>', {

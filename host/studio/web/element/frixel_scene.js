@@ -16,6 +16,7 @@ import { Scope } from "../page/scope.js";
 /** @import { Checked, Files, Frame, Profiles } from "../engine/types" */
 /** @typedef {{ files: Files, entry: string }} Source */
 /** @typedef {{ engine: Engine, map: FrictionMap, finger: Finger, scope: Scope }} Parts */
+/** @typedef {{ map: HTMLElement, picture: HTMLCanvasElement, touched: HTMLCanvasElement, scope: HTMLElement }} Places */
 
 /** Longer side of the map's picture, pixels. */
 const MAP_LONG_SIDE_PX = 640;
@@ -28,9 +29,10 @@ const STYLE = `
 .card { background: var(--card); border: 1px solid var(--line); border-radius: 12px; overflow: hidden; }
 .map { border-top: 0; aspect-ratio: 3 / 2; }
 .scope { height: 190px; }
-.line { padding: 4px 12px; }
+.line { padding: 4px 12px; min-height: calc(1lh + 8px); }
 .bad { color: var(--danger); white-space: pre-line; }
 `;
+const STYLES = [...(await Promise.all(["base", "parts"].map((name) => studio.text(`styles/${name}.css`)))), STYLE];
 
 /** @type {Promise<Engine> | undefined} */
 let shared;
@@ -111,12 +113,12 @@ class FrixelScene extends HTMLElement {
 
   connectedCallback() {
     if (this.#root) return;
-    this.#root = this.attachShadow({ mode: "open" });
+    const places = this.#makeRoom();
     const nearby = new IntersectionObserver(
       ([{ isIntersecting }]) => {
         if (!isIntersecting) return;
         nearby.disconnect();
-        this.#start().catch((error) => this.say(sentenceOf(error)));
+        this.#start(places).catch((error) => this.say(sentenceOf(error)));
       },
       { rootMargin: NEARBY },
     );
@@ -133,17 +135,27 @@ class FrixelScene extends HTMLElement {
     if (this.#parts) this.#load(this.#parts).catch((error) => this.say(sentenceOf(error)));
   }
 
-  async #start() {
-    // Until the document is read, a scene inside of the element may be incomplete.
-    if (document.readyState === "loading") await new Promise((done) => addEventListener("DOMContentLoaded", done));
-    const styles = await Promise.all(["base", "parts"].map((name) => studio.text(`styles/${name}.css`)));
+  /**
+   * Takes the room of the whole scene at once: what stands below stays in its place when the scene comes.
+   * @returns {Places}
+   */
+  #makeRoom() {
+    this.#root = this.attachShadow({ mode: "open" });
     const picture = element("canvas", { id: "map-picture" });
-    const touched = element("canvas", { id: "map-finger", tabIndex: 0, role: "application", "aria-label": LABEL });
+    const touched = element("canvas", { id: "map-finger", role: "application", "aria-label": LABEL });
     const map = element("div", { className: "map" }, picture, touched, this.#hint);
     const scope = element("div", { className: "scope" });
     const card = element("div", { className: "card" }, map, this.#line, scope);
-    this.#root?.replaceChildren(element("style", {}, ...styles, STYLE), card);
+    this.#root.append(element("style", {}, ...STYLES), card);
+    return { map, picture, touched, scope };
+  }
+
+  /** @param {Places} places */
+  async #start({ map, picture, touched, scope }) {
+    // Until the document is read, a scene inside of the element may be incomplete.
+    if (document.readyState === "loading") await new Promise((done) => addEventListener("DOMContentLoaded", done));
     const engine = await engineOfAll();
+    touched.tabIndex = 0;
     const shown = new FrictionMap(map, picture);
     const finger = new Finger(engine, shown, touched);
     const parts = { engine, map: shown, finger, scope: new Scope(this.#samples, scope) };
@@ -254,7 +266,6 @@ class FrixelScene extends HTMLElement {
   say(sentence) {
     this.#line.className = "line bad";
     this.#line.textContent = sentence;
-    if (!this.#line.isConnected) this.#root?.append(this.#line);
   }
 }
 
