@@ -13,6 +13,8 @@
 //! Landing and end of a touch count as much as its middle. A ratio to a reference of which nothing can be felt is
 //! absent.
 
+mod goal;
+
 use std::ops::Range;
 
 use frixel_wire::fault::Flags;
@@ -23,6 +25,8 @@ use crate::percentile::percentiles;
 use crate::perception::{WEBER_FRACTION, natural_noise_amplitude_n, weber_steps};
 use crate::recorder::FeltRow;
 use crate::spectrum::Spectrum;
+
+pub use goal::{FidelityMean, Goal};
 
 /// Samples a second.
 pub const SAMPLE_HZ: f64 = 4000.0;
