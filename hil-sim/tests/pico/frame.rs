@@ -132,14 +132,18 @@ fn a_clock_that_is_held_stops_the_output_until_it_is_released() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let (bench, mut host) = playing(&image);
     suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
-    // In the middle of a report.
+    reads_a_report(&bench, &mut host);
+    suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
+    has_stayed_on_the_line(&bench, host);
+}
+
+/// Waits until the board is in the middle of a report.
+fn reads_a_report(bench: &Bench, host: &mut Host) {
     let begin = bench.now();
-    while !is_reading(&bench) {
+    while !is_reading(bench) {
         assert!(bench.now().saturating_sub(begin) <= BACK_WITHIN, "no report is read");
         host.wait(TICK, &mut |_| ()).unwrap();
     }
-    suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
-    has_stayed_on_the_line(&bench, host);
 }
 
 /// Whether a byte was read in the last tick, and the transfer has not ended.
@@ -162,6 +166,8 @@ fn a_short_of_the_data_line_stops_the_output_until_it_is_gone() {
     let tries = short.pulses() / 9;
     assert!((2..=3).contains(&tries) && short.pulses().is_multiple_of(9), "{} clocks", short.pulses());
     assert_eq!(count(&events, WireEvent::Scl(true)), short.pulses() as usize);
+    reads_a_report(&bench, &mut host);
+    suffers(&bench, &mut host, breaks, |frame| frame.holds_sda = None);
     has_stayed_on_the_line(&bench, host);
 }
 
