@@ -263,18 +263,17 @@ fn with_sections(document: &str, gallery: &[Entry]) -> String {
     let (Some(begin), Some(last)) = (document.find(first), document.rfind(end)) else {
         panic!("docs/gallery/index.html has no section")
     };
-    let sections: String = gallery
-        .iter()
-        .map(|entry| {
-            let Entry { name, .. } = entry;
-            format!(
-                "{first}      <h2>{}</h2>\n      <p>{}</p>\n      <frixel-scene scene=\"{name}\"><img src=\"{name}.png\" \
-                 alt=\"Friction map of {name}.toml\" /></frixel-scene>\n    {end}",
-                name.replace('_', " "),
-                entry.headline()
-            )
-        })
-        .collect();
+    let mut sections = String::new();
+    for entry in gallery {
+        let Entry { name, .. } = entry;
+        let _ = write!(
+            sections,
+            "{first}      <h2>{}</h2>\n      <p>{}</p>\n      <frixel-scene scene=\"{name}\"><img src=\"{name}.png\" \
+             alt=\"Friction map of {name}.toml\" /></frixel-scene>\n    {end}",
+            name.replace('_', " "),
+            entry.headline()
+        );
+    }
     [&document[..begin], &sections, &document[last + end.len()..]].concat()
 }
 
