@@ -5,6 +5,7 @@ use crate::script::{HEADER, Script, constant, scene};
 use frixel_control::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
 use frixel_hil_sim::{AmplifierConfig, Decay, FingerState, RigConfig, Stroke, WorldConfig};
 use frixel_layers::{Header, Waveform};
+use frixel_model::{SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound};
 use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
@@ -212,5 +213,32 @@ fn a_monitor_that_dies_and_a_gain_that_changes_fault_within_half_a_millisecond()
             });
             assert!(ticks.is_some_and(|ticks| (16..=20).contains(&ticks)), "{broken:?}: {ticks:?}");
         });
+    }
+}
+
+/// What the monitor cannot tell from tolerances is a single fault with less current than one may have.
+#[test]
+fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_sees_it() {
+    let bound = TouchBound::behind(Board::NUCLEO_G474RE.limits.series_resistance_ohm);
+    for carrier_hz in [125.0, 250.0, 1_000.0] {
+        let voltage_v_peak = bound.voltage_max_v_peak(carrier_hz);
+        // 4 % of the full scale of 200 V, and a quarter of the voltage.
+        let tolerated = 1.25 + 8.0 / f64::from(voltage_v_peak);
+        let tolerated_a_peak = tolerated * TOUCH_CURRENT_MAX_A_PEAK;
+        println!("{carrier_hz} Hz: {voltage_v_peak:.1} V peak, gain up to {tolerated:.2}: {tolerated_a_peak} A");
+        assert!(tolerated_a_peak < SINGLE_FAULT_CURRENT_MAX_A_PEAK);
+        for (gain, is_seen) in [(tolerated - 0.05, false), (tolerated + 0.05, true)] {
+            play(AMPLIFIER, &header(voltage_v_peak, carrier_hz, Waveform::Square), |script| {
+                for tick in 0..6_000 {
+                    if tick == 3_000 {
+                        script.rig.world_mut().set_amplifier(&AmplifierConfig { gain, ..AMPLIFIER }).unwrap();
+                    }
+                    place_finger(script);
+                    script.step();
+                }
+                let fault = script.status().fault.map(|(fault, _)| fault);
+                assert_eq!(fault, is_seen.then_some(Fault::Monitor), "{carrier_hz} Hz, gain {gain}");
+            });
+        }
     }
 }

@@ -7,7 +7,7 @@ use frixel_control::{AmplifierSpec, Board};
 use frixel_drivers::monitor::MonitorScale;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneStore;
-use frixel_session::store::{Ceilings, Flash, Slot, check_ceilings, load_limits};
+use frixel_session::store::{Ceilings, Flash, Slot, check_touched_board, load_limits};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use frixel_wire::scene::RECORDS_MAX;
 use stm32_metapac::UID;
@@ -54,9 +54,23 @@ pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
 /// Limits until bring-up has stored others.
 pub const LIMITS: BoardLimits =
-    BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..Board::NUCLEO_G474RE.limits };
+    BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..behind(option_env!("FRIXEL_SERIES_KOHM")) };
 
-const _: () = assert!(check_ceilings(&LIMITS).is_ok());
+/// The limits behind a series resistance in kOhm that the environment of the build names, or else behind the one of
+/// `docs/hardware.md`. What is stored does not name it: firmware and bring-up are built with the same, or the firmware
+/// refuses what bring-up has stored.
+const fn behind(series_kohm: Option<&str>) -> BoardLimits {
+    let of_docs = Board::NUCLEO_G474RE.limits;
+    let Some(series_kohm) = series_kohm else { return of_docs };
+    let Ok(series_kohm) = u32::from_str_radix(series_kohm, 10) else {
+        panic!("FRIXEL_SERIES_KOHM is not a whole number of kOhm")
+    };
+    let behind = Board::NUCLEO_G474RE.behind(1e3 * series_kohm as f32).limits;
+    // None that was not measured.
+    BoardLimits { voltage_max_v_peak: of_docs.voltage_max_v_peak, ..behind }
+}
+
+const _: () = assert!(check_touched_board(&LIMITS).is_ok());
 
 /// Whether stored limits above the ceilings are refused.
 pub const CEILINGS: Ceilings =

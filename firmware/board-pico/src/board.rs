@@ -8,7 +8,7 @@ use frixel_drivers::monitor::MonitorScale;
 use frixel_drivers::rp2::LIMITS_PAGES;
 #[cfg(feature = "store")]
 use frixel_session::store::SceneStore;
-use frixel_session::store::{Ceilings, Slot, check_ceilings, load_limits};
+use frixel_session::store::{Ceilings, Slot, check_touched_board, load_limits};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::RECORDS_MAX;
 
@@ -58,7 +58,7 @@ pub const LIMITS: BoardLimits = BoardLimits {
     ..BOARD.limits
 };
 
-const _: () = assert!(check_ceilings(&LIMITS).is_ok());
+const _: () = assert!(check_touched_board(&LIMITS).is_ok());
 
 /// Whether stored limits above the ceilings are refused.
 pub const CEILINGS: Ceilings =

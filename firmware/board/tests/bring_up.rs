@@ -4,13 +4,13 @@
 use std::fmt::Arguments;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use crate::support::firmware::BOARD;
+use crate::support::firmware::BUILT_IN;
 use crate::support::person;
 use frixel_board::bring_up::{Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, run};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
 
-const LIMITS: BoardLimits = BOARD.limits;
+const LIMITS: BoardLimits = BUILT_IN;
 /// What the board may store.
 const MAY_STORE_V_PEAK: f32 = 120.0;
 /// All checks, in the order in which a start makes them.
@@ -363,17 +363,38 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
     assert_eq!(bench.events, [Event::Start]);
 }
 
-/// A capacitance in another unit would make every current a thousandth.
+/// One of two resistors is shorted, the capacitor is 20 % large, and the amplifier is fast or slow. Without a reading of
+/// the ohmmeter, the edges still say so.
 #[test]
-fn edges_and_electrode_that_stand_for_another_series_resistor_stop_before_anything_else() {
-    for (electrode_nf, stops) in
-        [(0.53e-3, true), (0.27, true), (0.28, false), (0.53, false), (1.1, false), (1.2, true)]
-    {
-        let limits = BoardLimits { electrode_capacitance_max_f: 1e-9 * electrode_nf, ..LIMITS };
-        let mut bench = TestBench { limits, ..TestBench::new() };
+fn a_series_resistance_that_is_not_the_built_in_one_stops_at_the_ohmmeter_and_at_the_edges() {
+    let questions = {
+        let mut good = TestBench::new();
+        good.bring_up();
+        good.questions
+    };
+    let number_of = |what: &str| questions.iter().position(|question| question.contains(what)).unwrap() as u32 + 1;
+    for (what, answer, stops) in [
+        ("through the series resistor", "34", true),
+        ("through the series resistor", "65.9", true),
+        ("through the series resistor", "66", false),
+        ("through the series resistor", "70", false),
+        ("through the series resistor", "70.1", true),
+        ("through the series resistor", "370", true),
+        // Less 8.5 us at the monitor: 19.2 us of the resistor, 25.1, 25.3, 50.4 and 50.5.
+        ("at the capacitor", "27.7", true),
+        ("at the capacitor", "33.6", true),
+        ("at the capacitor", "33.8", false),
+        ("at the capacitor", "58.9", false),
+        ("at the capacitor", "59", true),
+        ("at the monitor", "19.5", true),
+        ("at the monitor", "19", false),
+    ] {
+        let wrong_answer = Some((number_of(what), answer));
+        let mut bench = TestBench { wrong_answer, ..TestBench::new() };
         let end = bench.bring_up().unwrap();
-        assert_eq!(matches!(end, Err(Stop::Reading { .. })), stops, "{electrode_nf} nF: {end:?}");
-        assert_eq!(bench.events == [Event::Start], stops, "{electrode_nf} nF");
+        assert_eq!(matches!(end, Err(Stop::Reading { .. })), stops, "{what} {answer}: {end:?}");
+        let first_voltage = bench.driven().first().copied();
+        assert_eq!(first_voltage.is_none(), stops && what == "through the series resistor", "{what} {answer}");
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::fmt::Arguments;
 
-use crate::support::firmware::{BOARD, firmware, monitor};
+use crate::support::firmware::{BOARD, BUILT_IN, firmware, monitor};
 use crate::support::person;
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, run};
 use frixel_control::{Sense, Status, Ticker};
@@ -164,7 +164,7 @@ impl Bench for WholeBench {
 
 fn bring_up(dips_at: Option<u32>) -> (Result<BoardLimits, Stop>, WholeBench) {
     let mut bench = WholeBench::new(dips_at);
-    (run(&mut bench, &BOARD.limits), bench)
+    (run(&mut bench, &BUILT_IN), bench)
 }
 
 #[test]

@@ -168,7 +168,7 @@ impl Board {
     /// This board with another resistance between amplifier and electrode, whose bring-up has stored the full scale as
     /// largest voltage: what is left are the edges that the resistance makes, and the bound that it gives.
     #[must_use]
-    pub fn behind(self, series_resistance_ohm: f32) -> Self {
+    pub const fn behind(self, series_resistance_ohm: f32) -> Self {
         let electrode_s = series_resistance_ohm * self.limits.electrode_capacitance_max_f;
         let amplifier_s = self.amplifier.time_constant_s;
         // Two lags in a row as one (`frixel_model::Carrier`).

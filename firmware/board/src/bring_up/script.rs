@@ -18,10 +18,10 @@ const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
-/// Time constant of the edges over the electrode's capacitance, from half to twice the series resistor of
-/// `docs/hardware.md`, 68 kOhm. The firmware computes currents from both: with a capacitance in a wrong unit, it would
-/// take a thousand times the current that it allows.
-const SERIES_KOHM: (f32, f32) = (34.0, 136.0);
+/// Deviation of the series resistance, as an ohmmeter shows it, from the one that is built in: resistors of 1 %, and an
+/// ohmmeter of 2 %. The touch bound rests on it, and nothing measures it later: half of it, with a resistor that is
+/// shorted, would let twice the current through a person.
+const SERIES_TOLERANCE: f32 = 0.03;
 
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
@@ -42,8 +42,8 @@ const READ_OFF_V: f32 = 1.0;
 /// half for the edges.
 const OFFSET_MAX_V: f32 = 4.0;
 
-/// Time constants may be this factor above or below the one that the limits assume: tolerance of resistor and
-/// capacitor, and the amplifier's own edge.
+/// The time constant of series resistance and capacitor may be this factor below or above the one of the electrode
+/// that the limits assume: a capacitor of 0.47 nF less 5 % in place of 0.53 nF, and what an oscilloscope is read to.
 const EDGE_FACTOR: (f32, f32) = (0.7, 1.4);
 /// The amplifier's own time constant is at most this part of the electrode's; more is an amplifier that is too slow, or
 /// the same point measured twice.
@@ -133,13 +133,11 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
     if !bench.may_store(built_in) {
         return Err(Stop::Limits);
     }
-    let series_ohm = built_in.edge_time_constant_s / built_in.electrode_capacitance_max_f;
-    expect("the series resistance, kOhm: edge over electrode's capacitance", 1e-3 * series_ohm, SERIES_KOHM)?;
     greet(bench);
     check_processor(bench)?;
     check_dac(bench)?;
     check_inputs(bench)?;
-    check_amplifier(bench)?;
+    check_amplifier(bench, built_in)?;
     let full_scale_v_peak = drive_voltages(bench, built_in)?;
     let edge_time_constant_s = measure_edges(bench, built_in)?;
     let limits = BoardLimits { full_scale_v_peak, edge_time_constant_s, ..*built_in };
@@ -218,7 +216,7 @@ fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
 }
 
 /// The amplifier's ready follows its supply, and the tick runs with the output at zero.
-fn check_amplifier(bench: &mut impl Bench) -> Result<(), Stop> {
+fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<(), Stop> {
     confirm(
         bench,
         format_args!(
@@ -232,6 +230,12 @@ fn check_amplifier(bench: &mut impl Bench) -> Result<(), Stop> {
         bench,
         "GND to protective earth, with USB in its isolator, MOhm (999 for no reading)",
         (ISOLATION_MIN_MOHM, f32::MAX),
+    )?;
+    let series_kohm = 1e-3 * built_in.series_resistance_ohm;
+    ask(
+        bench,
+        "the amplifier's output to the capacitor, through the series resistor, kOhm",
+        ((1.0 - SERIES_TOLERANCE) * series_kohm, (1.0 + SERIES_TOLERANCE) * series_kohm),
     )?;
     await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
     await_inputs(bench, READY, IDLE, "Switch it off")?;
@@ -295,13 +299,15 @@ fn press(bench: &mut impl Bench, peak_v: f32) -> Pressed {
 fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
     bench.say(format_args!("6. Edges: set both probes to trigger once, 20 us a division."));
     drive(bench, EDGES_V_PEAK.min(built_in.voltage_max_v_peak))?;
-    let assumed_us = 1e6 * built_in.edge_time_constant_s;
-    let expected_us = (EDGE_FACTOR.0 * assumed_us, EDGE_FACTOR.1 * assumed_us);
-    let electrode_us = ask(bench, "at the capacitor: time from the edge's start to 63 % of it, us", expected_us)?;
+    let assumed_us = 1e6 * built_in.series_resistance_ohm * built_in.electrode_capacitance_max_f;
+    let (least_us, most_us) = (EDGE_FACTOR.0 * assumed_us, EDGE_FACTOR.1 * assumed_us);
+    let with_amplifier_us = (least_us, most_us / (1.0 - AMPLIFIER_SHARE_MAX));
+    let electrode_us = ask(bench, "at the capacitor: time from the edge's start to 63 % of it, us", with_amplifier_us)?;
     let amplifier_us = (AMPLIFIER_MIN_US, AMPLIFIER_SHARE_MAX * electrode_us);
     let amplifier_us = ask(bench, "at the monitor: time from the edge's start to 63 % of it, us", amplifier_us)?;
     // Of two lags in a row, the rise to 63 % takes about as long as both together.
     let resistor_us = electrode_us - amplifier_us;
+    expect("the time at the capacitor less that at the monitor, us", resistor_us, (least_us, most_us))?;
     Ok(1e-6 * (electrode_us - amplifier_us * resistor_us / electrode_us))
 }
 

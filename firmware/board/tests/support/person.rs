@@ -30,6 +30,7 @@ pub(crate) fn answer(said: &str, dac_v: Option<f32>, probe_v: f32) -> String {
     }
     let Some((_, what)) = said.split_once("Type a number: ") else { panic!("nothing was asked: {said}") };
     match what {
+        what if what.contains("series resistor") => "67.5".to_owned(),
         what if what.contains("kOhm") => "9.9".to_owned(),
         what if what.contains("MOhm") => "999".to_owned(),
         what if what.contains("voltmeter") => dac_v.unwrap_or(0.0).to_string(),

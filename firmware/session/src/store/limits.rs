@@ -2,7 +2,7 @@
 //!
 //! A person types measured limits in, and nothing on the board can tell a wrong number from a right one. So they are
 //! bounded twice, when they are stored and when they are read back: by [`VOLTAGE_CEILING_V_PEAK`],
-//! [`CURRENT_CEILING_A_RMS`] and [`CURRENT_CEILING_A_PEAK`]. The ceilings are those of boards that people touch: a
+//! [`CURRENT_CEILING_A_RMS`] and [`CURRENT_CEILING_A_PEAK`], and by the series resistance of the build. The ceilings are those of boards that people touch: a
 //! simulated board stores no limits, and has its own. None of this is a certification.
 
 use core::fmt;
@@ -30,6 +30,11 @@ pub const CURRENT_CEILING_A_RMS: f32 = 0.5e-3;
 /// carrier's edges behind 68 kOhm, counts as 0.51 mA, of the 0.7 mA of 6.3.1 (unread): a margin of 27 %.
 pub const CURRENT_CEILING_A_PEAK: f32 = 5e-3;
 
+/// Least and largest edges, as parts of the time constant of the electrode behind the series resistance. Bring-up takes
+/// 0.7 to 1.4 for the capacitor that it measures on, and an amplifier that is as slow as the resistor makes half as
+/// much again.
+const EDGES_MIN: f32 = 0.7;
+const EDGES_MAX: f32 = 2.1;
 /// Part of a ceiling by which a number may exceed it, because numbers that are typed in mA are rounded.
 const ROUNDING: f32 = 1e-6;
 /// Largest voltage that is plausible without ceilings, in V peak: no electrovibration screen takes more.
@@ -86,6 +91,14 @@ pub enum LimitsError {
         /// The current, in A.
         found: f32,
     },
+    /// The edges are not those of the electrode behind the series resistance that is built in. Either that number or
+    /// the resistor is wrong, and the touch bound rests on both.
+    SeriesResistance {
+        /// The time constant of the edges, in s.
+        found_s: f32,
+        /// That of the electrode behind the series resistance, in s.
+        expected_s: f32,
+    },
 }
 
 impl fmt::Display for LimitsError {
@@ -111,14 +124,22 @@ impl fmt::Display for LimitsError {
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),
+            Self::SeriesResistance { found_s, expected_s } => write!(
+                f,
+                "the edges are {} us, and {} us for the electrode behind the series resistance of this build: build \
+                 it with the resistance that is soldered",
+                1e6 * found_s,
+                1e6 * expected_s
+            ),
         }
     }
 }
 
 impl core::error::Error for LimitsError {}
 
-/// Checks limits against the ceilings. A board asserts it of the limits that are built in.
-pub const fn check_ceilings(limits: &BoardLimits) -> Result<(), LimitsError> {
+/// Checks limits of a board that people touch: none is above its ceiling, and the edges are those of the electrode
+/// behind the series resistance, on which the touch bound rests. A board asserts it of the limits that are built in.
+pub const fn check_touched_board(limits: &BoardLimits) -> Result<(), LimitsError> {
     const fn exceeds(number: f32, ceiling: f32) -> bool {
         number > ceiling * (1.0 + ROUNDING)
     }
@@ -129,7 +150,18 @@ pub const fn check_ceilings(limits: &BoardLimits) -> Result<(), LimitsError> {
     } else if exceeds(limits.current_max_a_peak, CURRENT_CEILING_A_PEAK) {
         Err(LimitsError::CurrentPeak { found: limits.current_max_a_peak })
     } else {
+        check_series_resistance(limits)
+    }
+}
+
+const fn check_series_resistance(limits: &BoardLimits) -> Result<(), LimitsError> {
+    let found_s = limits.edge_time_constant_s;
+    let expected_s = limits.series_resistance_ohm * limits.electrode_capacitance_max_f;
+    // Behind an infinite resistance, nobody touches anything.
+    if expected_s.is_infinite() || found_s >= EDGES_MIN * expected_s && found_s <= EDGES_MAX * expected_s {
         Ok(())
+    } else {
+        Err(LimitsError::SeriesResistance { found_s, expected_s })
     }
 }
 
@@ -204,7 +236,7 @@ fn check(limits: &BoardLimits, ceilings: Ceilings) -> Result<(), LimitsError> {
         && limits.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
     match ceilings {
         _ if !is_plausible => Err(LimitsError::Implausible),
-        Ceilings::InForce => check_ceilings(limits),
+        Ceilings::InForce => check_touched_board(limits),
         Ceilings::Lifted => Ok(()),
     }
 }
@@ -299,6 +331,32 @@ mod tests {
             ..MEASURED
         };
         assert!(write_limits(&at_the_ceilings, Ceilings::InForce).is_ok());
+    }
+
+    /// A firmware for 370 kOhm on a board that was brought up with 68, or with one of its two resistors shorted.
+    #[test]
+    fn edges_of_another_series_resistance_are_neither_stored_nor_read_back() {
+        let built_in = Board::NUCLEO_G474RE.limits;
+        for (series_kohm, edges_us) in [(68.0, 20.0), (68.0, 196.0), (370.0, 37.5), (370.0, 100.0)] {
+            let built_in = BoardLimits { series_resistance_ohm: 1e3 * series_kohm, ..built_in };
+            let limits = BoardLimits { edge_time_constant_s: 1e-6 * edges_us, ..built_in };
+            let (found_s, expected_s) = (limits.edge_time_constant_s, 1e3 * series_kohm * 0.53e-9);
+            let Err(LimitsError::SeriesResistance { found_s: found, expected_s: expected }) =
+                read_limits(&forged(&limits), &built_in, Ceilings::InForce)
+            else {
+                panic!("{edges_us} us behind {series_kohm} kOhm are taken")
+            };
+            let ratios = [found / found_s, expected / expected_s];
+            assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-6), "{found} of {expected} s");
+            assert!(write_limits(&limits, Ceilings::InForce).is_err());
+            // Nobody touches a board whose ceilings are lifted.
+            assert!(write_limits(&limits, Ceilings::Lifted).is_ok());
+        }
+        for edges_us in [26.0, 37.5, 75.0] {
+            let limits = BoardLimits { edge_time_constant_s: 1e-6 * edges_us, ..built_in };
+            assert!(write_limits(&limits, Ceilings::InForce).is_ok(), "{edges_us} us");
+        }
+        assert!(write_limits(&Board::NUCLEO_G474RE.behind(370e3).limits, Ceilings::InForce).is_ok());
     }
 
     #[test]
