@@ -363,8 +363,8 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
     assert_eq!(bench.events, [Event::Start]);
 }
 
-/// One of two resistors is shorted, the capacitor is 20 % large, and the amplifier is fast or slow. Without a reading of
-/// the ohmmeter, the edges still say so.
+/// One of two resistors is shorted, the capacitor is 20 % large, and the amplifier is fast or slow. Without a reading
+/// of the ohmmeter, the edges still say so.
 #[test]
 fn a_series_resistance_that_is_not_the_built_in_one_stops_at_the_ohmmeter_and_at_the_edges() {
     let questions = {

@@ -10,7 +10,7 @@ use frixel_scene::{Scene, compile, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 
-use crate::processes::{repository, run};
+use crate::processes::{repository, run, succeed};
 
 /// Names of the gallery's scenes, sorted, and their text.
 fn gallery() -> Vec<(String, String)> {
@@ -50,6 +50,20 @@ fn the_page_says_which_scenes_the_picos_take() {
     let end = start + page[start..].find("<!-- end -->").unwrap();
     page.replace_range(start..end, &format!("\n{table}\n"));
     golden::hold(&repository().join("docs/pico.md"), &page);
+}
+
+/// The scene that the page of bring-up names drives the NUCLEO above the voltage from which its monitor is held against
+/// the drive.
+#[test]
+fn the_first_scene_after_bring_up_is_taken_and_drives_what_the_monitor_sees() {
+    let path = "hardware/first_voltage.toml";
+    assert!(fs::read_to_string(repository().join("docs/hardware.md")).unwrap().contains(path));
+    let said = succeed(&repository(), &["scene", "check", path, "--board", "nucleo-g474re"]);
+    assert!(said.contains("NUCLEO-G474RE behind 68 kOhm takes it"), "{said}");
+    let board = Board::NUCLEO_G474RE;
+    let text = fs::read_to_string(repository().join(path)).unwrap();
+    let header = compile(&scene(&text), &board.limits, board.tick_hz).unwrap().header;
+    assert!(header.voltage_max_v_peak > 2.0 * 10.7 && header.voltage_max_v_peak < 25.0, "{header:?}");
 }
 
 /// Limits with which nothing but the longest tick is refused.

@@ -20,8 +20,8 @@ use serde_json::{Value, json};
 const BATCH_TICKS: u64 = 200;
 /// A lag behind the clock that is not caught up, ticks: 50 ms.
 const LAG_MAX_TICKS: u64 = 2_000;
-/// The board's clock is so much slower than the machine's. A page or a worker that a busy machine holds up for less than
-/// this many host timeouts is then no silence.
+/// The board's clock is so much slower than the machine's. A page or a worker that a busy machine holds up for less
+/// than this many host timeouts is then no silence.
 const SLOWNESS: f64 = 4.0;
 /// Duration of a fault of the amplifier, ticks: 5 ms.
 const FAULT_TICKS: u64 = 200;

@@ -134,8 +134,8 @@ pub extern "C" fn simulator_resume() -> i32 {
     })
 }
 
-/// Carries out a control line, which is the input as text, on the simulator. The answer has `notice`: a sentence on what
-/// is clamped from now on, or `null`.
+/// Carries out a control line, which is the input as text, on the simulator. The answer has `notice`: a sentence on
+/// what is clamped from now on, or `null`.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_control() -> i32 {
     with_simulator(|simulator| Ok(json!({ "notice": host::control(simulator.host_mut(), &line())? })))

@@ -26,8 +26,9 @@ struct Touched {
     contact_radius_m: f64,
 }
 
-/// The names of the columns, with their units. The page keeps each of them (`web/page/samples.js`), which a test compares.
-/// The voltage is the rms. `predicted` and `reported` are where the finger is to the board, with prediction and without.
+/// The names of the columns, with their units. The page keeps each of them (`web/page/samples.js`), which a test
+/// compares. The voltage is the rms. `predicted` and `reported` are where the finger is to the board, with prediction
+/// and without.
 pub(crate) const COLUMNS: [&str; 11] = [
     "xMm",
     "yMm",

@@ -9,9 +9,9 @@ use crate::request::{Numbers, Request};
 /// The names of the numbers before the map: its size, and the least and the largest friction that can be reached.
 pub(crate) const MAP_HEAD: [&str; 4] = ["widthPx", "heightPx", "lowN", "highN"];
 
-/// The map of a request's scene, as bytes of `f32`: the numbers of [`MAP_HEAD`], then the target friction of every pixel
-/// in N, row after row from the top left, then 0 for each pixel that is within reach, 1 for one above and -1 for one
-/// below.
+/// The map of a request's scene, as bytes of `f32`: the numbers of [`MAP_HEAD`], then the target friction of every
+/// pixel in N, row after row from the top left, then 0 for each pixel that is within reach, 1 for one above and -1 for
+/// one below.
 pub(crate) fn map(request: &Request) -> Result<Vec<u8>, HostError> {
     let (_, program) = drafted(request)?;
     let Numbers { width_px, height_px, speed_mm_per_s, .. } = request.numbers;

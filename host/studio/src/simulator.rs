@@ -64,8 +64,8 @@ impl Simulator {
         &mut self.host
     }
 
-    /// Compiles a scene and plays it under the touch source of the request, as a draft if a board would refuse it. If one
-    /// of both cannot be read, the scene before plays on.
+    /// Compiles a scene and plays it under the touch source of the request, as a draft if a board would refuse it. If
+    /// one of both cannot be read, the scene before plays on.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
         let (_, mut program) = drafted(request)?;
         program.header.prediction &= !request.without_prediction;
@@ -262,7 +262,8 @@ mod tests {
         assert!(from_prediction_mm > 1.0, "{from_prediction_mm} mm");
     }
 
-    /// The contact of the example finger at no voltage, by hand from the load: `F_N = pi k a^4 / 4 R`, and larger with it.
+    /// The contact of the example finger at no voltage, by hand from the load: `F_N = pi k a^4 / 4 R`, and larger with
+    /// it.
     #[test]
     fn the_contact_is_that_of_the_model() {
         let mut simulator = Simulator::new(1).unwrap();

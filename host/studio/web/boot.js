@@ -1,9 +1,9 @@
 // The first script of the page: unpacks the files that the page carries, and starts its module.
 //
-// `cargo xtask studio` puts them into one HTML file, and into the scripts of <frixel-scene>. All call
-// `boot(packed, entry)` with the files, each compressed by gzip and in base64, and the name of the module to start.
-// The module of <frixel-scene> on a web server carries no pictures: it also gives the address of a folder that has them.
-// `studio` gives the rest of the page their contents:
+// `cargo xtask studio` puts them into one HTML file, and into the scripts of <frixel-scene>. All call `boot(packed,
+// entry)` with the files, each compressed by gzip and in base64, and the name of the module to start. The module of
+// <frixel-scene> on a web server carries no pictures: it also gives the address of a folder that has them. `studio`
+// gives the rest of the page their contents:
 //
 //   await studio.bytes("engine.wasm")          Uint8Array; of a file that is not carried, from that folder
 //   await studio.text("scenes/brick.toml")     string

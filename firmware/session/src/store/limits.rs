@@ -2,8 +2,9 @@
 //!
 //! A person types measured limits in, and nothing on the board can tell a wrong number from a right one. So they are
 //! bounded twice, when they are stored and when they are read back: by [`VOLTAGE_CEILING_V_PEAK`],
-//! [`CURRENT_CEILING_A_RMS`] and [`CURRENT_CEILING_A_PEAK`], and by the series resistance of the build. The ceilings are those of boards that people touch: a
-//! simulated board stores no limits, and has its own. None of this is a certification.
+//! [`CURRENT_CEILING_A_RMS`] and [`CURRENT_CEILING_A_PEAK`], and by the series resistance of the build. The ceilings
+//! are those of boards that people touch: a simulated board stores no limits, and has its own. None of this is a
+//! certification.
 
 use core::fmt;
 

@@ -1,4 +1,5 @@
-// The module of `frixel.widget.SceneWidget` in notebooks: <frixel-scene> as a view of anywidget (https://anywidget.dev).
+// The module of `frixel.widget.SceneWidget` in notebooks: <frixel-scene> as a view of anywidget
+// (https://anywidget.dev).
 //
 // `cargo xtask studio` appends it to the script of the element. Python sends the scene; nothing is sent back.
 // @ts-check
