@@ -18,6 +18,9 @@ use stm32_metapac::ADC1;
 use crate::still::Still;
 use crate::{fault_injection, limits, start};
 
+/// Longest time for storing the limits: an erased page takes 25 ms at most (STM32G474 data sheet, "Flash memory").
+const STORE_TICKS_MAX: u32 = TICK_HZ;
+
 /// The board under test.
 pub(crate) struct NucleoBench {
     pub(crate) board: Board,
@@ -156,7 +159,12 @@ impl Bench for NucleoBench {
 
     fn store(&mut self, limits: &BoardLimits) -> bool {
         let Some(mut flash) = self.flash.take() else { return false };
-        let stored = limits::store(&mut flash, limits, || self.turn(None));
+        let begin = tick::count();
+        let goes_on = || {
+            self.turn(None);
+            tick::count().wrapping_sub(begin) < STORE_TICKS_MAX
+        };
+        let stored = limits::store(&mut flash, limits, goes_on);
         let Stage::Ticking(main_loop) = &self.stage else { return false };
         let late = main_loop.status.counters.missed_deadlines;
         self.terminal.say(format_args!("{late} ticks were late while the flash was written"));

@@ -32,9 +32,9 @@ pub(crate) fn written(limits: &BoardLimits) -> Result<[u8; LIMITS_LEN], LimitsEr
     write_limits(limits, CEILINGS)
 }
 
-/// Stores limits and reads them back; `meanwhile` is called between two operations of the flash. `false` if that
-/// failed.
-pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut meanwhile: impl FnMut()) -> bool {
+/// Stores limits and reads them back; `goes_on` is called again and again meanwhile, and returns `false` to give up a
+/// flash that never ends an operation. `false` if that failed.
+pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut goes_on: impl FnMut() -> bool) -> bool {
     let Ok(bytes) = written(limits) else { return false };
     let found = LIMITS_SLOT.find(flash);
     let Some(mut writer) = Writer::new::<BankTwo>(LIMITS_SLOT, found.as_ref(), LIMITS_LEN as u32) else { return false };
@@ -45,12 +45,12 @@ pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut meanwhile: im
         }
         word
     };
-    loop {
-        meanwhile();
+    while goes_on() {
         match writer.step(flash, word) {
             Writing::UnderWay => {}
             Writing::Done(_) => return load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits,
-            Writing::Failed => return false,
+            Writing::Failed => break,
         }
     }
+    false
 }
