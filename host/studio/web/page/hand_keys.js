@@ -7,7 +7,7 @@ import { element } from "./dom.js";
 /** @import { Hands } from "./hands.js" */
 
 /** What is read out at each layer. */
-const WORDS =
+const KEYS_HELP =
   "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Tab: next layer. Space: its numbers. " +
   "Enter shows its text, Ctrl+Enter goes there. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
 const STEP_MM = 1;
@@ -30,7 +30,7 @@ export class HandKeys {
   constructor(surface, hands, panel) {
     this.#hands = hands;
     this.#panel = panel;
-    surface.append(element("p", { id: "hands-keys", hidden: true }, WORDS));
+    surface.append(element("p", { id: "hands-keys", hidden: true }, KEYS_HELP));
     surface.addEventListener("keydown", (event) => this.#down(event));
     surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.#hands.grip.end());
     addEventListener("keydown", (event) => this.#shortcut(event), { capture: true });
