@@ -7,7 +7,7 @@ import { element } from "./dom.js";
 /** @import { Hands } from "./hands.js" */
 
 /** What is read out at each layer. */
-const WORDS =
+const KEYS_HELP =
   "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Tab: next layer. Space: its numbers. " +
   "Enter shows its text, Ctrl+Enter goes there. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
 const STEP_MM = 1;
@@ -30,7 +30,7 @@ export class HandKeys {
   constructor(surface, hands, panel) {
     this.#hands = hands;
     this.#panel = panel;
-    surface.append(element("p", { id: "hands-keys", hidden: true }, WORDS));
+    surface.append(element("p", { id: "hands-keys", hidden: true }, KEYS_HELP));
     surface.addEventListener("keydown", (event) => this.#down(event));
     surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.#hands.grip.end());
     addEventListener("keydown", (event) => this.#shortcut(event), { capture: true });
@@ -41,7 +41,7 @@ export class HandKeys {
     const { key, shiftKey, altKey } = event;
     const hands = this.#hands;
     const isCommand = event.ctrlKey || event.metaKey;
-    if (key === "Enter" && isCommand && !altKey) hands.toText();
+    if (key === "Enter" && isCommand && !altKey) hands.showText({ focuses: true });
     else if (isCommand) return;
     else if (key in ARROWS && hands.selected) {
       this.#move(ARROWS[key], altKey ? FINE_STEP_MM : shiftKey ? LARGE_STEP_MM : STEP_MM);
@@ -52,7 +52,7 @@ export class HandKeys {
     else if (key === " ") hands.focusPanel();
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
-      if (hands.isHeld) hands.grip.cancel();
+      if (hands.grip.hasChanged) hands.grip.cancel();
       else if (hands.selected) hands.focus(undefined);
       else return;
     } else return;
