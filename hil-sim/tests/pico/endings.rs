@@ -148,14 +148,25 @@ fn whatever_ends_a_play_leaves_the_output_at_zero() {
     }
 }
 
-#[test]
-#[ignore = "takes an hour: `cargo xtask soak pico`"]
-fn whatever_ends_a_play_at_any_of_a_hundred_instructions_leaves_the_output_at_zero() {
-    let Some(image) = emulator::pico_image() else { return };
-    for ending in [Ending::PowerCut, Ending::RunPin, Ending::Panic, Ending::HardFault, Ending::Hang] {
-        suffer_often(&image, ending, 100);
-    }
-    suffer_often(&image, Ending::HangingMainLoop, 20);
+/// A test for each ending, so that they run side by side.
+macro_rules! at_any_of_a_hundred_instructions {
+    ($($name:ident: $ending:expr, $times:literal;)+) => {$(
+        #[test]
+        #[ignore = "takes minutes: `cargo xtask soak pico`"]
+        fn $name() {
+            let Some(image) = emulator::pico_image() else { return };
+            suffer_often(&image, $ending, $times);
+        }
+    )+};
+}
+
+at_any_of_a_hundred_instructions! {
+    a_power_cut_at_any_instruction_leaves_the_output_at_zero: Ending::PowerCut, 100;
+    a_reset_at_any_instruction_leaves_the_output_at_zero: Ending::RunPin, 100;
+    a_panic_at_any_instruction_leaves_the_output_at_zero: Ending::Panic, 100;
+    a_hard_fault_at_any_instruction_leaves_the_output_at_zero: Ending::HardFault, 100;
+    a_hang_at_any_instruction_leaves_the_output_at_zero: Ending::Hang, 100;
+    a_hanging_main_loop_at_any_instruction_leaves_the_output_at_zero: Ending::HangingMainLoop, 20;
 }
 
 /// The image has given its watchdog the ring oscillator, which goes on without the crystal. That the watchdog counts
