@@ -13,6 +13,9 @@ const WEB: &str = "host/studio/web";
 /// The line of index.html in whose place the icon, and what else a place needs, is put.
 const ICON_LINE: &str = "<link rel=\"icon\" href=\"data:,\" />";
 
+/// Files that the page has in place already, or never asks for.
+const NOT_PACKED: [&str; 2] = ["styles/", "element/"];
+
 /// Where a page opens from.
 pub(super) enum Place<'t> {
     /// A disk, or `frixel studio`: nothing is beside it.
@@ -33,7 +36,7 @@ fn joined(index: &str, web: &Path, files: &Files, place: &Place) -> Result<Strin
         .ok_or("index.html has no <script type=\"module\" src=\"...\"></script>")?;
     let entry = format!("\"{entry}\"");
     let boot = boot(files, &["JSON.parse(document.getElementById(\"studio-files\").textContent)", &entry])?;
-    let packed = all_packed(files)?;
+    let packed = all_packed(files.iter().filter(|(name, _)| !NOT_PACKED.iter().any(|start| name.starts_with(start))))?;
     let scripts =
         format!("<script type=\"application/json\" id=\"studio-files\">{packed}</script>\n    <script>{boot}</script>");
     let page = format!("{before}{scripts}{behind}");
@@ -90,12 +93,13 @@ mod tests {
         let files = Files::from([
             ("boot.js".to_owned(), b"function boot() {}\n".to_vec()),
             ("main.js".to_owned(), b"import './a.js';".to_vec()),
+            ("styles/base.css".to_owned(), b"p {}".to_vec()),
         ]);
         let index = "<html><head><link rel=\"icon\" href=\"data:,\" /></head><body><script type=\"module\" src=\"main.js\"></script></body></html>";
         let page = joined(index, Path::new("."), &files, &Place::File { icon_svg: "" }).unwrap();
         let boot = "function boot() {}\nboot(JSON.parse(document.getElementById(\"studio-files\").textContent), \"main.js\");\n";
         assert!(page.contains(&format!("<script>{boot}</script></body>")), "{page}");
-        assert!(page.contains("id=\"studio-files\">{\"main.js\":\""), "{page}");
+        assert!(page.contains("id=\"studio-files\">{\"main.js\":\"") && !page.contains("base.css"), "{page}");
         // The text of `boot` through `openssl dgst -sha256 -binary | base64`.
         assert!(page.contains("'sha256-1z3Ic0gcGekyVFIbB8izxihMTzXEU/j6VaQk3HNGGHE='"), "{page}");
     }
