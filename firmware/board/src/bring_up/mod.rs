@@ -94,8 +94,8 @@ pub trait Bench {
     /// Shows a line of text to the person.
     fn say(&mut self, text: fmt::Arguments<'_>);
 
-    /// Waits for a line from the person, without its end. Before [`Check::Ticks`], the board puts out `output` meanwhile,
-    /// as long as the amplifier is not ready, and zero otherwise.
+    /// Waits for a line from the person, without its end. Before [`Check::Ticks`], the board puts out `output`
+    /// meanwhile, as long as the amplifier is not ready, and zero otherwise.
     fn read_line(&mut self, output: TestOutput) -> Line;
 
     /// Does a check; `false` if it failed. Says what was wrong.

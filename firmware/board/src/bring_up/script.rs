@@ -197,7 +197,8 @@ fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
     confirm(
         bench,
         format_args!(
-            "3. Connect the arm switch, R10, R11 and C1. The ready wire ends in the air. The amplifier's supply stays off."
+            "3. Connect the arm switch, R10, R11 and C1. The ready wire ends in the air. The amplifier's supply stays \
+             off."
         ),
         DONE,
     );
