@@ -27,9 +27,12 @@ struct Carrier {
     /// Of a Pico or Pico 2 in its place.
     pico: Vec<Pin>,
     pico_supply: Vec<Supply>,
+    left_open: Vec<LeftOpen>,
     part: Vec<Part>,
     net: Vec<Net>,
     measure: Vec<Measure>,
+    source: Vec<Current>,
+    load: Vec<Current>,
 }
 
 /// A pin of the processor that the firmware uses.
@@ -53,6 +56,16 @@ struct Pin {
 struct Supply {
     net: String,
     positions: Vec<String>,
+}
+
+/// A pin beside those of the same voltage, which a wire would tie to what it must not be tied to.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LeftOpen {
+    /// As [`Pin::position`].
+    position: String,
+    name: String,
+    why: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -104,6 +117,16 @@ struct Measure {
 enum Unit {
     Ohm,
     Farad,
+}
+
+/// What a part supplies to a net or takes from it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Current {
+    net: String,
+    part: String,
+    ma: f64,
+    why: String,
 }
 
 /// Writes the page and the schematic.
@@ -166,8 +189,15 @@ fn page(carrier: &Carrier) -> String {
     text += "\n## With a Pico or Pico 2\n\nIn place of the NUCLEO: the pins around the board, by their number. The \
              nodes of U1 among the nets below are the NUCLEO's.\n\n";
     text += &pin_table(carrier, &carrier.pico, &carrier.pico_supply, "serial port, or on the board");
+    text += "\n## Left open\n\nPins of the processor boards that look like a supply of the carrier and must not be \
+             wired to it.\n\n\
+             | position | pin | |\n|---|---|---|\n";
+    for LeftOpen { position, name, why } in &carrier.left_open {
+        let _ = writeln!(text, "| {position} | {name} | {why} |");
+    }
     text += &high_voltage(carrier);
     text += &measures(carrier);
+    text += &supplies(carrier);
     text += "\n## Nets\n\n| net | nodes | |\n|---|---|---|\n";
     for Net { name, why, nodes, .. } in &carrier.net {
         let _ = writeln!(text, "| {name} | {} | {why} |", nodes.join(", "));
@@ -222,6 +252,20 @@ fn measures(carrier: &Carrier) -> String {
         let [least, most] = [least, most].map(|limit| limit.map_or(String::new(), |value| value_text(*unit, value)));
         let error = rounded(100.0 * error, 3);
         let _ = writeln!(text, "| {from} | {to} | {} | {least} | {most} | {why} | {error} % |", parts.join(", "));
+    }
+    text
+}
+
+fn supplies(carrier: &Carrier) -> String {
+    let mut text =
+        String::from("\n## Supplies\n\n| net | from | mA at most | to | mA | sum | |\n|---|---|---|---|---|---|---|\n");
+    for Current { net, part, ma, why } in &carrier.source {
+        let loads: Vec<&Current> = carrier.load.iter().filter(|load| load.net == *net).collect();
+        let sum = rounded(loads.iter().map(|load| load.ma).sum(), 1);
+        let _ = writeln!(text, "| {net} | {part} | {ma} | | | {sum} | {why} |");
+        for Current { part, ma, why, .. } in loads {
+            let _ = writeln!(text, "| | | | {part} | {ma} | | {why} |");
+        }
     }
     text
 }

@@ -1,6 +1,8 @@
 //! The table against the firmware, the pages, and what the safety case says of the circuit.
 
 mod high_voltage;
+mod monitor;
+mod supplies;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,21 +18,29 @@ struct Processor<'a> {
     prefix: &'static str,
     pins: &'a [Pin],
     supplies: &'a [Supply],
+    /// Of this board.
+    left_open: Vec<&'a LeftOpen>,
 }
 
 fn processors(carrier: &Carrier) -> [Processor<'_>; 2] {
+    let left_open = |of_nucleo: bool| {
+        let pins = carrier.left_open.iter();
+        pins.filter(|pin| pin.position.starts_with("CN") == of_nucleo).collect()
+    };
     [
         Processor {
             sources: "firmware/board-nucleo-g474re/src",
             prefix: "P",
             pins: &carrier.pin,
             supplies: &carrier.supply,
+            left_open: left_open(true),
         },
         Processor {
             sources: "firmware/board-pico/src",
             prefix: "GP",
             pins: &carrier.pico,
             supplies: &carrier.pico_supply,
+            left_open: left_open(false),
         },
     ]
 }
@@ -216,7 +226,7 @@ fn the_monostable_outlives_ticks_and_not_a_millisecond() {
 }
 
 /// The nets of a processor board by connector and pin.
-fn used<'a>(Processor { pins, supplies, .. }: &Processor<'a>) -> BTreeMap<(u32, u32), &'a str> {
+fn used<'a>(Processor { pins, supplies, left_open, .. }: &Processor<'a>) -> BTreeMap<(u32, u32), &'a str> {
     let mut used = BTreeMap::new();
     for pin in pins.iter().filter(|pin| !pin.position.is_empty()) {
         let name = pin.net.as_deref().unwrap_or("on the board");
@@ -226,6 +236,9 @@ fn used<'a>(Processor { pins, supplies, .. }: &Processor<'a>) -> BTreeMap<(u32, 
         for position in &supply.positions {
             assert!(used.insert(place(position).unwrap(), supply.net.as_str()).is_none(), "{position}");
         }
+    }
+    for LeftOpen { position, name, .. } in left_open {
+        assert!(used.insert(place(position).unwrap(), name).is_none(), "{position} is {name}, to be left open");
     }
     used
 }

@@ -72,7 +72,7 @@ fn parts_bear_the_voltage_between_their_nets() {
             rated += 1;
         }
     }
-    assert!(rated >= 4, "{rated}");
+    assert!(rated >= 8, "{rated}");
 }
 
 fn measure<'a>(carrier: &'a Carrier, from: &str, to: &str) -> &'a Measure {
