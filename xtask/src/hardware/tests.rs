@@ -84,6 +84,10 @@ fn the_schematic_is_that_of_the_table_and_shows_every_part_once_and_every_node()
     for net in &carrier.net {
         assert_eq!(texts(schematic::NET, &net.name), net.nodes.len(), "{}", net.name);
     }
+    // A remark has half of the drawing's width.
+    for pair in lines.windows(2).filter(|pair| pair[0].contains("class=\"remark\"")) {
+        assert!(pair[1].len() <= 50, "{}", pair[1]);
+    }
 }
 
 /// The tables at the top of the modules, and the constants that the code uses.

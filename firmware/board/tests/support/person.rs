@@ -23,7 +23,7 @@ pub(crate) enum EnablePath {
 }
 
 impl EnablePath {
-    /// What a voltmeter shows on ENABLE_LOGIC, V.
+    /// What a voltmeter shows on `ENABLE_LOGIC`, V.
     fn logic_v(self, output: TestOutput) -> f32 {
         let TestOutput::Enable { kicked, sync } = output else { return 0.0 };
         // The part of the time that the monostable's 0.68 ms make.
