@@ -1,6 +1,8 @@
 //! `cargo xtask hardware`: writes `docs/wiring.md` and `docs/schematic.svg` from `hardware/carrier.toml`.
 
 mod schematic;
+#[cfg(test)]
+mod tests;
 
 use std::fmt::Write;
 use std::fs;
@@ -25,8 +27,12 @@ struct Carrier {
     /// Of a Pico or Pico 2 in its place.
     pico: Vec<Pin>,
     pico_supply: Vec<Supply>,
+    left_open: Vec<LeftOpen>,
     part: Vec<Part>,
     net: Vec<Net>,
+    measure: Vec<Measure>,
+    source: Vec<Current>,
+    load: Vec<Current>,
 }
 
 /// A pin of the processor that the firmware uses.
@@ -52,6 +58,16 @@ struct Supply {
     positions: Vec<String>,
 }
 
+/// A pin beside those of the same voltage, which a wire would tie to what it must not be tied to.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LeftOpen {
+    /// As [`Pin::position`].
+    position: String,
+    name: String,
+    why: String,
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Part {
@@ -63,6 +79,8 @@ struct Part {
     ratings: String,
     /// Ohm or farad.
     value: Option<f64>,
+    /// Relative, of a part with a value.
+    tolerance: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -72,6 +90,43 @@ struct Net {
     why: String,
     /// `PART.PIN` of all that is connected.
     nodes: Vec<String>,
+    /// The largest voltage to the common, of either sign, V; negative if it is always negative.
+    peak_v: Option<f64>,
+    /// It does not leave the closed box of the amplifier.
+    #[serde(default)]
+    boxed: bool,
+}
+
+/// What a builder measures with everything connected, off and at 0 V.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Measure {
+    /// Two nets.
+    between: [String; 2],
+    why: String,
+    /// The parts that are measured, in series; empty if none of the table's parts is meant.
+    parts: Vec<String>,
+    unit: Unit,
+    least: Option<f64>,
+    most: Option<f64>,
+    /// Relative error of the meter.
+    error: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+enum Unit {
+    Ohm,
+    Farad,
+}
+
+/// What a part supplies to a net or takes from it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Current {
+    net: String,
+    part: String,
+    ma: f64,
+    why: String,
 }
 
 /// Writes the page and the schematic.
@@ -122,304 +177,117 @@ fn pin_table(carrier: &Carrier, pins: &[Pin], supplies: &[Supply], on_board: &st
 fn page(carrier: &Carrier) -> String {
     let mut text = String::from(
         "# Wiring\n\nWritten by `cargo xtask hardware` from `hardware/carrier.toml`; a test holds it. Read \
-         [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before anything is \
-         switched on. Nobody has built this yet.\n\n\
+         [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before \
+         anything is switched on. Nobody has built this yet.\n\n\
          ![schematic](schematic.svg)\n\n\
-         The schematic has a sheet for each function; a name at the end of a line is a net, and equal names are connected. \
-         Pins of U1 are those of the NUCLEO, and of a Pico.\n\n\
-         ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before you \
-         solder. Every row goes to all other nodes of its net.\n\n",
+         The schematic has a sheet for each function; a name at the end of a line is a net, and equal names are \
+         connected. Pins of U1 are those of the NUCLEO, and of a Pico.\n\n\
+         ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before \
+         you solder. Every row goes to all other nodes of its net.\n\n",
     );
     text += &pin_table(carrier, &carrier.pin, &carrier.supply, "on the NUCLEO");
-    text += "\n## With a Pico or Pico 2\n\nIn place of the NUCLEO: the pins around the board, by their number. The nodes of U1 \
-             among the nets below are the NUCLEO's.\n\n";
+    text += "\n## With a Pico or Pico 2\n\nIn place of the NUCLEO: the pins around the board, by their number. The \
+             nodes of U1 among the nets below are the NUCLEO's.\n\n";
     text += &pin_table(carrier, &carrier.pico, &carrier.pico_supply, "serial port, or on the board");
+    text += "\n## Left open\n\nPins of the processor boards that look like a supply of the carrier and must not be \
+             wired to it.\n\n\
+             | position | pin | |\n|---|---|---|\n";
+    for LeftOpen { position, name, why } in &carrier.left_open {
+        let _ = writeln!(text, "| {position} | {name} | {why} |");
+    }
+    text += &high_voltage(carrier);
+    text += &measures(carrier);
+    text += &supplies(carrier);
     text += "\n## Nets\n\n| net | nodes | |\n|---|---|---|\n";
-    for Net { name, why, nodes } in &carrier.net {
+    for Net { name, why, nodes, .. } in &carrier.net {
         let _ = writeln!(text, "| {name} | {} | {why} |", nodes.join(", "));
     }
     text += "\n## Bill of materials\n\nWhere a part is \"any\", the ratings decide.\n\n\
              | name | what | value | part | ratings |\n|---|---|---|---|---|\n";
-    for Part { name, what, part, ratings, value, .. } in &carrier.part {
-        let value = value.map_or(String::new(), |value| value_text(name, value));
+    for Part { name, what, part, ratings, value, tolerance, .. } in &carrier.part {
+        let mut value = value.map_or(String::new(), |value| value_text(Unit::of(name), value));
+        if let Some(tolerance) = tolerance {
+            let _ = write!(value, ", {} %", rounded(100.0 * tolerance, 3));
+        }
         let _ = writeln!(text, "| {name} | {what} | {value} | {part} | {ratings} |");
     }
     text
 }
 
-/// A resistance or a capacitance, by the first letter of the part's name.
-fn value_text(name: &str, value: f64) -> String {
-    let (unit, scales) =
-        if name.starts_with('C') { ("F", [(1e-9, "n"), (1e-6, "u")]) } else { ("Ohm", [(1e3, "k"), (1e6, "M")]) };
-    let [small, large] = scales;
-    let (scale, prefix) = if value < 0.99 * large.0 && !(unit == "F" && value >= 0.05e-6) { small } else { large };
-    let digits = format!("{:.2}", value / scale);
-    format!("{} {prefix}{unit}", digits.trim_end_matches('0').trim_end_matches('.'))
+/// Voltages to the common above which a net is dangerous, V peak (`docs/safety.md`).
+const DANGEROUS_V: f64 = 42.4;
+
+impl Net {
+    fn is_dangerous(&self) -> bool {
+        self.peak_v.is_some_and(|peak_v| peak_v.abs() > DANGEROUS_V)
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use std::collections::{BTreeMap, BTreeSet};
-
-    use super::*;
-
-    /// A bridge between two of these, or from one to a supply, would defeat a protection.
-    const GUARDED: [&str; 3] = ["ENABLE_MCU", "READY", "SWITCH_IN"];
-
-    /// A processor board: the sources that name its pins, and its pins and supplies in the table.
-    struct Processor<'a> {
-        sources: &'static str,
-        /// How the name of a pin begins.
-        prefix: &'static str,
-        pins: &'a [Pin],
-        supplies: &'a [Supply],
+fn high_voltage(carrier: &Carrier) -> String {
+    let mut text = String::from(
+        "\n## High voltage\n\nWhat is *in the box* has no 68 kOhm in front of it: one box of insulating material, \
+         closed, opened with a tool only, with 200 V written on it. Amplifier, supply of the rails and **both series \
+         resistors** are in it, the resistors at the amplifier's output without a cable. Only the electrode's wire, \
+         the input of the supply and the low voltages leave it. Wires of these nets are rated for 600 V. Between any \
+         of them and any other net, and between the two rails, are 4 mm or more, through air and along surfaces; \
+         between them and protective earth, the host's USB, the supply's input and the outside, 8 mm or more (IEC \
+         61010-1, 6.7, unread: 400 V, reinforced, pollution degree 2, from memory).\n\n\
+         | net | V peak to the common | where |\n|---|---|---|\n",
+    );
+    for net in carrier.net.iter().filter(|net| net.is_dangerous()) {
+        let place = if net.boxed { "**in the box**" } else { "leaves the box" };
+        let _ = writeln!(text, "| {} | {} | {place} |", net.name, net.peak_v.unwrap_or_default().abs());
     }
+    text
+}
 
-    fn processors(carrier: &Carrier) -> [Processor<'_>; 2] {
-        [
-            Processor {
-                sources: "firmware/board-nucleo-g474re/src",
-                prefix: "P",
-                pins: &carrier.pin,
-                supplies: &carrier.supply,
-            },
-            Processor {
-                sources: "firmware/board-pico/src",
-                prefix: "GP",
-                pins: &carrier.pico,
-                supplies: &carrier.pico_supply,
-            },
-        ]
+fn measures(carrier: &Carrier) -> String {
+    let mut text = String::from(
+        "\n## Measure before anything is switched on\n\nWith everything connected, USB pulled, all supplies off and \
+         the rails at 0 V. The limits are those of the reading; the meter may be wrong by as much as the \
+         last column says.\n\n\
+         | from | to | parts | at least | at most | why | meter |\n|---|---|---|---|---|---|---|\n",
+    );
+    for Measure { between: [from, to], why, parts, unit, least, most, error } in &carrier.measure {
+        let [least, most] = [least, most].map(|limit| limit.map_or(String::new(), |value| value_text(*unit, value)));
+        let error = rounded(100.0 * error, 3);
+        let _ = writeln!(text, "| {from} | {to} | {} | {least} | {most} | {why} | {error} % |", parts.join(", "));
     }
+    text
+}
 
-    fn source(sources: &str, module: &str) -> String {
-        let path = root().join(sources).join(format!("{module}.rs"));
-        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-    }
-
-    fn net<'a>(carrier: &'a Carrier, name: &str) -> &'a Net {
-        carrier.net.iter().find(|net| net.name == name).unwrap_or_else(|| panic!("no net {name}"))
-    }
-
-    fn value(carrier: &Carrier, name: &str) -> f64 {
-        carrier.part.iter().find(|part| part.name == name).and_then(|part| part.value).unwrap()
-    }
-
-    #[test]
-    fn the_page_is_that_of_the_table() {
-        let held = fs::read_to_string(root().join(PAGE)).unwrap();
-        assert!(held == page(&read().unwrap()), "`cargo xtask hardware` writes {PAGE} anew");
-    }
-
-    #[test]
-    fn the_schematic_is_that_of_the_table_and_shows_every_part_once_and_every_node() {
-        let carrier = read().unwrap();
-        let held = fs::read_to_string(root().join(SCHEMATIC)).unwrap();
-        assert!(held == schematic::draw(&carrier), "`cargo xtask hardware` writes {SCHEMATIC} anew");
-        let lines: Vec<&str> = held.lines().collect();
-        let texts = |class: &str, text: &str| {
-            let class = format!("class=\"{class}\"");
-            lines.windows(2).filter(|pair| pair[0].contains(&class) && pair[1] == text).count()
-        };
-        for part in &carrier.part {
-            assert_eq!(texts(schematic::PART, &part.name), 1, "{}", part.name);
-        }
-        for net in &carrier.net {
-            assert_eq!(texts(schematic::NET, &net.name), net.nodes.len(), "{}", net.name);
+fn supplies(carrier: &Carrier) -> String {
+    let mut text =
+        String::from("\n## Supplies\n\n| net | from | mA at most | to | mA | sum | |\n|---|---|---|---|---|---|---|\n");
+    for Current { net, part, ma, why } in &carrier.source {
+        let loads: Vec<&Current> = carrier.load.iter().filter(|load| load.net == *net).collect();
+        let sum = rounded(loads.iter().map(|load| load.ma).sum(), 1);
+        let _ = writeln!(text, "| {net} | {part} | {ma} | | | {sum} | {why} |");
+        for Current { part, ma, why, .. } in loads {
+            let _ = writeln!(text, "| | | | {part} | {ma} | | {why} |");
         }
     }
+    text
+}
 
-    /// The tables at the top of the modules, and the constants that the code uses.
-    #[test]
-    fn pins_are_those_of_the_firmware() {
-        let carrier = read().unwrap();
-        for Processor { sources, prefix, pins, .. } in processors(&carrier) {
-            let mut in_code = BTreeSet::new();
-            let row_start = format!("//! | {prefix}");
-            for entry in fs::read_dir(root().join(sources)).unwrap() {
-                let path = entry.unwrap().path();
-                let Some(module) = path.file_stem().and_then(|stem| stem.to_str()).filter(|_| path.is_file()) else {
-                    continue;
-                };
-                for row in source(sources, module).lines().filter_map(|line| line.strip_prefix(&row_start)) {
-                    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-                    in_code.insert((format!("{prefix}{}", cells[0]), cells[1].to_owned(), module.to_owned()));
-                }
-            }
-            let in_table: BTreeSet<_> =
-                pins.iter().map(|pin| (pin.pin.clone(), pin.function.clone(), pin.module.clone())).collect();
-            assert_eq!(in_table, in_code);
-            for Pin { pin, module, constant, .. } in pins {
-                let Some(constant) = constant else { continue };
-                let text = source(sources, module);
-                let (port, number) = (&pin[1..2], &pin[2..]);
-                let has_ports = prefix == "P";
-                // Pins of one bus are connected in a loop.
-                assert!(!has_ports || text.contains(&format!("GPIO{port}")), "{pin}: no port in {module}");
-                let kind = if has_ports { "u32" } else { "usize" };
-                assert!(
-                    text.contains(&format!("const {constant}: {kind} = {number};")),
-                    "{pin}: {constant} in {module}"
-                );
-            }
-        }
+impl Unit {
+    /// That of a part's value, by the first letter of its name.
+    fn of(name: &str) -> Self {
+        if name.starts_with('C') { Self::Farad } else { Self::Ohm }
     }
+}
 
-    /// Either processor board is wired to the same nets.
-    #[test]
-    fn both_processor_boards_have_the_same_nets() {
-        let carrier = read().unwrap();
-        let [nucleo, pico] = processors(&carrier).map(|Processor { pins, supplies, .. }| {
-            let of_pins = pins.iter().filter_map(|pin| pin.net.as_deref());
-            of_pins.chain(supplies.iter().map(|supply| supply.net.as_str())).collect::<BTreeSet<_>>()
-        });
-        assert_eq!(pico, nucleo);
-    }
+fn value_text(unit: Unit, value: f64) -> String {
+    let (unit, [small, large]) = match unit {
+        Unit::Farad => ("F", [(1e-9, "n"), (1e-6, "u")]),
+        Unit::Ohm => ("Ohm", [(1e3, "k"), (1e6, "M")]),
+    };
+    let (scale, prefix) = if value < 0.99 * large.0 && !(unit == "F" && value >= 0.05e-6) { small } else { large };
+    format!("{} {prefix}{unit}", rounded(value / scale, 2))
+}
 
-    /// The wires of the self-test: pins as its source has them, positions of the firmware's pins as the table has them.
-    #[test]
-    fn the_wires_of_the_self_test_are_those_of_its_page() {
-        let carrier = read().unwrap();
-        let page = fs::read_to_string(root().join("docs/first-board.md")).unwrap();
-        let rows: Vec<Vec<&str>> = page
-            .lines()
-            .map(|line| line.split('|').map(str::trim).collect::<Vec<_>>())
-            .filter(|cells| cells.len() == 8 && cells[3].starts_with("CN"))
-            .collect();
-        let captures = source("firmware/board-nucleo-g474re/src", "bin/self-test/captures");
-        let wires = captures.lines().filter_map(|line| line.strip_prefix("//! | P"));
-        let mut count = 0;
-        for wire in wires {
-            let cells: Vec<&str> = wire.split('|').map(str::trim).collect();
-            let other = cells[2].split([' ', ',']).nth(1).unwrap();
-            let ends = [format!("P{}", cells[0]), other.to_owned()];
-            let is_wire = |row: &&Vec<&str>| ends.iter().all(|end| [row[2], row[4]].contains(&end.as_str()));
-            let row = rows.iter().find(is_wire).unwrap_or_else(|| panic!("no wire of {ends:?}"));
-            for (pin, position) in [(row[2], row[3]), (row[4], row[5])] {
-                let known = carrier.pin.iter().find(|known| known.pin == pin);
-                assert!(known.is_none_or(|known| known.position == position), "{pin} is not at {position}");
-            }
-            count += 1;
-        }
-        assert_eq!((count, rows.len()), (5, 5));
-    }
-
-    #[test]
-    fn every_node_is_a_part_and_in_one_net() {
-        let carrier = read().unwrap();
-        let parts: BTreeSet<&str> = carrier.part.iter().map(|part| part.name.as_str()).collect();
-        assert_eq!(parts.len(), carrier.part.len(), "a name is used twice");
-        let mut nets = BTreeMap::new();
-        for net in &carrier.net {
-            assert!(net.nodes.len() > 1, "{} leads nowhere", net.name);
-            for node in &net.nodes {
-                let (part, _) = node.split_once('.').unwrap();
-                assert!(parts.contains(part), "{node}: no such part");
-                assert_eq!(nets.insert(node.as_str(), net.name.as_str()), None, "{node} is in two nets");
-            }
-        }
-        for part in &parts {
-            assert!(nets.keys().any(|node| node.split_once('.').unwrap().0 == *part), "{part} is not connected");
-        }
-        for Pin { pin, net, .. } in &carrier.pin {
-            assert_eq!(nets.get(format!("{BOARD}.{pin}").as_str()), net.as_deref().as_ref(), "{pin}");
-        }
-        for part in carrier.part.iter().filter(|part| part.value.is_some()) {
-            let ends = [1, 2].map(|end| nets.get(format!("{}.{end}", part.name).as_str()));
-            assert!(ends[0].is_some() && ends[1].is_some() && ends[0] != ends[1], "{}: {ends:?}", part.name);
-        }
-    }
-
-    /// Of the amplifier's enable, only the switch's second pole and a resistor to the common know; before the pole,
-    /// both one-shots must agree, and the second is fed by SYNC.
-    #[test]
-    fn the_enable_goes_through_both_one_shots_and_the_switch() {
-        let carrier = read().unwrap();
-        assert_eq!(net(&carrier, "ENABLE").nodes, ["S1.4", "A1.ENABLE", "R7.1"]);
-        assert_eq!(net(&carrier, "ENABLE_LOGIC").nodes, ["U4.Y", "S1.3"]);
-        assert_eq!(net(&carrier, "ALIVE").nodes, ["U3.Q", "U4.B"]);
-        assert!(net(&carrier, "ENABLE_MCU").nodes.iter().any(|node| node == "U4.A"));
-        assert!(net(&carrier, "SYNC").nodes.iter().any(|node| node == "U3.B"));
-        assert!(net(&carrier, "COMMON").nodes.iter().any(|node| node == "R7.2"));
-        // The monostable lives as long as R12 C2: longer than some ticks of 25 us, and at most 1 ms with 10 %.
-        let time_s = value(&carrier, "R12") * value(&carrier, "C2");
-        assert!((10.0 * 25e-6..1e-3 / 1.1).contains(&time_s), "{time_s}");
-    }
-
-    /// The nets of a processor board by connector and pin.
-    fn used<'a>(Processor { pins, supplies, .. }: &Processor<'a>) -> BTreeMap<(u32, u32), &'a str> {
-        let mut used = BTreeMap::new();
-        for pin in pins.iter().filter(|pin| !pin.position.is_empty()) {
-            let name = pin.net.as_deref().unwrap_or("on the board");
-            assert!(used.insert(place(&pin.position).unwrap(), name).is_none(), "{}", pin.position);
-        }
-        for supply in *supplies {
-            for position in &supply.positions {
-                assert!(used.insert(place(position).unwrap(), supply.net.as_str()).is_none(), "{position}");
-            }
-        }
-        used
-    }
-
-    /// Fails if a pin of a guarded net has a neighbour that may drive it high.
-    fn check_neighbours(used: &BTreeMap<(u32, u32), &str>, beside: fn(u32) -> Vec<u32>, harmless: &[(&str, &str)]) {
-        for name in GUARDED {
-            let (&(connector, number), _) = used.iter().find(|(_, net)| **net == name).unwrap();
-            for beside in beside(number) {
-                let Some(neighbour) = used.get(&(connector, beside)).copied().filter(|net| *net != "COMMON") else {
-                    continue;
-                };
-                assert!(harmless.contains(&(name, neighbour)), "{name} is beside {neighbour}");
-            }
-        }
-    }
-
-    #[test]
-    fn no_guarded_pin_has_a_neighbour_that_could_drive_it_high() {
-        let carrier = read().unwrap();
-        let [nucleo, pico] = processors(&carrier);
-        // A double row, of which number 1 is beside 2 and 3.
-        let in_double_row = |number: u32| {
-            let across = if number % 2 == 1 { number + 1 } else { number - 1 };
-            [Some(across), number.checked_sub(2), Some(number + 2)].into_iter().flatten().collect()
-        };
-        check_neighbours(&used(&nucleo), in_double_row, &[]);
-        // Two rows, 17.8 mm apart. The enable and CLEAR are high together, as the one-shot makes them.
-        let in_row = |number: u32| vec![number - 1, number + 1];
-        check_neighbours(&used(&pico), in_row, &[("ENABLE_MCU", "CLEAR")]);
-    }
-
-    #[test]
-    #[allow(clippy::float_cmp, reason = "numbers of the table, as they are written")]
-    fn resistances_and_stored_charge_are_those_of_the_limits() {
-        let carrier = read().unwrap();
-        let series_ohm = value(&carrier, "R1") + value(&carrier, "R2");
-        let board = fs::read_to_string(root().join("firmware/control/src/board.rs")).unwrap();
-        let limits = board.split_once("pub const NUCLEO_G474RE").unwrap().1;
-        let said = limits.split_once("series_resistance_ohm: ").unwrap().1.split_once(',').unwrap().0;
-        assert_eq!(said.parse::<f64>().unwrap(), series_ohm);
-        assert_eq!(value(&carrier, "R1"), value(&carrier, "R2"), "each alone must meet the limit of one fault");
-        assert_eq!(value(&carrier, "R4") + value(&carrier, "R5"), 100e3);
-        // What pulls an RP2350's input down that was high (erratum RP2350-E9).
-        for name in ["R11", "R17"] {
-            assert!(value(&carrier, name) <= 8.2e3, "{name}");
-        }
-        // 45 uC over 400 V, and below 30 V within 10 s (docs/safety.md).
-        let (farad, ohm) = (value(&carrier, "C3"), value(&carrier, "R16"));
-        assert!(400.0 * farad <= 45e-6, "{} uC", 400e6 * farad);
-        assert!(ohm * farad * (400.0_f64 / 30.0).ln() < 10.0);
-    }
-
-    #[test]
-    fn values_are_said_in_their_unit() {
-        for (name, value, said) in [
-            ("R1", 34e3, "34 kOhm"),
-            ("R3", 10e6, "10 MOhm"),
-            ("R14", 2.2e3, "2.2 kOhm"),
-            ("C1", 10e-9, "10 nF"),
-            ("C3", 0.1e-6, "0.1 uF"),
-        ] {
-            assert_eq!(value_text(name, value), said);
-        }
-    }
+/// A number with at most some digits behind the point.
+fn rounded(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

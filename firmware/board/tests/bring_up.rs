@@ -5,8 +5,10 @@ use std::fmt::Arguments;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use crate::support::firmware::BUILT_IN;
-use crate::support::person;
-use frixel_board::bring_up::{Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, run};
+use crate::support::person::{self, EnablePath, Instruments};
+use frixel_board::bring_up::{
+    Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, TestOutput, run,
+};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
 
@@ -67,6 +69,7 @@ struct TestBench {
     /// The n-th call of the bench resets the board.
     reset_at_call: Option<u32>,
     odd: Option<Odd>,
+    enable_path: EnablePath,
 
     calls: u32,
     polls: u32,
@@ -97,6 +100,7 @@ impl TestBench {
             wrong_drive: None,
             reset_at_call: None,
             odd: None,
+            enable_path: EnablePath::Right,
             calls: 0,
             polls: 0,
             asked: 0,
@@ -174,13 +178,15 @@ impl TestBench {
         }
     }
 
-    fn answer(&mut self, dac_v: Option<f32>) -> String {
+    fn answer(&mut self, output: TestOutput) -> String {
         if self.said.contains("Type a number") {
             self.events.push(Event::Asked);
         }
         // Four hundredths above what is driven, with the decimal comma of some countries.
         let probe_v = 1.04 * self.driven().last().copied().unwrap_or(f32::NAN);
-        person::answer(&self.said, dac_v, probe_v).replace('.', ",")
+        let switch_closed = self.inputs.switch_closed;
+        let instruments = Instruments { output, enable_path: self.enable_path, switch_closed, probe_v };
+        person::answer(&self.said, &instruments).replace('.', ",")
     }
 
     fn driven(&self) -> Vec<f32> {
@@ -196,9 +202,9 @@ impl Bench for TestBench {
         self.act();
     }
 
-    fn read_line(&mut self, dac_v: Option<f32>) -> Line {
+    fn read_line(&mut self, output: TestOutput) -> Line {
         self.poll();
-        let answer = self.answer(dac_v);
+        let answer = self.answer(output);
         self.answers.push(answer.clone());
         self.asked += 1;
         self.questions.push(self.said.clone());
@@ -329,7 +335,7 @@ fn a_wrong_reading_stops_whatever_is_asked() {
             }
         }
     }
-    assert!(readings >= 3 * 9, "{readings}");
+    assert!(readings >= 3 * 13, "{readings}");
 }
 
 #[test]
@@ -458,6 +464,24 @@ fn ready_and_switch_that_are_bridged_stop() {
     let mut bench = TestBench { odd: Some(Odd::Bridged), ..TestBench::new() };
     assert!(matches!(bench.bring_up().unwrap(), Err(Stop::Inputs { .. })));
     assert!(bench.driven().is_empty());
+}
+
+/// What works as well without the part that disables the amplifier: only this step shows that it is bridged.
+#[test]
+fn a_monostable_or_a_second_pole_that_does_not_disable_the_amplifier_stops() {
+    for (enable_path, question) in [
+        (EnablePath::MonostableBridged, "ENABLE_LOGIC with PB6 high and no SYNC, V"),
+        (EnablePath::ProcessorLeftOut, "ENABLE_LOGIC with SYNC and PB6 low, V"),
+        (EnablePath::MonostableDead, "ENABLE_LOGIC with both, V"),
+        (EnablePath::MonostableSlow, "ENABLE_LOGIC, its mean with one SYNC every 2 ms, V"),
+        (EnablePath::PoleBridged, "ENABLE, switch released, ENABLE_LOGIC high, V"),
+        (EnablePath::PoleOpen, "ENABLE, switch held, ENABLE_LOGIC high, V"),
+    ] {
+        let mut bench = TestBench { enable_path, ..TestBench::new() };
+        let end = bench.bring_up().unwrap();
+        assert!(matches!(end, Err(Stop::Reading { what, .. }) if what == question), "{enable_path:?}: {end:?}");
+        assert!(bench.driven().is_empty());
+    }
 }
 
 #[test]

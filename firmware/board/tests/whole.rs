@@ -5,8 +5,8 @@
 use std::fmt::Arguments;
 
 use crate::support::firmware::{BOARD, BUILT_IN, firmware, monitor};
-use crate::support::person;
-use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, run};
+use crate::support::person::{self, EnablePath, Instruments};
+use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, TestOutput, run};
 use frixel_control::{Sense, Status, Ticker};
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
@@ -112,8 +112,14 @@ impl Bench for WholeBench {
         }
     }
 
-    fn read_line(&mut self, dac_v: Option<f32>) -> Line {
-        Line::try_from(person::answer(&self.said, dac_v, GAIN * self.driven_v).as_str()).unwrap()
+    fn read_line(&mut self, output: TestOutput) -> Line {
+        let instruments = Instruments {
+            output,
+            enable_path: EnablePath::Right,
+            switch_closed: self.inputs.switch_closed,
+            probe_v: GAIN * self.driven_v,
+        };
+        Line::try_from(person::answer(&self.said, &instruments).as_str()).unwrap()
     }
 
     fn check(&mut self, check: Check) -> bool {

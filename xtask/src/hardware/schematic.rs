@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use svg::Document;
 use svg::node::element::{Group, Line, Rectangle, Text};
 
-use super::{BOARD, Carrier, Part, value_text};
+use super::{BOARD, Carrier, Part, Unit, value_text};
 
 /// Lengths, in pixels.
 const WIDTH: f64 = 1180.0;
@@ -29,14 +29,14 @@ const PIN_NAME: &str = "pin";
 const REMARK: &str = "remark";
 
 const INK: &str = "#222";
-/// Nets that carry a high voltage, whose reason begins with bold text.
+/// Nets that carry a high voltage.
 const DANGER: &str = "#c00";
 
 /// The schematic as SVG.
 pub(super) fn draw(carrier: &Carrier) -> String {
     let mut nets = BTreeMap::new();
     for net in &carrier.net {
-        let color = if net.why.starts_with("**") { DANGER } else { INK };
+        let color = if net.is_dangerous() { DANGER } else { INK };
         for node in &net.nodes {
             if let Some((part, pin)) = node.split_once('.') {
                 let pico = carrier.pico.iter().find(|pico| part == BOARD && pico.net.as_ref() == Some(&net.name));
@@ -181,7 +181,7 @@ impl Drawing {
             self.rectangle(left, top, SYMBOL_WIDTH, SYMBOL_HEIGHT);
         }
         self.text((middle, top - 4.0), "middle", INK, PART, &part.name);
-        let value = part.value.map_or(String::new(), |value| value_text(&part.name, value));
+        let value = part.value.map_or(String::new(), |value| value_text(Unit::of(&part.name), value));
         let remark = format!("{value}, {}", short(&part.what));
         self.text((middle, top + SYMBOL_HEIGHT + 13.0), "middle", INK, REMARK, &remark);
         for (edge, side, end) in [(left, Side::Left, "1"), (right, Side::Right, "2")] {

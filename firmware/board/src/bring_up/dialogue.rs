@@ -2,33 +2,33 @@
 
 use core::fmt;
 
-use super::{Bench, Inputs, LINE_MAX_LEN, Stop};
+use super::{Bench, Inputs, LINE_MAX_LEN, Stop, TestOutput};
 
 /// Says what to do until the person types `word`.
 pub(super) fn confirm(bench: &mut impl Bench, what: fmt::Arguments<'_>, word: &str) {
     loop {
         bench.say(format_args!("{what} Then type: {word}"));
-        if bench.read_line(None).trim().eq_ignore_ascii_case(word) {
+        if bench.read_line(TestOutput::Zero).trim().eq_ignore_ascii_case(word) {
             return;
         }
     }
 }
 
 pub(super) fn ask(bench: &mut impl Bench, what: &'static str, expected: (f32, f32)) -> Result<f32, Stop> {
-    ask_while(bench, None, what, expected)
+    ask_while(bench, TestOutput::Zero, what, expected)
 }
 
-/// Asks for a number until the person types one, while the DAC puts out a voltage. A number out of its range ends
+/// Asks for a number until the person types one, while the board puts out `output`. A number out of its range ends
 /// bring-up; other text does not.
 pub(super) fn ask_while(
     bench: &mut impl Bench,
-    dac_v: Option<f32>,
+    output: TestOutput,
     what: &'static str,
     range: (f32, f32),
 ) -> Result<f32, Stop> {
     loop {
         bench.say(format_args!("Type a number: {what}"));
-        if let Some(number) = number(&bench.read_line(dac_v)) {
+        if let Some(number) = number(&bench.read_line(output)) {
             return expect(what, number, range).map(|()| number);
         }
     }

@@ -14,6 +14,7 @@
 
 mod dialogue;
 mod drive;
+mod enable_path;
 mod fault_injection;
 mod line_reader;
 mod script;
@@ -43,6 +44,33 @@ pub struct Inputs {
     pub switch_closed: bool,
 }
 
+/// What the board puts out while it waits for a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TestOutput {
+    /// Amplifier enable and DAC clear are low, and SYNC is high.
+    Zero,
+    /// The DAC puts out a voltage, in V. The amplifier is disabled.
+    Dac(f32),
+    /// The DAC puts out zero.
+    Enable {
+        /// Amplifier enable is kicked.
+        kicked: bool,
+        /// SYNC rises.
+        sync: Sync,
+    },
+}
+
+/// How often SYNC rises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sync {
+    /// Not at all.
+    Never,
+    /// In every period, as the tick lets it.
+    EveryPeriod,
+    /// Every 2 ms, which is longer than an external monostable may wait for it.
+    Every2Ms,
+}
+
 /// The checks that a board makes by itself. None of them drives anything behind the DAC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
@@ -66,9 +94,9 @@ pub trait Bench {
     /// Shows a line of text to the person.
     fn say(&mut self, text: fmt::Arguments<'_>);
 
-    /// Waits for a line from the person, without its end. Before [`Check::Ticks`], meanwhile the DAC puts out `dac_v`,
-    /// in V at the DAC, as long as the amplifier is not ready; `None` keeps it at zero. The amplifier is disabled.
-    fn read_line(&mut self, dac_v: Option<f32>) -> Line;
+    /// Waits for a line from the person, without its end. Before [`Check::Ticks`], the board puts out `output`
+    /// meanwhile, as long as the amplifier is not ready, and zero otherwise.
+    fn read_line(&mut self, output: TestOutput) -> Line;
 
     /// Does a check; `false` if it failed. Says what was wrong.
     fn check(&mut self, check: Check) -> bool;

@@ -5,10 +5,11 @@ use core::fmt;
 use frixel_wire::hello::BoardLimits;
 
 use super::dialogue::{ask, ask_while, await_inputs, confirm, expect, expect_inputs};
-use super::{Bench, Check, DriveError, Inputs, Reading};
+use super::enable_path::check_enable_path;
+use super::{Bench, Check, DriveError, Inputs, Reading, TestOutput};
 
 /// The word that the person types when a step without a reading is done.
-const DONE: &str = "done";
+pub(super) const DONE: &str = "done";
 /// The word that the person types first, which shows that the board receives.
 const GREETING: &str = "frixel";
 
@@ -121,11 +122,11 @@ impl From<DriveError> for Stop {
 pub struct Pressed(());
 
 /// Neither ready nor switch.
-const IDLE: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
+pub(super) const IDLE: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
 /// The amplifier is on.
 const READY: Inputs = Inputs { amplifier_ready: true, ..IDLE };
 /// The switch is closed.
-const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
+pub(super) const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
 
 /// Brings a board up, from nothing connected to stored limits, and returns these: `built_in`, with full scale and edges
 /// as measured. Voltages go up to `built_in.voltage_max_v_peak`.
@@ -137,6 +138,7 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
     check_processor(bench)?;
     check_dac(bench)?;
     check_inputs(bench)?;
+    check_enable_path(bench)?;
     check_amplifier(bench, built_in)?;
     let full_scale_v_peak = drive_voltages(bench, built_in)?;
     let edge_time_constant_s = measure_edges(bench, built_in)?;
@@ -158,7 +160,7 @@ fn greet(bench: &mut impl Bench) {
 fn check_processor(bench: &mut impl Bench) -> Result<(), Stop> {
     confirm(
         bench,
-        format_args!("1. The amplifier's supply is off; on a new board, nothing is connected but USB."),
+        format_args!("1. The amplifier's supply is off; on a new board, nothing is connected but USB, R6 and R8."),
         DONE,
     );
     expect_inputs(bench, IDLE, "amplifier off, switch released")?;
@@ -180,7 +182,7 @@ fn check_dac(bench: &mut impl Bench) -> Result<(), Stop> {
     check(bench, Check::Dac)?;
     for volts in DAC_VOLTAGES_V {
         let expected = (volts - DAC_TOLERANCE_V, volts + DAC_TOLERANCE_V);
-        ask_while(bench, Some(volts), "the voltmeter shows, V", expected)?;
+        ask_while(bench, TestOutput::Dac(volts), "the voltmeter shows, V", expected)?;
         expect_inputs(bench, IDLE, "amplifier off, switch released")?;
     }
     bench.say(format_args!("The last code was {} V, and CLEAR is low since then.", DAC_VOLTAGES_V[2]));
@@ -192,7 +194,10 @@ fn check_dac(bench: &mut impl Bench) -> Result<(), Stop> {
 fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
     confirm(
         bench,
-        format_args!("3. Connect the arm switch. The ready wire ends in the air. The amplifier's supply stays off."),
+        format_args!(
+            "3. Connect the arm switch, R10, R11 and C1. The ready wire ends in the air. The amplifier's supply stays \
+             off."
+        ),
         DONE,
     );
     expect_inputs(bench, IDLE, "switch released, ready in the air")?;

@@ -1,6 +1,57 @@
 //! The person of bring-up, who does what the board says.
 #![allow(clippy::panic, reason = "a test may fail")]
 
+use frixel_board::bring_up::{Sync, TestOutput};
+
+/// What is soldered between the processor's enable and the amplifier's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EnablePath {
+    /// As it must be.
+    Right,
+    /// Gate and monostable are bridged: the processor's enable passes.
+    MonostableBridged,
+    /// The monostable alone decides.
+    ProcessorLeftOut,
+    /// The monostable waits ten times as long as it may.
+    MonostableSlow,
+    /// The monostable never triggers.
+    MonostableDead,
+    /// The switch's second pole is bridged.
+    PoleBridged,
+    /// The second pole never closes.
+    PoleOpen,
+}
+
+impl EnablePath {
+    /// What a voltmeter shows on `ENABLE_LOGIC`, V.
+    fn logic_v(self, output: TestOutput) -> f32 {
+        let TestOutput::Enable { kicked, sync } = output else { return 0.0 };
+        // The part of the time that the monostable's 0.68 ms make.
+        let alive = match (self, sync) {
+            (Self::MonostableBridged, _) => 1.0,
+            (Self::MonostableDead, _) | (_, Sync::Never) => 0.0,
+            (_, Sync::Every2Ms) if self != Self::MonostableSlow => 0.34,
+            _ => 1.0,
+        };
+        if kicked || self == Self::ProcessorLeftOut { 3.3 * alive } else { 0.0 }
+    }
+
+    /// What a voltmeter shows behind the switch, V.
+    fn enable_v(self, output: TestOutput, switch_closed: bool) -> f32 {
+        let passes = self == Self::PoleBridged || (switch_closed && self != Self::PoleOpen);
+        if passes { self.logic_v(output) } else { 0.0 }
+    }
+}
+
+/// What the instruments are connected to.
+pub(crate) struct Instruments {
+    pub(crate) output: TestOutput,
+    pub(crate) enable_path: EnablePath,
+    pub(crate) switch_closed: bool,
+    /// What the oscilloscope shows.
+    pub(crate) probe_v: f32,
+}
+
 /// Whether ready is high after the person has done what was said; `None` if that does not concern it.
 pub(crate) fn ready_after(said: &str) -> Option<bool> {
     let said = said.to_lowercase();
@@ -23,8 +74,9 @@ pub(crate) fn contact_after(said: &str) -> Option<bool> {
     }
 }
 
-/// What the person types, who sees `dac_v` on the voltmeter and reads `probe_v` from the oscilloscope.
-pub(crate) fn answer(said: &str, dac_v: Option<f32>, probe_v: f32) -> String {
+/// What the person types, who reads the instruments.
+pub(crate) fn answer(said: &str, instruments: &Instruments) -> String {
+    let &Instruments { output, enable_path, switch_closed, probe_v } = instruments;
     if let Some((_, word)) = said.split_once("Then type: ") {
         return word.to_owned();
     }
@@ -33,7 +85,12 @@ pub(crate) fn answer(said: &str, dac_v: Option<f32>, probe_v: f32) -> String {
         what if what.contains("series resistor") => "67.5".to_owned(),
         what if what.contains("kOhm") => "9.9".to_owned(),
         what if what.contains("MOhm") => "999".to_owned(),
-        what if what.contains("voltmeter") => dac_v.unwrap_or(0.0).to_string(),
+        what if what.contains("voltmeter") => match output {
+            TestOutput::Dac(volts) => volts.to_string(),
+            TestOutput::Zero | TestOutput::Enable { .. } => "0".to_owned(),
+        },
+        what if what.starts_with("ENABLE_LOGIC") => enable_path.logic_v(output).to_string(),
+        what if what.starts_with("ENABLE,") => enable_path.enable_v(output, switch_closed).to_string(),
         what if what.contains("probe") => probe_v.to_string(),
         what if what.contains("at the capacitor") => "44.5".to_owned(),
         what if what.contains("at the monitor") => " 8.5 ".to_owned(),

@@ -8,7 +8,9 @@ use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::tick;
 use cortex_m::peripheral::DWT;
-use frixel_board::bring_up::{Bench, Check, Drive, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading};
+use frixel_board::bring_up::{
+    Bench, Check, Drive, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, TestOutput,
+};
 use frixel_board::main_loop::MainLoop;
 use frixel_control::Board;
 use frixel_wire::fault::State;
@@ -43,9 +45,9 @@ pub(crate) enum Stage {
 
 impl NucleoBench {
     /// A round of what has to go on while the script waits.
-    pub(crate) fn turn(&mut self, dac_v: Option<f32>) {
+    pub(crate) fn turn(&mut self, output: TestOutput) {
         match &mut self.stage {
-            Stage::Still(still) => still.next_period(dac_v),
+            Stage::Still(still) => still.next_period(output),
             Stage::Ticking(main_loop) => {
                 main_loop.turn(None);
                 // Bring-up's host reads the state from the status instead.
@@ -84,7 +86,7 @@ impl NucleoBench {
         self.stage = Stage::Ticking(start::tick(self.board, still));
         let (start, first_tick) = (DWT::cycle_count(), tick::count());
         while DWT::cycle_count().wrapping_sub(start) < CORE_HZ {
-            self.turn(None);
+            self.turn(TestOutput::Zero);
         }
         let ticks = tick::count().wrapping_sub(first_tick);
         let Stage::Ticking(main_loop) = &self.stage else { return false };
@@ -100,10 +102,10 @@ impl Bench for NucleoBench {
         self.terminal.say(text);
     }
 
-    fn read_line(&mut self, dac_v: Option<f32>) -> Line {
+    fn read_line(&mut self, output: TestOutput) -> Line {
         self.terminal.forget();
         loop {
-            self.turn(dac_v);
+            self.turn(output);
             if let Some(line) = self.terminal.line() {
                 if let Stage::Still(still) = &mut self.stage {
                     still.zero();
@@ -125,20 +127,20 @@ impl Bench for NucleoBench {
     }
 
     fn inputs(&mut self) -> Inputs {
-        self.turn(None);
+        self.turn(TestOutput::Zero);
         let (amplifier_ready, switch_closed) = tick::inputs();
         Inputs { amplifier_ready, switch_closed }
     }
 
     fn switch_is_held(&mut self) -> bool {
-        self.turn(None);
+        self.turn(TestOutput::Zero);
         matches!(&self.stage, Stage::Ticking(main_loop) if main_loop.status.arm_switch)
     }
 
     fn drive(&mut self, _pressed: Pressed, peak_v: f32) -> Result<Reading, DriveError> {
         let mut drive = Drive::new(peak_v, &self.board);
         loop {
-            self.turn(None);
+            self.turn(TestOutput::Zero);
             let Stage::Ticking(main_loop) = &mut self.stage else { return Err(DriveError::State(State::Disarmed)) };
             // The tick reads the same register, and reading it changes nothing.
             let monitor_v = MONITOR.volts(ADC1.dr().read().rdata());
@@ -161,7 +163,7 @@ impl Bench for NucleoBench {
         let Some(mut flash) = self.flash.take() else { return false };
         let begin = tick::count();
         let goes_on = || {
-            self.turn(None);
+            self.turn(TestOutput::Zero);
             tick::count().wrapping_sub(begin) < STORE_TICKS_MAX
         };
         let stored = limits::store(&mut flash, limits, goes_on);

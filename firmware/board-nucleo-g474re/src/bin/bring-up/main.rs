@@ -20,7 +20,7 @@ use board_nucleo_g474re::{board, clock, dac, output, period, tick, watchdog};
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
-use frixel_board::bring_up::{self, Injection};
+use frixel_board::bring_up::{self, Injection, TestOutput};
 use frixel_control::Board;
 use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
@@ -69,7 +69,7 @@ fn main() -> ! {
     // A capacitor stands in for the electrode, and nobody touches it: the script asks for that before any voltage.
     let untouched = BoardLimits { series_resistance_ohm: f32::INFINITY, ..limits };
     let board = Board { limits: untouched, ..board::board(&last_reset, None) };
-    let stage = Stage::Still(Still { output, frames, dac });
+    let stage = Stage::Still(Still { output, frames, dac, periods: 0 });
     let mut bench = NucleoBench { board, terminal, flash, injection, stage };
     match bring_up::run(&mut bench, &limits) {
         Ok(limits) => {
@@ -90,7 +90,7 @@ fn main() -> ! {
     }
     // The watchdog may run.
     loop {
-        bench.turn(None);
+        bench.turn(TestOutput::Zero);
     }
 }
 

@@ -22,7 +22,7 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
     let Some(memory) = singleton!(: Memory = Memory::new()) else { fault::never() };
     let (ticker, session, session_ends, tick_ends) = memory.make(board);
     let status = ticker.status();
-    let Still { output, frames, dac } = still;
+    let Still { output, frames, dac, periods: _ } = still;
     tick::start(&TICK, ticker, tick_ends, frames, output);
     MainLoop {
         shared: &tick::SHARED,

@@ -1,5 +1,6 @@
 //! The board before the tick runs: kicks the one-shot, and sends codes to the DAC by itself. No voltage: while the DAC
-//! puts out a code, the amplifier is disabled. Only the one-shot's test enables it, with the DAC at zero.
+//! puts out a code, the amplifier is disabled. Only the tests of the one-shot and of what is behind it enable it, with
+//! the DAC at zero.
 
 use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
@@ -8,6 +9,7 @@ use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::{period, tick, watchdog};
 use cortex_m::peripheral::DWT;
+use frixel_board::bring_up::{Sync, TestOutput};
 use frixel_board::hardware::DacFrames as _;
 use frixel_wire::dac_code::DacCode;
 
@@ -16,26 +18,41 @@ const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
 const DAC_FULL_SCALE_V: f32 = 10.0;
 /// Longest time from the last kick until the output is off, us.
 const OFF_WITHIN_US: u32 = 1000;
+/// Periods in 2 ms.
+const PERIODS_PER_2_MS: u32 = TICK_HZ / 500;
 
 /// What the tick takes over when it starts.
 pub(crate) struct Still {
     pub(crate) output: Output,
     pub(crate) frames: Frames,
     pub(crate) dac: Dac,
+    /// Periods since SYNC has last risen for [`Sync::Every2Ms`].
+    pub(crate) periods: u32,
 }
 
 impl Still {
-    /// Waits for the next period, and puts out a voltage of the DAC at its end, or zero. The amplifier stays disabled;
-    /// as long as it is ready, the DAC stays at zero, too.
-    pub(crate) fn next_period(&mut self, dac_v: Option<f32>) {
+    /// Waits for the next period, and puts `output` out at its end; zero as long as the amplifier is ready.
+    pub(crate) fn next_period(&mut self, output: TestOutput) {
         watchdog::feed();
         let _ = period::has_begun();
         while !period::has_begun() {}
-        let may_drive = !tick::inputs().0;
-        match dac_v {
-            Some(volts) if may_drive && self.frames.send(code(volts)).is_ok() => self.output.kick_dac_alone(),
+        match output {
+            _ if tick::inputs().0 => self.output.zero(),
+            TestOutput::Dac(volts) if self.frames.send(code(volts)).is_ok() => self.output.kick_dac_alone(),
+            TestOutput::Enable { kicked, sync } if self.sync(sync) && kicked => self.output.kick(),
             _ => self.output.zero(),
         }
+    }
+
+    /// Lets SYNC rise in this period, if it is to, with a frame of zero. `false` if that failed.
+    fn sync(&mut self, sync: Sync) -> bool {
+        self.periods = (self.periods + 1) % PERIODS_PER_2_MS;
+        let rises = match sync {
+            Sync::Never => false,
+            Sync::EveryPeriod => true,
+            Sync::Every2Ms => self.periods == 0,
+        };
+        !rises || self.frames.send(DacCode::ZERO).is_ok()
     }
 
     /// Sets the output to zero. The last frame has been latched before, so that CLEAR comes after it.

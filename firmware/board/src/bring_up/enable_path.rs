@@ -1,0 +1,45 @@
+//! The part of the script that shows what disables the amplifier without the firmware: the monostable outside of the
+//! processor, which SYNC feeds, and the arm switch's second pole. Everything else works without them, so that nothing
+//! else would show that one of them is bridged. The amplifier is not connected yet.
+
+use super::dialogue::{ask_while, await_inputs, confirm, expect_inputs};
+use super::script::{CLOSED, DONE, IDLE};
+use super::{Bench, Stop, Sync, TestOutput};
+
+/// A gate's low level, V. The voltmeter may be off by some millivolts.
+const LOW_V: (f32, f32) = (-0.1, 0.4);
+/// A gate's high level, V: 3.3 V that fall no tenth of the time.
+const HIGH_V: (f32, f32) = (3.0, 3.6);
+/// The mean of 3.3 V that last 0.5 to 1 ms every 2 ms, V.
+const PULSE_MEAN_V: (f32, f32) = (0.8, 1.65);
+
+/// Everything that lets the amplifier be enabled but the switch.
+const ALL: TestOutput = TestOutput::Enable { kicked: true, sync: Sync::EveryPeriod };
+
+pub(super) fn check_enable_path(bench: &mut impl Bench) -> Result<(), Stop> {
+    confirm(
+        bench,
+        format_args!(
+            "Connect monostable and gate (U3, U4), the switch's second pole and R7; no amplifier. The voltmeter on \
+             ENABLE_LOGIC, the gate's output."
+        ),
+        DONE,
+    );
+    expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    for (kicked, sync, what, expected) in [
+        (true, Sync::Never, "ENABLE_LOGIC with PB6 high and no SYNC, V", LOW_V),
+        (false, Sync::EveryPeriod, "ENABLE_LOGIC with SYNC and PB6 low, V", LOW_V),
+        (true, Sync::EveryPeriod, "ENABLE_LOGIC with both, V", HIGH_V),
+        (true, Sync::Every2Ms, "ENABLE_LOGIC, its mean with one SYNC every 2 ms, V", PULSE_MEAN_V),
+    ] {
+        ask_while(bench, TestOutput::Enable { kicked, sync }, what, expected)?;
+        expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    }
+    confirm(bench, format_args!("The voltmeter on ENABLE, at R7, behind the switch's second pole."), DONE);
+    ask_while(bench, ALL, "ENABLE, switch released, ENABLE_LOGIC high, V", LOW_V)?;
+    expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    await_inputs(bench, IDLE, CLOSED, "Hold the switch")?;
+    ask_while(bench, ALL, "ENABLE, switch held, ENABLE_LOGIC high, V", HIGH_V)?;
+    expect_inputs(bench, CLOSED, "switch held, ready in the air")?;
+    await_inputs(bench, CLOSED, IDLE, "Release the switch")
+}

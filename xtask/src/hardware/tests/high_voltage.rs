@@ -1,0 +1,164 @@
+//! What is dangerous: where it is, what stands in front of it, and what it stores.
+
+use std::collections::BTreeMap;
+
+use super::*;
+
+/// A supply may be this much above what it says (`PS1`).
+const RAILS_TOLERANCE: f64 = 0.05;
+const RAILS_V: f64 = 400.0;
+
+/// Resistors and capacitors, each with its two nets.
+fn two_ended(carrier: &Carrier) -> Vec<(&Part, [&Net; 2])> {
+    let net_of = |node: &str| carrier.net.iter().find(|net| net.nodes.iter().any(|other| other == node)).unwrap();
+    let parts = carrier.part.iter().filter(|part| part.value.is_some());
+    parts.map(|part| (part, [1, 2].map(|end| net_of(&format!("{}.{end}", part.name))))).collect()
+}
+
+/// The least resistance between the outputs of amplifier and supply and each net that they reach without passing the
+/// common. A capacitor is none.
+fn resistance_from_source(carrier: &Carrier) -> BTreeMap<&str, f64> {
+    let sources = ["A1.OUT", "A1.VPLUS", "A1.VMINUS"];
+    let is_source = |net: &&Net| net.nodes.iter().any(|node| sources.contains(&node.as_str()));
+    let mut found: BTreeMap<&str, f64> =
+        carrier.net.iter().filter(is_source).map(|net| (net.name.as_str(), 0.0)).collect();
+    assert_eq!(found.len(), sources.len());
+    // As many rounds as there are nets reach all of them.
+    for _ in &carrier.net {
+        for (part, [one, other]) in two_ended(carrier) {
+            let ohm = if part.name.starts_with('R') { part.value.unwrap() } else { 0.0 };
+            for (from, to) in [(one, other), (other, one)] {
+                let Some(before) = found.get(from.name.as_str()).copied() else { continue };
+                let least = found.get(to.name.as_str()).copied().unwrap_or(f64::INFINITY).min(before + ohm);
+                if to.name != "COMMON" {
+                    found.insert(&to.name, least);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// A person touches the electrode; everything with less than the whole series resistance in front of it is in the box.
+#[test]
+fn a_net_that_leaves_the_box_is_behind_both_series_resistors() {
+    let carrier = read().unwrap();
+    let series_ohm = value(&carrier, "R1") + value(&carrier, "R2");
+    let reached = resistance_from_source(&carrier);
+    assert!(reached.contains_key("ELECTRODE") && reached.contains_key("HV_MIDDLE"));
+    for net in &carrier.net {
+        let ohm = reached.get(net.name.as_str()).copied();
+        assert_eq!(net.boxed, ohm.is_some_and(|ohm| ohm < series_ohm), "{}: {ohm:?}", net.name);
+        assert_eq!(net.is_dangerous(), ohm.is_some(), "{}: its voltage", net.name);
+        for node in net.nodes.iter().filter(|_| net.boxed) {
+            let name = node.split_once('.').unwrap().0;
+            assert!(["A1", "PS1", "R1", "R2", "R16"].contains(&name), "{node} is in the box");
+        }
+    }
+}
+
+#[test]
+fn parts_bear_the_voltage_between_their_nets() {
+    let carrier = read().unwrap();
+    let mut rated = 0;
+    for (part, [one, other]) in two_ended(&carrier) {
+        let [one, other] = [one, other].map(|net| net.peak_v.unwrap_or_default());
+        // Between nets of one sign, one may be at zero.
+        let across_v = if one * other < 0.0 { one.abs() + other.abs() } else { one.abs().max(other.abs()) };
+        let says_v = part.ratings.split_once(" V").and_then(|(before, _)| before.rsplit(' ').next()?.parse().ok());
+        if across_v > 5.0 {
+            let says_v: f64 = says_v.unwrap_or_else(|| panic!("{} is rated for no voltage", part.name));
+            assert!(says_v >= 1.2 * across_v, "{}: {across_v} V, rated for {says_v}", part.name);
+            rated += 1;
+        }
+    }
+    assert!(rated >= 8, "{rated}");
+}
+
+fn measure<'a>(carrier: &'a Carrier, from: &str, to: &str) -> &'a Measure {
+    carrier.measure.iter().find(|measure| measure.between == [from, to]).unwrap()
+}
+
+/// With a meter that reads too little, and a supply that gives too much: at most 45 uC over both rails and from one,
+/// and below 30 V within 10 s (`docs/safety.md`).
+#[test]
+fn the_stored_charge_is_within_its_limit_for_every_reading_that_is_allowed() {
+    let carrier = read().unwrap();
+    let most = |from, to| {
+        let measure = measure(&carrier, from, to);
+        assert!(matches!(measure.unit, Unit::Farad));
+        measure.most.unwrap() * (1.0 + measure.error)
+    };
+    let rails_v = RAILS_V * (1.0 + RAILS_TOLERANCE);
+    let rails_f = most("RAIL_PLUS", "RAIL_MINUS");
+    assert!(rails_f * rails_v <= 45e-6, "{} uC", 1e6 * rails_f * rails_v);
+    for rail in ["RAIL_PLUS", "RAIL_MINUS"] {
+        let coulomb = most(rail, "COMMON") * 0.5 * rails_v;
+        assert!(coulomb <= 45e-6, "{rail}: {} uC", 1e6 * coulomb);
+    }
+    let bleeder = part(&carrier, "R16");
+    let bleeder_ohm = bleeder.value.unwrap() * (1.0 + bleeder.tolerance.unwrap());
+    assert!(bleeder_ohm * rails_f * (rails_v / 30.0).ln() < 10.0);
+    // No capacitor of the table adds to what is measured.
+    for (part, nets) in two_ended(&carrier) {
+        assert!(!part.name.starts_with('C') || nets.iter().all(|net| !net.is_dangerous()), "{}", part.name);
+    }
+    let supply = part(&carrier, "PS1");
+    for said in ["within 5 %", "0.1 uF between the rails", "0.2 uF from each"] {
+        assert!(supply.ratings.contains(said), "{}", supply.ratings);
+    }
+}
+
+/// A good board passes every measurement with a meter that is as wrong as it may be, and no missing part passes.
+#[test]
+fn what_is_to_be_measured_is_what_the_parts_give() {
+    let carrier = read().unwrap();
+    for Measure { between, why, parts, least, most, error, .. } in &carrier.measure {
+        assert!(between.iter().all(|net| carrier.net.iter().any(|other| other.name == *net)), "{between:?}");
+        assert!(!why.is_empty() && *error > 0.0);
+        if parts.is_empty() {
+            continue;
+        }
+        let parts = parts.iter().map(|name| part(&carrier, name));
+        let (mut low, mut high) = (0.0, 0.0);
+        for part in parts {
+            let (value, tolerance) = (part.value.unwrap(), part.tolerance.unwrap());
+            assert!(least.unwrap() > high, "{between:?} passes without {}", part.name);
+            low += value * (1.0 - tolerance);
+            high += value * (1.0 + tolerance);
+        }
+        // Resistors of 1 % in a row are seldom both at the end of it: the limits may be as narrow as their sum is.
+        assert!(low * (1.0 - error) >= 0.995 * least.unwrap(), "{between:?}: {low}");
+        assert!(high * (1.0 + error) <= 1.005 * most.unwrap(), "{between:?}: {high}");
+    }
+}
+
+/// Nobody who switches the rails off relies on the firmware, and no wire ties the supply's input to the common.
+#[test]
+fn the_rails_have_a_switch_of_their_own_in_front_of_the_insulation() {
+    let carrier = read().unwrap();
+    let nodes = |name| net(&carrier, name).nodes.iter().map(String::as_str).collect::<Vec<_>>();
+    assert_eq!(nodes("RAIL_SUPPLY"), ["J1.PLUS", "S2.1"]);
+    assert_eq!(nodes("RAIL_SUPPLY_ON"), ["S2.2", "PS1.IN_PLUS"]);
+    assert_eq!(nodes("RAIL_SUPPLY_RETURN"), ["J1.MINUS", "PS1.IN_MINUS"]);
+}
+
+/// With the wire from the DAC off, the amplifier's input is at 0 V; with it on, the resistor is no load.
+#[test]
+fn the_amplifiers_input_is_held_at_zero_without_the_dac() {
+    let carrier = read().unwrap();
+    let hold = two_ended(&carrier).into_iter().find(|(part, _)| part.name == "R18").unwrap();
+    assert_eq!(hold.1.map(|net| net.name.as_str()), ["SIGNAL", "COMMON"]);
+    let ohm = hold.0.value.unwrap();
+    // What the input takes, by the amplifier's rating, behind a gain of 20: below a tenth of the least drive, 10 V.
+    assert!(1e-6 * ohm * 20.0 < 1.0);
+    // The DAC gives some milliamperes, behind less than 50 Ohm (assumed).
+    assert!(10.0 / ohm < 2e-3 && 50.0 / ohm < 0.01);
+}
+
+#[test]
+fn each_pole_of_the_switch_has_a_cable_of_its_own() {
+    let carrier = read().unwrap();
+    let switch = part(&carrier, "S1");
+    assert!(switch.ratings.contains("each pole on a cable of its own"), "{}", switch.ratings);
+}
