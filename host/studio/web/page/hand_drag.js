@@ -4,7 +4,7 @@
 import { SIDE_MIN_MM, bounds, clamp } from "./place.js";
 
 /** @import { Screen } from "../engine/types" */
-/** @import { EditedLayer } from "./edited_layers.js" */
+/** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
 /** @import { Hands } from "./hands.js" */
 /** @import { FrictionMap } from "./map.js" */
 /** @import { Box, Place, Side } from "./place.js" */
@@ -28,6 +28,7 @@ const TYPED_GRID_MM = 0.01;
 export class HandDrag {
   #surface;
   #hands;
+  #layers;
   #map;
   /** @type {Press | undefined} */
   #press;
@@ -35,11 +36,13 @@ export class HandDrag {
   /**
    * @param {HTMLElement} surface
    * @param {Hands} hands
+   * @param {EditedLayers} layers
    * @param {FrictionMap} map
    */
-  constructor(surface, hands, map) {
+  constructor(surface, hands, layers, map) {
     this.#surface = surface;
     this.#hands = hands;
+    this.#layers = layers;
     this.#map = map;
     surface.addEventListener("pointerdown", (event) => this.#down(event));
     surface.addEventListener("pointermove", (event) => this.#move(event));
@@ -59,7 +62,7 @@ export class HandDrag {
 
   /** @param {Point} point */
   #under({ xMm, yMm }) {
-    return this.#hands.under(xMm, yMm, NEAR_PX / this.#map.scale);
+    return this.#layers.under(xMm, yMm, NEAR_PX / this.#map.scale);
   }
 
   /** @param {PointerEvent} event */
@@ -111,10 +114,10 @@ export class HandDrag {
     if (shiftKey && !handle) [dx, dy] = Math.abs(dx) >= Math.abs(dy) ? [dx, 0] : [0, dy];
     const { box } = place;
     const keepsRatio = place.keepsRatio || (shiftKey && handle?.length === 2);
-    if (handle) this.#hands.grip.resize(resized({ ...place, keepsRatio }, handle, dx, dy, this.#hands.screen, grid));
+    if (handle) this.#hands.grip.resize(resized({ ...place, keepsRatio }, handle, dx, dy, this.#layers.screen, grid));
     else if (place.isWholeScreen) this.#hands.grip.move(snapped(dx, grid), snapped(dy, grid));
     else {
-      const { widthMm, heightMm } = this.#hands.screen;
+      const { widthMm, heightMm } = this.#layers.screen;
       const all = bounds(box, place.copies);
       const left = clamp(snapped(box.x + dx, grid), box.x - all.x, widthMm - all.x - all.width + box.x);
       const top = clamp(snapped(box.y + dy, grid), box.y - all.y, heightMm - all.y - all.height + box.y);

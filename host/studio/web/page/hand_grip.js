@@ -45,6 +45,11 @@ export class HandGrip {
     return this.#held !== undefined && !this.#held.held.isOver;
   }
 
+  /** Whether a hand has changed a layer and holds it still. */
+  get hasChanged() {
+    return this.#player.isHeld;
+  }
+
   /**
    * Begins a change of the layer that is selected, or goes on with it; returns what it was before. Where it cannot be
    * changed now, says why.

@@ -41,7 +41,7 @@ export class HandKeys {
     const { key, shiftKey, altKey } = event;
     const hands = this.#hands;
     const isCommand = event.ctrlKey || event.metaKey;
-    if (key === "Enter" && isCommand && !altKey) hands.toText();
+    if (key === "Enter" && isCommand && !altKey) hands.showText({ focuses: true });
     else if (isCommand) return;
     else if (key in ARROWS && hands.selected) {
       this.#move(ARROWS[key], altKey ? FINE_STEP_MM : shiftKey ? LARGE_STEP_MM : STEP_MM);
@@ -52,7 +52,7 @@ export class HandKeys {
     else if (key === " ") hands.focusPanel();
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
-      if (hands.isHeld) hands.grip.cancel();
+      if (hands.grip.hasChanged) hands.grip.cancel();
       else if (hands.selected) hands.focus(undefined);
       else return;
     } else return;

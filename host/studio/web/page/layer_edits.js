@@ -2,6 +2,7 @@
 // @ts-check
 
 import { addedLayer, freeLayerName, pictureLayer } from "./beginnings.js";
+import { TEXT_CHANGED } from "./hand_grip.js";
 import { bounds, clamp, placeOf } from "./place.js";
 import { TomlText, replaced } from "./toml_text.js";
 
@@ -31,8 +32,9 @@ export class LayerEdits {
     this.#layers = layers;
   }
 
-  /** Throws a sentence where layers come and go in the text alone. */
-  assertVersion() {
+  /** Throws a sentence where layers cannot come and go now, or do so in the text alone. */
+  assertPossible() {
+    if (!this.#layers.isCurrent) throw new Error(TEXT_CHANGED);
     if (new TomlText(this.#editor.text).value(["version"]) !== 2) throw new Error(OLD_VERSION);
   }
 

@@ -1,0 +1,41 @@
+// What the panel of the selected layer does: its numbers tune the layer, its buttons add, double and delete layers.
+// @ts-check
+
+/** @import { Hands } from "./hands.js" */
+/** @import { HandsView } from "./hands_view.js" */
+
+/**
+ * @param {HandsView} view That the panel is of.
+ * @param {Hands} hands
+ */
+export function listenToPanel({ panel, boxes }, hands) {
+  const { grip } = hands;
+  panel.element.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    if (grip.isHolding) {
+      event.preventDefault();
+      grip.cancel();
+      letGo(event.target);
+    }
+    boxes.focus(hands.selected?.key);
+  });
+  panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
+  panel.onSide = (side, mm) => grip.setSide(side, mm);
+  panel.onEnd = () => grip.end();
+  panel.onText = () => hands.showText({ focuses: true });
+  panel.onDuplicate = () => hands.duplicate();
+  panel.onDelete = () => hands.delete();
+  panel.onClose = () => hands.focus(undefined);
+  panel.onAdd = (beginning) => hands.add(beginning);
+  panel.onPicture = () => hands.onPicture();
+}
+
+/**
+ * A slider that is dragged follows the pointer no more.
+ * @param {EventTarget | null} target
+ */
+function letGo(target) {
+  if (!(target instanceof HTMLInputElement) || target.type !== "range") return;
+  target.disabled = true;
+  target.disabled = false;
+}

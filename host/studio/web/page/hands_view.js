@@ -1,0 +1,81 @@
+// What the mode Edit shows: a box over the map for each layer, and the panel of the layer that is selected.
+// @ts-check
+
+import { byId, element } from "./dom.js";
+import { LayerBoxes } from "./layer_boxes.js";
+import { layerNumbers, repeatNumbers } from "./layer_numbers.js";
+import { LayerPanel } from "./layer_panel.js";
+
+/** @import { Schema } from "./completion.js" */
+/** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
+/** @import { Most } from "./layer_numbers.js" */
+/** @import { Area, FrictionMap } from "./map.js" */
+
+export class HandsView {
+  #map;
+  #schema;
+  /** The element around the boxes. */
+  surface = element("div", { className: "hands", role: "group", tabIndex: -1, hidden: true, "aria-label": "Layers" });
+  boxes = new LayerBoxes(this.surface);
+  panel = new LayerPanel();
+  /** What can be felt of the scene, as its check said. */
+  reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
+
+  /**
+   * @param {FrictionMap} map
+   * @param {Schema} schema
+   */
+  constructor(map, schema) {
+    this.#map = map;
+    this.#schema = schema;
+    map.box.append(this.surface);
+    map.box.closest("main")?.append(this.panel.element);
+  }
+
+  /**
+   * Covers the map.
+   * @param {Area} area
+   */
+  cover({ left, top, width, height }) {
+    Object.assign(this.surface.style, {
+      left: `${left}px`,
+      top: `${top}px`,
+      width: `${width}px`,
+      height: `${height}px`,
+    });
+  }
+
+  /**
+   * @param {EditedLayers} layers
+   * @param {EditedLayer | undefined} selected
+   * @param {boolean} isNew Whether another layer is selected.
+   */
+  draw(layers, selected, isNew) {
+    this.boxes.show(layers.all, selected?.key, this.#map.scale);
+    // Where there is no layer, the keys lead from the map to what adds one.
+    this.surface.tabIndex = layers.all.length > 0 ? -1 : 0;
+    if (selected) this.panel.show(selected, this.#numbers(selected, layers), this.reach, isNew);
+    else this.panel.showNone(layers.all.length, isNew);
+    const { box } = this.#map;
+    const around = [byId("numbers"), byId("scope").parentElement ?? box, box.closest(".map-card") ?? box];
+    const [numbers, scope, map] = around.map((each) => each.getBoundingClientRect());
+    this.panel.place(numbers, scope, map);
+  }
+
+  /**
+   * @param {EditedLayer} selected
+   * @param {EditedLayers} layers
+   */
+  #numbers(selected, { screen }) {
+    const { toml, at, layer } = selected;
+    const isTuned = toml !== undefined && at !== undefined;
+    const numbers = isTuned ? layerNumbers(this.#schema, toml, at, layer.kind, this.reach) : [];
+    return [...numbers, ...repeatNumbers(selected, screen)];
+  }
+
+  /** Gives the focus to a layer, or to what is around the layers. @param {string | undefined} key */
+  focus(key) {
+    if (key === undefined) this.surface.focus({ preventScroll: true });
+    else this.boxes.focus(key);
+  }
+}
