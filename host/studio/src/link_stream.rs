@@ -1,8 +1,8 @@
-//! The byte stream to a board outside of the page: `host.js` moves its bytes.
+//! The byte stream to a board outside of the page: `remote_board.js` moves its bytes.
 //!
 //! Reading suspends the whole module until bytes arrive or the time is over (JSPI). Meanwhile no other export of the
-//! instance may be called. To break off the call under way, `host.js` closes the stream to it: its next read or write
-//! fails, and the stream is open again for the call that follows.
+//! instance may be called. To break off the call under way, `remote_board.js` closes the stream to it: its next read or
+//! write fails, and the stream is open again for the call that follows.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const READ_MAX: usize = 4_096;
 /// What `link_write` and `link_read` return when the stream is closed, or closed to the call under way.
 const CLOSED: i32 = -1;
 
-/// The stream that `host.js` has connected this instance to.
+/// The stream that `remote_board.js` has connected this instance to.
 pub(crate) struct LinkStream {
     buffer: Box<[u8; READ_MAX]>,
     telemetry: Vec<Telemetry>,
