@@ -1,0 +1,48 @@
+// The page in a browser, on a phone: the panel of layers makes room for the text, and fingers scroll and slide.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { onPage, openEditing, plays, settled, textOf } from "./editing.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+const PHONE = { width: 390, height: 844 };
+
+/** Opens the page with a scene on a phone, in the mode Edit, with a layer that is selected. */
+async function openPhone() {
+  const { page, errors } = await openEditing();
+  await page.setViewportSize(PHONE);
+  await settled(page);
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  return { page, errors };
+}
+
+/** Whether a place in the middle of an element shows it, and no other lies over it. */
+const isOnTop = (page, selector) =>
+  page.evaluate((selector) => {
+    const found = document.querySelector(selector);
+    const { left, top, width, height } = found.getBoundingClientRect();
+    return found.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+  }, selector);
+
+test("on a phone the panel gives way to the text, and a press on a layer brings it back", async () => {
+  const { page, errors } = await openPhone();
+  const panel = page.locator(".layer-panel");
+  await panel.getByRole("button", { name: "Text", exact: true }).click();
+  await page.waitForFunction(() => document.activeElement.classList.contains("cm-content"));
+  assert.ok(await isOnTop(page, ".cm-activeLine"), "the line of the layer is seen");
+  await page.keyboard.type("zz");
+  await page.locator("#problems li.error").first().waitFor();
+  assert.ok(await isOnTop(page, "#problems li.error"), "what a person types breaks nothing unseen");
+  for (let times = 0; times < 2; times += 1) await page.keyboard.press("Backspace");
+  await plays(page);
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  assert.ok(await panel.isVisible());
+  await page.click("#toggle-drawer");
+  assert.ok(await panel.isVisible(), "there is no text to give way to");
+  await page.click("#toggle-drawer");
+  assert.ok(await isOnTop(page, ".cm-content"));
+  assert.deepEqual(errors, []);
+});
