@@ -46,3 +46,37 @@ test("on a phone the panel gives way to the text, and a press on a layer brings 
   assert.ok(await isOnTop(page, ".cm-content"));
   assert.deepEqual(errors, []);
 });
+
+test("a swipe up that begins on a slider scrolls and changes nothing; one along it does", async () => {
+  const { page, errors } = await openPhone();
+  const client = await page.context().newCDPSession(page);
+  await client.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  await settled(page);
+  const panel = page.locator(".layer-panel");
+  const slider = page.getByLabel("friction of left, of reach", { exact: true });
+  const swipe = async (dx, dy) => {
+    await slider.scrollIntoViewIfNeeded();
+    await settled(page);
+    const { x, y, width, height } = await slider.boundingBox();
+    const [fromX, fromY] = [x + width * 0.2, y + height / 2];
+    const send = (type, points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points });
+    await send("touchStart", [{ x: fromX, y: fromY }]);
+    for (let part = 0.1; part <= 1 && dx + dy !== 0; part += 0.1)
+      await send("touchMove", [{ x: fromX + dx * part, y: fromY + dy * part }]);
+    await send("touchEnd", []);
+  };
+  const before = await textOf(page);
+  const [value, top] = [await slider.inputValue(), await panel.evaluate((each) => each.scrollTop)];
+  await swipe(0, -120);
+  await page.waitForFunction((top) => document.querySelector(".layer-panel").scrollTop !== top, top);
+  assert.equal(await textOf(page), before);
+  assert.equal(await slider.inputValue(), value);
+  await swipe(60, 4);
+  const slid = Number(await slider.inputValue());
+  assert.ok(slid > 0.2 && (await textOf(page)).includes(`friction_fraction = ${slid}\n`), `${slid}`);
+  await swipe(0, 0);
+  const tapped = Number(await slider.inputValue());
+  assert.ok(tapped < slid && (await textOf(page)).includes(`friction_fraction = ${tapped}\n`), `${tapped}`);
+  await plays(page);
+  assert.deepEqual(errors, []);
+});

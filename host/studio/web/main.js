@@ -34,6 +34,7 @@ import { RealSize } from "./page/real_size.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
 import { keepSite } from "./page/site.js";
+import { guardSliders } from "./page/slider_touch.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -51,6 +52,7 @@ async function start() {
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   followPresses();
+  guardSliders();
   const parts = await makeParts(engine);
   const scene = new OpenScene(parts);
   makeControls(parts);

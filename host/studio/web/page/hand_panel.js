@@ -19,6 +19,8 @@ export function listenToPanel({ panel, boxes }, hands) {
     }
     boxes.focus(hands.selected?.key);
   });
+  // The browser has taken the finger for something else.
+  panel.element.addEventListener("pointercancel", () => grip.cancel());
   panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
   panel.onSide = (side, mm) => grip.setSide(side, mm);
   panel.onEnd = () => grip.end();
