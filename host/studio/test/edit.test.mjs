@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, afterEach, test } from "node:test";
-import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
+import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, textOf } from "./editing.mjs";
 import { cleanUp, endLeftovers } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
 import { pageModule } from "./page_module.mjs";
@@ -166,14 +166,12 @@ test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async (
   assert.deepEqual(errors, []);
 });
 
-test("Enter shows the text and leaves the keys to the layer; an arrow says why a layer does not move", async () => {
+test("Enter goes to the numbers and Escape back to the layer; an arrow says why a layer does not move", async () => {
   const { page, errors } = await openEditing();
-  await page.click("#toggle-drawer");
-  await settled(page);
   await page.mouse.click(...(await onPage(page, 20, 30)));
   await press(page, "Enter");
-  assert.ok(await page.locator("#drawer").isVisible());
-  await press(page, "ArrowRight");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "left of left, mm");
+  await press(page, "Escape", "ArrowRight");
   assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 11.0"));
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   await page.mouse.click(...(await onPage(page, 60, 40)));

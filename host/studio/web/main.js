@@ -214,6 +214,7 @@ function showWhatPlays(parts, scene) {
     if (compare.isRunning || status === "loaded") return;
     map.markStale(status === "loading" ? "drawing" : "older");
   };
+  layers.onChoose = ({ index }) => hands.choose(index);
   lag.onChange = () => scene.replay();
   board.onBoard = () => {
     lag.forgetStroke();

@@ -24,7 +24,7 @@ export function listenToPanel({ panel, boxes }, hands) {
   panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
   panel.onSide = (side, mm) => grip.setSide(side, mm);
   panel.onEnd = () => grip.end();
-  panel.onText = () => hands.showText({ focuses: true });
+  panel.onText = () => hands.showText();
   panel.onDuplicate = () => hands.duplicate();
   panel.onDelete = () => hands.delete();
   panel.onClose = () => hands.focus(undefined);

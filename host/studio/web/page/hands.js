@@ -209,28 +209,38 @@ export class Hands {
   }
 
   /**
-   * Selects the next layer, or that before; returns whether there is one.
+   * Selects the next layer, or that before, if there is one.
    * @param {1 | -1} by
    */
   focusNeighbour(by) {
-    const { key } = this.#selection;
-    const next = key && this.#view.boxes.neighbour(key, by);
+    const next = this.#view.boxes.neighbour(this.#selection.key, by);
     if (next) this.focus(next);
-    return next !== undefined;
+  }
+
+  /**
+   * A layer was chosen elsewhere by its number: in the mode Edit it is selected on the map. Returns whether it is.
+   * @param {number} index
+   */
+  choose(index) {
+    const found = this.isEditing && this.#layers.isCurrent && this.#layers.all.find(({ layer }) => layer.index === index);
+    if (!found) return false;
+    this.focus(found.key);
+    this.#view.surface.scrollIntoView({ block: "nearest" });
+    return true;
   }
 
   focusPanel() {
     this.#view.panel.focus();
   }
 
-  /** Shows the lines of the selected layer in the text: the keys act on the layer still, unless it `focuses` these. */
-  showText({ focuses = false } = {}) {
+  /** Leads to the lines of the selected layer in the text. */
+  showText() {
     const { editor } = this.#parts;
     const { selected } = this;
     if (!selected || !editor.has(selected.layer.file)) return;
     this.grip.end();
     const [first] = selected.at === undefined ? selected.layer.from : (selected.toml?.layerLines(selected.at) ?? [1]);
-    editor.goTo(selected.layer.file, first, { focuses });
+    editor.goTo(selected.layer.file, first);
   }
 
   /**

@@ -31,7 +31,8 @@ export class HandsView {
     this.#map = map;
     this.#schema = schema;
     map.box.append(this.surface);
-    map.box.closest("main")?.append(this.panel.element);
+    // Tab leads from a layer to its panel.
+    map.box.closest(".map-card")?.after(this.panel.element);
     this.#cover = new PanelCover(this.panel.element);
   }
 

@@ -45,12 +45,13 @@ export class LayerBoxes {
   }
 
   /**
-   * The key of the next layer, or that before.
-   * @param {string} key
-   * @param {number} by
+   * The key of the next layer, or that before; without a layer, that of the first, or the last.
+   * @param {string | undefined} key
+   * @param {1 | -1} by
    */
   neighbour(key, by) {
     const keys = [...this.#buttons.keys()];
+    if (key === undefined) return keys.at(by > 0 ? 0 : -1);
     return keys[keys.indexOf(key) + by];
   }
 
@@ -70,11 +71,13 @@ export class LayerBoxes {
     const buttons = layers.map(({ key }) => this.#buttons.get(key) ?? this.#newButton(key));
     this.#buttons = new Map(layers.map(({ key }, at) => [key, buttons[at]]));
     for (const [at, button] of buttons.entries()) {
-      // Tab goes from layer to layer as the text does. A button that stays where it is keeps the focus.
+      // The layers follow each other as in the text. A button that stays where it is keeps the focus.
       if (this.#parent.children[at] !== button) this.#parent.insertBefore(button, this.#parent.children[at]);
       const each = layers[at];
       const { key, place } = each;
       const isSelected = key === selected;
+      // The layers are one stop of Tab, so that the panel of each comes next.
+      button.tabIndex = isSelected || (selected === undefined && at === 0) ? 0 : -1;
       button.classList.toggle("is-selected", isSelected);
       button.setAttribute("aria-current", String(isSelected));
       button.setAttribute("aria-label", labelOf(each));

@@ -238,7 +238,8 @@ export class LayerPanel {
     const below = new DOMRect(map.left, map.bottom, map.width, LEAST_PX);
     const first = isSeen ? (scope.height >= HIGH_PX ? scope : numbers) : below;
     const last = isSeen ? scope : below;
-    const around = /** @type {HTMLElement} */ (this.element.parentElement);
+    const around = this.element.closest("main");
+    if (!around) return;
     const { left, top } = around.getBoundingClientRect();
     const height = Math.max(last.bottom - first.top, LEAST_PX);
     Object.assign(this.element.style, {

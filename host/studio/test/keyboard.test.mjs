@@ -1,0 +1,82 @@
+// The page in a browser, by keys alone: what Tab reaches in the mode Edit, and where the focus is seen.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+const focusOptions = (page) => page.evaluate(() => document.querySelector("#options summary").focus());
+const focusedName = (page) =>
+  page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent);
+
+test("the layers are one stop of Tab, and the panel of the one that is selected comes next", async () => {
+  const { page, errors } = await openEditing();
+  await focusOptions(page);
+  await press(page, "Tab");
+  assert.match(await selected(page), /^left, /);
+  await press(page, "Tab");
+  assert.match(await selected(page), /^left, /);
+  assert.equal(await focusedName(page), "Deselect");
+  await press(page, "Shift+Tab", "PageDown", "PageDown");
+  assert.match(await selected(page), /^right, /);
+  await press(page, "PageUp", "PageUp", "Enter");
+  assert.equal(await focusedName(page), "left of left, mm");
+  for (let times = 0; times < 4; times += 1) await press(page, "Tab");
+  await press(page, "ArrowRight");
+  assert.match(await textOf(page), /friction_fraction = 0\.51\n/);
+  assert.deepEqual(errors, []);
+});
+
+test("a name in the tab Layers selects its layer on the map, where the keys act then, and shows its text", async () => {
+  const { page, errors } = await openEditing();
+  const name = page.locator("#panel-layers").getByRole("button", { name: "right", exact: true });
+  await name.focus();
+  await press(page, "Enter");
+  assert.match(await selected(page), /^right, /);
+  assert.equal(await page.locator(".cm-activeLine").textContent(), "[[layer]]");
+  await press(page, "ArrowDown");
+  assert.match(await textOf(page), /region\.y_mm = 21 /);
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  await plays(page);
+  await name.focus();
+  await press(page, "Enter");
+  await page.waitForFunction(() => document.activeElement.classList.contains("cm-content"));
+  assert.deepEqual(errors, []);
+});
+
+test("no focus is behind the panel in the mode Edit, and it is seen on the map, too", async () => {
+  const { page, errors } = await openEditing();
+  await page.click("#toggle-drawer");
+  for (const size of [{ width: 1280, height: 800 }, { width: 1000, height: 760 }]) {
+    await page.setViewportSize(size);
+    await settled(page);
+    await page.mouse.click(...(await onPage(page, 20, 30)));
+    await focusOptions(page);
+    const hidden = [];
+    for (let presses = 0; presses < 60; presses += 1) {
+      await press(page, "Tab");
+      const seen = await page.evaluate(() => {
+        const { activeElement } = document;
+        if (activeElement === document.body) return undefined;
+        const { left, top, width, height } = activeElement.getBoundingClientRect();
+        const found = document.elementFromPoint(left + width / 2, top + height / 2);
+        const isPanel = activeElement.closest(".layer-panel") !== null;
+        const name = activeElement.id || activeElement.getAttribute("aria-label") || activeElement.textContent;
+        return { name, isBehind: !isPanel && found?.closest(".layer-panel") !== null };
+      });
+      if (seen === undefined) break;
+      if (seen.isBehind) hidden.push(seen.name);
+    }
+    assert.deepEqual(hidden, [], JSON.stringify(size));
+  }
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "Delete");
+  assert.ok(await page.evaluate(() => document.activeElement.classList.contains("hands")));
+  assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "none");
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  assert.ok(await page.evaluate(() => !document.querySelector("#open-lag").closest("[inert]")), "the panel is gone");
+  assert.deepEqual(errors, []);
+});
