@@ -80,3 +80,20 @@ test("no focus is behind the panel in the mode Edit, and it is seen on the map, 
   assert.ok(await page.evaluate(() => !document.querySelector("#open-lag").closest("[inert]")), "the panel is gone");
   assert.deepEqual(errors, []);
 });
+
+test("Escape closes the options wherever the focus is, and so does Tab past their end", async () => {
+  const { page, errors } = await openEditing();
+  const menu = page.locator("#screen");
+  await page.click("#options summary");
+  await page.evaluate(() => document.activeElement.blur());
+  await press(page, "Escape");
+  assert.ok(await menu.isHidden());
+  assert.ok(await page.evaluate(() => document.activeElement.matches("#options summary")));
+  await press(page, "Enter");
+  assert.ok(await menu.isVisible());
+  await page.focus("#full-screen");
+  await press(page, "Tab");
+  assert.ok(await menu.isHidden(), "the focus has left it");
+  assert.match(await selected(page), /^left, /);
+  assert.deepEqual(errors, []);
+});
