@@ -256,3 +256,32 @@ test("layers are taken out one after the other, faster than any check", async ()
   await plays(page);
   assert.deepEqual(errors, []);
 });
+
+test("Delete says which layer it takes out and offers the way back, on which the layer is selected again", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  await press(page, "Delete");
+  const notice = page.locator("#notice");
+  assert.equal(await notice.locator("span").textContent(), "Removed right.");
+  await plays(page);
+  await notice.getByRole("button", { name: "Undo", exact: true }).click();
+  assert.equal(await textOf(page), PLATES);
+  await page.locator(".layer-box[aria-current=true]").waitFor();
+  assert.equal(await selected(page), "right, rings, 40 by 40 mm at 70, 20");
+  await press(page, "ArrowDown");
+  assert.match(await textOf(page), /region\.y_mm = 21 /, "the keys act on it");
+  const isBack = page.locator("[aria-current=true][aria-label='right, rings, 40 by 40 mm at 70, 20']");
+  await press(page, "Control+z");
+  await isBack.waitFor();
+  await press(page, "Control+d");
+  assert.match(await selected(page), /^right 2, /);
+  await press(page, "Control+z");
+  await isBack.waitFor();
+  // What was taken out before other changes comes back by Undo alone.
+  await press(page, "Delete");
+  await notice.waitFor();
+  await press(page, "Control+z");
+  await page.waitForFunction(() => document.getElementById("notice").hidden);
+  assert.equal(await textOf(page), PLATES);
+  assert.deepEqual(errors, []);
+});

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
-import { onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
+import { PLATES, onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
 import { cleanUp, endLeftovers } from "./harness.mjs";
 
 afterEach(endLeftovers);
@@ -78,6 +78,24 @@ test("no focus is behind the panel in the mode Edit, and it is seen on the map, 
   assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "none");
   await page.getByRole("button", { name: "Feel", exact: true }).click();
   assert.ok(await page.evaluate(() => !document.querySelector("#open-lag").closest("[inert]")), "the panel is gone");
+  assert.deepEqual(errors, []);
+});
+
+test("keys that move do nothing while the pointer holds the layer", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, 30, 30)), { steps: 3 });
+  const dragged = PLATES.replace("x_mm = 10.0", "x_mm = 20.0");
+  await press(page, "ArrowDown", "PageDown");
+  assert.equal(await textOf(page), dragged);
+  await page.mouse.move(...(await onPage(page, 32, 30)), { steps: 3 });
+  await page.mouse.up();
+  assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 22.0"));
+  await press(page, "ArrowDown", "Control+z");
+  assert.match(await selected(page), /^left, /);
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES, "the drag is one step");
   assert.deepEqual(errors, []);
 });
 

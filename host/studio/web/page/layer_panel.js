@@ -22,7 +22,8 @@ const LEAST_PX = 220;
 const HIGH_PX = 380;
 /** Distance from the edges of what scrolls it, CSS pixels. */
 const EDGE_PX = 12;
-const HINT = "Press a layer to select it. Drag it to move it, its handles to resize it.";
+const HINT =
+  "Press a layer to select it, then twice for the one beneath. Drag it to move it, its handles to resize it.";
 const EMPTY_HINT = "This scene has no layer yet: add one.";
 
 export class LayerPanel {
