@@ -4,6 +4,7 @@
 import { clock } from "../clock.js";
 import { ARROWS } from "./arrows.js";
 import { colour, contextOf } from "./dom.js";
+import { Trail } from "./trail.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Frame, Reach } from "../engine/types" */
@@ -12,13 +13,8 @@ import { colour, contextOf } from "./dom.js";
  * What others draw between the trail and the finger. While `isActive`, it is drawn at each picture of the screen.
  * @typedef {{ isActive: boolean, draw: (context: CanvasRenderingContext2D) => void }} Overlay
  */
-/** @typedef {{ xMm: number, yMm: number, friction: number, ms: number }} TrailPoint */
 
-/** How long a trail stays, s. */
-const TRAIL_S = 2.5;
-const TRAIL_STEPS = 4;
-/** A point of the trail for so many samples. */
-const TRAIL_EVERY = 8;
+
 /** The drawn finger follows within this time on bare glass, and as much longer at the largest friction, ms. */
 const FOLLOW_MS = 12;
 const DRAG_MS = 160;
@@ -41,8 +37,7 @@ export class Finger {
   #drawn = { xMm: 60, yMm: 40 };
   #isDown = false;
   #isInside = false;
-  /** @type {(TrailPoint | null)[]} */
-  #trail = [];
+  #trail = new Trail();
   #lastMs = 0;
   /** What was drawn last, without a trail; empty where a trail was. */
   #shown = "";
@@ -51,8 +46,6 @@ export class Finger {
    * @type {{ xMm: number, yMm: number } | undefined}
    */
   #replayed;
-  /** Part of the reach that is felt now, 0 to 1. */
-  #friction = 0;
   /** Others have drawn something new: one more picture. */
   #isStale = false;
   /** @type {Overlay[]} */
@@ -203,36 +196,23 @@ export class Finger {
    * @param {Reach} reach
    */
   feel(frame, reach) {
-    const span = Math.max(reach.highN - reach.lowN, 1e-9);
-    for (let at = 0; at < frame.feltN.length; at += TRAIL_EVERY) {
-      const felt = Number.isFinite(frame.feltN[at]) ? frame.feltN[at] : frame.referenceN[at];
-      // A finger that was up, for however short, left no trail there.
-      if (!frame.xMm.subarray(at, at + TRAIL_EVERY).every(Number.isFinite)) this.#trail.push(null);
-      else {
-        this.#friction = Math.max(0, Math.min(1.2, (felt - reach.lowN) / span));
-        this.#trail.push({ xMm: frame.xMm[at], yMm: frame.yMm[at], friction: this.#friction, ms: clock.nowMs() });
-      }
-    }
+    this.#trail.feel(frame, reach);
     const last = frame.xMm.length - 1;
     if (frame.slowness === 1 || !frame.contact) this.#replayed = undefined;
     else if (Number.isFinite(frame.xMm[last])) this.#replayed = { xMm: frame.xMm[last], yMm: frame.yMm[last] };
-    const oldest = clock.nowMs() - TRAIL_S * 1000;
-    const first = this.#trail.findIndex((point) => point !== null && point.ms >= oldest);
-    this.#trail = first < 0 ? [] : this.#trail.slice(first);
   }
 
   /** @param {number} ms */
   #frame(ms) {
     if (this.#keys.size > 0) this.#moveByKeys(ms);
     const isDragging = this.drags && this.#isDown;
-    const followMs = isDragging ? FOLLOW_MS + DRAG_MS * this.#friction : 0;
+    const followMs = isDragging ? FOLLOW_MS + DRAG_MS * this.#trail.friction : 0;
     const part = followMs === 0 ? 1 : 1 - Math.exp(-(ms - this.#lastMs) / followMs);
     this.#drawn.xMm += part * (this.#target.xMm - this.#drawn.xMm);
     this.#drawn.yMm += part * (this.#target.yMm - this.#drawn.yMm);
     this.#lastMs = ms;
-    this.#trail = this.#trail.filter((point) => point === null || ms - point.ms < TRAIL_S * 1000);
-    if (!this.#trail.some((point) => point !== null)) this.#trail = [];
-    const isMoving = this.#trail.length > 0 || this.#isStale || this.overlays.some(({ isActive }) => isActive);
+    this.#trail.fade(ms);
+    const isMoving = !this.#trail.isEmpty || this.#isStale || this.overlays.some(({ isActive }) => isActive);
     const shown = isMoving ? "" : JSON.stringify([this.#finger, this.#isDown, this.#area, this.#hasFocus]);
     // A finger that rests is drawn once.
     if (shown === "" || shown !== this.#shown) this.#draw();
@@ -259,7 +239,7 @@ export class Finger {
     const context = contextOf(this.#canvas);
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.#area.width, this.#area.height);
-    this.#drawTrail(context);
+    if (!this.#isBlind) this.#trail.draw(context, this.#map.scale);
     // The lens of a replay shows what is under its finger.
     if (this.#replayed) this.#drawFinger(context);
     if (!this.#isBlind) for (const overlay of this.overlays) overlay.draw(context);
@@ -277,7 +257,7 @@ export class Finger {
     context.arc(x, y, Math.max(9, 4 * scale), 0, 2 * Math.PI);
     context.fillStyle = isDown ? "#ffffff59" : "#ffffff1f";
     context.fill();
-    context.lineWidth = isDown && !this.#isBlind ? 2 + 5 * this.#friction : 2;
+    context.lineWidth = isDown && !this.#isBlind ? 2 + 5 * this.#trail.friction : 2;
     context.strokeStyle = isDown ? colour("felt", this.#map.box) : "#fff";
     context.stroke();
     context.lineWidth = 1;
@@ -285,44 +265,5 @@ export class Finger {
     context.beginPath();
     context.arc(x, y, Math.max(9, 4 * scale) + 4, 0, 2 * Math.PI);
     context.stroke();
-  }
-
-  /**
-   * The way of the finger, thicker where more friction was felt, and fading in steps, so that few paths are drawn.
-   * @param {CanvasRenderingContext2D} context
-   */
-  #drawTrail(context) {
-    if (this.#isBlind) return;
-    const { scale } = this.#map;
-    const now = clock.nowMs();
-    const paths = new Map();
-    for (let at = 1; at < this.#trail.length; at += 1) {
-      const [from, to] = [this.#trail[at - 1], this.#trail[at]];
-      if (!from || !to) continue;
-      const age = Math.min(TRAIL_STEPS - 1, Math.floor((TRAIL_STEPS * (now - to.ms)) / (TRAIL_S * 1000)));
-      const width = Math.round(5 * to.friction);
-      const key = `${age} ${width}`;
-      const line = paths.get(key) ?? {
-        alpha: 0.9 * (1 - age / TRAIL_STEPS),
-        width: 1.5 + 1.8 * width,
-        path: new Path2D(),
-      };
-      paths.set(key, line);
-      const { path } = line;
-      path.moveTo(from.xMm * scale, from.yMm * scale);
-      path.lineTo(to.xMm * scale, to.yMm * scale);
-    }
-    for (const { extra, ink } of [
-      { extra: 3, ink: "#000" },
-      { extra: 0, ink: "#fff" },
-    ]) {
-      context.strokeStyle = ink;
-      for (const { alpha, width, path } of paths.values()) {
-        context.globalAlpha = alpha;
-        context.lineWidth = width + extra;
-        context.stroke(path);
-      }
-    }
-    context.globalAlpha = 1;
   }
 }

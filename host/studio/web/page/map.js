@@ -1,14 +1,13 @@
-// The friction map with ruler, scale and names; the finger has a canvas of its own above it (finger.js).
+// The friction map, as large as its box or in real size; the finger has a canvas of its own above it (finger.js).
 // @ts-check
 
-import { SCALE, imageOf } from "./colors.js";
-import { colour, contextOf, shortName } from "./dom.js";
+import { imageOf } from "./colors.js";
+import { colour, contextOf } from "./dom.js";
+import { drawDraft, drawNames, drawRuler, drawScale } from "./map_labels.js";
 import { MOCKUPS, drawMockup } from "./mockup.js";
 
-/** @import { Checked, FrictionField, Layer, MapSize, Screen } from "../engine/types" */
+/** @import { Checked, FrictionField, MapSize, Screen } from "../engine/types" */
 /** @typedef {{ left: number, top: number, width: number, height: number }} Area Of the map in its box, CSS pixels. */
-/** @typedef {{ x: number, y: number, width: number, height: number }} Box */
-/** @typedef {{ line: string, text: string }} Ink */
 
 /** Room for ruler and scale around the map, CSS pixels: in a narrow box they are above and below it. */
 const AROUND_PX = {
@@ -16,8 +15,6 @@ const AROUND_PX = {
   narrow: { left: 2, top: 24, right: 2, bottom: 28 },
 };
 const NARROW_BOX_PX = 480;
-/** Height of the word that marks a draft, CSS pixels. */
-const DRAFT_HEIGHT_PX = 36;
 
 /** Longer side of a small picture of the map, pixels. */
 const THUMBNAIL_PX = 240;
@@ -192,7 +189,8 @@ export class FrictionMap {
     const [map, check, picture] = [this.#map, this.#check, this.#picture];
     if (!map || !check || !picture) return;
     const { widthMm, heightMm } = this.screen;
-    const area = { x: this.#around.left, y: this.#around.top, width: widthMm * this.scale, height: heightMm * this.scale };
+    const { left, top } = this.#around;
+    const area = { x: left, y: top, width: widthMm * this.scale, height: heightMm * this.scale };
     context.save();
     context.translate(area.x, area.y);
     // A blind comparison shows nothing of the friction.
@@ -205,162 +203,11 @@ export class FrictionMap {
     else context.drawImage(picture, 0, 0, area.width, area.height);
     context.restore();
     const ink = { line: colour("soft", this.box), text: colour("ink", this.box) };
-    this.#drawRuler(context, area, ink);
-    if (this.look !== "mockup") this.#drawScale(context, map, area, ink);
-    if (this.hasNames && this.look !== "mockup" && !isBlind) this.#drawNames(context, check, area);
+    const isNarrow = this.#around === AROUND_PX.narrow;
+    const labels = { screen: this.screen, scale: this.scale, isNarrow, ink };
+    drawRuler(context, area, labels);
+    if (this.look !== "mockup") drawScale(context, map, area, labels);
+    if (this.hasNames && this.look !== "mockup" && !isBlind) drawNames(context, check, area, this.scale);
     if (check.isDraft && !isBlind) drawDraft(context, area);
   }
-
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Box} area
-   * @param {Ink} ink
-   */
-  #drawRuler(context, { x, y, width, height }, ink) {
-    context.fillStyle = ink.text;
-    context.strokeStyle = ink.line;
-    context.font = "13px system-ui, sans-serif";
-    const every = [10, 20, 50, 100, 200, 500].find((step) => step * this.scale >= 44) ?? 1000;
-    const isNarrow = this.#around === AROUND_PX.narrow;
-    context.lineWidth = 1;
-    context.beginPath();
-    context.textBaseline = "bottom";
-    for (let mm = 0; mm <= this.screen.widthMm; mm += every / 5) {
-      const isLong = Math.round((mm * 5) / every) % 5 === 0;
-      context.moveTo(x + mm * this.scale, y - 2);
-      context.lineTo(x + mm * this.scale, y - (isLong ? 9 : 5));
-      const isCut = isNarrow && x + mm * this.scale > x + width - 12;
-      context.textAlign = isNarrow && mm === 0 ? "left" : "center";
-      if (isLong && !isCut) context.fillText(mm === 0 ? "0 mm" : `${Math.round(mm)}`, x + mm * this.scale, y - 10);
-    }
-    context.textAlign = "right";
-    context.textBaseline = "middle";
-    for (let mm = 0; mm <= this.screen.heightMm && !isNarrow; mm += every / 5) {
-      const isLong = Math.round((mm * 5) / every) % 5 === 0;
-      context.moveTo(x - 2, y + mm * this.scale);
-      context.lineTo(x - (isLong ? 9 : 5), y + mm * this.scale);
-      if (isLong && mm > 0) context.fillText(`${Math.round(mm)}`, x - 11, y + mm * this.scale);
-    }
-    context.stroke();
-    context.strokeRect(x - 0.5, y - 0.5, width + 1, height + 1);
-  }
-
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {FrictionField} map
-   * @param {Box} area
-   * @param {Ink} ink
-   */
-  #drawScale(context, { lowN, highN }, { x, y, width, height }, ink) {
-    const isNarrow = this.#around === AROUND_PX.narrow;
-    const bar = isNarrow
-      ? { left: x + 6, top: y + height + 6, length: width - 50 }
-      : { left: x + width + 10, top: y + 18, length: height - 18 };
-    /** Fills a part of the bar, from 0 at low to 1 at high friction, and `wide` pixels across it from `across`. */
-    const fill = (/** @type {number} */ from, /** @type {number} */ long, across = 0, wide = 14) => {
-      if (isNarrow) context.fillRect(bar.left + from * bar.length, bar.top + across, long, wide / 2);
-      else context.fillRect(bar.left + across, bar.top + (1 - from) * bar.length - long, wide, long);
-    };
-    for (let at = 0; at < 256; at += 1) {
-      context.fillStyle = `rgb(${SCALE.subarray(3 * at, 3 * at + 3).join(",")})`;
-      fill(at / 256, bar.length / 256 + 1);
-    }
-    context.fillStyle = ink.text;
-    context.font = "13px system-ui, sans-serif";
-    context.textAlign = isNarrow ? "center" : "left";
-    context.textBaseline = "middle";
-    if (isNarrow) context.fillText("mN", x + width - 18, bar.top + 12);
-    else context.fillText("mN", bar.left, y + 6);
-    const room = isNarrow ? 40 : 26;
-    const everyMn =
-      [5, 10, 20, 25, 50, 100, 200, 500].find((step) => (bar.length * step) / (1000 * (highN - lowN)) >= room) ?? 1000;
-    for (let mN = Math.ceil((lowN * 1000) / everyMn) * everyMn; mN <= highN * 1000 + 1e-6; mN += everyMn) {
-      const part = (mN / 1000 - lowN) / (highN - lowN);
-      const place = Math.max(5, Math.min(part * bar.length, bar.length - 5));
-      if (isNarrow) context.fillText(`${mN}`, bar.left + Math.max(14, place), bar.top + 15);
-      else context.fillText(`${mN}`, bar.left + 22, bar.top + bar.length - place);
-      if (!isNarrow) fill(part, 1, 14, 4);
-    }
-  }
-
-  /**
-   * Each layer's name in the top left corner of its region, below the names that are there already.
-   * @param {CanvasRenderingContext2D} context
-   * @param {Checked} check
-   * @param {Box} area
-   */
-  #drawNames(context, { layers, isDraft }, { x, y, width, height }) {
-    context.font = "600 14px system-ui, sans-serif";
-    context.textAlign = "left";
-    context.textBaseline = "middle";
-    context.lineJoin = "round";
-    /** @type {{ left: number, place: number, wide: number }[]} */
-    const taken = [];
-    // Below the word in the corner.
-    const top = y + (isDraft ? DRAFT_HEIGHT_PX : 0) + 14;
-    for (const { name, box } of namedBoxes(layers, this.screen)) {
-      const wide = context.measureText(name).width + 16;
-      const left = Math.max(x + 8, Math.min(x + box.x * this.scale + 8, x + width - wide));
-      let place = Math.max(top, y + box.y * this.scale + 14);
-      const isTaken = () =>
-        taken.some(
-          (other) =>
-            Math.abs(other.place - place) < 20 && left < other.left + other.wide && other.left < left + wide,
-        );
-      for (let tries = 0; tries < 6 && isTaken(); tries += 1) place += 20;
-      if (place > y + height - 8 || isTaken()) continue;
-      taken.push({ left, place, wide });
-      context.strokeStyle = "#000c";
-      context.lineWidth = 4;
-      context.strokeText(name, left, place);
-      context.fillStyle = "#fff";
-      context.fillText(name, left, place);
-    }
-  }
-}
-
-/**
- * Marks a map whose scene a board would refuse: stripes along the edge, and the word.
- * @param {CanvasRenderingContext2D} context
- * @param {Box} area
- */
-function drawDraft(context, { x, y, width, height }) {
-  const wide = 10;
-  context.save();
-  context.beginPath();
-  context.rect(x, y, width, height);
-  context.rect(x + wide, y + wide, width - 2 * wide, height - 2 * wide);
-  context.clip("evenodd");
-  context.fillStyle = "#000";
-  context.fillRect(x, y, width, height);
-  context.strokeStyle = "#ffd23f";
-  context.lineWidth = 7;
-  context.beginPath();
-  for (let at = -height; at < width; at += 20) {
-    context.moveTo(x + at, y + height);
-    context.lineTo(x + at + height, y);
-  }
-  context.stroke();
-  context.restore();
-  const words = "draft";
-  context.font = "700 20px system-ui, sans-serif";
-  const long = context.measureText(words).width + 28;
-  context.fillStyle = "#000";
-  context.fillRect(x, y, long, DRAFT_HEIGHT_PX);
-  context.fillStyle = "#ffd23f";
-  context.textAlign = "left";
-  context.textBaseline = "middle";
-  context.fillText(words, x + 14, y + DRAFT_HEIGHT_PX / 2);
-}
-
-/**
- * Names of layers with the box of each region; a layer without a region has the whole screen.
- * @param {Layer[]} layers
- * @param {Screen} screen
- */
-function namedBoxes(layers, screen) {
-  return layers.map(({ name, boxMm }) => {
-    const [x, y, width, height] = boxMm ?? [0, 0, screen.widthMm, screen.heightMm];
-    return { name: shortName(name), box: { x, y, width, height } };
-  });
 }

@@ -5,7 +5,7 @@
 /** @import { Project } from "./project.js" */
 /**
  * The layer behind all others in the text of a scene is selected, once a check finds more than `count` layers there.
- * `opened` is the scene, as the project counts them. `isNew`: the scene is about to open, and the mode Edit begins then.
+ * `opened` is the scene, as the project counts them. `isNew`: that scene opens next, and the mode Edit begins with it.
  * @typedef {{ opened: number, count: number, isNew?: boolean }} Awaited
  */
 
