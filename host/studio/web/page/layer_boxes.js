@@ -2,6 +2,7 @@
 // @ts-check
 
 import { element } from "./dom.js";
+import { clamp } from "./place.js";
 import { numberText } from "./toml_text.js";
 
 /** @import { EditedLayer } from "./edited_layers.js" */
@@ -15,6 +16,8 @@ const HANDLES = {
 /** A shorter side has no handle of its own, and the handles of so small a box stand outside of it, CSS pixels. */
 const LONG_SIDE_PX = 80;
 const OUTSIDE_PX = 8;
+/** The middle of a handle is at least so far from the edges of the screen, so that all of it is seen, CSS pixels. */
+const SEEN_PX = 8;
 
 export class LayerBoxes {
   #parent;
@@ -107,8 +110,10 @@ export class LayerBoxes {
       const isLong = (y === 0.5 ? height : width) >= LONG_SIDE_PX;
       handle.hidden = place?.whyNotResized !== "" || (!isCorner && (place.keepsRatio || !isLong));
       if (!place) continue;
-      handle.style.left = `${place.box.x * scale + x * width + (2 * x - 1) * out}px`;
-      handle.style.top = `${place.box.y * scale + y * height + (2 * y - 1) * out}px`;
+      const [left, top] = [place.box.x * scale + x * width, place.box.y * scale + y * height];
+      const { clientWidth, clientHeight } = this.#parent;
+      handle.style.left = `${clamp(left + (2 * x - 1) * out, SEEN_PX, clientWidth - SEEN_PX)}px`;
+      handle.style.top = `${clamp(top + (2 * y - 1) * out, SEEN_PX, clientHeight - SEEN_PX)}px`;
     }
   }
 

@@ -12,14 +12,15 @@ import { numberText } from "./toml_text.js";
 /** @import { Beginning } from "./beginnings.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { LayerNumber, Most } from "./layer_numbers.js" */
-/** @import { Side } from "./place.js" */
+/** @import { Place, Side } from "./place.js" */
 
 /** @type {[Side, string][]} */
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
+const SIDE_DECIMALS = 2;
 /** Least height of the panel, CSS pixels. */
 const LEAST_PX = 220;
 /** A scope of this height has room for it, CSS pixels. */
-const HIGH_PX = 380;
+const HIGH_PX = 480;
 /** Distance from the edges of what scrolls it, CSS pixels. */
 const EDGE_PX = 12;
 const HINT =
@@ -34,6 +35,8 @@ export class LayerPanel {
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
   /** The rows of the numbers, by field. */
   #rows = /** @type {Map<string, NumberRow>} */ (new Map());
+  /** Where the layer is. @type {Place | undefined} */
+  #place;
   /** For what the verdict was made. */
   #feltFor = "";
   /** For what the panel was made. */
@@ -87,6 +90,7 @@ export class LayerPanel {
    */
   show(edited, numbers, reach, isNew) {
     const { layer, place, at } = edited;
+    this.#place = place;
     // While a layer is selected, its rows stay in their order, and its sliders keep their ends.
     const fields = numbers.map(({ field }) => field).sort();
     const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, fields, reach.naturalN, reach.reachN]);
@@ -97,7 +101,7 @@ export class LayerPanel {
       // A layer of the whole screen is not moved, but gets a region from either side.
       const isMoved = (side === "x" || side === "y") && !place.isWholeScreen;
       const why = isMoved ? place.whyNotMoved : place.whyNotResized;
-      const text = numberText(place.box[side], 2);
+      const text = numberText(place.box[side], SIDE_DECIMALS);
       if (input !== document.activeElement || Number(input.value) !== Number(text)) input.value = text;
       input.disabled = why !== "" || (side === "height" && place.keepsRatio);
       input.title = why;
@@ -114,6 +118,10 @@ export class LayerPanel {
    */
   #showFelt(layer, reach) {
     const { felt, perceived, index } = layer;
+    // What is below stays where it is while a hand drags a slider there, however long the sentence is.
+    const isHeld = this.element.querySelector("input:active") !== null;
+    const { style, offsetHeight } = this.#felt;
+    style.maxHeight = isHeld ? style.maxHeight || `${offsetHeight}px` : "";
     // A person may be about to press what stands there.
     const feltFor = JSON.stringify([index === UNCHECKED, felt, perceived, reach]);
     if (feltFor === this.#feltFor) return;
@@ -209,7 +217,11 @@ export class LayerPanel {
     input.oninput = () => {
       if (input.value !== "" && Number.isFinite(input.valueAsNumber)) this.onSide(side, input.valueAsNumber);
     };
-    input.onchange = () => this.onEnd();
+    input.onchange = () => {
+      this.onEnd();
+      // What is no number was not taken.
+      if (input.value === "" && this.#place) input.value = numberText(this.#place.box[side], SIDE_DECIMALS);
+    };
     this.#sides.set(side, input);
     return element("label", {}, label, input);
   }
