@@ -19,7 +19,7 @@ test("the layers are one stop of Tab, and the panel of the one that is selected 
   assert.match(await selected(page), /^left, /);
   await press(page, "Tab");
   assert.match(await selected(page), /^left, /);
-  assert.equal(await focusedName(page), "Deselect");
+  assert.equal(await focusedName(page), "Name of left");
   await press(page, "Shift+Tab", "PageDown", "PageDown");
   assert.match(await selected(page), /^right, /);
   await press(page, "PageUp", "PageUp", "Enter");
@@ -113,5 +113,28 @@ test("Escape closes the options wherever the focus is, and so does Tab past thei
   await press(page, "Tab");
   assert.ok(await menu.isHidden(), "the focus has left it");
   assert.match(await selected(page), /^left, /);
+  assert.deepEqual(errors, []);
+});
+
+test("F2 leads to the name of a layer, Enter gives it, and Escape and a name that is taken leave it", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  await press(page, "F2");
+  await page.keyboard.type("door bell");
+  await press(page, "Enter");
+  assert.equal(await textOf(page), PLATES.replace('"left" ', '"door bell" '));
+  assert.match(await selected(page), /^door bell, constant, /);
+  await plays(page);
+  await press(page, "ArrowRight", "F2");
+  assert.equal(await focusedName(page), "Name of door bell");
+  await page.keyboard.type("x");
+  await press(page, "Escape", "F2");
+  await page.keyboard.type("right");
+  await press(page, "Enter");
+  assert.equal(await page.locator(".layer-panel .note").textContent(), "Another layer is called right.");
+  assert.match(await textOf(page), /name = "door bell" .*\n.*\n.*x_mm = 11\.0/);
+  await press(page, "Control+z", "Control+z");
+  assert.equal(await textOf(page), PLATES);
+  await page.locator("[aria-current=true][aria-label^='left, ']").waitFor();
   assert.deepEqual(errors, []);
 });

@@ -9,7 +9,7 @@ import { element } from "./dom.js";
 /** What is read out at each layer. */
 const WORDS =
   "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Page Down: next layer, Page Up: that before. " +
-  "Enter or Tab: its numbers. Ctrl+Enter: its text. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
+  "Enter or Tab: its numbers. Ctrl+Enter: its text. F2: its name. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
 /** Keys that select another layer; with Ctrl, the arrow keys do so, too. @type {Record<string, 1 | -1>} */
 const OTHERS = { PageDown: 1, PageUp: -1 };
 /** @type {Record<string, 1 | -1>} */
@@ -58,6 +58,7 @@ export class HandKeys {
       this.#move(ARROWS[key], altKey ? FINE_STEP_MM : shiftKey ? LARGE_STEP_MM : STEP_MM);
     } else if (altKey) return;
     else if (key === "Enter" || key === " ") hands.focusPanel();
+    else if (key === "F2") hands.focusName();
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
       if (hands.grip.hasChanged) hands.grip.cancel();
@@ -85,7 +86,8 @@ export class HandKeys {
   #shortcut(event) {
     const { target, ctrlKey, metaKey, altKey, shiftKey, repeat } = event;
     if (!(ctrlKey || metaKey) || altKey || !(target instanceof Element)) return;
-    if (document.querySelector("dialog[open]") || (!this.#panel.contains(target) && target.closest(FIELDS))) return;
+    const isOfScene = this.#panel.contains(target) && !target.matches(".layer-name");
+    if (document.querySelector("dialog[open]") || (!isOfScene && target.closest(FIELDS))) return;
     const key = event.key.toLowerCase();
     if (key === "z" || key === "y") this.#hands.undoOrRedo(key === "y" || shiftKey ? "redo" : "undo");
     else if (key === "d" && !shiftKey && this.#hands.selected) {

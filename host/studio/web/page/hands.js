@@ -281,6 +281,16 @@ export class Hands {
     }
   }
 
+  /** @param {string} name That the selected layer is to have. */
+  rename(name) {
+    const { selected } = this;
+    if (selected) this.#edit(() => this.#edits.rename(selected, name));
+  }
+
+  focusName() {
+    if (this.selected) this.#view.panel.name.focus();
+  }
+
   duplicate() {
     const { selected } = this;
     if (selected) this.#edit(() => this.#edits.duplicate(selected));

@@ -4,6 +4,7 @@
 import { BEGINNINGS } from "./beginnings.js";
 import { element } from "./dom.js";
 import { feltLine } from "./felt.js";
+import { LayerName } from "./layer_name.js";
 import { UNCHECKED } from "./layer_edits.js";
 import { NumberRow } from "./number_row.js";
 import { numberText } from "./toml_text.js";
@@ -29,6 +30,8 @@ const EMPTY_HINT = "This scene has no layer yet: add one.";
 
 export class LayerPanel {
   element = element("div", { className: "layer-panel", role: "group", hidden: true });
+  /** The field of the name. */
+  name = new LayerName();
   #note = element("p", { className: "fine note", role: "status" });
   #felt = element("div", { className: "layer-felt" });
   /** The fields of the sides of the box. */
@@ -78,7 +81,8 @@ export class LayerPanel {
   }
 
   focus() {
-    const first = this.element.querySelector("input") ?? this.element.querySelector("button");
+    /** @type {HTMLElement | null} */
+    const first = this.element.querySelector("input[type=number]") ?? this.element.querySelector("button");
     first?.focus();
   }
 
@@ -179,8 +183,9 @@ export class LayerPanel {
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
     const onclick = () => this.onClose();
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
-    const title = element("span", {}, element("b", {}, name), name === kind ? "" : ` ${kind}`);
-    const head = element("div", { className: "layer-panel-head" }, title, close);
+    this.name.show(name, at === undefined);
+    const title = element("span", {}, name === kind ? "" : kind);
+    const head = element("div", { className: "layer-panel-head" }, this.name.element, title, close);
     this.element.replaceChildren(head, this.#note);
     if (at !== undefined) {
       const sides = SIDES.map(([side, label]) => this.#side(side, label, name));
