@@ -1,8 +1,8 @@
-// The page in a browser: the numbers of a layer in the panel of the mode Edit.
+// The page in a browser: the numbers of a layer in the panel of the mode Edit, and where the panel is.
 
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
-import { onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
+import { PLATES, onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
 import { cleanUp, endLeftovers } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING } from "./page.mjs";
 
@@ -182,5 +182,81 @@ test("handles at the edge of the screen are whole", async () => {
     assert.ok(left >= map.x && left + 14 <= map.x + map.width, `${left} of ${JSON.stringify(map)}`);
     assert.ok(top >= map.y && top + 14 <= map.y + map.height, `${top} of ${JSON.stringify(map)}`);
   }
+  assert.deepEqual(errors, []);
+});
+
+test("numbers of a layer are tuned in the panel", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const slider = page.getByLabel("wavelength of right, mm", { exact: true });
+  assert.deepEqual(await slider.evaluate(({ min, max, value }) => [min, max, value]), ["0.5", "20", "4"]);
+  const { x, y, width, height } = await slider.boundingBox();
+  await page.mouse.move(x + width * 0.2, y + height / 2);
+  await page.mouse.down();
+  for (const part of [0.3, 0.5, 0.7]) await page.mouse.move(x + width * part, y + height / 2);
+  await page.mouse.up();
+  const [, mm] = /wavelength_mm = (\d+(?:\.\d)?)\n/.exec(await textOf(page));
+  assert.ok(mm > 10 && mm < 18, mm);
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), PLATES, "a slider's drag is one step");
+  await plays(page);
+  await page.getByLabel("gain of right, ×, as a number").fill("0.75");
+  await press(page, "Enter");
+  assert.equal(await textOf(page), `${PLATES}gain = 0.75\n`);
+  await page.getByLabel("width of right, mm").fill("30");
+  await page.getByLabel("left of right, mm").fill("60.25");
+  await press(page, "Enter");
+  assert.match(await textOf(page), /region\.x_mm = 60\.25\n.*\nregion\.width_mm = 30\n.*\nx_mm = 80\.25\n/);
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("a slider lets go where its key goes up elsewhere, and a number that no scene has is not shown", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const slider = page.getByLabel("friction of left, of reach", { exact: true });
+  await slider.focus();
+  await page.keyboard.down("ArrowRight");
+  assert.ok(await page.evaluate(() => studioPage.player.isHeld));
+  await press(page, "Tab");
+  await page.keyboard.up("ArrowRight");
+  await plays(page);
+  assert.match(await textOf(page), /friction_fraction = 0\.51\n/);
+  const number = page.getByLabel("friction of left, of reach, as a number");
+  await number.fill("1000");
+  await press(page, "Enter");
+  assert.equal(await number.inputValue(), "0.51");
+  assert.deepEqual(errors, []);
+});
+
+test("sliders are for the numbers that count, and end where the finger does", async () => {
+  const { page, errors } = await openEditing();
+  const text = WHOLE_SCREEN_GRATING.replace("\n[[", "\n[defaults]\nlow_fraction = 0.1\n\n[[");
+  await page.evaluate((text) => played(text), text);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const labels = await page.locator(".layer-numbers [type=range]").evaluateAll((all) => all.map((each) => each.ariaLabel));
+  assert.deepEqual(labels.filter((label) => /^low/.test(label)), ["low of grating, N"]);
+  const most = () => page.getByLabel("high of grating, N", { exact: true }).evaluate(({ max }) => max);
+  const before = await most();
+  const names = await page.locator("#finger option").evaluateAll((all) => all.map(({ value }) => value));
+  await page.locator("#options summary").click();
+  await page.selectOption("#finger", names.find((name) => /dry/.test(name)));
+  await page.waitForFunction(
+    (before) => document.querySelector('[aria-label="high of grating, N"]').max !== before,
+    before,
+  );
+  await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("on a narrow window with the text open the panel has its place below the map", async () => {
+  const { page, errors } = await openEditing();
+  await page.setViewportSize({ width: 390, height: 844 });
+  await settled(page);
+  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const panel = await page.locator(".layer-panel").boundingBox();
+  const map = await page.locator(".map-card").boundingBox();
+  assert.ok(panel.width > 300 && panel.x >= 0 && panel.x + panel.width <= 390, JSON.stringify(panel));
+  assert.ok(panel.y >= map.y + map.height && panel.y + panel.height <= 844, JSON.stringify({ panel, map }));
   assert.deepEqual(errors, []);
 });

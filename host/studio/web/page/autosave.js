@@ -56,7 +56,7 @@ export class Autosave {
   async last() {
     try {
       const own = sessionStorage.getItem(OWN);
-      if (own && (await this.#works.claim(own, { waits: true }))) return sceneOf(await this.#works.get(own));
+      if (own && (await this.#works.claim(own, { waits: true }))) return sceneOfWork(await this.#works.get(own));
       for (const { id } of await this.#works.all()) if (await this.#works.claim(id)) return await this.work(id);
     } catch {
       // Without a store, or with a broken entry, the page begins with its first scene.
@@ -69,7 +69,7 @@ export class Autosave {
    * @param {string} id
    */
   async work(id) {
-    return sceneOf(await this.#works.get(id));
+    return sceneOfWork(await this.#works.get(id));
   }
 
   /** The piece of work that is open: `id` and `isEdited` bring it back where a scene is opened with them. */
@@ -188,7 +188,7 @@ export class Autosave {
  * @param {Work | undefined} work
  * @returns {SceneToOpen}
  */
-function sceneOf(work) {
+function sceneOfWork(work) {
   if (!work) throw new Error("The browser no longer keeps this scene.");
   const { id, isEdited, changedMs, zip } = work;
   return { ...projectOf(zip, { isOwn: true }), id, isEdited, changedMs };

@@ -6,7 +6,7 @@ import { byId, download } from "./dom.js";
 import { attempt, notify } from "./notices.js";
 import { Open } from "./open.js";
 import { mistakesIn } from "./problems.js";
-import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
+import { fragmentIn, isLink, linkOf, sceneOfFragment, whoCanOpen } from "./share.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Editor } from "./editor.js" */
@@ -21,7 +21,7 @@ import { fragmentIn, isLink, linkOf, sceneOf, whoCanOpen } from "./share.js";
 export function makeBar({ scene, gallery, works, editor, engine, project }) {
   const dialog = new Open(works, () => byId("files").click());
   dialog.onWork = async (id) => scene.open(await scene.work(id));
-  dialog.onLink = (fragment) => scene.open(sceneOf(fragment));
+  dialog.onLink = (fragment) => scene.open(sceneOfFragment(fragment));
   makeMenu();
   byId("open-gallery").onclick = () => attempt(() => gallery.open());
   byId("undo").onclick = () => editor.undo();
@@ -100,7 +100,7 @@ async function share(engine, project, text) {
  * @param {OpenScene} scene
  */
 export function openLink(scene) {
-  if (isLink(location.hash)) attempt(() => scene.open(sceneOf(location.hash)));
+  if (isLink(location.hash)) attempt(() => scene.open(sceneOfFragment(location.hash)));
 }
 
 /**
@@ -117,7 +117,7 @@ export function followLinks(scene) {
     /** @type {NodeListOf<HTMLDialogElement>} */
     const dialogs = document.querySelectorAll("dialog[open]");
     for (const dialog of dialogs) dialog.close();
-    attempt(() => scene.open(sceneOf(fragment)));
+    attempt(() => scene.open(sceneOfFragment(fragment)));
   };
   addEventListener("paste", paste, { capture: true });
 }

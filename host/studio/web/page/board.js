@@ -23,7 +23,7 @@ const WHY_NOT_ARMED = {
   failed: "The board does not have the scene that is shown.",
 };
 /** @type {Record<BoardState, string>} */
-const WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
+const STATE_WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 
 export class Board {
   #engine;
@@ -100,7 +100,7 @@ export class Board {
     document.documentElement.dataset.state = state;
     const name = link === "simulator" ? "Simulator" : driving;
     const details = fault && link !== "none" ? `, ${fault}` : "";
-    board.textContent = link === "none" ? "No board" : `${name}: ${WORDS[state]}${details}`;
+    board.textContent = link === "none" ? "No board" : `${name}: ${STATE_WORDS[state]}${details}`;
     board.title = board.textContent;
     this.#showArm(needsArm);
     const arm = byId("arm");

@@ -7,9 +7,10 @@ import { element } from "./dom.js";
 /** @import { Hands } from "./hands.js" */
 
 /** What is read out at each layer. */
-const WORDS =
+const KEYS_HELP =
   "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Page Down: next layer, Page Up: that before. " +
-  "Enter or Tab: its numbers. Ctrl+Enter: its text. F2: its name. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
+  "Enter or Tab: its numbers. Ctrl+Enter: its text. F2: its name. Ctrl+D doubles it. " +
+  "Delete removes it. Escape deselects it.";
 /** Keys that select another layer; with Ctrl, the arrow keys do so, too. @type {Record<string, 1 | -1>} */
 const OTHERS = { PageDown: 1, PageUp: -1 };
 /** @type {Record<string, 1 | -1>} */
@@ -34,7 +35,7 @@ export class HandKeys {
   constructor(surface, hands, panel) {
     this.#hands = hands;
     this.#panel = panel;
-    surface.append(element("p", { id: "hands-keys", hidden: true }, WORDS));
+    surface.append(element("p", { id: "hands-keys", hidden: true }, KEYS_HELP));
     surface.addEventListener("keydown", (event) => this.#down(event));
     surface.addEventListener("keyup", ({ key }) => key in ARROWS && !hands.isPressed && hands.grip.end());
     addEventListener("keydown", (event) => this.#shortcut(event), { capture: true });

@@ -21,7 +21,7 @@ const PLACE = ["x", "y", "height"];
 /** Fields that count without being written, with their defaults. */
 const DEFAULTS = { angle_deg: 0, gain: 1 };
 /** What numbers mean, by their labels. @type {Record<string, string>} */
-const WORDS = {
+const NUMBER_MEANINGS = {
   along: "friction along its direction",
   against: "friction against it",
   angle: "turn of the pattern",
@@ -96,7 +96,7 @@ export function layerNumbers(schema, toml, at, kind, reach) {
     return {
       field,
       label: name,
-      words: WORDS[name] ?? "",
+      words: NUMBER_MEANINGS[name] ?? "",
       ...(isLimited && most > 0 && { limit: most }),
       unit: field === "gain" ? "×" : unit,
       value,

@@ -4,10 +4,10 @@
 /** @import { Table } from "./completion.js" */
 
 /**
- * Values to begin with, as TOML. The schema has no examples; what stands here is felt on the example screen.
+ * First values of fields, as TOML. The schema has no examples; what stands here is felt on the example screen.
  * @type {Record<string, string>}
  */
-const BEGINNINGS = {
+const FIRST_VALUES = {
   region: "{ x_mm = 40, y_mm = 25, width_mm = 40, height_mm = 30 }",
   picture: '"textures/wood.jpg"',
   x_mm: "60",
@@ -48,7 +48,7 @@ export function missingLines(table, present) {
     if (choice.includes("kind") || choice.some((name) => name in present)) continue;
     const preferred = PREFERRED.flatMap((end) => choice.filter((name) => name.endsWith(end)));
     const name = preferred[0] ?? choice[0];
-    lines.push(`${name} = ${beginning(table, name)}`);
+    lines.push(`${name} = ${firstValue(table, name)}`);
   }
   return lines;
 }
@@ -57,8 +57,8 @@ export function missingLines(table, present) {
  * @param {Table} table
  * @param {string} name
  */
-function beginning({ properties }, name) {
-  const values = "picture" in properties ? { ...BEGINNINGS, ...OF_PICTURES } : BEGINNINGS;
+function firstValue({ properties }, name) {
+  const values = "picture" in properties ? { ...FIRST_VALUES, ...OF_PICTURES } : FIRST_VALUES;
   const { enum: words = [], const: word = words[0], minimum = 0, maximum = 1 } = properties[name] ?? {};
   return values[name] ?? (word === undefined ? String(Math.max(minimum, Math.min(1, maximum))) : JSON.stringify(word));
 }

@@ -14,7 +14,7 @@ import { read } from "./incoming.js";
  * @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, aspect: number }} OwnPicture
  */
 
-const WORDS = "A picture: black is bare glass, white the most that the drive can add.";
+const PICTURE_COMMENT = "A picture: black is bare glass, white the most that the drive can add.";
 
 /** Lets a person choose a picture; resolves to undefined if none is chosen. */
 export async function choosePicture() {
@@ -59,6 +59,6 @@ export async function beginWithPicture(scene, hands, project) {
   const picture = await choosePicture();
   if (!picture) return;
   const { name, bytes, aspect } = picture;
-  const text = sceneWith(WORDS, pictureLayer(name, aspect, project.screenOfNew));
+  const text = sceneWith(PICTURE_COMMENT, pictureLayer(name, aspect, project.screenOfNew));
   await hands.editNext(() => scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] }));
 }

@@ -13,7 +13,7 @@ const PLACED = ["rings", "spokes", "edge", "bitmap"];
 export const SIDES = ["x", "y", "width", "height"];
 /** @type {Record<Side, "width" | "height">} */
 export const ALONG = { x: "width", width: "width", y: "height", height: "height" };
-const ELSEWHERE =
+const FROM_OTHER_DEFAULTS =
   "The place of this layer comes from [defaults] of an included file: write it into the layer to move it.";
 
 export class PlaceReader {
@@ -185,7 +185,7 @@ export class PlaceReader {
     if (this.toml.value(["version"]) !== 2) return "Scenes of version 1 are edited in their text.";
     const isPlaced = PLACED.includes(this.#kind) && this.#kind !== "bitmap";
     const hasAll = (this.layer.boxMm === null || this.hasRegion) && (!isPlaced || this.anchors.length === 2);
-    if (!hasAll && hasOtherDefaults) return ELSEWHERE;
+    if (!hasAll && hasOtherDefaults) return FROM_OTHER_DEFAULTS;
     if (this.#isInForeignPixels)
       return "This layer is placed in pixels of a design in another file: change it in the text.";
     return "";

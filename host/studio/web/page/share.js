@@ -63,7 +63,7 @@ export function isLink(fragment) {
  * @param {string} fragment
  * @returns {SavedScene}
  */
-export function sceneOf(fragment) {
+export function sceneOfFragment(fragment) {
   const broken = "The link does not hold a scene: a part of it was lost or changed. The scene you had stays.";
   try {
     if (fragment.length > LINK_MAX) throw new Error(broken);
