@@ -93,3 +93,26 @@ test("a finger that is not the scene's is said at the options, also after a relo
   await page.waitForFunction(() => document.querySelector("#options summary").innerText === "Options: moist");
   assert.deepEqual(errors, []);
 });
+
+test("on its side a phone shows all of the screen, also with the lag and in the mode Edit", async () => {
+  const { page, errors } = await openPhone();
+  await page.setViewportSize({ width: 844, height: 390 });
+  const isWhole = async (how) => {
+    await settled(page);
+    const { top, bottom, header } = await page.evaluate(() => {
+      const { top, bottom } = document.getElementById("map-finger").getBoundingClientRect();
+      return { top, bottom, header: document.querySelector("header").getBoundingClientRect().bottom };
+    });
+    assert.ok(top >= header && bottom <= 390, `${how}: ${top} to ${bottom}`);
+    assert.ok(bottom - top > 200, `${how}: ${bottom - top} high`);
+    assert.ok((await page.locator("#options").boundingBox()).y >= header, `${how}: the tools`);
+  };
+  await isWhole("at first");
+  await page.click("#open-lag");
+  await isWhole("with the lag");
+  await page.evaluate(() => document.querySelector("main").scrollTo(0, 1000));
+  await isWhole("scrolled");
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await isWhole("edited");
+  assert.deepEqual(errors, []);
+});

@@ -30,13 +30,10 @@ export class LayerName {
     };
   }
 
-  /**
-   * @param {string} name
-   * @param {boolean} isFixed
-   */
-  show(name, isFixed) {
+  /** @param {string} name */
+  show(name) {
     this.#name = name;
-    Object.assign(this.element, { value: name, disabled: isFixed, size: Math.max(4, name.length) });
+    Object.assign(this.element, { value: name, size: Math.max(4, name.length) });
     this.element.setAttribute("aria-label", `Name of ${name}`);
   }
 

@@ -183,9 +183,10 @@ export class LayerPanel {
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
     const onclick = () => this.onClose();
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
-    this.name.show(name, at === undefined);
+    this.name.show(name);
+    const named = at === undefined ? element("b", {}, name) : this.name.element;
     const title = element("span", {}, name === kind ? "" : kind);
-    const head = element("div", { className: "layer-panel-head" }, this.name.element, title, close);
+    const head = element("div", { className: "layer-panel-head" }, named, title, close);
     this.element.replaceChildren(head, this.#note);
     if (at !== undefined) {
       const sides = SIDES.map(([side, label]) => this.#side(side, label, name));
