@@ -263,7 +263,6 @@ test("Delete says which layer it takes out and offers the way back, on which the
   await press(page, "Delete");
   const notice = page.locator("#notice");
   assert.equal(await notice.locator("span").textContent(), "Removed right.");
-  await plays(page);
   await notice.getByRole("button", { name: "Undo", exact: true }).click();
   assert.equal(await textOf(page), PLATES);
   await page.locator(".layer-box[aria-current=true]").waitFor();
