@@ -144,6 +144,11 @@ test("a click selects the smallest layer and keeps it; a double click, and Alt, 
   await name();
   assert.match(await note.textContent(), /^Selected left, the uppermost here\./);
   assert.deepEqual(names, ["left", "left", "all", "left"]);
+  // A handle takes none.
+  const { x, y, width, height } = await page.locator(".layer-handle[data-side=se]").boundingBox();
+  await page.mouse.click(x + width / 2, y + height / 2, { clickCount: 2 });
+  await name();
+  assert.equal(names.at(-1), "left");
   // A double click whose first click selects does no more.
   await page.mouse.click(...(await onPage(page, 100, 50)), { clickCount: 2 });
   await name();

@@ -84,7 +84,7 @@ export class HandDrag {
     const start = this.#at(event);
     const found = this.#under(start);
     const selected = this.#hands.selected;
-    this.#before = [this.#before[1], selected?.key];
+    this.#before = handle ? [] : [this.#before[1], selected?.key];
     // What is selected stays so: a person may be about to drag it.
     const isSelected = handle !== undefined || found.some(({ key }) => key === selected?.key);
     this.#hands.focus(isSelected ? selected?.key : found[0]?.key);
@@ -139,7 +139,7 @@ export class HandDrag {
     this.#press = undefined;
     this.#hands.isPressed = false;
     if (event.type === "pointercancel") this.#hands.grip.cancel();
-    else if (!press.hasMoved && event.altKey) this.#takeBeneath(press.start);
+    else if (!press.hasMoved && !press.handle && event.altKey) this.#takeBeneath(press.start);
     this.#hands.grip.end();
   }
 
