@@ -265,6 +265,8 @@ export class LayerPanel {
       left: `${Math.min(first.left, last.left) - left + around.scrollLeft}px`,
       top: `${first.top - top + around.scrollTop}px`,
       width: `${Math.max(first.right, last.right) - Math.min(first.left, last.left)}px`,
+      // It cuts no number in half.
+      minHeight: first === numbers ? `${numbers.height}px` : "",
       maxHeight: `${Math.min(height, around.clientHeight - 2 * EDGE_PX)}px`,
     });
   }
