@@ -94,6 +94,32 @@ test("with forced colours, bars, states and the focus are still seen", async () 
   await close();
 });
 
+test("with forced colours the curves, the lag and the layers on the map are told apart", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.emulateMedia({ forcedColors: "active" });
+  await page.reload();
+  await page.waitForFunction(() => document.getElementById("check")?.textContent === "plays");
+  const colours = (selector, property, pseudo) =>
+    page.evaluate(
+      ([selector, property, pseudo]) =>
+        [...document.querySelectorAll(selector)].map((each) => getComputedStyle(each, pseudo)[property]),
+      [selector, property, pseudo],
+    );
+  const areDifferent = (found) => assert.equal(new Set(found).size, found.length, `${found}`);
+  areDifferent((await colours(".u-legend .u-marker", "borderTopColor")).slice(1));
+  await page.click("#open-lag");
+  areDifferent(await colours(".lag-by", "borderTopColor"));
+  areDifferent(await colours(".lag-by", "backgroundColor", "::before"));
+  await page.evaluate(() => (document.getElementById("first-words").hidden = false));
+  assert.match((await colours("#first-words", "backgroundColor"))[0], /^rgb\(/);
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await page.locator(".layer-box").first().focus();
+  assert.deepEqual(await colours(".layer-box.is-selected", "outlineColor"), ["rgb(255, 255, 255)"]);
+  assert.match((await colours(".layer-box.is-selected", "boxShadow"))[0], /rgb\(0, 0, 0\)/);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
 test("with less motion nothing moves by itself but what a person does", async () => {
   const { page, errors, close } = await openStudio();
   await page.emulateMedia({ reducedMotion: "reduce" });

@@ -67,3 +67,21 @@ test("completion of a kind inserts what a layer of it needs, and the scene plays
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("what is no picture is named, and a card of the gallery has the place of its picture at once", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.click("#new");
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("text=Choose a picture…")]);
+  await chooser.setFiles([{ name: "notes.txt", mimeType: "text/plain", buffer: Buffer.from("x") }]);
+  await page.locator("#notice").waitFor();
+  assert.match(await page.locator("#notice span").textContent(), /^notes\.txt: expected /);
+  // Nothing is drawn yet.
+  const shapes = await page.evaluate(() => {
+    studioPage.engine.check = () => new Promise(() => {});
+    document.getElementById("open-gallery").click();
+    return [...document.querySelectorAll("#gallery canvas")].map((each) => each.clientWidth / each.clientHeight);
+  });
+  assert.ok(shapes.length > 5 && shapes.every((ratio) => Math.abs(ratio - 1.5) < 0.02), `${shapes}`);
+  assert.deepEqual(errors, []);
+  await close();
+});

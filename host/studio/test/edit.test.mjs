@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, afterEach, test } from "node:test";
-import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, settled, textOf } from "./editing.mjs";
+import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, textOf } from "./editing.mjs";
 import { cleanUp, endLeftovers } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
 import { pageModule } from "./page_module.mjs";
@@ -166,14 +166,12 @@ test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async (
   assert.deepEqual(errors, []);
 });
 
-test("Enter shows the text and leaves the keys to the layer; an arrow says why a layer does not move", async () => {
+test("Enter goes to the numbers and Escape back to the layer; an arrow says why a layer does not move", async () => {
   const { page, errors } = await openEditing();
-  await page.click("#toggle-drawer");
-  await settled(page);
   await page.mouse.click(...(await onPage(page, 20, 30)));
   await press(page, "Enter");
-  assert.ok(await page.locator("#drawer").isVisible());
-  await press(page, "ArrowRight");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "left of left, mm");
+  await press(page, "Escape", "ArrowRight");
   assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 11.0"));
   await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
   await page.mouse.click(...(await onPage(page, 60, 40)));
@@ -256,5 +254,33 @@ test("layers are taken out one after the other, faster than any check", async ()
   await press(page, "Control+z", "Control+z");
   assert.equal(await textOf(page), PLATES);
   await plays(page);
+  assert.deepEqual(errors, []);
+});
+
+test("Delete says which layer it takes out and offers the way back, on which the layer is selected again", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  await press(page, "Delete");
+  const notice = page.locator("#notice");
+  assert.equal(await notice.locator("span").textContent(), "Removed right.");
+  await notice.getByRole("button", { name: "Undo", exact: true }).click();
+  assert.equal(await textOf(page), PLATES);
+  await page.locator(".layer-box[aria-current=true]").waitFor();
+  assert.equal(await selected(page), "right, rings, 40 by 40 mm at 70, 20");
+  await press(page, "ArrowDown");
+  assert.match(await textOf(page), /region\.y_mm = 21 /, "the keys act on it");
+  const isBack = page.locator("[aria-current=true][aria-label='right, rings, 40 by 40 mm at 70, 20']");
+  await press(page, "Control+z");
+  await isBack.waitFor();
+  await press(page, "Control+d");
+  assert.match(await selected(page), /^right 2, /);
+  await press(page, "Control+z");
+  await isBack.waitFor();
+  // What was taken out before other changes comes back by Undo alone.
+  await press(page, "Delete");
+  await notice.waitFor();
+  await press(page, "Control+z");
+  await page.waitForFunction(() => document.getElementById("notice").hidden);
+  assert.equal(await textOf(page), PLATES);
   assert.deepEqual(errors, []);
 });

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers } from "./harness.mjs";
+import { cleanUp, endLeftovers, openPage, pageUrl } from "./harness.mjs";
 import { assertSays, give, openStudio } from "./page.mjs";
 
 afterEach(endLeftovers);
@@ -137,6 +137,41 @@ test("the map of a long screen has as many pixels along its longer side as any",
   });
   assert.ok(sizes.some(([widthPx, heightPx]) => widthPx < heightPx / 50), "the long screen stands");
   for (const [widthPx, heightPx] of sizes) assert.ok(Math.max(widthPx, heightPx) <= 960, `${widthPx} x ${heightPx}`);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+test("the columns stand before the engine is ready, and where they are then, also at the next visit", async () => {
+  const init = () => {
+    globalThis.widths = [];
+    const look = () => {
+      const card = document.querySelector(".map-card");
+      const numbers = document.querySelectorAll("#numbers div").length;
+      // The scripts have begun once the numbers are there.
+      if (card && numbers > 0) {
+        const said = document.getElementById("map-hint").textContent;
+        widths.push({ width: Math.round(card.getBoundingClientRect().width), isStarting: said === "starting…" });
+      }
+      requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  };
+  const { page, errors, close } = await openPage(pageUrl, { init });
+  const seen = async () => {
+    await page.waitForFunction(() => document.getElementById("check")?.textContent === "plays");
+    await page.waitForFunction(() => widths.some(({ isStarting }) => !isStarting));
+    const all = await page.evaluate(() => widths);
+    assert.ok(all.some(({ isStarting }) => isStarting), "the columns were there before");
+    return [...new Set(all.map(({ width }) => width))];
+  };
+  assert.equal((await seen()).length, 1);
+  await page.waitForFunction(() => globalThis.studioPage);
+  await give(page, ["wide.toml", "version = 2\n[screen]\nwidth_mm = 150\nheight_mm = 60\n"]);
+  await page.waitForFunction(() => studioPage.map.screen.widthMm === 150);
+  await page.reload();
+  const again = await seen();
+  assert.equal(again.length, 1, `${again}`);
+  assert.equal(await page.evaluate(() => studioPage.map.screen.widthMm), 150);
   assert.deepEqual(errors, []);
   await close();
 });

@@ -126,15 +126,33 @@ test("while a hand moves a layer, check and map follow, and nothing is played un
   assert.deepEqual(errors, []);
 });
 
-test("a click selects the smallest layer, the next click what lies below", async () => {
+test("a click selects the smallest layer and keeps it; a double click, and Alt, take what lies beneath", async () => {
   const all = '\n[[layer]]\nname = "all"\nkind = "speed"\nspeeds_mm_per_s = [1, 9]\nfactors = [1, 1]\n';
   const { page, errors } = await openEditing(PLATES + all);
   const names = [];
-  for (let times = 0; times < 3; times += 1) {
-    await page.mouse.click(...(await onPage(page, 20, 30)));
-    names.push((await selected(page)).split(",")[0]);
+  const place = await onPage(page, 20, 30);
+  const note = page.locator(".layer-panel .note");
+  const name = async () => names.push((await selected(page)).split(",")[0]);
+  for (const clickCount of [1, 1, 2]) {
+    await page.mouse.click(...place, { clickCount });
+    await name();
   }
-  assert.deepEqual(names, ["left", "all", "left"]);
+  assert.match(await note.textContent(), /^Selected all, beneath left\./);
+  await page.keyboard.down("Alt");
+  await page.mouse.click(...place);
+  await page.keyboard.up("Alt");
+  await name();
+  assert.match(await note.textContent(), /^Selected left, the uppermost here\./);
+  assert.deepEqual(names, ["left", "left", "all", "left"]);
+  // A handle takes none.
+  const { x, y, width, height } = await page.locator(".layer-handle[data-side=se]").boundingBox();
+  await page.mouse.click(x + width / 2, y + height / 2, { clickCount: 2 });
+  await name();
+  assert.equal(names.at(-1), "left");
+  // A double click whose first click selects does no more.
+  await page.mouse.click(...(await onPage(page, 100, 50)), { clickCount: 2 });
+  await name();
+  assert.equal(names.at(-1), "right");
   await press(page, "Escape");
   assert.equal(await page.locator(".layer-box[aria-current=true]").count(), 0);
   assert.equal(await page.locator(".layer-panel input").count(), 0);
@@ -170,9 +188,9 @@ test("everything works by keys alone", async () => {
   assert.equal(await selected(page), "left, constant, 30 by 30 mm at 10, 20");
   await press(page, "Shift+ArrowRight", "ArrowDown", "Alt+ArrowLeft");
   assert.match(await textOf(page), /\{x_mm = 14\.9, y_mm = 21,/);
-  await press(page, "Tab");
+  await press(page, "PageDown");
   assert.equal(await selected(page), "right, rings, 40 by 40 mm at 70, 20");
-  await press(page, "Shift+Tab");
+  await press(page, "Control+ArrowLeft");
   await press(page, "Control+z");
   assert.match(await textOf(page), /\{x_mm = 15\.0, y_mm = 21,/);
   await press(page, "Control+z", "Control+z");
@@ -193,7 +211,7 @@ test("everything works by keys alone", async () => {
   assert.match(await textOf(page), /friction_fraction = 0\.52\n/);
   await plays(page);
   await page.evaluate(() => document.getElementById("options").querySelector("summary").focus());
-  await press(page, "Tab", "Tab", "Control+Enter");
+  await press(page, "Tab", "PageDown", "Control+Enter");
   await page.waitForFunction(() => document.activeElement.classList.contains("cm-content"));
   assert.equal(await page.locator(".cm-activeLine").textContent(), "[[layer]]");
   await page.keyboard.type("# ");

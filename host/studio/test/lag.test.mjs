@@ -148,8 +148,10 @@ test("lines that a board without prediction jumps over are said to be missed", a
     await wait(300);
   });
   const words = await page.innerText("#lag-missed");
-  const [, missed, lines] = /^, (\d+) of (\d+) missed$/.exec(words) ?? [];
-  assert.ok(Number(lines) === 10 && missed >= 3 && missed <= 9, words);
+  // Its mean is of the others alone.
+  const [, felt, lines, missed] = /^, at (\d+) of (\d+) lines: it missed (\d+)$/.exec(words) ?? [];
+  assert.ok(Number(lines) === 10 && missed >= 3 && missed <= 9 && Number(felt) === lines - missed, words);
+  assert.match(await page.innerText("#lag .fine"), /A missed line is not felt/);
   assert.deepEqual(errors, []);
   await close();
 });

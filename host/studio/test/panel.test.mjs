@@ -116,6 +116,75 @@ repeat = { columns = 3, rows = 2, dx_mm = 30, dy_mm = 25 }
   assert.deepEqual(errors, []);
 });
 
+test("while a number is dragged its slider stays where it is, whatever is said of the layer", async () => {
+  const { page, errors } = await openEditing();
+  await page.click("#toggle-drawer");
+  for (const size of [{ width: 1366, height: 657 }, { width: 390, height: 844 }]) {
+    await page.setViewportSize(size);
+    await settled(page);
+    await page.mouse.click(...(await onPage(page, 100, 50)));
+    await page.evaluate(() => {
+      globalThis.checks = 0;
+      const { player } = studioPage;
+      const before = player.onCheck;
+      player.onCheck = (...args) => {
+        before(...args);
+        checks += 1;
+      };
+    });
+    const slider = page.getByLabel("low of right, of reach", { exact: true });
+    await slider.scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await slider.boundingBox();
+    await page.mouse.move(x + 8, y + height / 2);
+    await page.mouse.down();
+    const heights = new Set();
+    for (const part of [0.1, 0.3, 0.5, 0.7, 0.85]) {
+      const checks = await page.evaluate(() => checks);
+      await page.mouse.move(x + width * part, y + height / 2);
+      await page.waitForFunction((before) => checks > before, checks);
+      heights.add(Math.round((await slider.boundingBox()).y));
+    }
+    await page.mouse.up();
+    assert.deepEqual([...heights], [Math.round(y)], JSON.stringify(size));
+    await plays(page);
+  }
+  assert.deepEqual(errors, []);
+});
+
+test("the panel shows all of a layer in a usual window, and a side that is no number is as before", async () => {
+  const { page, errors } = await openEditing();
+  await page.click("#toggle-drawer");
+  await page.setViewportSize({ width: 1366, height: 657 });
+  await settled(page);
+  await page.getByRole("button", { name: "Add button", exact: true }).click();
+  await plays(page);
+  const [shown, whole] = await page.locator(".layer-panel").evaluate((each) => [each.clientHeight, each.scrollHeight]);
+  assert.ok(whole <= shown, `${whole} of ${shown}`);
+  const left = page.locator(".layer-sides input").first();
+  const before = await left.inputValue();
+  await left.focus();
+  await press(page, "Control+a");
+  await page.keyboard.type("-");
+  await press(page, "Enter");
+  assert.equal(await left.inputValue(), before);
+  assert.deepEqual(errors, []);
+});
+
+test("handles at the edge of the screen are whole", async () => {
+  const { page, errors } = await openEditing(WHOLE_SCREEN_GRATING);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await settled(page);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const map = await page.locator("#map").boundingBox();
+  for (const handle of await page.locator(".layer-handle:visible").all()) {
+    const { x, y, width, height } = await handle.boundingBox();
+    const [left, top] = [x + width / 2 - 7, y + height / 2 - 7];
+    assert.ok(left >= map.x && left + 14 <= map.x + map.width, `${left} of ${JSON.stringify(map)}`);
+    assert.ok(top >= map.y && top + 14 <= map.y + map.height, `${top} of ${JSON.stringify(map)}`);
+  }
+  assert.deepEqual(errors, []);
+});
+
 test("numbers of a layer are tuned in the panel", async () => {
   const { page, errors } = await openEditing();
   await page.mouse.click(...(await onPage(page, 100, 50)));

@@ -20,7 +20,6 @@ import { Incoming } from "./page/incoming.js";
 import { Lag } from "./page/lag.js";
 import { Layers } from "./page/layers.js";
 import { Lens } from "./page/lens.js";
-import { FrictionMap } from "./page/map.js";
 import { NewScene } from "./page/new_scene.js";
 import { attempt, followPresses, notify } from "./page/notices.js";
 import { Numbers } from "./page/numbers.js";
@@ -31,9 +30,11 @@ import { showCheck, showOutcome, showStatus } from "./page/problems.js";
 import { Profiles } from "./page/profiles.js";
 import { Project } from "./page/project.js";
 import { RealSize } from "./page/real_size.js";
+import { makeMap } from "./page/room.js";
 import { Samples } from "./page/samples.js";
 import { Scope } from "./page/scope.js";
 import { keepSite } from "./page/site.js";
+import { guardSliders } from "./page/slider_touch.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
@@ -42,16 +43,19 @@ import { Works } from "./page/works.js";
 
 /** @import { Engine } from "./engine/engine.js" */
 /** @import { Checked, Reach } from "./engine/types" */
+/** @import { FrictionMap } from "./page/map.js" */
 /** @typedef {Awaited<ReturnType<typeof makeParts>>} Parts */
 
 const FIRST_SCENE = "brick";
 
 async function start() {
+  const laid = { map: makeMap(), numbers: new Numbers() };
   const engine = await createEngine();
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   followPresses();
-  const parts = await makeParts(engine);
+  guardSliders();
+  const parts = await makeParts(engine, laid);
   const scene = new OpenScene(parts);
   makeControls(parts);
   makeBar({ ...parts, scene });
@@ -78,19 +82,15 @@ async function start() {
   globalThis.studioPage = { engine, editor, sound, samples, map, player };
 }
 
-/** @param {Engine} engine */
-async function makeParts(engine) {
+/**
+ * @param {Engine} engine
+ * @param {{ map: FrictionMap, numbers: Numbers }} laid
+ */
+async function makeParts(engine, { map, numbers }) {
   const project = new Project(engine);
   const player = new Player(engine, project);
   const sceneSchema = await schema();
   const editor = new Editor(byId("editor"), sceneSchema);
-  const map = new FrictionMap(byId("map"), byId("map-picture"));
-  /** @type {HTMLElement | null} */
-  const grid = document.querySelector(".feel-grid");
-  map.onRoom = (widthPx, heightPx) => {
-    grid?.style.setProperty("--map-width", `${Math.ceil(widthPx) + 2}px`);
-    grid?.style.setProperty("--map-height", `${Math.ceil(heightPx) + 1}px`);
-  };
   const samples = new Samples();
   const sound = new Sound();
   const finger = new Finger(engine, map, byId("map-finger"));
@@ -109,7 +109,7 @@ async function makeParts(engine) {
     ghost: new Ghost({ engine, map, finger, sound }),
     hands: new Hands({ map, editor, player, project }, sceneSchema),
     scope: new Scope(samples, byId("scope")),
-    numbers: new Numbers(),
+    numbers,
     layers: new Layers(engine, editor),
     board: new Board(engine),
     gallery: new Gallery(engine),
@@ -212,6 +212,7 @@ function showWhatPlays(parts, scene) {
     if (compare.isRunning || status === "loaded") return;
     map.markStale(status === "loading" ? "drawing" : "older");
   };
+  layers.onChoose = ({ index }) => hands.choose(index);
   lag.onChange = () => scene.replay();
   board.onBoard = () => {
     lag.forgetStroke();

@@ -80,6 +80,8 @@ export function sentenceOf(error) {
   return error instanceof Error ? error.message : String(error);
 }
 
+/** Colours that say which curve is which: they are told apart where the system forces all others, too. */
+const CURVES = ["reference", "felt", "voltage"];
 /** @type {WeakMap<Element, Map<string, string>>} */
 let colours = new WeakMap();
 
@@ -95,6 +97,7 @@ export function colour(name, within) {
   if (before !== undefined) return before;
   const probe = element("span");
   probe.style.color = `var(--${name})`;
+  if (CURVES.includes(name)) probe.style.setProperty("forced-color-adjust", "none");
   within.append(probe);
   const { color } = getComputedStyle(probe);
   probe.remove();

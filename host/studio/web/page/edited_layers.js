@@ -134,6 +134,18 @@ export class EditedLayers {
   }
 
   /**
+   * A hand has given a layer another name. Returns it.
+   * @param {EditedLayer} edited
+   * @param {string} name
+   */
+  rename(edited, name) {
+    this.reread(edited);
+    const renamed = this.all.map((each) => (each.key === edited.key ? { ...each, layer: { ...each.layer, name } } : each));
+    this.all = renamed;
+    return this.find(edited.key);
+  }
+
+  /**
    * A hand is changing a layer: what is felt of the layers now. A check of a text with other layers says nothing.
    * @param {Layer[]} layers In the order of the text.
    */

@@ -49,19 +49,19 @@ export class Gallery {
     );
     const cards = sceneNames().map((name) => ({
       name,
-      card: element("article", { className: "scene" }, element("h3", {}, name.replaceAll("_", " "))),
+      ...emptyCard(name),
     }));
     scenes.append(...cards.map(({ card }) => card));
-    for (const { name, card } of cards) await this.#fill(card, name);
+    for (const { name, card, canvas } of cards) await this.#fill(card, canvas, name);
   }
 
   /**
    * @param {HTMLElement} card
+   * @param {HTMLCanvasElement} canvas
    * @param {string} name
    */
-  async #fill(card, name) {
+  async #fill(card, canvas, name) {
     const text = await sceneText(name);
-    const canvas = element("canvas", { "aria-hidden": "true" });
     const found = await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
     const open = element("button", { className: "primary" }, `Open ${name}`);
     open.onclick = () => {
@@ -76,7 +76,7 @@ export class Gallery {
       element("ul", {}, ...this.#layers(text, found)),
     );
     const words = element("p", { className: "fine" }, introduction(text));
-    card.replaceChildren(canvas, element("h3", {}, name.replaceAll("_", " ")), words, open, layers);
+    card.append(words, open, layers);
   }
 
   /**
@@ -93,6 +93,16 @@ export class Gallery {
       return element("li", {}, shortName(title), take);
     });
   }
+}
+
+/**
+ * A card whose picture has its place before it is drawn.
+ * @param {string} name
+ */
+function emptyCard(name) {
+  const canvas = element("canvas", { "aria-hidden": "true" });
+  const card = element("article", { className: "scene" }, canvas, element("h3", {}, name.replaceAll("_", " ")));
+  return { card, canvas };
 }
 
 /**

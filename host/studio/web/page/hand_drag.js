@@ -1,19 +1,20 @@
 // Presses and drags on the map while it is edited: which layer they select, and where they move or resize it to.
 // @ts-check
 
+import { shortName } from "./dom.js";
 import { SIDE_MIN_MM, bounds, clamp } from "./place.js";
 
 /** @import { Screen } from "../engine/types" */
-/** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
+/** @import { EditedLayers } from "./edited_layers.js" */
 /** @import { Hands } from "./hands.js" */
 /** @import { FrictionMap } from "./map.js" */
 /** @import { Box, Place, Side } from "./place.js" */
 /** @typedef {{ xMm: number, yMm: number }} Point */
 /** @typedef {{ x: [number, number], y: [number, number] }} Room Where the first copy can be, mm. */
 /**
- * A press that has not been lifted: where it began, what it dragged from there, and which layer a click would select.
+ * A press that has not been lifted: where it began, and what it dragged from there.
  * @typedef {{ pointerId: number, start: Point, clientX: number, clientY: number, handle: string | undefined,
- *   place: Place | undefined, hasMoved: boolean, next: EditedLayer | undefined }} Press
+ *   place: Place | undefined, hasMoved: boolean }} Press
  */
 
 /** A press that moves less is a click, CSS pixels. */
@@ -32,6 +33,8 @@ export class HandDrag {
   #map;
   /** @type {Press | undefined} */
   #press;
+  /** What was selected before each of the last two presses, by key. @type {(string | undefined)[]} */
+  #before = [];
 
   /**
    * @param {HTMLElement} surface
@@ -48,11 +51,15 @@ export class HandDrag {
     surface.addEventListener("pointermove", (event) => this.#move(event));
     surface.addEventListener("pointerup", (event) => this.#up(event));
     surface.addEventListener("pointercancel", (event) => this.#up(event));
+    surface.addEventListener("dblclick", (event) => {
+      // The first of both clicks may have selected it.
+      if (this.#before[0] === hands.selected?.key) this.#takeBeneath(this.#at(event));
+    });
     surface.addEventListener("pointerleave", () => hands.mark(undefined));
   }
 
   /**
-   * @param {PointerEvent} event
+   * @param {MouseEvent} event
    * @returns {Point}
    */
   #at({ clientX, clientY }) {
@@ -77,12 +84,12 @@ export class HandDrag {
     const start = this.#at(event);
     const found = this.#under(start);
     const selected = this.#hands.selected;
-    const at = found.findIndex((each) => each.key === selected?.key);
-    // A second click selects what lies below.
-    const next = handle || at < 0 ? undefined : found[(at + 1) % found.length];
-    if (!handle && at < 0) this.#hands.focus(found[0]?.key);
-    else if (selected) this.#hands.focus(selected.key);
-    this.#press = { pointerId, start, clientX, clientY, handle, place: undefined, hasMoved: false, next };
+    this.#before = handle ? [] : [this.#before[1], selected?.key];
+    // What is selected stays so: a person may be about to drag it.
+    const isSelected = handle !== undefined || found.some(({ key }) => key === selected?.key);
+    this.#hands.focus(isSelected ? selected?.key : found[0]?.key);
+    this.#press = { pointerId, start, clientX, clientY, handle, place: undefined, hasMoved: false };
+    this.#hands.isPressed = true;
   }
 
   /** @param {PointerEvent} event */
@@ -130,9 +137,26 @@ export class HandDrag {
     const press = this.#press;
     if (!press || event.pointerId !== press.pointerId) return;
     this.#press = undefined;
+    this.#hands.isPressed = false;
     if (event.type === "pointercancel") this.#hands.grip.cancel();
-    else if (!press.hasMoved && press.next) this.#hands.focus(press.next.key);
+    else if (!press.hasMoved && !press.handle && event.altKey) this.#takeBeneath(press.start);
     this.#hands.grip.end();
+  }
+
+  /**
+   * Selects the layer that lies beneath the one that is selected; beneath the last one, the first.
+   * @param {Point} point
+   */
+  #takeBeneath(point) {
+    const found = this.#under(point);
+    const { selected } = this.#hands;
+    const at = found.findIndex(({ key }) => key === selected?.key);
+    const next = found[(at + 1) % found.length];
+    if (!selected || at < 0 || next.key === selected.key) return;
+    this.#hands.focus(next.key);
+    const [taken, before] = [next, selected].map(({ layer }) => shortName(layer.name));
+    const where = at + 1 < found.length ? `beneath ${before}` : "the uppermost here";
+    this.#hands.say(`Selected ${taken}, ${where}. Double-click for the next one beneath.`);
   }
 }
 

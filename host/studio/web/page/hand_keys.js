@@ -8,8 +8,13 @@ import { element } from "./dom.js";
 
 /** What is read out at each layer. */
 const KEYS_HELP =
-  "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Tab: next layer. Space: its numbers. " +
-  "Enter shows its text, Ctrl+Enter goes there. Ctrl+D doubles it. Delete removes it. Escape deselects it.";
+  "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Page Down: next layer, Page Up: that before. " +
+  "Enter or Tab: its numbers. Ctrl+Enter: its text. F2: its name. Ctrl+D doubles it. " +
+  "Delete removes it. Escape deselects it.";
+/** Keys that select another layer; with Ctrl, the arrow keys do so, too. @type {Record<string, 1 | -1>} */
+const OTHERS = { PageDown: 1, PageUp: -1 };
+/** @type {Record<string, 1 | -1>} */
+const OTHERS_WITH_CTRL = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
 const STEP_MM = 1;
 const LARGE_STEP_MM = 5;
 const FINE_STEP_MM = 0.1;
@@ -32,7 +37,7 @@ export class HandKeys {
     this.#panel = panel;
     surface.append(element("p", { id: "hands-keys", hidden: true }, KEYS_HELP));
     surface.addEventListener("keydown", (event) => this.#down(event));
-    surface.addEventListener("keyup", ({ key }) => key in ARROWS && this.#hands.grip.end());
+    surface.addEventListener("keyup", ({ key }) => key in ARROWS && !hands.isPressed && hands.grip.end());
     addEventListener("keydown", (event) => this.#shortcut(event), { capture: true });
   }
 
@@ -41,15 +46,20 @@ export class HandKeys {
     const { key, shiftKey, altKey } = event;
     const hands = this.#hands;
     const isCommand = event.ctrlKey || event.metaKey;
-    if (key === "Enter" && isCommand && !altKey) hands.showText({ focuses: true });
+    // What the pointer holds, it alone moves.
+    if (hands.isPressed && (key in ARROWS || key in OTHERS)) {
+      event.preventDefault();
+      return;
+    }
+    const other = isCommand ? OTHERS_WITH_CTRL[key] : OTHERS[key];
+    if (key === "Enter" && isCommand && !altKey) hands.showText();
+    else if (other && !altKey && !shiftKey) hands.focusNeighbour(other);
     else if (isCommand) return;
     else if (key in ARROWS && hands.selected) {
       this.#move(ARROWS[key], altKey ? FINE_STEP_MM : shiftKey ? LARGE_STEP_MM : STEP_MM);
     } else if (altKey) return;
-    else if (key === "Tab") {
-      if (!hands.focusNeighbour(shiftKey ? -1 : 1)) return;
-    } else if (key === "Enter") hands.showText();
-    else if (key === " ") hands.focusPanel();
+    else if (key === "Enter" || key === " ") hands.focusPanel();
+    else if (key === "F2") hands.focusName();
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
       if (hands.grip.hasChanged) hands.grip.cancel();
@@ -77,7 +87,8 @@ export class HandKeys {
   #shortcut(event) {
     const { target, ctrlKey, metaKey, altKey, shiftKey, repeat } = event;
     if (!(ctrlKey || metaKey) || altKey || !(target instanceof Element)) return;
-    if (document.querySelector("dialog[open]") || (!this.#panel.contains(target) && target.closest(FIELDS))) return;
+    const isOfScene = this.#panel.contains(target) && !target.matches(".layer-name");
+    if (document.querySelector("dialog[open]") || (!isOfScene && target.closest(FIELDS))) return;
     const key = event.key.toLowerCase();
     if (key === "z" || key === "y") this.#hands.undoOrRedo(key === "y" || shiftKey ? "redo" : "undo");
     else if (key === "d" && !shiftKey && this.#hands.selected) {

@@ -11,6 +11,7 @@
 export function listenToPanel({ panel, boxes }, hands) {
   const { grip } = hands;
   panel.element.addEventListener("keydown", (event) => {
+    if (event.key === "F2") hands.focusName();
     if (event.key !== "Escape") return;
     if (grip.isHolding) {
       event.preventDefault();
@@ -19,10 +20,14 @@ export function listenToPanel({ panel, boxes }, hands) {
     }
     boxes.focus(hands.selected?.key);
   });
+  // The browser has taken the finger for something else.
+  panel.element.addEventListener("pointercancel", () => grip.cancel());
   panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
+  panel.name.onName = (name) => hands.rename(name);
+  panel.name.onLeave = () => boxes.focus(hands.selected?.key);
   panel.onSide = (side, mm) => grip.setSide(side, mm);
   panel.onEnd = () => grip.end();
-  panel.onText = () => hands.showText({ focuses: true });
+  panel.onText = () => hands.showText();
   panel.onDuplicate = () => hands.duplicate();
   panel.onDelete = () => hands.delete();
   panel.onClose = () => hands.focus(undefined);

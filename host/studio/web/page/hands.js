@@ -10,6 +10,7 @@ import { listenToPanel } from "./hand_panel.js";
 import { HandsView } from "./hands_view.js";
 import { LayerEdits } from "./layer_edits.js";
 import { ModeSwitch } from "./mode_switch.js";
+import { Removal } from "./removal.js";
 import { Selection } from "./selection.js";
 
 /** @import { Checked, Files } from "../engine/types" */
@@ -28,6 +29,7 @@ export class Hands {
   #selection;
   #edits;
   #view;
+  #removal;
   #mode = new ModeSwitch();
   /** What moves, resizes and tunes the selected layer. */
   grip;
@@ -36,6 +38,8 @@ export class Hands {
    * @type {[Checked, Files] | undefined}
    */
   #heldBack;
+  /** A pointer has pressed the map and is not lifted. */
+  isPressed = false;
   /** The mode Edit begins: the map is no longer for sliding. */
   onEdit = () => {};
   /**
@@ -58,6 +62,11 @@ export class Hands {
     this.#edits = new LayerEdits(editor, this.#layers);
     this.grip = new HandGrip(parts, this.#layers);
     this.#view = new HandsView(map, schema);
+    this.#removal = new Removal(editor, () => {
+      // What comes back is selected again, and the keys act on it.
+      this.focus(undefined);
+      this.undoOrRedo("undo");
+    });
     this.#listen();
     const { surface, panel } = this.#view;
     new HandDrag(surface, this, this.#layers, map);
@@ -108,6 +117,7 @@ export class Hands {
    * @param {Files} files That were checked.
    */
   show(check, files) {
+    this.#removal.follow();
     this.#heldBack = this.grip.isHolding ? [check, files] : undefined;
     if (this.#heldBack) {
       this.#layers.feel(check.layers);
@@ -209,28 +219,38 @@ export class Hands {
   }
 
   /**
-   * Selects the next layer, or that before; returns whether there is one.
+   * Selects the next layer, or that before, if there is one.
    * @param {1 | -1} by
    */
   focusNeighbour(by) {
-    const { key } = this.#selection;
-    const next = key && this.#view.boxes.neighbour(key, by);
+    const next = this.#view.boxes.neighbour(this.#selection.key, by);
     if (next) this.focus(next);
-    return next !== undefined;
+  }
+
+  /**
+   * A layer was chosen elsewhere by its number: in the mode Edit it is selected on the map. Returns whether it is.
+   * @param {number} index
+   */
+  choose(index) {
+    const found = this.isEditing && this.#layers.isCurrent && this.#layers.all.find(({ layer }) => layer.index === index);
+    if (!found) return false;
+    this.focus(found.key);
+    this.#view.surface.scrollIntoView({ block: "nearest" });
+    return true;
   }
 
   focusPanel() {
     this.#view.panel.focus();
   }
 
-  /** Shows the lines of the selected layer in the text: the keys act on the layer still, unless it `focuses` these. */
-  showText({ focuses = false } = {}) {
+  /** Leads to the lines of the selected layer in the text. */
+  showText() {
     const { editor } = this.#parts;
     const { selected } = this;
     if (!selected || !editor.has(selected.layer.file)) return;
     this.grip.end();
     const [first] = selected.at === undefined ? selected.layer.from : (selected.toml?.layerLines(selected.at) ?? [1]);
-    editor.goTo(selected.layer.file, first, { focuses });
+    editor.goTo(selected.layer.file, first);
   }
 
   /**
@@ -261,6 +281,16 @@ export class Hands {
     }
   }
 
+  /** @param {string} name That the selected layer is to have. */
+  rename(name) {
+    const { selected } = this;
+    if (selected) this.#edit(() => this.#edits.rename(selected, name));
+  }
+
+  focusName() {
+    if (this.selected) this.#view.panel.name.focus();
+  }
+
   duplicate() {
     const { selected } = this;
     if (selected) this.#edit(() => this.#edits.duplicate(selected));
@@ -268,22 +298,25 @@ export class Hands {
 
   delete() {
     const { selected } = this;
-    if (selected) this.#edit(() => this.#edits.remove(selected));
+    if (selected && this.#edit(() => this.#edits.remove(selected))) this.#removal.say(selected.layer);
   }
 
   /**
-   * Adds or takes out a layer, in one step of undo, and selects what came of it.
+   * Adds or takes out a layer, in one step of undo, and selects what came of it. Returns whether it could.
    * @param {() => EditedLayer | void} edit
    */
   #edit(edit) {
     this.grip.end();
-    if (!this.canEdit()) return;
+    if (!this.canEdit()) return false;
     try {
+      this.#selection.remember();
       const made = edit();
       this.#draw(false);
       this.focus(made?.key);
+      return true;
     } catch (error) {
       this.say(sentenceOf(error));
+      return false;
     }
   }
 

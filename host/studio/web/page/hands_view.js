@@ -5,6 +5,7 @@ import { byId, element } from "./dom.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { layerNumbers, repeatNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
+import { PanelCover } from "./panel_cover.js";
 
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
@@ -18,6 +19,7 @@ export class HandsView {
   surface = element("div", { className: "hands", role: "group", tabIndex: -1, hidden: true, "aria-label": "Layers" });
   boxes = new LayerBoxes(this.surface);
   panel = new LayerPanel();
+  #cover;
   /** What can be felt of the scene, as its check said. */
   reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
 
@@ -29,7 +31,9 @@ export class HandsView {
     this.#map = map;
     this.#schema = schema;
     map.box.append(this.surface);
-    map.box.closest("main")?.append(this.panel.element);
+    // Tab leads from a layer to its panel.
+    map.box.closest(".map-card")?.after(this.panel.element);
+    this.#cover = new PanelCover(this.panel.element);
   }
 
   /**
@@ -60,6 +64,7 @@ export class HandsView {
     const around = [byId("numbers"), byId("scope").parentElement ?? box, box.closest(".map-card") ?? box];
     const [numbers, scope, map] = around.map((each) => each.getBoundingClientRect());
     this.panel.place(numbers, scope, map);
+    this.#cover.update();
   }
 
   /**

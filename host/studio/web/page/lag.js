@@ -74,8 +74,8 @@ export class Lag {
     byId("open-lag").setAttribute("aria-expanded", String(isOpen));
     this.#forget();
     this.#say();
-    // In a low window the chart with its lag reaches below the edge.
-    if (isOpen) byId("lag").parentElement?.scrollIntoView({ block: "nearest" });
+    // In a low window it opens below the edge. A map that need not go stays: the lag is drawn there.
+    if (isOpen) byId("lag").scrollIntoView({ block: "nearest" });
     if (isOpen || byId("prediction").checked) return;
     // Nothing else says that friction comes late.
     this.#predict(true);
@@ -160,7 +160,8 @@ export class Lag {
     byId("lag-predicted").textContent = mm(predicted);
     byId("lag-reported").textContent = mm(reported);
     const missed = this.#borders?.missed ?? 0;
-    byId("lag-missed").textContent = missed > 0 ? `, ${missed} of ${this.#borders?.lines} missed` : "";
+    const lines = this.#borders?.lines ?? 0;
+    byId("lag-missed").textContent = missed > 0 ? `, at ${lines - missed} of ${lines} lines: it missed ${missed}` : "";
     const isOn = byId("prediction").checked;
     byId("lag-predicted").parentElement?.classList.toggle("plays", isOn);
     byId("lag-reported").parentElement?.classList.toggle("plays", !isOn);

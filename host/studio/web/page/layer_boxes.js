@@ -2,6 +2,7 @@
 // @ts-check
 
 import { element } from "./dom.js";
+import { clamp } from "./place.js";
 import { numberText } from "./toml_text.js";
 
 /** @import { EditedLayer } from "./edited_layers.js" */
@@ -15,6 +16,8 @@ const HANDLES = {
 /** A shorter side has no handle of its own, and the handles of so small a box stand outside of it, CSS pixels. */
 const LONG_SIDE_PX = 80;
 const OUTSIDE_PX = 8;
+/** The middle of a handle is at least so far from the edges of the screen, so that all of it is seen, CSS pixels. */
+const SEEN_PX = 8;
 
 export class LayerBoxes {
   #parent;
@@ -45,12 +48,13 @@ export class LayerBoxes {
   }
 
   /**
-   * The key of the next layer, or that before.
-   * @param {string} key
-   * @param {number} by
+   * The key of the next layer, or that before; without a layer, that of the first, or the last.
+   * @param {string | undefined} key
+   * @param {1 | -1} by
    */
   neighbour(key, by) {
     const keys = [...this.#buttons.keys()];
+    if (key === undefined) return keys.at(by > 0 ? 0 : -1);
     return keys[keys.indexOf(key) + by];
   }
 
@@ -70,11 +74,13 @@ export class LayerBoxes {
     const buttons = layers.map(({ key }) => this.#buttons.get(key) ?? this.#newButton(key));
     this.#buttons = new Map(layers.map(({ key }, at) => [key, buttons[at]]));
     for (const [at, button] of buttons.entries()) {
-      // Tab goes from layer to layer as the text does. A button that stays where it is keeps the focus.
+      // The layers follow each other as in the text. A button that stays where it is keeps the focus.
       if (this.#parent.children[at] !== button) this.#parent.insertBefore(button, this.#parent.children[at]);
       const each = layers[at];
       const { key, place } = each;
       const isSelected = key === selected;
+      // The layers are one stop of Tab, so that the panel of each comes next.
+      button.tabIndex = isSelected || (selected === undefined && at === 0) ? 0 : -1;
       button.classList.toggle("is-selected", isSelected);
       button.setAttribute("aria-current", String(isSelected));
       button.setAttribute("aria-label", labelOf(each));
@@ -104,8 +110,10 @@ export class LayerBoxes {
       const isLong = (y === 0.5 ? height : width) >= LONG_SIDE_PX;
       handle.hidden = place?.whyNotResized !== "" || (!isCorner && (place.keepsRatio || !isLong));
       if (!place) continue;
-      handle.style.left = `${place.box.x * scale + x * width + (2 * x - 1) * out}px`;
-      handle.style.top = `${place.box.y * scale + y * height + (2 * y - 1) * out}px`;
+      const [left, top] = [place.box.x * scale + x * width, place.box.y * scale + y * height];
+      const { clientWidth, clientHeight } = this.#parent;
+      handle.style.left = `${clamp(left + (2 * x - 1) * out, SEEN_PX, clientWidth - SEEN_PX)}px`;
+      handle.style.top = `${clamp(top + (2 * y - 1) * out, SEEN_PX, clientHeight - SEEN_PX)}px`;
     }
   }
 

@@ -100,6 +100,18 @@ export class LayerEdits {
     return this.#layers.insert({ ...layer, index: UNCHECKED, name, boxMm }, at + 1);
   }
 
+  /**
+   * @param {EditedLayer} edited
+   * @param {string} name
+   */
+  rename(edited, name) {
+    const { toml, at, layer, place } = edited;
+    if (!toml || at === undefined) throw new Error(place.whyNotMoved);
+    if (this.#names().includes(name)) throw new Error(`Another layer is called ${name}.`);
+    this.#make(layer.file, toml.replacements([{ path: ["layer", at, "name"], value: name, decimals: 0 }]));
+    return this.#layers.rename(edited, name);
+  }
+
   /** @param {EditedLayer} edited */
   remove(edited) {
     if (!edited.toml || edited.at === undefined) throw new Error(edited.place.whyNotMoved);

@@ -4,6 +4,7 @@
 import { BEGINNINGS } from "./beginnings.js";
 import { element } from "./dom.js";
 import { feltLine } from "./felt.js";
+import { LayerName } from "./layer_name.js";
 import { UNCHECKED } from "./layer_edits.js";
 import { NumberRow } from "./number_row.js";
 import { numberText } from "./toml_text.js";
@@ -12,27 +13,33 @@ import { numberText } from "./toml_text.js";
 /** @import { Beginning } from "./beginnings.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { LayerNumber, Most } from "./layer_numbers.js" */
-/** @import { Side } from "./place.js" */
+/** @import { Place, Side } from "./place.js" */
 
 /** @type {[Side, string][]} */
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
+const SIDE_DECIMALS = 2;
 /** Least height of the panel, CSS pixels. */
 const LEAST_PX = 220;
 /** A scope of this height has room for it, CSS pixels. */
-const HIGH_PX = 380;
+const HIGH_PX = 480;
 /** Distance from the edges of what scrolls it, CSS pixels. */
 const EDGE_PX = 12;
-const HINT = "Press a layer to select it. Drag it to move it, its handles to resize it.";
+const HINT =
+  "Press a layer to select it, then twice for the one beneath. Drag it to move it, its handles to resize it.";
 const EMPTY_HINT = "This scene has no layer yet: add one.";
 
 export class LayerPanel {
   element = element("div", { className: "layer-panel", role: "group", hidden: true });
+  /** The field of the name. */
+  name = new LayerName();
   #note = element("p", { className: "fine note", role: "status" });
   #felt = element("div", { className: "layer-felt" });
   /** The fields of the sides of the box. */
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
   /** The rows of the numbers, by field. */
   #rows = /** @type {Map<string, NumberRow>} */ (new Map());
+  /** Where the layer is. @type {Place | undefined} */
+  #place;
   /** For what the verdict was made. */
   #feltFor = "";
   /** For what the panel was made. */
@@ -74,7 +81,8 @@ export class LayerPanel {
   }
 
   focus() {
-    const first = this.element.querySelector("input") ?? this.element.querySelector("button");
+    /** @type {HTMLElement | null} */
+    const first = this.element.querySelector("input[type=number]") ?? this.element.querySelector("button");
     first?.focus();
   }
 
@@ -86,6 +94,7 @@ export class LayerPanel {
    */
   show(edited, numbers, reach, isNew) {
     const { layer, place, at } = edited;
+    this.#place = place;
     // While a layer is selected, its rows stay in their order, and its sliders keep their ends.
     const fields = numbers.map(({ field }) => field).sort();
     const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, fields, reach.naturalN, reach.reachN]);
@@ -96,7 +105,7 @@ export class LayerPanel {
       // A layer of the whole screen is not moved, but gets a region from either side.
       const isMoved = (side === "x" || side === "y") && !place.isWholeScreen;
       const why = isMoved ? place.whyNotMoved : place.whyNotResized;
-      const text = numberText(place.box[side], 2);
+      const text = numberText(place.box[side], SIDE_DECIMALS);
       if (input !== document.activeElement || Number(input.value) !== Number(text)) input.value = text;
       input.disabled = why !== "" || (side === "height" && place.keepsRatio);
       input.title = why;
@@ -113,6 +122,10 @@ export class LayerPanel {
    */
   #showFelt(layer, reach) {
     const { felt, perceived, index } = layer;
+    // What is below stays where it is while a hand drags a slider there, however long the sentence is.
+    const isHeld = this.element.querySelector("input:active") !== null;
+    const { style, offsetHeight } = this.#felt;
+    style.maxHeight = isHeld ? style.maxHeight || `${offsetHeight}px` : "";
     // A person may be about to press what stands there.
     const feltFor = JSON.stringify([index === UNCHECKED, felt, perceived, reach]);
     if (feltFor === this.#feltFor) return;
@@ -170,8 +183,10 @@ export class LayerPanel {
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
     const onclick = () => this.onClose();
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
-    const title = element("span", {}, element("b", {}, name), name === kind ? "" : ` ${kind}`);
-    const head = element("div", { className: "layer-panel-head" }, title, close);
+    this.name.show(name);
+    const named = at === undefined ? element("b", {}, name) : this.name.element;
+    const title = element("span", {}, name === kind ? "" : kind);
+    const head = element("div", { className: "layer-panel-head" }, named, title, close);
     this.element.replaceChildren(head, this.#note);
     if (at !== undefined) {
       const sides = SIDES.map(([side, label]) => this.#side(side, label, name));
@@ -208,7 +223,11 @@ export class LayerPanel {
     input.oninput = () => {
       if (input.value !== "" && Number.isFinite(input.valueAsNumber)) this.onSide(side, input.valueAsNumber);
     };
-    input.onchange = () => this.onEnd();
+    input.onchange = () => {
+      this.onEnd();
+      // What is no number was not taken.
+      if (input.value === "" && this.#place) input.value = numberText(this.#place.box[side], SIDE_DECIMALS);
+    };
     this.#sides.set(side, input);
     return element("label", {}, label, input);
   }
@@ -238,13 +257,16 @@ export class LayerPanel {
     const below = new DOMRect(map.left, map.bottom, map.width, LEAST_PX);
     const first = isSeen ? (scope.height >= HIGH_PX ? scope : numbers) : below;
     const last = isSeen ? scope : below;
-    const around = /** @type {HTMLElement} */ (this.element.parentElement);
+    const around = this.element.closest("main");
+    if (!around) return;
     const { left, top } = around.getBoundingClientRect();
     const height = Math.max(last.bottom - first.top, LEAST_PX);
     Object.assign(this.element.style, {
       left: `${Math.min(first.left, last.left) - left + around.scrollLeft}px`,
       top: `${first.top - top + around.scrollTop}px`,
       width: `${Math.max(first.right, last.right) - Math.min(first.left, last.left)}px`,
+      // It cuts no number in half.
+      minHeight: first === numbers ? `${numbers.height}px` : "",
       maxHeight: `${Math.min(height, around.clientHeight - 2 * EDGE_PX)}px`,
     });
   }

@@ -28,6 +28,11 @@ export class Layers {
    * @type {(changes: string[]) => void}
    */
   onLive = () => {};
+  /**
+   * The name of a layer is pressed: whether it is selected elsewhere, and has the focus there.
+   * @type {(layer: Layer) => boolean}
+   */
+  onChoose = () => false;
 
   /**
    * @param {Engine} engine
@@ -71,7 +76,10 @@ export class Layers {
     const name = shortName(layer.name);
     const copies = controls.length > 1 ? ` × ${controls.length}` : "";
     const shown = { className: "link", title: file ?? "" };
-    const goTo = () => this.#editor.goTo(file, from[0]);
+    const goTo = () => {
+      const isChosen = this.onChoose(layer);
+      this.#editor.goTo(file, from[0], { focuses: !isChosen });
+    };
     const title = element(
       "div",
       {},

@@ -15,6 +15,8 @@ import { byId, sentenceOf } from "./dom.js";
 /** How long good news stays, ms: to notice it, and for each of its characters. */
 const NOTICE_MS = 4000;
 const CHARACTER_MS = 50;
+/** What offers something stays longer: a person may first look at what it is about. */
+const OFFER_FACTOR = 3;
 /** Good news under the pointer or with the focus is looked at again after this time, ms. */
 const AGAIN_MS = 1000;
 /** Distance of a notice from its control and from the window, CSS pixels. */
@@ -95,7 +97,7 @@ function show(own) {
   shown = own;
   place(notice, manner.beside);
   clock.cancel(timer);
-  const readMs = NOTICE_MS + CHARACTER_MS * sentence.length;
+  const readMs = (NOTICE_MS + CHARACTER_MS * sentence.length) * (offer ? OFFER_FACTOR : 1);
   timer = manner.isGood && !manner.isLasting ? clock.later(readMs, () => expire(notice)) : undefined;
 }
 

@@ -2,7 +2,7 @@
 // @ts-check
 
 import { pictureLayer, sceneWith } from "./beginnings.js";
-import { element } from "./dom.js";
+import { element, sentenceOf } from "./dom.js";
 import { read } from "./incoming.js";
 
 /** @import { Hands } from "./hands.js" */
@@ -35,7 +35,9 @@ export async function choosePicture() {
  * @returns {Promise<OwnPicture>}
  */
 async function pictureIn(file) {
-  const { files = [] } = await read(file, { texts: [], files: [], profiles: [] });
+  const { files = [] } = await read(file, { texts: [], files: [], profiles: [] }).catch((error) => {
+    throw new Error(`${file.name}: ${sentenceOf(error)}`);
+  });
   const [name, bytes] = files[0] ?? [];
   if (!name || typeof bytes !== "object") throw new Error(`${file.name}: expected a picture (.png, .jpg)`);
   // The compiler does not turn a photo as its camera says.

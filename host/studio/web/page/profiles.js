@@ -1,7 +1,7 @@
 // The finger and the screen to play with in place of the scene's own, and the simulated touch source.
 // @ts-check
 
-import { byId, element } from "./dom.js";
+import { byId, element, shortName } from "./dom.js";
 
 /** @import { Profiles as Chosen } from "../engine/types" */
 /** @import { OwnProfile } from "./incoming.js" */
@@ -9,6 +9,9 @@ import { byId, element } from "./dom.js";
 /** @typedef {keyof Chosen} Kind */
 
 const KINDS = /** @type {const} */ (["finger", "screen", "touch"]);
+
+/** What is chosen in the options. */
+const OPTIONS = /** @type {const} */ (["finger", "screen"]);
 
 export class Profiles {
   #project;
@@ -42,6 +45,15 @@ export class Profiles {
   #apply(kind, name) {
     if (name === "") delete this.#project.profiles[kind];
     else this.#project.profiles[kind] = this.#own[kind].get(name) ?? name;
+    this.#mark();
+  }
+
+  /** What is not the scene's changes all that is felt: the button of the options says it. */
+  #mark() {
+    const chosen = OPTIONS.map((kind) => byId(kind).value).filter((name) => name !== "");
+    const mark = byId("options-mark");
+    mark.hidden = chosen.length === 0;
+    mark.textContent = `: ${chosen.map((name) => shortName(name.replaceAll("_", " "))).join(", ")}`;
   }
 
   /**

@@ -9,6 +9,9 @@
  * @typedef {{ opened: number, count: number, isNew?: boolean }} Awaited
  */
 
+/** So many changes back it is known what was selected. */
+const PAST_MAX = 10;
+
 export class Selection {
   #layers;
   #project;
@@ -18,6 +21,11 @@ export class Selection {
   #opened = 0;
   /** @type {Awaited | undefined} */
   #awaited;
+  /**
+   * What was selected in texts before layers came or went: where one of them is back, so is what was selected in it.
+   * @type {{ file: string | undefined, text: string, key: string }[]}
+   */
+  #past = [];
 
   /**
    * @param {EditedLayers} layers
@@ -30,6 +38,25 @@ export class Selection {
 
   get layer() {
     return this.#layers.find(this.key);
+  }
+
+  /** Layers are about to come or go. */
+  remember() {
+    const { layer } = this;
+    if (!layer?.toml) return;
+    const now = { file: layer.layer.file, text: layer.toml.text, key: layer.key };
+    this.#past = [...this.#past, now].slice(-PAST_MAX);
+  }
+
+  /** What was selected in the text that is back. */
+  #recall() {
+    const textOf = (/** @type {string | undefined} */ name) =>
+      this.#layers.all.find(({ layer, toml }) => layer.file === name && toml)?.toml?.text;
+    const at = this.#past.findLastIndex(({ file, text }) => textOf(file) === text);
+    if (at < 0) return undefined;
+    const { key } = this.#past[at];
+    this.#past = this.#past.slice(0, at);
+    return this.#layers.find(key);
   }
 
   /** Awaits a layer that comes behind those of the scene that is open. */
@@ -69,6 +96,7 @@ export class Selection {
     if (this.#awaited && this.#awaited.opened <= opened) this.#awaited = undefined;
     const last = awaited && this.#layers.all.length > awaited.count ? this.#layers.last : undefined;
     const after = before && isSameScene ? this.#layers.successor(before) : undefined;
-    return { key: (last ?? after)?.key, beginsEdit: awaited?.isNew === true };
+    if (!isSameScene) this.#past = [];
+    return { key: (last ?? after ?? this.#recall())?.key, beginsEdit: awaited?.isNew === true };
   }
 }

@@ -16,7 +16,7 @@ export function makeTheme(onChange) {
     root.dataset.theme = kept;
     change();
   }
-  system.addEventListener("change", change);
+  for (const media of [system, matchMedia("(forced-colors: active)")]) media.addEventListener("change", change);
   byId("theme").onclick = () => {
     const isDark = (root.dataset.theme ?? (system.matches ? "dark" : "light")) === "dark";
     root.dataset.theme = isDark ? "light" : "dark";

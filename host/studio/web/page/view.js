@@ -58,7 +58,7 @@ function placeMenu(menu) {
 }
 
 /**
- * A press elsewhere, or Escape, closes the menu.
+ * A press elsewhere closes the menu, and so does the focus that leaves it, and Escape wherever the focus is.
  * @param {HTMLDetailsElement} menu
  */
 function makeMenu(menu) {
@@ -67,12 +67,20 @@ function makeMenu(menu) {
   document.addEventListener("pointerdown", ({ target }) => {
     if (!(target instanceof Node && menu.contains(target))) menu.open = false;
   });
-  menu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || !menu.open) return;
-    event.preventDefault();
-    menu.open = false;
-    menu.querySelector("summary")?.focus();
+  menu.addEventListener("focusout", ({ relatedTarget }) => {
+    if (relatedTarget instanceof Node && !menu.contains(relatedTarget)) menu.open = false;
   });
+  addEventListener(
+    "keydown",
+    (event) => {
+      if (event.key !== "Escape" || !menu.open || document.querySelector("dialog[open]")) return;
+      event.preventDefault();
+      event.stopPropagation();
+      menu.open = false;
+      menu.querySelector("summary")?.focus();
+    },
+    { capture: true },
+  );
 }
 
 /** @param {FrictionMap} map */

@@ -1,0 +1,118 @@
+// The page in a browser, on a phone: nothing lies over the board for good, moves by itself, or is cut.
+
+import assert from "node:assert/strict";
+import { after, afterEach, test } from "node:test";
+import { settled } from "./editing.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
+import { openStudio, showDrawer } from "./page.mjs";
+
+afterEach(endLeftovers);
+after(cleanUp);
+
+async function openPhone(options) {
+  const opened = await openStudio(undefined, options);
+  await opened.page.setViewportSize({ width: 390, height: 844 });
+  if (!options) await opened.page.click("#toggle-drawer");
+  await opened.page.evaluate(() => document.querySelector("main").scrollTo(0, 0));
+  await opened.page.waitForFunction(() => innerWidth === 390);
+  return opened;
+}
+
+test("Lag leaves the board where it is, and its numbers move nothing when they come", async () => {
+  const { page, errors } = await openPhone();
+  const placesOf = () =>
+    page.evaluate(() => ["#options", "#map-finger", "#scope"].map((each) => document.querySelector(each).getBoundingClientRect().top));
+  const [options, map] = await placesOf();
+  await page.click("#open-lag");
+  const open = await placesOf();
+  assert.deepEqual(open.slice(0, 2), [options, map]);
+  const rows = await page.locator(".lag-by").evaluateAll((all) => all.map((each) => each.offsetTop));
+  await page.evaluate(async () => {
+    await slide(15, 105, 40, 150);
+    await wait(100);
+    lift(105, 40);
+    await wait(300);
+  });
+  assert.match(await page.innerText("#lag-reported"), /mm$/);
+  // The longest words.
+  await page.evaluate(() => (document.getElementById("lag-missed").textContent = ", at 5 of 18 lines: it missed 13"));
+  assert.deepEqual(await placesOf(), open);
+  assert.deepEqual(await page.locator(".lag-by").evaluateAll((all) => all.map((each) => each.offsetTop)), rows);
+  assert.deepEqual(errors, []);
+});
+
+test("the offer of sound leaves the board at a press on its cross", async () => {
+  const { page, errors } = await openPhone({ isFirstVisit: true });
+  await page.evaluate(() => document.getElementById("map-finger").click());
+  assert.ok(await page.isVisible("#hear"));
+  await page.click("#first-dismiss");
+  assert.ok(await page.isHidden("#hear"));
+  assert.deepEqual(errors, []);
+});
+
+test("neither the state of the board nor the step of a layer is cut", async () => {
+  const { page, errors } = await openPhone();
+  await page.evaluate(() => {
+    const count = document.getElementById("mistakes");
+    count.textContent = "1";
+    count.hidden = false;
+  });
+  const [shown, whole] = await page.locator("#board").evaluate((each) => [each.clientWidth, each.scrollWidth]);
+  assert.ok(whole <= shown, `${whole} of ${shown}`);
+  await showDrawer(page);
+  await settled(page);
+  const over = await page.locator("#panel-layers .felt-line").evaluateAll((all) =>
+    all.filter((line) => {
+      const [bar, words] = [line.querySelector(".step-bar"), line.querySelector(".step-bar + span")];
+      return bar && bar.getBoundingClientRect().right > words.getBoundingClientRect().left;
+    }).length,
+  );
+  assert.equal(over, 0);
+  assert.deepEqual(errors, []);
+});
+
+test("a finger that is not the scene's is said at the options, also after a reload", async () => {
+  const { page, errors } = await openPhone();
+  const mark = page.locator("#options summary");
+  assert.equal(await mark.innerText(), "Options");
+  await mark.click();
+  await page.selectOption("#finger", "moist");
+  await page.keyboard.press("Escape");
+  assert.equal(await mark.innerText(), "Options: moist");
+  const { width } = await mark.boundingBox();
+  assert.ok(width < 150, `${width}`);
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await page.evaluate(() => (studioPage.editor.text = `${studioPage.editor.text}# mine\n`));
+  await page.waitForFunction(async () => {
+    const [database] = (await indexedDB.databases()).map(({ name }) => name);
+    return database !== undefined;
+  });
+  await page.evaluate(() => setVisibility("hidden"));
+  await page.reload();
+  await page.waitForFunction(() => globalThis.studioPage);
+  await page.waitForFunction(() => document.querySelector("#options summary").innerText === "Options: moist");
+  assert.deepEqual(errors, []);
+});
+
+test("on its side a phone shows all of the screen, also with the lag and in the mode Edit", async () => {
+  const { page, errors } = await openPhone();
+  await page.setViewportSize({ width: 844, height: 390 });
+  const isWhole = async (how) => {
+    await settled(page);
+    const { top, bottom, header } = await page.evaluate(() => {
+      const { top, bottom } = document.getElementById("map-finger").getBoundingClientRect();
+      return { top, bottom, header: document.querySelector("header").getBoundingClientRect().bottom };
+    });
+    assert.ok(top >= header && bottom <= 390, `${how}: ${top} to ${bottom}`);
+    assert.ok(bottom - top > 200, `${how}: ${bottom - top} high`);
+    assert.ok((await page.locator("#options").boundingBox()).y >= header, `${how}: the tools`);
+  };
+  await isWhole("at first");
+  await page.click("#open-lag");
+  await isWhole("with the lag");
+  await page.evaluate(() => document.querySelector("main").scrollTo(0, 1000));
+  await isWhole("scrolled");
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await isWhole("edited");
+  assert.deepEqual(errors, []);
+});

@@ -1,0 +1,48 @@
+// A layer that a hand has taken out: a notice says which, and offers the way back.
+// @ts-check
+
+import { shortName } from "./dom.js";
+import { notify } from "./notices.js";
+
+/** @import { Layer } from "../engine/types" */
+/** @import { Editor } from "./editor.js" */
+
+export class Removal {
+  #editor;
+  #undo;
+  /** The text without the layer. @type {string | undefined} */
+  #text;
+  /** @type {string | undefined} */
+  #file;
+  #forget = () => {};
+
+  /**
+   * @param {Editor} editor
+   * @param {() => void} undo Takes back the last step.
+   */
+  constructor(editor, undo) {
+    this.#editor = editor;
+    this.#undo = undo;
+  }
+
+  /** @param {Layer} layer That the text has no more. */
+  say({ name, file }) {
+    this.#file = file;
+    this.#text = this.#editor.textOf(file);
+    const action = () => {
+      this.#editor.show(file);
+      if (this.#isLast) this.#undo();
+    };
+    this.#forget = notify(`Removed ${shortName(name)}.`, { words: "Undo", action }, { isGood: true });
+  }
+
+  /** Whether nothing has changed the text since. */
+  get #isLast() {
+    return this.#editor.textOf(this.#file) === this.#text;
+  }
+
+  /** The texts were checked: the offer goes once they have changed. */
+  follow() {
+    if (!this.#isLast) this.#forget();
+  }
+}
