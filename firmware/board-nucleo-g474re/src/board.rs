@@ -57,8 +57,7 @@ pub const LIMITS: BoardLimits =
     BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..behind(option_env!("FRIXEL_SERIES_KOHM")) };
 
 /// The limits behind a series resistance in kOhm that the environment of the build names, or else behind the one of
-/// `docs/hardware.md`. What is stored does not name it: firmware and bring-up are built with the same, or the firmware
-/// refuses what bring-up has stored.
+/// `docs/hardware.md`. Firmware and bring-up are built with the same, or the firmware refuses what bring-up has stored.
 const fn behind(series_kohm: Option<&str>) -> BoardLimits {
     let of_docs = Board::NUCLEO_G474RE.limits;
     let Some(series_kohm) = series_kohm else { return of_docs };
@@ -66,8 +65,7 @@ const fn behind(series_kohm: Option<&str>) -> BoardLimits {
         panic!("FRIXEL_SERIES_KOHM is not a whole number of kOhm")
     };
     let behind = Board::NUCLEO_G474RE.behind(1e3 * series_kohm as f32).limits;
-    // None that was not measured.
-    BoardLimits { voltage_max_v_peak: of_docs.voltage_max_v_peak, ..behind }
+    BoardLimits { voltage_max_v_peak: Board::UNMEASURED_V_PEAK, ..behind }
 }
 
 const _: () = assert!(check_touched_board(&LIMITS).is_ok());

@@ -53,7 +53,7 @@ pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
 /// Limits until others are stored.
 pub const LIMITS: BoardLimits = BoardLimits {
-    voltage_max_v_peak: Board::PICO_UNMEASURED_V_PEAK,
+    voltage_max_v_peak: Board::UNMEASURED_V_PEAK,
     receive_window_bytes: RECEIVE_WINDOW as u16,
     ..BOARD.limits
 };

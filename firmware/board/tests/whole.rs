@@ -9,6 +9,7 @@ use crate::support::person::{self, EnablePath, Instruments};
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, TestOutput, run};
 use frixel_control::{Sense, Status, Ticker};
 use frixel_session::Session;
+use frixel_session::store::{Ceilings, write_limits};
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
@@ -159,7 +160,7 @@ impl Bench for WholeBench {
     }
 
     fn may_store(&mut self, limits: &BoardLimits) -> bool {
-        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK
+        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK && write_limits(limits, Ceilings::InForce).is_ok()
     }
 
     fn store(&mut self, limits: &BoardLimits) -> bool {

@@ -121,7 +121,7 @@ impl Board {
     };
 
     /// The Raspberry Pi Pico 2 with the parts and the limits of the NUCLEO-G474RE. Until limits are stored, its image
-    /// allows [`Self::PICO_UNMEASURED_V_PEAK`].
+    /// allows [`Self::UNMEASURED_V_PEAK`].
     pub const PICO_2: Self = Self {
         kind: BoardKind::Pico2,
         limits: BoardLimits {
@@ -150,10 +150,11 @@ impl Board {
         ..Self::NUCLEO_G474RE
     };
 
-    /// Largest voltage of a Pico or Pico 2 until limits are stored, V peak. No bring-up of these boards has measured
-    /// DAC, amplifier, monitor and one-shot before a first play, so it is one that does no harm if the gain or the
-    /// reference is twice as large as it should be.
-    pub const PICO_UNMEASURED_V_PEAK: f32 = 10.0;
+    /// Largest voltage until limits are stored, V peak: of a Pico and a Pico 2, and of a NUCLEO-G474RE that is built for
+    /// another series resistance. No bring-up has measured DAC, amplifier, monitor, one-shot and resistance before a
+    /// first play, so it is one that does no harm if gain or reference is twice as large as it should be, or the
+    /// resistance half.
+    pub const UNMEASURED_V_PEAK: f32 = 10.0;
 
     /// The real board of a name.
     pub fn named(name: &str) -> Option<Self> {

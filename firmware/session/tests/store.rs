@@ -189,7 +189,7 @@ fn textured(board: &mut TestBoard) -> Vec<u8> {
 /// A build with the other setting starts as if nothing were stored, and every start says what is the matter.
 #[test]
 fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
-    let built_in = BoardLimits { voltage_max_v_peak: 50.0, full_scale_v_peak: 400.0, ..Board::SIMULATOR.limits };
+    let built_in = BoardLimits { voltage_max_v_peak: 50.0, full_scale_v_peak: 300.0, ..Board::NUCLEO_G474RE.limits };
     let stored = |voltage_max_v_peak| BoardLimits {
         voltage_max_v_peak,
         current_max_a_rms: 0.5e-3,
@@ -216,7 +216,7 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
 
     // Above a ceiling, under the version of a build that has ceilings.
     let mut bytes = write_limits(&high, lifted).unwrap();
-    bytes[0] = 1;
+    bytes[0] = 3;
     assert_eq!(load(&flash_with(&[&bytes], false), in_force), (built_in, refused));
     assert_eq!(load(&flash_with(&[&bytes[..20]], false), in_force), (built_in, refused));
 

@@ -66,9 +66,9 @@ pub mod notice {
     /// Cleared once a scene is committed.
     pub const STORED_SCENE_SKIPPED: u8 = 1;
 
-    /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, because the edges are not
-    /// those of its series resistance, or because a build with other ceilings has stored them. The limits that are
-    /// built in are in effect.
+    /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because they were
+    /// stored for another series resistance or by a build with other ceilings. The limits that are built in are in
+    /// effect.
     pub const STORED_LIMITS_REFUSED: u8 = 1 << 1;
     /// The firmware was built to take stored limits above its ceilings for voltage and current.
     pub const LIMITS_ABOVE_CEILINGS: u8 = 1 << 2;
@@ -84,8 +84,8 @@ pub mod notice {
         (
             STORED_LIMITS_REFUSED,
             "the board does not use its stored limits, but those built into its firmware: one exceeds a \
-             ceiling, their edges are not those of the series resistance of this build, or a build with other \
-             ceilings has stored them; store them again with bring-up",
+             ceiling, or they were stored for another series resistance or by a build with other ceilings; flash a \
+             build for the resistance that is soldered, or store them again with bring-up",
         ),
         (
             LIMITS_ABOVE_CEILINGS,

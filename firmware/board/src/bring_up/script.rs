@@ -19,10 +19,10 @@ const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
-/// Deviation of the series resistance, as an ohmmeter shows it, from the one that is built in: resistors of 1 %, and an
-/// ohmmeter of 2 %. The touch bound rests on it, and nothing measures it later: half of it, with a resistor that is
-/// shorted, would let twice the current through a person.
-const SERIES_TOLERANCE: f32 = 0.03;
+/// Deviation of each half of the series resistance, as an ohmmeter shows it, from the one that is built in: resistors of
+/// 1 %, and an ohmmeter of 1 %. The touch bound rests on the sum, and nothing measures it later: half of it, with a
+/// resistor that is shorted, would let twice the current through a person.
+const SERIES_TOLERANCE: f32 = 0.02;
 
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
@@ -236,12 +236,12 @@ fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<(),
         "GND to protective earth, with USB in its isolator, MOhm (999 for no reading)",
         (ISOLATION_MIN_MOHM, f32::MAX),
     )?;
-    let series_kohm = 1e-3 * built_in.series_resistance_ohm;
-    ask(
-        bench,
-        "the amplifier's output to the capacitor, through the series resistor, kOhm",
-        ((1.0 - SERIES_TOLERANCE) * series_kohm, (1.0 + SERIES_TOLERANCE) * series_kohm),
-    )?;
+    confirm(bench, format_args!("Measure each rail against the common, and rail to rail: all below 1 V."), DONE);
+    let half_kohm = 0.5e-3 * built_in.series_resistance_ohm;
+    let half_kohm = ((1.0 - SERIES_TOLERANCE) * half_kohm, (1.0 + SERIES_TOLERANCE) * half_kohm);
+    ask(bench, "series resistor R1, at its own ends, kOhm", half_kohm)?;
+    ask(bench, "series resistor R2, at its own ends, kOhm", half_kohm)?;
+    confirm(bench, format_args!("Take the ohmmeter's leads off, and close the box."), DONE);
     await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
     await_inputs(bench, READY, IDLE, "Switch it off")?;
     await_inputs(bench, IDLE, READY, "Switch it on")?;
@@ -330,6 +330,6 @@ fn around(volts: f32) -> (f32, f32) {
     (volts - tolerance_v, volts + tolerance_v)
 }
 
-fn check(bench: &mut impl Bench, check: Check) -> Result<(), Stop> {
+pub(super) fn check(bench: &mut impl Bench, check: Check) -> Result<(), Stop> {
     if bench.check(check) { Ok(()) } else { Err(Stop::Check(check)) }
 }

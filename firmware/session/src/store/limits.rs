@@ -12,8 +12,8 @@ use frixel_wire::hello::{BoardLimits, notice};
 
 use super::{Flash, Slot};
 
-/// Bytes of the stored limits: the version, then six numbers.
-pub const LIMITS_LEN: usize = 28;
+/// Bytes of the stored limits: the version, then seven numbers.
+pub const LIMITS_LEN: usize = 32;
 
 /// Largest voltage that is stored, in V peak.
 ///
@@ -31,6 +31,8 @@ pub const CURRENT_CEILING_A_RMS: f32 = 0.5e-3;
 /// carrier's edges behind 68 kOhm, counts as 0.51 mA, of the 0.7 mA of 6.3.1 (unread): a margin of 27 %.
 pub const CURRENT_CEILING_A_PEAK: f32 = 5e-3;
 
+/// Largest deviation of the series resistance for which limits were stored from that of the build, relative.
+const SERIES_TOLERANCE: f32 = 0.01;
 /// Least and largest edges, as parts of the time constant of the electrode behind the series resistance. Bring-up takes
 /// 0.7 to 1.4 for the capacitor that it measures on, and an amplifier that is as slow as the resistor makes half as
 /// much again.
@@ -56,8 +58,8 @@ impl Ceilings {
     /// Version of the layout. It differs, so that a build takes no limits that a build of the other kind stored.
     const fn version(self) -> u32 {
         match self {
-            Self::InForce => 1,
-            Self::Lifted => 2,
+            Self::InForce => 3,
+            Self::Lifted => 4,
         }
     }
 
@@ -92,9 +94,21 @@ pub enum LimitsError {
         /// The current, in A.
         found: f32,
     },
-    /// The edges are not those of the electrode behind the series resistance that is built in. Either that number or
-    /// the resistor is wrong, and the touch bound rests on both.
+    /// The full scale over the series resistance is above [`CURRENT_CEILING_A_PEAK`]: that current flows through a person
+    /// from an amplifier that is stuck at its rail.
+    CurrentAtFullScale {
+        /// The current, in A.
+        found: f32,
+    },
+    /// The limits were stored for another series resistance than that of this build, on which the touch bound rests.
     SeriesResistance {
+        /// The series resistance of the stored limits, in Ohm.
+        found_ohm: f32,
+        /// That of this build, in Ohm.
+        built_in_ohm: f32,
+    },
+    /// The edges are not those of the electrode behind the series resistance: one of the three numbers is wrong.
+    Edges {
         /// The time constant of the edges, in s.
         found_s: f32,
         /// That of the electrode behind the series resistance, in s.
@@ -125,10 +139,23 @@ impl fmt::Display for LimitsError {
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),
-            Self::SeriesResistance { found_s, expected_s } => write!(
+            Self::CurrentAtFullScale { found } => write!(
                 f,
-                "the edges are {} us, and {} us for the electrode behind the series resistance of this build: build \
-                 it with the resistance that is soldered",
+                "the full scale drives {} mA through the series resistance, its ceiling {} mA: take a larger resistance",
+                1e3 * found,
+                1e3 * CURRENT_CEILING_A_PEAK
+            ),
+            Self::SeriesResistance { found_ohm, built_in_ohm } => write!(
+                f,
+                "the limits were stored for a series resistance of {} kOhm, and this build is for {} kOhm: build it \
+                 for the resistance that is soldered",
+                1e-3 * found_ohm,
+                1e-3 * built_in_ohm
+            ),
+            Self::Edges { found_s, expected_s } => write!(
+                f,
+                "the edges are {} us, and {} us for the electrode behind the series resistance: correct edges, \
+                 electrode or resistance",
                 1e6 * found_s,
                 1e6 * expected_s
             ),
@@ -138,31 +165,34 @@ impl fmt::Display for LimitsError {
 
 impl core::error::Error for LimitsError {}
 
-/// Checks limits of a board that people touch: none is above its ceiling, and the edges are those of the electrode
-/// behind the series resistance, on which the touch bound rests. A board asserts it of the limits that are built in.
+/// Checks limits of a board that people touch against the ceilings. A board asserts it of the limits that are built in.
 pub const fn check_touched_board(limits: &BoardLimits) -> Result<(), LimitsError> {
     const fn exceeds(number: f32, ceiling: f32) -> bool {
         number > ceiling * (1.0 + ROUNDING)
     }
+    let at_full_scale_a = limits.full_scale_v_peak / limits.series_resistance_ohm;
     if exceeds(limits.voltage_max_v_peak, VOLTAGE_CEILING_V_PEAK) {
         Err(LimitsError::VoltagePeak { found: limits.voltage_max_v_peak })
     } else if exceeds(limits.current_max_a_rms, CURRENT_CEILING_A_RMS) {
         Err(LimitsError::CurrentRms { found: limits.current_max_a_rms })
     } else if exceeds(limits.current_max_a_peak, CURRENT_CEILING_A_PEAK) {
         Err(LimitsError::CurrentPeak { found: limits.current_max_a_peak })
+    } else if exceeds(at_full_scale_a, CURRENT_CEILING_A_PEAK) {
+        Err(LimitsError::CurrentAtFullScale { found: at_full_scale_a })
     } else {
-        check_series_resistance(limits)
+        check_edges(limits)
     }
 }
 
-const fn check_series_resistance(limits: &BoardLimits) -> Result<(), LimitsError> {
+/// Checks that the edges are those of the electrode behind the series resistance. No board that stores limits has an
+/// infinite one, which has no touch bound.
+const fn check_edges(limits: &BoardLimits) -> Result<(), LimitsError> {
     let found_s = limits.edge_time_constant_s;
     let expected_s = limits.series_resistance_ohm * limits.electrode_capacitance_max_f;
-    // Behind an infinite resistance, nobody touches anything.
-    if expected_s.is_infinite() || found_s >= EDGES_MIN * expected_s && found_s <= EDGES_MAX * expected_s {
+    if found_s >= EDGES_MIN * expected_s && found_s <= EDGES_MAX * expected_s {
         Ok(())
     } else {
-        Err(LimitsError::SeriesResistance { found_s, expected_s })
+        Err(LimitsError::Edges { found_s, expected_s })
     }
 }
 
@@ -185,11 +215,16 @@ pub fn read_limits(
 ) -> Result<BoardLimits, LimitsError> {
     let (words, _) = bytes.as_chunks::<4>();
     let [version, numbers @ ..] = words else { return Err(LimitsError::Layout) };
-    let &[voltage, full_scale, edge, electrode, current_rms, current_peak] = numbers else {
+    let &[voltage, full_scale, edge, electrode, current_rms, current_peak, series] = numbers else {
         return Err(LimitsError::Layout);
     };
     if u32::from_le_bytes(*version) != ceilings.version() {
         return Err(LimitsError::Layout);
+    }
+    let (found_ohm, built_in_ohm) = (f32::from_le_bytes(series), limits.series_resistance_ohm);
+    let is_of_build = (found_ohm - built_in_ohm).abs() <= SERIES_TOLERANCE * built_in_ohm;
+    if !is_of_build {
+        return Err(LimitsError::SeriesResistance { found_ohm, built_in_ohm });
     }
     let limits = BoardLimits {
         voltage_max_v_peak: f32::from_le_bytes(voltage),
@@ -238,12 +273,12 @@ fn check(limits: &BoardLimits, ceilings: Ceilings) -> Result<(), LimitsError> {
     match ceilings {
         _ if !is_plausible => Err(LimitsError::Implausible),
         Ceilings::InForce => check_touched_board(limits),
-        Ceilings::Lifted => Ok(()),
+        Ceilings::Lifted => check_edges(limits),
     }
 }
 
-/// The numbers that are measured during bring-up, in the order in which they are stored.
-fn measured(limits: &BoardLimits) -> [f32; 6] {
+/// The numbers that bring-up measures or asks for, in the order in which they are stored.
+fn measured(limits: &BoardLimits) -> [f32; 7] {
     [
         limits.voltage_max_v_peak,
         limits.full_scale_v_peak,
@@ -251,6 +286,7 @@ fn measured(limits: &BoardLimits) -> [f32; 6] {
         limits.electrode_capacitance_max_f,
         limits.current_max_a_rms,
         limits.current_max_a_peak,
+        limits.series_resistance_ohm,
     ]
 }
 
@@ -259,8 +295,7 @@ mod tests {
     use super::*;
     use frixel_control::Board;
 
-    /// The limits of a simulated board are above the ceilings: nobody can touch it.
-    const DEFAULTS: BoardLimits = Board::SIMULATOR.limits;
+    const DEFAULTS: BoardLimits = Board::NUCLEO_G474RE.limits;
     const MEASURED: BoardLimits = BoardLimits {
         voltage_max_v_peak: 120.0,
         full_scale_v_peak: 201.5,
@@ -282,8 +317,11 @@ mod tests {
     /// Limits of a build without ceilings, as if this build had stored them.
     fn forged(limits: &BoardLimits) -> [u8; LIMITS_LEN] {
         let mut bytes = [0; LIMITS_LEN];
-        for (to, from) in
-            bytes.as_chunks_mut().0.iter_mut().zip([1].into_iter().chain(measured(limits).map(f32::to_bits)))
+        for (to, from) in bytes
+            .as_chunks_mut()
+            .0
+            .iter_mut()
+            .zip([Ceilings::InForce.version()].into_iter().chain(measured(limits).map(f32::to_bits)))
         {
             *to = from.to_le_bytes();
         }
@@ -334,30 +372,56 @@ mod tests {
         assert!(write_limits(&at_the_ceilings, Ceilings::InForce).is_ok());
     }
 
-    /// A firmware for 370 kOhm on a board that was brought up with 68, or with one of its two resistors shorted.
     #[test]
-    fn edges_of_another_series_resistance_are_neither_stored_nor_read_back() {
-        let built_in = Board::NUCLEO_G474RE.limits;
-        for (series_kohm, edges_us) in [(68.0, 20.0), (68.0, 196.0), (370.0, 37.5), (370.0, 100.0)] {
-            let built_in = BoardLimits { series_resistance_ohm: 1e3 * series_kohm, ..built_in };
-            let limits = BoardLimits { edge_time_constant_s: 1e-6 * edges_us, ..built_in };
-            let (found_s, expected_s) = (limits.edge_time_constant_s, 1e3 * series_kohm * 0.53e-9);
-            let Err(LimitsError::SeriesResistance { found_s: found, expected_s: expected }) =
-                read_limits(&forged(&limits), &built_in, Ceilings::InForce)
-            else {
-                panic!("{edges_us} us behind {series_kohm} kOhm are taken")
+    fn limits_of_a_board_with_another_series_resistance_are_not_taken() {
+        let stored = write_limits(&DEFAULTS, Ceilings::InForce).unwrap();
+        for (series_ohm, is_taken) in
+            [(67e3, false), (67.5e3, true), (68.5e3, true), (69e3, false), (75e3, false), (370e3, false)]
+        {
+            let built_in = Board::NUCLEO_G474RE.behind(series_ohm).limits;
+            let read = read_limits(&stored, &built_in, Ceilings::InForce);
+            assert_eq!(read.is_ok(), is_taken, "{series_ohm}: {read:?}");
+            let error = LimitsError::SeriesResistance { found_ohm: 68e3, built_in_ohm: series_ohm };
+            assert!(is_taken || read == Err(error), "{series_ohm}: {read:?}");
+        }
+    }
+
+    /// A capacitance in another unit would make every current a thousandth.
+    #[test]
+    fn edges_that_resistance_and_electrode_do_not_make_are_neither_stored_nor_read_back() {
+        for (edges_us, electrode_nf, is_taken) in [
+            (37.5, 0.53e-3, false),
+            (37.5, 530.0, false),
+            (20.0, 0.53, false),
+            (25.0, 0.53, false),
+            (25.5, 0.53, true),
+            (75.5, 0.53, true),
+            (76.0, 0.53, false),
+        ] {
+            let limits = BoardLimits {
+                edge_time_constant_s: 1e-6 * edges_us,
+                electrode_capacitance_max_f: 1e-9 * electrode_nf,
+                ..DEFAULTS
             };
-            let ratios = [found / found_s, expected / expected_s];
-            assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-6), "{found} of {expected} s");
-            assert!(write_limits(&limits, Ceilings::InForce).is_err());
-            // Nobody touches a board whose ceilings are lifted.
-            assert!(write_limits(&limits, Ceilings::Lifted).is_ok());
+            let read = read_limits(&forged(&limits), &DEFAULTS, Ceilings::InForce);
+            for ceilings in [Ceilings::InForce, Ceilings::Lifted] {
+                assert_eq!(write_limits(&limits, ceilings).is_ok(), is_taken, "{edges_us} us, {electrode_nf} nF");
+            }
+            assert!(is_taken && read.is_ok() || matches!(read, Err(LimitsError::Edges { .. })), "{read:?}");
         }
-        for edges_us in [26.0, 37.5, 75.0] {
-            let limits = BoardLimits { edge_time_constant_s: 1e-6 * edges_us, ..built_in };
-            assert!(write_limits(&limits, Ceilings::InForce).is_ok(), "{edges_us} us");
+        let untouched = BoardLimits { series_resistance_ohm: f32::INFINITY, ..DEFAULTS };
+        assert_eq!(write_limits(&untouched, Ceilings::InForce), Err(LimitsError::Implausible));
+        assert!(check_touched_board(&untouched).is_err());
+    }
+
+    #[test]
+    fn a_resistance_that_lets_a_stuck_amplifier_drive_more_than_a_single_fault_may_is_refused() {
+        for (series_ohm, is_taken) in [(39e3, false), (41e3, true), (370e3, true)] {
+            let limits = Board::NUCLEO_G474RE.behind(series_ohm).limits;
+            let found = check_touched_board(&limits);
+            assert_eq!(found.is_ok(), is_taken, "{series_ohm}: {found:?}");
+            assert!(is_taken || matches!(found, Err(LimitsError::CurrentAtFullScale { .. })), "{found:?}");
         }
-        assert!(write_limits(&Board::NUCLEO_G474RE.behind(370e3).limits, Ceilings::InForce).is_ok());
     }
 
     #[test]

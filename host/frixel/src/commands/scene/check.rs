@@ -91,7 +91,7 @@ fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
     let is_pico = matches!(board.kind, BoardKind::Pico | BoardKind::Pico2);
     let until_measured = if is_pico {
-        let v_peak = Board::PICO_UNMEASURED_V_PEAK;
+        let v_peak = Board::UNMEASURED_V_PEAK;
         format!("                   until limits are stored, this board allows {v_peak:.0} V peak (docs/pico.md)\n")
     } else {
         String::new()
