@@ -262,7 +262,8 @@ fn check_images() -> Result<(), String> {
         }
         cargo(&format!("build of {folder}"), folder, &[&["build"], &into[..]].concat(), &[])?;
     }
-    Ok(())
+    let other = [&["check"], &into[..], &["--bins"]].concat();
+    cargo("NUCLEO behind 370 kOhm", IMAGES[0].folder, &other, &[("FRIXEL_SERIES_KOHM", "370")])
 }
 
 /// Counts instructions, measures sizes and compares them with their limits. Also checks that an image that

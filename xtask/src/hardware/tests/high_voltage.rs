@@ -52,7 +52,7 @@ fn a_net_that_leaves_the_box_is_behind_both_series_resistors() {
         assert_eq!(net.is_dangerous(), ohm.is_some(), "{}: its voltage", net.name);
         for node in net.nodes.iter().filter(|_| net.boxed) {
             let name = node.split_once('.').unwrap().0;
-            assert!(["A1", "PS1", "R1", "R2", "R16"].contains(&name), "{node} is in the box");
+            assert!(["A1", "PS1", "R1", "R2", "R16", "R24"].contains(&name), "{node} is in the box");
         }
     }
 }
@@ -96,9 +96,19 @@ fn the_stored_charge_is_within_its_limit_for_every_reading_that_is_allowed() {
         let coulomb = most(rail, "COMMON") * 0.5 * rails_v;
         assert!(coulomb <= 45e-6, "{rail}: {} uC", 1e6 * coulomb);
     }
-    let bleeder = part(&carrier, "R16");
-    let bleeder_ohm = bleeder.value.unwrap() * (1.0 + bleeder.tolerance.unwrap());
-    assert!(bleeder_ohm * rails_f * (rails_v / 30.0).ln() < 10.0);
+    // The slowest way in which capacitors between three nets discharge through one resistor from each rail to the
+    // common; what a meter shows between two nets is no less than the capacitor between them.
+    let slowest_f = most("RAIL_PLUS", "COMMON").max(most("RAIL_MINUS", "COMMON")) + 2.0 * rails_f;
+    for (name, rail) in [("R16", "RAIL_PLUS"), ("R24", "RAIL_MINUS")] {
+        for node in [format!("{name}.1"), format!("{name}.2")] {
+            let is_there = |net: &&str| self::net(&carrier, net).nodes.contains(&node);
+            assert!(["COMMON", rail].iter().any(is_there), "{node}");
+        }
+        let bleeder = part(&carrier, name);
+        let bleeder_ohm = bleeder.value.unwrap() * (1.0 + bleeder.tolerance.unwrap());
+        // Both rails together are the length of a vector, which is what decays.
+        assert!(bleeder_ohm * slowest_f * (rails_v * 0.5_f64.sqrt() / 30.0).ln() < 10.0, "{name}");
+    }
     // No capacitor of the table adds to what is measured.
     for (part, nets) in two_ended(&carrier) {
         assert!(!part.name.starts_with('C') || nets.iter().all(|net| !net.is_dangerous()), "{}", part.name);
@@ -127,9 +137,8 @@ fn what_is_to_be_measured_is_what_the_parts_give() {
             low += value * (1.0 - tolerance);
             high += value * (1.0 + tolerance);
         }
-        // Resistors of 1 % in a row are seldom both at the end of it: the limits may be as narrow as their sum is.
-        assert!(low * (1.0 - error) >= 0.995 * least.unwrap(), "{between:?}: {low}");
-        assert!(high * (1.0 + error) <= 1.005 * most.unwrap(), "{between:?}: {high}");
+        assert!(low * (1.0 - error) >= least.unwrap(), "{between:?}: {low}");
+        assert!(high * (1.0 + error) <= most.unwrap(), "{between:?}: {high}");
     }
 }
 

@@ -20,7 +20,8 @@ use stm32_metapac::ADC1;
 use crate::still::Still;
 use crate::{fault_injection, limits, start};
 
-/// Longest time for storing the limits: an erased page takes 25 ms at most (STM32G474 data sheet, "Flash memory").
+/// Longest time for storing the limits, 1 s. A page and its words take 26 ms at most (STM32G474 data sheet, "Flash
+/// memory").
 const STORE_TICKS_MAX: u32 = TICK_HZ;
 
 /// The board under test.
