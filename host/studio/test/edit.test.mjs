@@ -284,3 +284,36 @@ test("Delete says which layer it takes out and offers the way back, on which the
   assert.equal(await textOf(page), PLATES);
   assert.deepEqual(errors, []);
 });
+
+test("the offer of Delete undoes nothing else, also where the text is the same again", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  await press(page, "Delete");
+  await page.locator("#notice").getByRole("button", { name: "Undo", exact: true }).waitFor();
+  const without = await textOf(page);
+  const now = await page.evaluate(() => {
+    const { editor } = studioPage;
+    const { text } = editor;
+    editor.text = `${text}z`;
+    editor.text = text;
+    [...document.querySelectorAll("#notice button")].find(({ textContent }) => textContent === "Undo").click();
+    return editor.text;
+  });
+  assert.equal(now, without);
+  assert.match(await page.locator("#notice span").textContent(), /has changed since/);
+  assert.deepEqual(errors, []);
+});
+
+test("what an undo brings back is selected in the mode Edit alone", async () => {
+  const { page, errors } = await openEditing();
+  await page.mouse.click(...(await onPage(page, 100, 50)));
+  await press(page, "Delete");
+  await plays(page);
+  await page.getByRole("button", { name: "Feel", exact: true }).click();
+  await press(page, "Control+z");
+  await plays(page);
+  assert.equal(await textOf(page), PLATES);
+  await press(page, "Control+d");
+  assert.equal(await textOf(page), PLATES, "nothing is selected that could be doubled");
+  assert.deepEqual(errors, []);
+});

@@ -126,7 +126,7 @@ test("while a hand moves a layer, check and map follow, and nothing is played un
   assert.deepEqual(errors, []);
 });
 
-test("a click selects the smallest layer and keeps it; a double click, and Alt, take what lies beneath", async () => {
+test("a click selects the smallest layer and keeps it; a double click, and Alt, take the next larger one", async () => {
   const all = '\n[[layer]]\nname = "all"\nkind = "speed"\nspeeds_mm_per_s = [1, 9]\nfactors = [1, 1]\n';
   const { page, errors } = await openEditing(PLATES + all);
   const names = [];
@@ -137,12 +137,12 @@ test("a click selects the smallest layer and keeps it; a double click, and Alt, 
     await page.mouse.click(...place, { clickCount });
     await name();
   }
-  assert.match(await note.textContent(), /^Selected all, beneath left\./);
+  assert.match(await note.textContent(), /^Selected all, the next larger one here\./);
   await page.keyboard.down("Alt");
   await page.mouse.click(...place);
   await page.keyboard.up("Alt");
   await name();
-  assert.match(await note.textContent(), /^Selected left, the uppermost here\./);
+  assert.match(await note.textContent(), /^Selected left, the smallest here\./);
   assert.deepEqual(names, ["left", "left", "all", "left"]);
   // A handle takes none.
   const { x, y, width, height } = await page.locator(".layer-handle[data-side=se]").boundingBox();

@@ -184,8 +184,16 @@ export class Editor {
    * @param {string | undefined} file
    */
   textOf(file) {
+    return this.versionOf(file)?.toString();
+  }
+
+  /**
+   * The version of that text: another one after each change, also after one that brings a text back.
+   * @param {string | undefined} file
+   */
+  versionOf(file) {
     const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
-    return state?.doc.toString();
+    return state?.doc;
   }
 
   /**

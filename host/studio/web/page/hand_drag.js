@@ -53,7 +53,7 @@ export class HandDrag {
     surface.addEventListener("pointercancel", (event) => this.#up(event));
     surface.addEventListener("dblclick", (event) => {
       // The first of both clicks may have selected it.
-      if (this.#before[0] === hands.selected?.key) this.#takeBeneath(this.#at(event));
+      if (this.#before[0] === hands.selected?.key) this.#takeLarger(this.#at(event));
     });
     surface.addEventListener("pointerleave", () => hands.mark(undefined));
   }
@@ -139,24 +139,23 @@ export class HandDrag {
     this.#press = undefined;
     this.#hands.isPressed = false;
     if (event.type === "pointercancel") this.#hands.grip.cancel();
-    else if (!press.hasMoved && !press.handle && event.altKey) this.#takeBeneath(press.start);
+    else if (!press.hasMoved && !press.handle && event.altKey) this.#takeLarger(press.start);
     this.#hands.grip.end();
   }
 
   /**
-   * Selects the layer that lies beneath the one that is selected; beneath the last one, the first.
+   * Selects the next larger layer here than the one that is selected; after the largest, the smallest.
    * @param {Point} point
    */
-  #takeBeneath(point) {
+  #takeLarger(point) {
     const found = this.#under(point);
     const { selected } = this.#hands;
     const at = found.findIndex(({ key }) => key === selected?.key);
     const next = found[(at + 1) % found.length];
     if (!selected || at < 0 || next.key === selected.key) return;
     this.#hands.focus(next.key);
-    const [taken, before] = [next, selected].map(({ layer }) => shortName(layer.name));
-    const where = at + 1 < found.length ? `beneath ${before}` : "the uppermost here";
-    this.#hands.say(`Selected ${taken}, ${where}. Double-click for the next one beneath.`);
+    const where = at + 1 < found.length ? "the next larger one here" : "the smallest here";
+    this.#hands.say(`Selected ${shortName(next.layer.name)}, ${where}. Double-click for the next one.`);
   }
 }
 

@@ -1,6 +1,8 @@
 // What the panel of the selected layer does: its numbers tune the layer, its buttons add, double and delete layers.
 // @ts-check
 
+import { isSlider } from "./slider_touch.js";
+
 /** @import { Hands } from "./hands.js" */
 /** @import { HandsView } from "./hands_view.js" */
 
@@ -18,8 +20,10 @@ export function listenToPanel({ panel, boxes }, hands) {
       grip.cancel();
       letGo(event.target);
     }
-    boxes.focus(hands.selected?.key);
+    hands.focus(hands.selected?.key);
   });
+  // What was typed before is not taken back with what a finger does now.
+  panel.element.addEventListener("pointerdown", () => grip.end(), { capture: true });
   // The browser has taken the finger for something else.
   panel.element.addEventListener("pointercancel", () => grip.cancel());
   panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
@@ -40,7 +44,7 @@ export function listenToPanel({ panel, boxes }, hands) {
  * @param {EventTarget | null} target
  */
 function letGo(target) {
-  if (!(target instanceof HTMLInputElement) || target.type !== "range") return;
+  if (!isSlider(target)) return;
   target.disabled = true;
   target.disabled = false;
 }

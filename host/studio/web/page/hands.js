@@ -142,7 +142,7 @@ export class Hands {
     this.#view.reach = check;
     const before = this.selected;
     if (!this.#layers.take(check, files, project.entry)) return;
-    const { key, beginsEdit } = this.#selection.follow(before);
+    const { key, beginsEdit } = this.#selection.follow(before, this.isEditing);
     if (beginsEdit && !this.isEditing) {
       this.#mode.whyNot = "";
       this.setEditing(true);
@@ -188,6 +188,8 @@ export class Hands {
   /** @param {string | undefined} key */
   select(key) {
     if (key === this.#selection.key) return;
+    // What was typed is the name of the layer that was selected.
+    this.#view.panel.name.commit();
     this.grip.end();
     this.#selection.key = key;
     this.#draw(true);
@@ -281,10 +283,10 @@ export class Hands {
     }
   }
 
-  /** @param {string} name That the selected layer is to have. */
+  /** @param {string} name That the selected layer is to have; the focus stays where it is. */
   rename(name) {
     const { selected } = this;
-    if (selected) this.#edit(() => this.#edits.rename(selected, name));
+    if (selected) this.#edit(() => this.#edits.rename(selected, name), { focuses: false });
   }
 
   focusName() {
@@ -302,17 +304,17 @@ export class Hands {
   }
 
   /**
-   * Adds or takes out a layer, in one step of undo, and selects what came of it. Returns whether it could.
+   * Adds, renames or takes out a layer, in one step of undo, and selects what came of it. Returns whether it could.
    * @param {() => EditedLayer | void} edit
    */
-  #edit(edit) {
+  #edit(edit, { focuses = true } = {}) {
     this.grip.end();
     if (!this.canEdit()) return false;
     try {
       this.#selection.remember();
       const made = edit();
       this.#draw(false);
-      this.focus(made?.key);
+      if (focuses) this.focus(made?.key);
       return true;
     } catch (error) {
       this.say(sentenceOf(error));

@@ -74,7 +74,7 @@ export class Lag {
     byId("open-lag").setAttribute("aria-expanded", String(isOpen));
     this.#forget();
     this.#say();
-    // In a low window it opens below the edge. A map that need not go stays: the lag is drawn there.
+    // In a low window it opens below the edge. It scrolls no further than it must: the lag is drawn on the map.
     if (isOpen) byId("lag").scrollIntoView({ block: "nearest" });
     if (isOpen || byId("prediction").checked) return;
     // Nothing else says that friction comes late.

@@ -14,15 +14,11 @@ export class LayerName {
 
   constructor() {
     const { element: field } = this;
-    field.onchange = () => {
-      const name = field.value.trim();
-      field.value = this.#name;
-      if (name !== "" && name !== this.#name) this.onName(name);
-    };
+    field.onchange = () => this.commit();
     field.onkeydown = (event) => {
       if (event.key === "Escape") field.value = this.#name;
       // Enter makes the change first.
-      if (event.key === "Enter") field.onchange?.(event);
+      if (event.key === "Enter") this.commit();
       if (event.key !== "Enter" && event.key !== "Escape") return;
       event.preventDefault();
       event.stopPropagation();
@@ -30,10 +26,21 @@ export class LayerName {
     };
   }
 
-  /** @param {string} name */
-  show(name) {
+  /** What is typed is the layer's name from now on. */
+  commit() {
+    const name = this.element.value.trim();
+    this.element.value = this.#name;
+    if (name !== "" && name !== this.#name) this.onName(name);
+  }
+
+  /**
+   * @param {string} name
+   * @param {boolean} isOther Whether another layer was shown before: what is typed is not for this one.
+   */
+  show(name, isOther) {
+    if (isOther || this.element.value === this.#name) this.element.value = name;
     this.#name = name;
-    Object.assign(this.element, { value: name, size: Math.max(4, name.length) });
+    this.element.size = Math.max(4, name.length);
     this.element.setAttribute("aria-label", `Name of ${name}`);
   }
 

@@ -25,13 +25,15 @@ const HIGH_PX = 480;
 /** Distance from the edges of what scrolls it, CSS pixels. */
 const EDGE_PX = 12;
 const HINT =
-  "Press a layer to select it, then twice for the one beneath. Drag it to move it, its handles to resize it.";
+  "Press a layer to select it, double-click for a larger one here. Drag it to move it, its handles to resize it.";
 const EMPTY_HINT = "This scene has no layer yet: add one.";
 
 export class LayerPanel {
   element = element("div", { className: "layer-panel", role: "group", hidden: true });
   /** The field of the name. */
   name = new LayerName();
+  /** The kind, where the name does not say it. */
+  #kind = element("span", {});
   #note = element("p", { className: "fine note", role: "status" });
   #felt = element("div", { className: "layer-felt" });
   /** The fields of the sides of the box. */
@@ -97,10 +99,14 @@ export class LayerPanel {
     this.#place = place;
     // While a layer is selected, its rows stay in their order, and its sliders keep their ends.
     const fields = numbers.map(({ field }) => field).sort();
-    const madeFor = JSON.stringify([edited.key, layer.name, layer.kind, fields, reach.naturalN, reach.reachN]);
+    const head = at === undefined ? layer.name : "";
+    const madeFor = JSON.stringify([edited.key, head, layer.kind, fields, reach.naturalN, reach.reachN]);
     if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
-    if (madeFor !== this.#madeFor) this.#make(edited, numbers);
+    const isOther = madeFor !== this.#madeFor;
+    if (isOther) this.#make(edited, numbers);
     this.#madeFor = madeFor;
+    // A name changes in place: the next press, on a slider or a button, is under way.
+    this.#nameLayer(layer, isOther);
     for (const [side, input] of this.#sides) {
       // A layer of the whole screen is not moved, but gets a region from either side.
       const isMoved = (side === "x" || side === "y") && !place.isWholeScreen;
@@ -113,6 +119,18 @@ export class LayerPanel {
     for (const number of numbers) this.#rows.get(number.field)?.show(number);
     this.#showFelt(layer, reach);
     this.element.hidden = false;
+  }
+
+  /**
+   * @param {Layer} layer
+   * @param {boolean} isOther Whether another layer was shown before.
+   */
+  #nameLayer({ name, kind }, isOther) {
+    this.element.setAttribute("aria-label", `${name}: place and numbers`);
+    this.name.show(name, isOther);
+    this.#kind.textContent = name === kind ? "" : kind;
+    for (const [side, label] of SIDES) this.#sides.get(side)?.setAttribute("aria-label", `${label} of ${name}, mm`);
+    for (const row of this.#rows.values()) row.nameLayer(name);
   }
 
   /**
@@ -177,19 +195,16 @@ export class LayerPanel {
    * @param {EditedLayer} edited
    * @param {LayerNumber[]} numbers
    */
-  #make({ layer: { name, kind }, at }, numbers) {
+  #make({ layer: { name }, at }, numbers) {
     this.#sides.clear();
     this.#rows.clear();
-    this.element.setAttribute("aria-label", `${name}: place and numbers`);
     const onclick = () => this.onClose();
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
-    this.name.show(name);
     const named = at === undefined ? element("b", {}, name) : this.name.element;
-    const title = element("span", {}, name === kind ? "" : kind);
-    const head = element("div", { className: "layer-panel-head" }, named, title, close);
+    const head = element("div", { className: "layer-panel-head" }, named, this.#kind, close);
     this.element.replaceChildren(head, this.#note);
     if (at !== undefined) {
-      const sides = SIDES.map(([side, label]) => this.#side(side, label, name));
+      const sides = SIDES.map(([side, label]) => this.#side(side, label));
       this.element.append(
         this.#felt,
         element("div", { className: "layer-sides" }, ...sides),
@@ -216,10 +231,9 @@ export class LayerPanel {
   /**
    * @param {Side} side
    * @param {string} label
-   * @param {string} layer
    */
-  #side(side, label, layer) {
-    const input = element("input", { type: "number", step: 0.5, "aria-label": `${label} of ${layer}, mm` });
+  #side(side, label) {
+    const input = element("input", { type: "number", step: 0.5 });
     input.oninput = () => {
       if (input.value !== "" && Number.isFinite(input.valueAsNumber)) this.onSide(side, input.valueAsNumber);
     };

@@ -30,9 +30,9 @@ export class NumberRow {
   constructor(number, layer) {
     const { label, unit, min, max, step, limit, words } = number;
     this.#number = number;
-    const named = unit ? `${label} of ${layer}, ${unit}` : `${label} of ${layer}`;
-    this.#slider = element("input", { type: "range", step: "any", "aria-label": named });
-    this.#input = element("input", { type: "number", min, max, step, "aria-label": `${named}, as a number` });
+    this.#slider = element("input", { type: "range", step: "any" });
+    this.#input = element("input", { type: "number", min, max, step });
+    this.nameLayer(layer);
     this.#track = element("span", { className: limit === undefined ? "slider" : "slider has-limit" }, this.#slider);
     this.#showEnds();
     const reach = limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, number), 4)} ${unit}`;
@@ -41,6 +41,14 @@ export class NumberRow {
     const behind = element("span", {}, unit);
     this.element = element("div", { className: "layer-number", title }, said, this.#track, this.#input, behind);
     this.#listen();
+  }
+
+  /** @param {string} layer */
+  nameLayer(layer) {
+    const { label, unit } = this.#number;
+    const named = unit ? `${label} of ${layer}, ${unit}` : `${label} of ${layer}`;
+    this.#slider.setAttribute("aria-label", named);
+    this.#input.setAttribute("aria-label", `${named}, as a number`);
   }
 
   #listen() {

@@ -12,11 +12,17 @@ export class PanelCover {
   /** @param {HTMLElement} panel */
   constructor(panel) {
     this.#panel = panel;
-    const [drawer, toggle] = [byId("drawer"), byId("toggle-drawer")];
+    const drawer = byId("drawer");
+    // What the bar does leaves the text and its mistakes in sight.
     document.addEventListener("focusin", ({ target }) => {
-      if (target !== toggle) this.#write(target instanceof Node && drawer.contains(target));
+      if (!(target instanceof Element)) return;
+      if (drawer.contains(target)) this.#write(true);
+      else if (panel.contains(target) || target.closest(".map-card")) this.#write(false);
     });
-    toggle.addEventListener("click", () => this.#write(!drawer.hidden));
+    // After the button's own listener.
+    document.addEventListener("click", ({ target }) => {
+      if (target instanceof Element && target.closest("#toggle-drawer")) this.#write(!drawer.hidden);
+    });
     const sizes = new ResizeObserver(() => this.update());
     for (const each of [panel, drawer]) sizes.observe(each);
   }
@@ -45,6 +51,7 @@ export class PanelCover {
  * @param {DOMRect} other
  */
 function overlap(one, other) {
-  const isBeside = one.left >= other.right || other.left >= one.right || one.top >= other.bottom || other.top >= one.bottom;
-  return !isBeside && one.width > 0 && other.width > 0;
+  const isBeside = one.left >= other.right || other.left >= one.right;
+  const isAboveOrBelow = one.top >= other.bottom || other.top >= one.bottom;
+  return !isBeside && !isAboveOrBelow && one.width > 0 && other.width > 0;
 }

@@ -10,8 +10,8 @@ import { notify } from "./notices.js";
 export class Removal {
   #editor;
   #undo;
-  /** The text without the layer. @type {string | undefined} */
-  #text;
+  /** The version of the text without the layer. @type {unknown} */
+  #version;
   /** @type {string | undefined} */
   #file;
   #forget = () => {};
@@ -28,17 +28,21 @@ export class Removal {
   /** @param {Layer} layer That the text has no more. */
   say({ name, file }) {
     this.#file = file;
-    this.#text = this.#editor.textOf(file);
+    this.#version = this.#editor.versionOf(file);
     const action = () => {
+      if (!this.#isLast) {
+        notify("The text has changed since: undo it step by step, with Ctrl+Z.");
+        return;
+      }
       this.#editor.show(file);
-      if (this.#isLast) this.#undo();
+      this.#undo();
     };
     this.#forget = notify(`Removed ${shortName(name)}.`, { words: "Undo", action }, { isGood: true });
   }
 
   /** Whether nothing has changed the text since. */
   get #isLast() {
-    return this.#editor.textOf(this.#file) === this.#text;
+    return this.#editor.versionOf(this.#file) === this.#version;
   }
 
   /** The texts were checked: the offer goes once they have changed. */

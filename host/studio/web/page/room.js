@@ -6,7 +6,7 @@ import { FrictionMap } from "./map.js";
 
 /** @import { Screen } from "../engine/types" */
 
-/** Where it is kept how large the screen of the last scene was. */
+/** Setting that keeps the size of the last scene's screen. */
 const SETTING = "screen";
 /** The screen of the scene that the page begins with. layout.css has its ratio, too. @type {Screen} */
 const FIRST_SCREEN = { widthMm: 120, heightMm: 110 };

@@ -48,7 +48,7 @@ export class Selection {
     this.#past = [...this.#past, now].slice(-PAST_MAX);
   }
 
-  /** What was selected in the text that is back. */
+  /** Forgets what was selected in the text that is back, and all since; returns it. */
   #recall() {
     const textOf = (/** @type {string | undefined} */ name) =>
       this.#layers.all.find(({ layer, toml }) => layer.file === name && toml)?.toml?.text;
@@ -86,8 +86,9 @@ export class Selection {
   /**
    * A check has brought the layers: the key of that which is selected now, and whether the mode Edit begins with it.
    * @param {EditedLayer | undefined} before That which was selected of the layers before.
+   * @param {boolean} isEditing Whether what was selected before an undo is selected again.
    */
-  follow(before) {
+  follow(before, isEditing) {
     const { opened } = this.#project;
     const isSameScene = opened === this.#opened;
     this.#opened = opened;
@@ -97,6 +98,7 @@ export class Selection {
     const last = awaited && this.#layers.all.length > awaited.count ? this.#layers.last : undefined;
     const after = before && isSameScene ? this.#layers.successor(before) : undefined;
     if (!isSameScene) this.#past = [];
-    return { key: (last ?? after ?? this.#recall())?.key, beginsEdit: awaited?.isNew === true };
+    const recalled = this.#recall();
+    return { key: (last ?? after ?? (isEditing ? recalled : undefined))?.key, beginsEdit: awaited?.isNew === true };
   }
 }

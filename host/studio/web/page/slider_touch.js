@@ -3,8 +3,8 @@
 
 /**
  * A finger on a slider: where it went down, the value before, and what the slider would have been set to since.
- * @typedef {{ slider: HTMLInputElement, clientX: number, clientY: number, before: string, held: string | undefined,
- *   isSliding: boolean }} Touch
+ * @typedef {{ pointerId: number, slider: HTMLInputElement, clientX: number, clientY: number, before: string,
+ *   held: string | undefined, isSliding: boolean }} Touch
  */
 
 /** A finger that moves less has tapped, CSS pixels. */
@@ -16,16 +16,16 @@ export function guardSliders() {
   let touch;
   addEventListener(
     "pointerdown",
-    ({ target, pointerType, isPrimary, clientX, clientY }) => {
+    ({ target, pointerType, pointerId, isPrimary, clientX, clientY }) => {
       if (pointerType !== "touch" || !isPrimary || !isSlider(target)) return;
-      touch = { slider: target, clientX, clientY, before: target.value, held: undefined, isSliding: false };
+      touch = { pointerId, slider: target, clientX, clientY, before: target.value, held: undefined, isSliding: false };
     },
     { capture: true },
   );
   addEventListener(
     "pointermove",
-    ({ clientX, clientY }) => {
-      if (!touch) return;
+    ({ pointerId, clientX, clientY }) => {
+      if (touch?.pointerId !== pointerId) return;
       const [along, across] = [Math.abs(clientX - touch.clientX), Math.abs(clientY - touch.clientY)];
       if (along > TAP_PX && along > across) touch.isSliding = true;
     },
@@ -44,14 +44,19 @@ export function guardSliders() {
       { capture: true },
     );
   }
-  addEventListener("pointerup", () => {
-    const ended = touch;
-    touch = undefined;
+  // Another finger, on Stop for instance, ends nothing here.
+  /** @param {PointerEvent} event */
+  const end = ({ pointerId }) => {
+    const ended = touch?.pointerId === pointerId ? touch : undefined;
+    if (ended) touch = undefined;
+    return ended;
+  };
+  addEventListener("pointerup", (event) => {
+    const ended = end(event);
     if (ended?.held !== undefined && !ended.isSliding) set(ended.slider, ended.held);
   });
-  addEventListener("pointercancel", () => {
-    const ended = touch;
-    touch = undefined;
+  addEventListener("pointercancel", (event) => {
+    const ended = end(event);
     if (ended?.isSliding && ended.slider.value !== ended.before) set(ended.slider, ended.before);
   });
 }
@@ -60,7 +65,7 @@ export function guardSliders() {
  * @param {EventTarget | null} target
  * @returns {target is HTMLInputElement}
  */
-function isSlider(target) {
+export function isSlider(target) {
   return target instanceof HTMLInputElement && target.type === "range";
 }
 

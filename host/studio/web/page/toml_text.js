@@ -233,7 +233,8 @@ export function tableText(layer) {
  */
 export function valueText(value, decimals) {
   if (typeof value === "number") return numberText(value, decimals);
-  if (typeof value !== "object") return JSON.stringify(value);
+  // TOML takes no DEL as it is.
+  if (typeof value !== "object") return JSON.stringify(value).replaceAll("\u007f", "\\u007f");
   if (Array.isArray(value)) return `[${value.map((each) => valueText(each, decimals)).join(", ")}]`;
   const words = Object.entries(value).map(([key, each]) => `${key} = ${valueText(each, decimals)}`);
   return `{ ${words.join(", ")} }`;
