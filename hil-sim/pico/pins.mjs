@@ -34,6 +34,8 @@ const WATCHED = new Map([
 /** ADC channel of the amplifier's monitor, GP26, and the offset of the ADC's register RESULT. */
 const MONITOR_CHANNEL = 0;
 const ADC_RESULT = 0x04;
+/** Bits of the ADC's register CS: enabled, and converting one time after the other. */
+const ADC_CONVERTS = (1 << 0) | (1 << 3);
 /** Pads after a reset (RP2040 datasheet, 2.19.6.3, GPIO0): input enabled, pulled down, 4 mA. rp2040js has no input enable. */
 const PAD_AFTER_RESET = 0x56;
 /** Function of a pin that belongs to I2C. */
@@ -69,10 +71,14 @@ export class Pins {
     }
     const read = rp2040.adc.readUint32.bind(rp2040.adc);
     rp2040.adc.readUint32 = (offset) => {
-      if (offset === ADC_RESULT) {
-        board.record(EVENT.MONITOR_READ, Math.round(board.instant - this.#syncRoseAt));
+      if (offset !== ADC_RESULT) {
+        return read(offset);
       }
-      return read(offset);
+      board.record(EVENT.MONITOR_READ, Math.round(board.instant - this.#syncRoseAt));
+      // The world gives a voltage for each tick. A conversion of 2 us that begins before the tick would see that of the
+      // tick before, and not the voltage a microsecond ago.
+      const converts = (rp2040.adc.cs & ADC_CONVERTS) === ADC_CONVERTS;
+      return converts ? rp2040.adc.channelValues[MONITOR_CHANNEL] : read(offset);
     };
   }
 

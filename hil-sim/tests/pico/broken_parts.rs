@@ -68,11 +68,12 @@ fn a_monitor_that_is_disturbed_now_and_then_does_not_stop_the_output() {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
     let mut host = bench.play(CONSTANT);
+    // A number of ticks that is no multiple of those of a half period: each of them is hit.
     for _ in 0..10 {
         bench.with(|rig| rig.broken.monitor_v = Some(0.0));
         bench.step();
         bench.with(|rig| rig.broken.monitor_v = None);
-        host.wait(Duration::from_millis(5), &mut |_| ()).unwrap();
+        host.wait(Duration::from_micros(5_125), &mut |_| ()).unwrap();
     }
     assert_eq!(bench.with(|rig| rig.zero_since()), None, "the board drives");
 }
