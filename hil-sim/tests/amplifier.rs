@@ -216,7 +216,7 @@ fn a_monitor_that_dies_and_a_gain_that_changes_fault_within_half_a_millisecond()
     }
 }
 
-/// What the monitor cannot tell from tolerances is a single fault with less current than one may have.
+/// The monitor tolerates a gain that is too high by a part. The current of that single fault is below its limit.
 #[test]
 fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_sees_it() {
     let bound = TouchBound::behind(Board::NUCLEO_G474RE.limits.series_resistance_ohm);

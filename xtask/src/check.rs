@@ -227,9 +227,12 @@ pub(crate) struct Image {
     more: &'static [&'static [&'static str]],
 }
 
+/// The image whose series resistance a build may name.
+const NUCLEO: &str = "firmware/board-nucleo-g474re";
+
 pub(crate) const IMAGES: [Image; 5] = [
     Image {
-        folder: "firmware/board-nucleo-g474re",
+        folder: NUCLEO,
         more: &[
             &["--features", "optical-frame"],
             &["--no-default-features"],
@@ -262,8 +265,8 @@ fn check_images() -> Result<(), String> {
         }
         cargo(&format!("build of {folder}"), folder, &[&["build"], &into[..]].concat(), &[])?;
     }
-    let other = [&["check"], &into[..], &["--bins"]].concat();
-    cargo("NUCLEO behind 370 kOhm", IMAGES[0].folder, &other, &[("FRIXEL_SERIES_KOHM", "370")])
+    let programs = [&["check"], &into[..], &["--bins"]].concat();
+    cargo("NUCLEO behind 370 kOhm", NUCLEO, &programs, &[("FRIXEL_SERIES_KOHM", "370")])
 }
 
 /// Counts instructions, measures sizes and compares them with their limits. Also checks that an image that
@@ -320,9 +323,7 @@ mod tests {
         for image in &IMAGES {
             assert_eq!(of(image.folder), first, "{}", image.folder);
         }
-        for folder in
-            ["firmware/board-nucleo-g474re", "firmware/board-pico", "firmware/board-mps2-an386", "firmware/bench"]
-        {
+        for folder in [NUCLEO, "firmware/board-pico", "firmware/board-mps2-an386", "firmware/bench"] {
             let packages = manifest(folder, "Cargo.toml")["profile"]["release"]["package"].clone();
             assert_eq!(packages["frixel-control"]["opt-level"].as_integer(), Some(3), "{folder}");
         }

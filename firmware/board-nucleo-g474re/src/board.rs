@@ -54,11 +54,11 @@ pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
 
 /// Limits until bring-up has stored others.
 pub const LIMITS: BoardLimits =
-    BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..behind(option_env!("FRIXEL_SERIES_KOHM")) };
+    BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..limits_behind(option_env!("FRIXEL_SERIES_KOHM")) };
 
 /// The limits behind a series resistance in kOhm that the environment of the build names, or else behind the one of
 /// `docs/hardware.md`. Firmware and bring-up are built with the same, or the firmware refuses what bring-up has stored.
-const fn behind(series_kohm: Option<&str>) -> BoardLimits {
+const fn limits_behind(series_kohm: Option<&str>) -> BoardLimits {
     let of_docs = Board::NUCLEO_G474RE.limits;
     let Some(series_kohm) = series_kohm else { return of_docs };
     let Ok(series_kohm) = u32::from_str_radix(series_kohm, 10) else {

@@ -468,7 +468,7 @@ fn ready_and_switch_that_are_bridged_stop() {
     assert!(bench.driven().is_empty());
 }
 
-/// What works as well without the part that disables the amplifier: only this step shows that it is bridged.
+/// A board works as well while monostable or second pole is bridged: only this step of the script finds that.
 #[test]
 fn a_monostable_or_a_second_pole_that_does_not_disable_the_amplifier_stops() {
     for (enable_path, question) in [

@@ -1,4 +1,4 @@
-//! What a finger feels of a grating, held against the goal and the in-process rig's number.
+//! A finger feels a grating as faithfully as the goal asks, and nearly as faithfully as on the in-process rig.
 
 use std::ops::ControlFlow;
 use std::slice;

@@ -44,7 +44,7 @@ pub struct Inputs {
     pub switch_closed: bool,
 }
 
-/// What the board puts out while it waits for a line.
+/// The output of the board while it waits for a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TestOutput {
     /// Amplifier enable and DAC clear are low, and SYNC is high.

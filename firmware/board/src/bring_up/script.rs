@@ -19,9 +19,9 @@ const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
-/// Deviation of each half of the series resistance, as an ohmmeter shows it, from the one that is built in: resistors of
-/// 1 %, and an ohmmeter of 1 %. The touch bound rests on the sum, and nothing measures it later: half of it, with a
-/// resistor that is shorted, would let twice the current through a person.
+/// Largest deviation of each half of the series resistance, as an ohmmeter shows it, from the half that is built in:
+/// resistors of 1 %, and an ohmmeter of 1 %. The touch bound rests on the sum, and nothing measures it later: half of
+/// it, with a resistor that is shorted, would let twice the current through a person.
 const SERIES_TOLERANCE: f32 = 0.02;
 
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.

@@ -21,7 +21,7 @@ pub(crate) const BOARD: Board = Board {
     ..Board::SIMULATOR
 };
 
-/// What bring-up starts from: as built in, behind 68 kOhm. [`BOARD`] drives a capacitor that nobody touches.
+/// The limits with which bring-up begins, behind 68 kOhm. [`BOARD`] drives a capacitor that nobody touches.
 pub(crate) const BUILT_IN: BoardLimits = BoardLimits { series_resistance_ohm: 68e3, ..BOARD.limits };
 
 /// Its session and its ticker, whose memory lives as long as the program.

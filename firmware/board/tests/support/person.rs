@@ -3,7 +3,7 @@
 
 use frixel_board::bring_up::{Sync, TestOutput};
 
-/// What is soldered between the processor's enable and the amplifier's.
+/// The parts between the processor's enable and the amplifier's, or a defect of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EnablePath {
     /// As it must be.
@@ -25,7 +25,7 @@ pub(crate) enum EnablePath {
 }
 
 impl EnablePath {
-    /// What a voltmeter shows on `ENABLE_LOGIC`, V.
+    /// The mean voltage of `ENABLE_LOGIC`, V.
     fn logic_v(self, output: TestOutput) -> f32 {
         let TestOutput::Enable { kicked, sync } = output else { return 0.0 };
         // The part of the time that the monostable's 0.68 ms make.
@@ -38,7 +38,7 @@ impl EnablePath {
         if kicked || self == Self::ProcessorLeftOut { 3.3 * alive } else { 0.0 }
     }
 
-    /// What a voltmeter shows behind the switch, V.
+    /// The mean voltage behind the switch, V.
     fn enable_v(self, output: TestOutput, switch_closed: bool) -> f32 {
         if self == Self::PolesBridged && switch_closed {
             return 3.3;
@@ -48,12 +48,12 @@ impl EnablePath {
     }
 }
 
-/// What the instruments are connected to.
+/// The state of the board that the instruments show.
 pub(crate) struct Instruments {
     pub(crate) output: TestOutput,
     pub(crate) enable_path: EnablePath,
     pub(crate) switch_closed: bool,
-    /// What the oscilloscope shows.
+    /// The reading of the oscilloscope, V.
     pub(crate) probe_v: f32,
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn contact_after(said: &str) -> Option<bool> {
     }
 }
 
-/// What the person types, who reads the instruments.
+/// The answer of a person who reads the instruments.
 pub(crate) fn answer(said: &str, instruments: &Instruments) -> String {
     let &Instruments { output, enable_path, switch_closed, probe_v } = instruments;
     if let Some((_, word)) = said.split_once("Then type: ") {

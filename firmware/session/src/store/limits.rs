@@ -94,8 +94,8 @@ pub enum LimitsError {
         /// The current, in A.
         found: f32,
     },
-    /// The full scale over the series resistance is above [`CURRENT_CEILING_A_PEAK`]: that current flows through a person
-    /// from an amplifier that is stuck at its rail.
+    /// The full scale over the series resistance is above [`CURRENT_CEILING_A_PEAK`]: an amplifier that is stuck at its
+    /// rail drives that current through a person.
     CurrentAtFullScale {
         /// The current, in A.
         found: f32,
@@ -141,7 +141,8 @@ impl fmt::Display for LimitsError {
             ),
             Self::CurrentAtFullScale { found } => write!(
                 f,
-                "the full scale drives {} mA through the series resistance, its ceiling {} mA: take a larger resistance",
+                "the full scale drives {} mA through the series resistance, its ceiling {} mA: take a larger \
+                 resistance",
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),

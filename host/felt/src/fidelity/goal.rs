@@ -2,8 +2,8 @@
 
 use super::Fidelity;
 
-/// What is asked of a texture, with landing and end of a touch. The simulator's tests hold it; `docs/touch.md` says
-/// for which touch sources, speeds and textures it can be reached.
+/// The fidelity that a texture must reach, landing and end of a touch included. The simulator's tests hold it, and
+/// `docs/touch.md` says which touch sources, speeds and textures reach it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     /// Largest [`FidelityMean::error`].

@@ -140,8 +140,8 @@ export class EditedLayers {
    */
   rename(edited, name) {
     this.reread(edited);
-    const renamed = this.all.map((each) => (each.key === edited.key ? { ...each, layer: { ...each.layer, name } } : each));
-    this.all = renamed;
+    const renamed = (/** @type {EditedLayer} */ each) => ({ ...each, layer: { ...each.layer, name } });
+    this.all = this.all.map((each) => (each.key === edited.key ? renamed(each) : each));
     return this.find(edited.key);
   }
 

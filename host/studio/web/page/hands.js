@@ -234,7 +234,8 @@ export class Hands {
    * @param {number} index
    */
   choose(index) {
-    const found = this.isEditing && this.#layers.isCurrent && this.#layers.all.find(({ layer }) => layer.index === index);
+    if (!this.isEditing || !this.#layers.isCurrent) return false;
+    const found = this.#layers.all.find(({ layer }) => layer.index === index);
     if (!found) return false;
     this.focus(found.key);
     this.#view.surface.scrollIntoView({ block: "nearest" });
