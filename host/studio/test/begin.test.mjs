@@ -17,6 +17,25 @@ const problems = (page, text) =>
     return { isDraft: check.isDraft, layers: check.layers?.length, said: check.problems.map(({ message }) => message) };
   }, text);
 
+test("a browser whose store answers late plays the first scene, and the next one", async () => {
+  const { page, errors, close } = await openStudio(undefined, {
+    init: () => {
+      const request = LockManager.prototype.request;
+      LockManager.prototype.request = async function (...args) {
+        // Real time, which the check of the scene takes, too.
+        await new Promise((resolve) => setTimeout(resolve, 3000));
+        return request.apply(this, args);
+      };
+    },
+  });
+  await page.click("#new");
+  await page.locator("#new-scene article", { hasText: "stripes" }).locator("button.primary").click();
+  await page.waitForFunction(() => document.getElementById("scene-name").value === "stripes");
+  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  assert.deepEqual(errors, []);
+  await close();
+});
+
 test("New offers four scenes, each with a picture and one sentence, and each plays", async () => {
   const { page, errors, close } = await openStudio();
   for (const name of ["stripes", "button", "picture", "noise"]) {

@@ -88,6 +88,7 @@ export class Player {
     } finally {
       this.#expected -= 1;
       this.#report();
+      this.#playOn();
     }
   }
 
@@ -121,7 +122,7 @@ export class Player {
   }
 
   /**
-   * Plays this text; of texts that come meanwhile, the newest is played after it.
+   * Plays this text once no action is about to bring another; of texts that come meanwhile, the newest is played.
    * @param {string} text
    */
   async now(text) {
@@ -129,9 +130,14 @@ export class Player {
     this.#timer = undefined;
     this.#next = text;
     this.#report();
+    await this.#playOn();
+  }
+
+  /** Plays the newest text, and those that come meanwhile, until an action is about to bring another. */
+  async #playOn() {
     if (this.#isBusy) return;
     this.#isBusy = true;
-    while (this.#next !== undefined) {
+    while (this.#next !== undefined && this.#expected === 0) {
       const newest = this.#next;
       this.#outcome = "loading";
       this.#next = undefined;
@@ -141,6 +147,8 @@ export class Player {
         this.#settle("failed");
         this.onFailure(sentenceOf(error));
       }
+      // An action that began meanwhile may bring no other text than this one.
+      if (this.#outcome === "loading" && this.#expected > 0) this.#next ??= newest;
     }
     this.#isBusy = false;
   }
