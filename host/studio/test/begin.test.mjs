@@ -36,7 +36,7 @@ test("a browser whose store answers late plays the first scene, and the next one
   await close();
 });
 
-test("New offers four scenes, each with a picture and one sentence, and each plays", async () => {
+test("New offers four scenes, each with a picture and one sentence, and each plays and can be changed", async () => {
   const { page, errors, close } = await openStudio();
   for (const name of ["stripes", "button", "picture", "noise"]) {
     await page.click("#new");
@@ -50,6 +50,8 @@ test("New offers four scenes, each with a picture and one sentence, and each pla
     const text = await page.evaluate(() => studioPage.editor.text);
     assert.deepEqual(await problems(page, text), { isDraft: false, layers: 1, said: [] }, name);
     assert.ok(await page.isHidden("#new-scene"));
+    await page.locator(".layer-box[aria-current=true]").waitFor();
+    await page.getByRole("button", { name: "Feel", exact: true }).click();
   }
   assert.deepEqual(errors, []);
   await close();

@@ -136,5 +136,7 @@ test("F2 leads to the name of a layer, Enter gives it, and Escape and a name tha
   await press(page, "Control+z", "Control+z");
   assert.equal(await textOf(page), PLATES);
   await page.locator("[aria-current=true][aria-label^='left, ']").waitFor();
+  await press(page, "Control+y");
+  await page.locator("[aria-current=true][aria-label^='door bell, ']").waitFor();
   assert.deepEqual(errors, []);
 });

@@ -261,7 +261,7 @@ function showWhatIsFelt(parts) {
 function takeScenes({ engine, project, editor, gallery, hands }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
   const begin = new NewScene(engine);
-  begin.onScene = gallery.onScene;
+  begin.onScene = (name, text) => hands.editNext(() => scene.open({ name, text, files: [] }));
   begin.onPicture = () => attempt(() => beginWithPicture(scene, hands, project));
   hands.onPicture = () =>
     attempt(async () => {

@@ -57,8 +57,9 @@ export class EditedLayers {
       return there?.layer.name === name && there.layer.kind === kind ? there : undefined;
     const same = this.all.filter((each) => each.layer.file === file && wordsOf(each) === wordsOf(before));
     if (same.length === 1) return same[0];
-    // Its own text has changed.
-    return isCounted && there?.layer.name === name && there.layer.kind === kind ? there : undefined;
+    // Its own text has changed; where its name has, nothing else may have.
+    const isNamedSo = there?.layer.name === name || unnamedWordsOf(there) === unnamedWordsOf(before);
+    return isCounted && isNamedSo && there?.layer.kind === kind ? there : undefined;
   }
 
   /**
@@ -222,6 +223,15 @@ export class EditedLayers {
  */
 function wordsOf(edited) {
   return edited?.at === undefined ? undefined : JSON.stringify(edited.toml?.value(["layer", edited.at]));
+}
+
+/**
+ * The same without the name.
+ * @param {EditedLayer | undefined} edited
+ */
+function unnamedWordsOf(edited) {
+  const words = wordsOf(edited);
+  return words && JSON.stringify({ ...JSON.parse(words), name: undefined });
 }
 
 /**
