@@ -24,7 +24,7 @@ export function makeView({ map, finger, scope, engine }) {
     finger.drags = drag.checked;
     byId("map").classList.toggle("no-drag", !drag.checked);
   };
-  for (const id of ["options", "scope-options"]) makeMenu(/** @type {HTMLDetailsElement} */ (byId(id)));
+  for (const id of ["options", "scope-options"]) makeOptions(/** @type {HTMLDetailsElement} */ (byId(id)));
   makeScope(scope);
   makeReplay(engine);
 }
@@ -38,7 +38,7 @@ const BELOW_PX = 6;
  * Puts an open menu below its button, or above it where there is more room, whole within the window.
  * @param {HTMLDetailsElement} menu
  */
-function placeMenu(menu) {
+function placeOptions(menu) {
   const list = /** @type {HTMLElement | null} */ (menu.querySelector(":scope > div"));
   if (!menu.open || !list) return;
   list.style.maxHeight = "";
@@ -61,9 +61,9 @@ function placeMenu(menu) {
  * A press elsewhere closes the menu, and so does the focus that leaves it, and Escape wherever the focus is.
  * @param {HTMLDetailsElement} menu
  */
-function makeMenu(menu) {
-  menu.addEventListener("toggle", () => placeMenu(menu));
-  addEventListener("resize", () => placeMenu(menu));
+function makeOptions(menu) {
+  menu.addEventListener("toggle", () => placeOptions(menu));
+  addEventListener("resize", () => placeOptions(menu));
   document.addEventListener("pointerdown", ({ target }) => {
     if (!(target instanceof Node && menu.contains(target))) menu.open = false;
   });
