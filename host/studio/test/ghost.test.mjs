@@ -89,18 +89,18 @@ test("a press takes over for good: the ghost lifts first, then the press plays",
   const pressed = await page.evaluate(async () => {
     const before = sent.length;
     await slide(20, 60, 55, 100);
-    return { sent: sent.slice(before), wasDown: sent[before - 1].down };
+    const own = sent.slice(before);
+    await wait(200);
+    const { samples } = studioPage;
+    const { xMm, yMm } = samples.since(samples.nowS - 0.7);
+    const came = { ups: xMm.filter(Number.isNaN).length, firstYMm: yMm[xMm.findLastIndex(Number.isNaN) + 1] };
+    return { sent: own, wasDown: sent[before - 1].down, came };
   });
   assert.ok(pressed.wasDown, "the ghost was sliding");
   const [lift, ...own] = pressed.sent;
   assert.deepEqual([lift.down, own.every(({ down }) => down)], [false, true]);
   assert.ok(own.every(({ yMm }) => Math.abs(yMm - 55) < 0.2), JSON.stringify(own.slice(0, 3)));
-  const came = await page.evaluate(async () => {
-    await wait(200);
-    const { samples } = studioPage;
-    const { xMm, yMm } = samples.since(samples.nowS - 0.7);
-    return { ups: xMm.filter(Number.isNaN).length, firstYMm: yMm[xMm.findLastIndex(Number.isNaN) + 1] };
-  });
+  const { came } = pressed;
   assert.ok(came.ups > 20 && Math.abs(came.firstYMm - 55) < 0.2, `no way leads from ghost to press: ${JSON.stringify(came)}`);
   // The board's finger is the person's, and nobody moves it away.
   const places = await page.evaluate(async () => {

@@ -159,6 +159,28 @@ test("a click selects the smallest layer and keeps it; a double click, and Alt, 
   assert.deepEqual(errors, []);
 });
 
+test("a press takes a smaller layer that lies on the one that is selected, and drags it", async () => {
+  const below = 'version = 2\n[[layer]]\nname = "ground"\nkind = "constant"\nfriction_n = 0.3\n';
+  const text = PLATES.replace("version = 2\n", below);
+  const { page, errors } = await openEditing(text);
+  await page.mouse.click(...(await onPage(page, 60, 70)));
+  assert.match(await selected(page), /^ground, /);
+  await page.mouse.move(...(await onPage(page, 20, 30)));
+  await page.mouse.down();
+  await page.mouse.move(...(await onPage(page, 25, 30)), { steps: 3 });
+  await page.mouse.up();
+  assert.match(await selected(page), /^left, /);
+  assert.equal(await textOf(page), text.replace("x_mm = 10.0", "x_mm = 15.0"));
+  // What a double click took is dragged from there.
+  await page.mouse.dblclick(...(await onPage(page, 25, 30)));
+  assert.match(await selected(page), /^ground, /);
+  await page.mouse.click(...(await onPage(page, 25, 30)));
+  assert.match(await selected(page), /^ground, /);
+  await page.mouse.click(...(await onPage(page, 35, 40)));
+  assert.match(await selected(page), /^left, /);
+  assert.deepEqual(errors, []);
+});
+
 test("a finger on a touch screen moves a layer", async () => {
   const { page, errors } = await openEditing();
   const client = await page.context().newCDPSession(page);

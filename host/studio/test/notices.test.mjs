@@ -187,7 +187,7 @@ test("a mistake is told while the text is closed, and the button leads to it", a
   await page.evaluate((text) => (studioPage.editor.text = text), broken);
   await page.locator("#mistakes", { hasText: "1" }).waitFor();
   assert.ok(await page.locator("#drawer").isHidden());
-  assert.match(await page.textContent("#check"), /1 mistake; the version before plays on/);
+  assert.match(await page.textContent("#check"), /1 mistake; the one before plays/);
   assert.equal(await page.locator("#mistakes").getAttribute("aria-label"), "1 mistake");
   await page.click("#toggle-drawer");
   assert.ok(await page.locator("#problems li.error").isVisible());

@@ -145,8 +145,9 @@ test("while a number is dragged its slider stays where it is, whatever is said o
       heights.add(Math.round((await slider.boundingBox()).y));
     }
     await page.mouse.up();
-    assert.deepEqual([...heights], [Math.round(y)], JSON.stringify(size));
     await plays(page);
+    heights.add(Math.round((await slider.boundingBox()).y));
+    assert.deepEqual([...heights], [Math.round(y)], JSON.stringify(size));
   }
   assert.deepEqual(errors, []);
 });
@@ -258,5 +259,49 @@ test("on a narrow window with the text open the panel has its place below the ma
   const map = await page.locator(".map-card").boundingBox();
   assert.ok(panel.width > 300 && panel.x >= 0 && panel.x + panel.width <= 390, JSON.stringify(panel));
   assert.ok(panel.y >= map.y + map.height && panel.y + panel.height <= 844, JSON.stringify({ panel, map }));
+  assert.deepEqual(errors, []);
+});
+
+const GRAINS = `version = 2
+[[layer]]
+name = "sand"
+kind = "noise"
+wavelength_min_mm = 3.0
+wavelength_max_mm = 8.0
+low_n = 0.0
+high_n = 0.05
+`;
+
+test("a decimal comma is a point, and a slider has its usual ends back when its number is usual again", async () => {
+  const { page, errors } = await openEditing();
+  await page.evaluate((text) => played(text), GRAINS);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const number = page.getByLabel("wavelength max of sand, mm, as a number", { exact: true });
+  await number.click();
+  await press(page, "Control+a");
+  await page.keyboard.type("9,5");
+  await press(page, "Enter");
+  assert.match(await textOf(page), /wavelength_max_mm = 9\.5\n/);
+  const most = () => page.getByLabel("wavelength max of sand, mm", { exact: true }).evaluate(({ max }) => Number(max));
+  const usual = await most();
+  await page.evaluate((text) => played(text), GRAINS.replace("max_mm = 8.0", "max_mm = 150.0"));
+  assert.equal(await most(), 200);
+  await page.evaluate((text) => played(text), GRAINS);
+  assert.equal(await most(), usual);
+  assert.deepEqual(errors, []);
+});
+
+test("a mistake that a hand makes is said in the panel, until it is mended", async () => {
+  const { page, errors } = await openEditing();
+  await page.evaluate((text) => played(text), GRAINS);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const number = page.getByLabel("wavelength min of sand, mm, as a number", { exact: true });
+  const note = page.locator(".layer-panel .note");
+  await number.fill("9");
+  await note.filter({ hasText: "wavelength_min_mm" }).waitFor();
+  await number.fill("3");
+  await press(page, "Enter");
+  await plays(page);
+  assert.equal(await note.textContent(), "");
   assert.deepEqual(errors, []);
 });

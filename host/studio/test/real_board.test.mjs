@@ -153,7 +153,7 @@ test("a scene that is not on the board leaves no other one to arm", async () => 
 
   await pressArm();
   await write(page, FOUR_LAYERS);
-  await checkSays(page, "the board refuses it; the version before plays on");
+  await checkSays(page, "the board refuses it; the one before plays");
   const stopped = board.events.length;
   await page.click("#stop");
   await board.assertDisarmed(stopped, "the stop button");

@@ -1,6 +1,8 @@
 // A clock for the page whose time passes in steps, each of which waits until page and board have done what it brings.
 //
 // However slow the machine is, nothing comes late: a stroke is even, no frame is missing, and no board falls silent.
+// Time passes as fast as it can while a test waits for it in the page (`wait`, `hang`). Otherwise it passes no faster
+// than that of the machine: what the page shows for some seconds is still there when the test comes to it.
 
 /** Runs in the page before its scripts: see web/clock.js. Workers of boards get the time of each step. */
 export function addSimulatedClock() {
@@ -12,6 +14,8 @@ export function addSimulatedClock() {
   let isHung = false;
   let timers = [];
   let frames = [];
+  /** How many functions of the test wait. */
+  let waiting = 0;
   const boards = new Set();
   const epochMs = () => performance.timeOrigin + nowMs;
 
@@ -28,7 +32,11 @@ export function addSimulatedClock() {
     },
     nextFrame: (act) => frames.push(act),
   };
-  globalThis.wait = (ms) => new Promise((resolve) => studioClock.later(ms, resolve));
+  globalThis.wait = async (ms) => {
+    waiting += 1;
+    await new Promise((resolve) => studioClock.later(ms, resolve));
+    waiting -= 1;
+  };
   /** The page does nothing for this time: it sends no frame and runs no timer, and takes what came at the end. */
   globalThis.hang = async (ms) => {
     isHung = true;
@@ -89,8 +97,7 @@ export function addSimulatedClock() {
       await stepBoards();
       if (!isHung) runDue();
     }
-    // While no timer runs, nobody waits for this clock: the processors are left to what else goes on.
-    if (timers.length > 0) channel.port2.postMessage(null);
+    if (waiting > 0 || isHung) channel.port2.postMessage(null);
     else setTimeout(() => channel.port2.postMessage(null), STEP_MS);
   };
   channel.port2.postMessage(null);

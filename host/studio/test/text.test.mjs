@@ -132,3 +132,30 @@ test("a scene that a board refuses plays as a draft, and is called so", async ()
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("the line that a person writes stays in sight when the list of mistakes opens below it", async () => {
+  const { page, errors, close } = await openStudio();
+  await page.setViewportSize({ width: 1366, height: 657 });
+  const lines = Array.from({ length: 40 }, (_, at) => `# line ${at + 1}`);
+  const text = `${lines.join("\n")}\nversion = 2\n`;
+  await page.evaluate((text) => played(text), text);
+  await page.evaluate(() => studioPage.editor.goTo(undefined, 1));
+  // As low as the editor shows.
+  const isSeen = () => {
+    const [editor, cursor] = ["#editor .cm-scroller", "#editor .cm-cursor"].map((each) =>
+      document.querySelector(each)?.getBoundingClientRect(),
+    );
+    return cursor !== undefined && cursor.top >= editor.top && cursor.bottom <= editor.bottom;
+  };
+  const shown = await page.evaluate(() => {
+    const { clientHeight } = document.querySelector("#editor .cm-scroller");
+    return Math.floor(clientHeight / document.querySelector("#editor .cm-line").clientHeight);
+  });
+  for (let down = 1; down < shown - 1; down += 1) await page.keyboard.press("ArrowDown");
+  await page.keyboard.press("End");
+  await page.keyboard.type("\nx = 0,05");
+  await page.locator("#problems li.error").waitFor();
+  await page.waitForFunction(isSeen);
+  assert.deepEqual(errors, []);
+  await close();
+});

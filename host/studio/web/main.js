@@ -172,7 +172,10 @@ function showWhatPlays(parts, scene) {
       scope.isDraft = check.isDraft;
       shown = check;
       hands.show(check, files);
-    } else if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
+    } else {
+      hands.showMistakes(check.problems);
+      if (!shown) hint.textContent = "nothing to feel yet: mend the mistake under the text";
+    }
   };
   player.onPlay = () => {
     layers.reset();
@@ -242,7 +245,8 @@ function showWhatIsFelt(parts) {
     parts.hasSlid = true;
     lag.hasStroke = true;
     hint.hidden = board.isPlaying;
-    hint.textContent = "nothing plays: press Play or Arm, at the top";
+    const play = engine.state.link === "simulator" ? "Play" : "Arm";
+    hint.textContent = `nothing plays: press ${play}, at the top`;
     byId("replay").disabled = false;
   };
   board.onState = () => {

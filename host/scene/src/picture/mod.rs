@@ -9,7 +9,9 @@ mod tests;
 use thiserror::Error;
 
 /// Largest number of pixels of a picture: 64 million, so that its grey values take at most 256 MiB.
-const PIXELS_MAX: usize = 1 << 26;
+const PIXELS_MAX: usize = SQUARE_MAX * SQUARE_MAX;
+/// Sides of a square picture with as many pixels.
+const SQUARE_MAX: usize = 1 << 13;
 /// Weights of red, green and blue in grey (luma of ITU-R BT.709).
 const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
 /// The largest sample of 16 bits.
@@ -51,7 +53,7 @@ pub(super) enum PictureError {
     Damaged(String),
     #[error("its colours are inks (CMYK): save it as RGB or grey")]
     Inks,
-    #[error("it has {width} x {height} pixels, and at most {PIXELS_MAX} are read: make it smaller")]
+    #[error("it has {width} x {height} pixels, more than {SQUARE_MAX} x {SQUARE_MAX}: make it smaller")]
     TooLarge { width: usize, height: usize },
 }
 

@@ -22,6 +22,10 @@ const WHY_NOT_ARMED = {
   mistaken: "The scene has mistakes: mend them, then arm.",
   failed: "The board does not have the scene that is shown.",
 };
+const NEEDS_A_BOARD =
+  "A board is a NUCLEO-G474RE or a Raspberry Pi Pico 2 with frixel's firmware, an amplifier and a screen with an " +
+  "electrode: docs/first-board.md of the frixel repository is the way there. What this scene asks of it stands under " +
+  "“What a board needs for it”, in the tab “What is felt”.";
 /** @type {Record<BoardState, string>} */
 const STATE_WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 
@@ -97,7 +101,7 @@ export class Board {
     this.#link = link;
     const board = byId("board");
     board.dataset.state = state;
-    document.documentElement.dataset.state = state;
+    Object.assign(document.documentElement.dataset, { state, link });
     const name = link === "simulator" ? "Simulator" : driving;
     const details = fault && link !== "none" ? `, ${fault}` : "";
     board.textContent = link === "none" ? "No board" : `${name}: ${STATE_WORDS[state]}${details}`;
@@ -143,6 +147,7 @@ export class Board {
           "switch on the board. It is disarmed when this page is hidden or closed, and before a foreign scene opens.",
       ),
       ...choices,
+      element("p", { className: "fine" }, NEEDS_A_BOARD),
     );
     this.#dialog.showModal();
   }

@@ -207,14 +207,18 @@ export class EditedLayers {
    * @param {number} nearMm How far from a layer a press still counts.
    */
   under(xMm, yMm, nearMm) {
-    const area = (/** @type {EditedLayer} */ { place: { box } }) => box.width * box.height;
     const isIn = (/** @type {EditedLayer} */ { place: { box, copies } }) =>
       copies.some(([dx, dy]) => {
         const [x, y] = [xMm - box.x - dx, yMm - box.y - dy];
         return x >= -nearMm && x <= box.width + nearMm && y >= -nearMm && y <= box.height + nearMm;
       });
-    return this.all.filter(isIn).reverse().sort((a, b) => area(a) - area(b));
+    return this.all.filter(isIn).reverse().sort((a, b) => areaOf(a) - areaOf(b));
   }
+}
+
+/** @param {EditedLayer} edited */
+export function areaOf({ place: { box } }) {
+  return box.width * box.height;
 }
 
 /**

@@ -55,7 +55,12 @@ export class Editor {
     });
     const limit = EditorState.changeFilter.of((change) => this.#isShortEnough(change));
     this.#extensions = [editorExtensions(schema), limit, changed];
-    this.#view = new EditorView({ parent, state: this.#newState("") });
+    const view = new EditorView({ parent, state: this.#newState("") });
+    this.#view = view;
+    // The list of mistakes opens below the editor: the line that a person writes stays in sight.
+    new ResizeObserver(() => {
+      if (view.hasFocus) view.dispatch({ effects: EditorView.scrollIntoView(view.state.selection.main.head) });
+    }).observe(view.dom);
   }
 
   /**

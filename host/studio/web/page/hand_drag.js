@@ -2,10 +2,11 @@
 // @ts-check
 
 import { shortName } from "./dom.js";
+import { areaOf } from "./edited_layers.js";
 import { SIDE_MIN_MM, bounds, clamp } from "./place.js";
 
 /** @import { Screen } from "../engine/types" */
-/** @import { EditedLayers } from "./edited_layers.js" */
+/** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
 /** @import { Hands } from "./hands.js" */
 /** @import { FrictionMap } from "./map.js" */
 /** @import { Box, Place, Side } from "./place.js" */
@@ -35,6 +36,8 @@ export class HandDrag {
   #press;
   /** What was selected before each of the last two presses, by key. @type {(string | undefined)[]} */
   #before = [];
+  /** Where a larger layer was taken, in the window, and which. @type {{ clientX: number, clientY: number, key: string } | undefined} */
+  #larger;
 
   /**
    * @param {HTMLElement} surface
@@ -53,9 +56,13 @@ export class HandDrag {
     surface.addEventListener("pointercancel", (event) => this.#up(event));
     surface.addEventListener("dblclick", (event) => {
       // The first of both clicks may have selected it.
-      if (this.#before[0] === hands.selected?.key) this.#takeLarger(this.#at(event));
+      if (this.#before[0] === hands.selected?.key) this.#takeLarger(event);
     });
     surface.addEventListener("pointerleave", () => hands.mark(undefined));
+    // A tablet that is turned has the finger elsewhere on the map: the drag is taken back.
+    addEventListener("resize", () => {
+      if (this.#press) hands.grip.cancel();
+    });
   }
 
   /**
@@ -85,11 +92,22 @@ export class HandDrag {
     const found = this.#under(start);
     const selected = this.#hands.selected;
     this.#before = handle ? [] : [this.#before[1], selected?.key];
-    // What is selected stays so: a person may be about to drag it.
-    const isSelected = handle !== undefined || found.some(({ key }) => key === selected?.key);
-    this.#hands.focus(isSelected ? selected?.key : found[0]?.key);
+    this.#hands.focus(handle || this.#isKept(selected, found, event) ? selected?.key : found[0]?.key);
     this.#press = { pointerId, start, clientX, clientY, handle, place: undefined, hasMoved: false };
     this.#hands.isPressed = true;
+  }
+
+  /**
+   * Whether what is selected stays so at a press, which may begin to drag it: where no smaller layer is, where it was
+   * taken in place of a smaller one, and with Alt.
+   * @param {EditedLayer | undefined} selected
+   * @param {EditedLayer[]} found The layers there.
+   * @param {PointerEvent} press
+   */
+  #isKept(selected, found, press) {
+    if (!selected || !found.includes(selected)) return false;
+    const larger = this.#larger?.key === selected.key ? this.#larger : undefined;
+    return press.altKey || (larger && isNear(larger, press)) || areaOf(selected) <= areaOf(found[0]);
   }
 
   /** @param {PointerEvent} event */
@@ -100,8 +118,7 @@ export class HandDrag {
       return;
     }
     if (event.pointerId !== press.pointerId) return;
-    const isFar = Math.hypot(event.clientX - press.clientX, event.clientY - press.clientY) >= CLICK_PX;
-    if (!press.hasMoved && !isFar) return;
+    if (!press.hasMoved && isNear(press, event)) return;
     if (!press.hasMoved) press.place = this.#hands.grip.begin()?.place;
     press.hasMoved = true;
     // What was taken back by a key, or whose text has gone, is not dragged on.
@@ -139,24 +156,34 @@ export class HandDrag {
     this.#press = undefined;
     this.#hands.isPressed = false;
     if (event.type === "pointercancel") this.#hands.grip.cancel();
-    else if (!press.hasMoved && !press.handle && event.altKey) this.#takeLarger(press.start);
+    else if (!press.hasMoved && !press.handle && event.altKey) this.#takeLarger(event);
     this.#hands.grip.end();
   }
 
   /**
    * Selects the next larger layer here than the one that is selected; after the largest, the smallest.
-   * @param {Point} point
+   * @param {MouseEvent} event
    */
-  #takeLarger(point) {
-    const found = this.#under(point);
+  #takeLarger(event) {
+    const found = this.#under(this.#at(event));
     const { selected } = this.#hands;
     const at = found.findIndex(({ key }) => key === selected?.key);
     const next = found[(at + 1) % found.length];
     if (!selected || at < 0 || next.key === selected.key) return;
     this.#hands.focus(next.key);
+    this.#larger = { clientX: event.clientX, clientY: event.clientY, key: next.key };
     const where = at + 1 < found.length ? "the next larger one here" : "the smallest here";
     this.#hands.say(`Selected ${shortName(next.layer.name)}, ${where}. Double-click for the next one.`);
   }
+}
+
+/**
+ * Whether two presses are one place to a hand.
+ * @param {{ clientX: number, clientY: number }} one
+ * @param {{ clientX: number, clientY: number }} other
+ */
+function isNear(one, other) {
+  return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY) < CLICK_PX;
 }
 
 /**

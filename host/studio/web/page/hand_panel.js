@@ -14,6 +14,8 @@ export function listenToPanel({ panel, boxes }, hands) {
   const { grip } = hands;
   panel.element.addEventListener("keydown", (event) => {
     if (event.key === "F2") hands.focusName();
+    // A number that is again what it was before is no change to a browser.
+    if (event.key === "Enter") grip.end();
     if (event.key !== "Escape") return;
     if (grip.isHolding) {
       event.preventDefault();
@@ -26,6 +28,7 @@ export function listenToPanel({ panel, boxes }, hands) {
   panel.element.addEventListener("pointerdown", () => grip.end(), { capture: true });
   // The browser has taken the finger for something else.
   panel.element.addEventListener("pointercancel", () => grip.cancel());
+  panel.element.addEventListener("beforeinput", takeComma);
   panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
   panel.name.onName = (name) => hands.rename(name);
   panel.name.onLeave = () => boxes.focus(hands.selected?.key);
@@ -37,6 +40,18 @@ export function listenToPanel({ panel, boxes }, hands) {
   panel.onClose = () => hands.focus(undefined);
   panel.onAdd = (beginning) => hands.add(beginning);
   panel.onPicture = () => hands.onPicture();
+}
+
+/**
+ * A comma in a number is a point. Browsers leave it out, which makes the number ten times as large.
+ * @param {InputEvent} event
+ */
+function takeComma(event) {
+  const { target, data } = event;
+  if (!(target instanceof HTMLInputElement && target.type === "number" && data?.includes(","))) return;
+  event.preventDefault();
+  // A field of a number has no selection that a script could replace.
+  document.execCommand("insertText", false, data.replaceAll(",", "."));
 }
 
 /**

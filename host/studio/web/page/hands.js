@@ -13,7 +13,7 @@ import { ModeSwitch } from "./mode_switch.js";
 import { Removal } from "./removal.js";
 import { Selection } from "./selection.js";
 
-/** @import { Checked, Files } from "../engine/types" */
+/** @import { Checked, Files, Problem } from "../engine/types" */
 /** @import { Beginning } from "./beginnings.js" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
@@ -131,6 +131,15 @@ export class Hands {
       this.#mode.whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
       if (this.isEditing) this.setEditing(true);
     }
+  }
+
+  /**
+   * The check found mistakes: while layers are edited, the first one is said beside them.
+   * @param {Problem[]} problems
+   */
+  showMistakes(problems) {
+    const first = problems.find(({ severity }) => severity === "error");
+    if (this.isEditing && first) this.say(first.message);
   }
 
   /**

@@ -36,6 +36,8 @@ export class LayerPanel {
   #kind = element("span", {});
   #note = element("p", { className: "fine note", role: "status" });
   #felt = element("div", { className: "layer-felt" });
+  /** Why it is felt or not: below the numbers, which stay where they are while a drag of one makes other words. */
+  #why = element("p", { className: "fine layer-why" });
   /** The fields of the sides of the box. */
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
   /** The rows of the numbers, by field. */
@@ -140,21 +142,14 @@ export class LayerPanel {
    */
   #showFelt(layer, reach) {
     const { felt, perceived, index } = layer;
-    // What is below stays where it is while a hand drags a slider there, however long the sentence is.
-    const isHeld = this.element.querySelector("input:active") !== null;
-    const { style, offsetHeight } = this.#felt;
-    style.maxHeight = isHeld ? style.maxHeight || `${offsetHeight}px` : "";
     // A person may be about to press what stands there.
     const feltFor = JSON.stringify([index === UNCHECKED, felt, perceived, reach]);
     if (feltFor === this.#feltFor) return;
     this.#feltFor = feltFor;
-    if (index === UNCHECKED) {
-      this.#felt.replaceChildren();
-      return;
-    }
+    const isChecked = index !== UNCHECKED;
+    this.#felt.replaceChildren(...(isChecked ? [feltLine(layer, reach)] : []));
     // The sentence begins with the verdict, which the line shows.
-    const why = felt.replace(`${perceived?.verdict}: `, "");
-    this.#felt.replaceChildren(feltLine(layer, reach), element("p", { className: "fine" }, why));
+    this.#why.textContent = isChecked ? felt.replace(`${perceived?.verdict}: `, "") : "";
   }
 
   /**
@@ -209,6 +204,7 @@ export class LayerPanel {
         this.#felt,
         element("div", { className: "layer-sides" }, ...sides),
         element("div", { className: "layer-numbers" }, ...numbers.map((number) => this.#row(number, name))),
+        this.#why,
         this.#actions(),
       );
     }

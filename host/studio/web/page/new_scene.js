@@ -34,6 +34,7 @@ export class NewScene {
 
   async #open() {
     this.#dialog.showModal();
+    this.#dialog.scrollTop = 0;
     if (this.#dialog.childElementCount > 0) return;
     const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
     const scenes = element("div", { className: "scenes" });

@@ -14,6 +14,8 @@ const CLOSE = 1e-9;
 
 export class NumberRow {
   #number;
+  /** As the row was made: with the ends that its slider has for usual values. */
+  #made;
   #slider;
   #track;
   #input;
@@ -30,6 +32,7 @@ export class NumberRow {
   constructor(number, layer) {
     const { label, unit, min, max, step, limit, words } = number;
     this.#number = number;
+    this.#made = number;
     this.#slider = element("input", { type: "range", step: "any" });
     this.#input = element("input", { type: "number", min, max, step });
     this.nameLayer(layer);
@@ -98,11 +101,12 @@ export class NumberRow {
   }
 
   /**
-   * Shows what the text has now. The ends of the slider stay, unless the number lies beyond them.
+   * Shows what the text has now. The ends of the slider stay, unless the number lies beyond them; while a pointer holds
+   * it, they do not come back either.
    * @param {LayerNumber} number
    */
   show({ value, path, least, most }) {
-    const before = this.#number;
+    const before = this.#slider.matches(":active") ? this.#number : this.#made;
     this.#number = { ...before, value, path, least: Math.min(before.least, least), most: Math.max(before.most, most) };
     this.#showEnds();
     for (const input of [this.#slider, this.#input])

@@ -43,7 +43,9 @@ export class Numbers {
         ),
       );
     };
-    const wanders = "It wanders with the simulated finger's load and noise, also below the map's scale.";
+    const wanders =
+      "It wanders with the finger's load and noise, also below the map's scale. The finger is assumed, not measured: " +
+      "About says what that means.";
     add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
     const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
     const above = "How much more friction is felt now than on bare glass, in Weber steps; none where nothing is driven.";

@@ -66,14 +66,14 @@ export function showStatus(newStatus) {
 /** Says what came of the newest text. What plays meanwhile, if anything does, is what the board had before. */
 export function showOutcome() {
   const isPlaying = document.documentElement.dataset.state === "active";
-  const meanwhile = isPlaying ? "; the version before plays on" : "";
+  const meanwhile = isPlaying ? "; the one before plays" : "";
   const words = {
     loading: "loading…",
     mistaken: `${found.count}${meanwhile}`,
     failed: isPlaying ? `the board refuses it${meanwhile}` : "not on the board",
     loaded: isPlaying ? "plays" : "no mistakes",
   };
-  if (found.isDraft) words.loaded = `${found.count}; draft: plays clamped, a board refuses it`;
+  if (found.isDraft) words.loaded = `${found.count}; draft: plays as far as it can, a board refuses it`;
   const check = byId("check");
   check.textContent = words[status];
   check.toggleAttribute("data-long", words[status].length > LONG);
