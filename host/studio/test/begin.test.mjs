@@ -69,6 +69,8 @@ test("completion of a kind inserts what a layer of it needs, and the scene plays
     await page.keyboard.type(kind.slice(0, 3));
     const option = page.locator(".cm-tooltip-autocomplete li", { hasText: `"${kind}"` });
     await option.waitFor();
+    // What the check says moves the text, and the options with it.
+    await page.waitForFunction(() => studioPage.player.status === "mistaken");
     await page.evaluate(() => wait(200));
     await option.click();
     return page.evaluate(() => studioPage.editor.text);

@@ -291,17 +291,30 @@ test("a decimal comma is a point, and a slider has its usual ends back when its 
   assert.deepEqual(errors, []);
 });
 
-test("a mistake that a hand makes is said in the panel, until it is mended", async () => {
+test("a mistake that a hand makes is said in the panel until it is mended, and moves no slider", async () => {
   const { page, errors } = await openEditing();
   await page.evaluate((text) => played(text), GRAINS);
   await page.mouse.click(...(await onPage(page, 60, 40)));
-  const number = page.getByLabel("wavelength min of sand, mm, as a number", { exact: true });
+  const slider = page.getByLabel("wavelength min of sand, mm", { exact: true });
   const note = page.locator(".layer-panel .note");
-  await number.fill("9");
+  const { x, y, width, height } = await slider.boundingBox();
+  const drag = (part) => page.mouse.move(x + width * part, y + height / 2);
+  await drag(0.13);
+  await page.mouse.down();
+  await drag(0.7);
   await note.filter({ hasText: "wavelength_min_mm" }).waitFor();
-  await number.fill("3");
+  assert.equal((await slider.boundingBox()).y, y);
+  await drag(0.2);
+  await page.waitForFunction(() => document.querySelector(".layer-panel .note").textContent === "");
+  await page.mouse.up();
+  await plays(page);
+  assert.equal((await slider.boundingBox()).y, y);
+  // A number that is again what it was before is played, too.
+  const number = page.getByLabel("wavelength min of sand, mm, as a number", { exact: true });
+  const before = await number.inputValue();
+  await number.fill("9");
+  await number.fill(before);
   await press(page, "Enter");
   await plays(page);
-  assert.equal(await note.textContent(), "");
   assert.deepEqual(errors, []);
 });

@@ -97,7 +97,7 @@ export function addSimulatedClock() {
       await stepBoards();
       if (!isHung) runDue();
     }
-    if (waiting > 0 || isHung) channel.port2.postMessage(null);
+    if (waiting > 0) channel.port2.postMessage(null);
     else setTimeout(() => channel.port2.postMessage(null), STEP_MS);
   };
   channel.port2.postMessage(null);

@@ -140,13 +140,13 @@ test("the line that a person writes stays in sight when the list of mistakes ope
   const text = `${lines.join("\n")}\nversion = 2\n`;
   await page.evaluate((text) => played(text), text);
   await page.evaluate(() => studioPage.editor.goTo(undefined, 1));
-  // As low as the editor shows.
   const isSeen = () => {
     const [editor, cursor] = ["#editor .cm-scroller", "#editor .cm-cursor"].map((each) =>
       document.querySelector(each)?.getBoundingClientRect(),
     );
     return cursor !== undefined && cursor.top >= editor.top && cursor.bottom <= editor.bottom;
   };
+  // As low as the editor shows.
   const shown = await page.evaluate(() => {
     const { clientHeight } = document.querySelector("#editor .cm-scroller");
     return Math.floor(clientHeight / document.querySelector("#editor .cm-line").clientHeight);

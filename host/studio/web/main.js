@@ -245,8 +245,9 @@ function showWhatIsFelt(parts) {
     parts.hasSlid = true;
     lag.hasStroke = true;
     hint.hidden = board.isPlaying;
-    const play = engine.state.link === "simulator" ? "Play" : "Arm";
-    hint.textContent = `nothing plays: press ${play}, at the top`;
+    const { link, needsArm } = engine.state;
+    const button = link === "simulator" ? "Play" : needsArm && "Arm";
+    hint.textContent = button ? `nothing plays: press ${button}, at the top` : "nothing plays";
     byId("replay").disabled = false;
   };
   board.onState = () => {

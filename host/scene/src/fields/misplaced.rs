@@ -130,8 +130,8 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
         "; quotation marks are straight: \"".to_owned()
     } else if let Some(percent) = percent(value) {
         format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
-    } else if line.contains('=') && value.split('#').next().is_none_or(|value| value.trim().is_empty()) {
-        "; the value behind the `=` is missing".to_owned()
+    } else if line.contains('=') && value.split('#').next().unwrap_or_default().trim().is_empty() {
+        "; the value after the `=` is missing".to_owned()
     } else {
         String::new()
     }

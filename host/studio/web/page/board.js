@@ -22,7 +22,7 @@ const WHY_NOT_ARMED = {
   mistaken: "The scene has mistakes: mend them, then arm.",
   failed: "The board does not have the scene that is shown.",
 };
-const NEEDS_A_BOARD =
+const WHAT_A_BOARD_IS =
   "A board is a NUCLEO-G474RE or a Raspberry Pi Pico 2 with frixel's firmware, an amplifier and a screen with an " +
   "electrode: docs/first-board.md of the frixel repository is the way there. What this scene asks of it stands under " +
   "“What a board needs for it”, in the tab “What is felt”.";
@@ -147,7 +147,7 @@ export class Board {
           "switch on the board. It is disarmed when this page is hidden or closed, and before a foreign scene opens.",
       ),
       ...choices,
-      element("p", { className: "fine" }, NEEDS_A_BOARD),
+      element("p", { className: "fine" }, WHAT_A_BOARD_IS),
     );
     this.#dialog.showModal();
   }

@@ -58,8 +58,14 @@ export class Editor {
     const view = new EditorView({ parent, state: this.#newState("") });
     this.#view = view;
     // The list of mistakes opens below the editor: the line that a person writes stays in sight.
+    let heightPx = 0;
     new ResizeObserver(() => {
-      if (view.hasFocus) view.dispatch({ effects: EditorView.scrollIntoView(view.state.selection.main.head) });
+      const { head } = view.state.selection.main;
+      const { top, height } = view.dom.getBoundingClientRect();
+      const cursor = view.coordsAtPos(head);
+      const wasSeen = cursor !== null && cursor.top >= top && cursor.bottom <= top + heightPx;
+      heightPx = height;
+      if (view.hasFocus && wasSeen) view.dispatch({ effects: EditorView.scrollIntoView(head) });
     }).observe(view.dom);
   }
 

@@ -20,6 +20,8 @@ import { SIDE_MIN_MM, bounds, clamp } from "./place.js";
 
 /** A press that moves less is a click, CSS pixels. */
 const CLICK_PX = 4;
+/** A finger that presses the same place again is so near, CSS pixels. */
+const FINGER_PX = 24;
 /** How far from a layer's edge a press still selects it, CSS pixels. */
 const NEAR_PX = 8;
 /** Sides that a hand drags come to rest on multiples of this, mm. */
@@ -36,7 +38,10 @@ export class HandDrag {
   #press;
   /** What was selected before each of the last two presses, by key. @type {(string | undefined)[]} */
   #before = [];
-  /** Where a larger layer was taken, in the window, and which. @type {{ clientX: number, clientY: number, key: string } | undefined} */
+  /**
+   * Where in the window a larger layer was taken.
+   * @type {{ clientX: number, clientY: number } | undefined}
+   */
   #larger;
 
   /**
@@ -59,9 +64,11 @@ export class HandDrag {
       if (this.#before[0] === hands.selected?.key) this.#takeLarger(event);
     });
     surface.addEventListener("pointerleave", () => hands.mark(undefined));
-    // A tablet that is turned has the finger elsewhere on the map: the drag is taken back.
+    // On a tablet that is turned the finger is elsewhere on the map: the drag is taken back, and goes no further.
     addEventListener("resize", () => {
-      if (this.#press) hands.grip.cancel();
+      if (!this.#press) return;
+      this.#press.hasMoved = true;
+      hands.grip.cancel();
     });
   }
 
@@ -92,7 +99,9 @@ export class HandDrag {
     const found = this.#under(start);
     const selected = this.#hands.selected;
     this.#before = handle ? [] : [this.#before[1], selected?.key];
-    this.#hands.focus(handle || this.#isKept(selected, found, event) ? selected?.key : found[0]?.key);
+    const isKept = handle !== undefined || this.#isKept(selected, found, event);
+    if (!isKept) this.#larger = undefined;
+    this.#hands.focus(isKept ? selected?.key : found[0]?.key);
     this.#press = { pointerId, start, clientX, clientY, handle, place: undefined, hasMoved: false };
     this.#hands.isPressed = true;
   }
@@ -106,8 +115,9 @@ export class HandDrag {
    */
   #isKept(selected, found, press) {
     if (!selected || !found.includes(selected)) return false;
-    const larger = this.#larger?.key === selected.key ? this.#larger : undefined;
-    return press.altKey || (larger && isNear(larger, press)) || areaOf(selected) <= areaOf(found[0]);
+    const againPx = press.pointerType === "mouse" ? CLICK_PX : FINGER_PX;
+    const isThere = this.#larger !== undefined && isNear(this.#larger, press, againPx);
+    return press.altKey || isThere || areaOf(selected) <= areaOf(found[0]);
   }
 
   /** @param {PointerEvent} event */
@@ -118,7 +128,7 @@ export class HandDrag {
       return;
     }
     if (event.pointerId !== press.pointerId) return;
-    if (!press.hasMoved && isNear(press, event)) return;
+    if (!press.hasMoved && isNear(press, event, CLICK_PX)) return;
     if (!press.hasMoved) press.place = this.#hands.grip.begin()?.place;
     press.hasMoved = true;
     // What was taken back by a key, or whose text has gone, is not dragged on.
@@ -171,19 +181,19 @@ export class HandDrag {
     const next = found[(at + 1) % found.length];
     if (!selected || at < 0 || next.key === selected.key) return;
     this.#hands.focus(next.key);
-    this.#larger = { clientX: event.clientX, clientY: event.clientY, key: next.key };
+    this.#larger = { clientX: event.clientX, clientY: event.clientY };
     const where = at + 1 < found.length ? "the next larger one here" : "the smallest here";
     this.#hands.say(`Selected ${shortName(next.layer.name)}, ${where}. Double-click for the next one.`);
   }
 }
 
 /**
- * Whether two presses are one place to a hand.
  * @param {{ clientX: number, clientY: number }} one
  * @param {{ clientX: number, clientY: number }} other
+ * @param {number} withinPx
  */
-function isNear(one, other) {
-  return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY) < CLICK_PX;
+function isNear(one, other, withinPx) {
+  return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY) < withinPx;
 }
 
 /**

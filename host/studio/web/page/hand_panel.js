@@ -47,8 +47,9 @@ export function listenToPanel({ panel, boxes }, hands) {
  * @param {InputEvent} event
  */
 function takeComma(event) {
-  const { target, data } = event;
-  if (!(target instanceof HTMLInputElement && target.type === "number" && data?.includes(","))) return;
+  const { target, data, cancelable } = event;
+  const isNumber = target instanceof HTMLInputElement && target.type === "number";
+  if (!isNumber || !cancelable || !data?.includes(",")) return;
   event.preventDefault();
   // A field of a number has no selection that a script could replace.
   document.execCommand("insertText", false, data.replaceAll(",", "."));

@@ -121,6 +121,8 @@ export class Hands {
     this.#heldBack = this.grip.isHolding ? [check, files] : undefined;
     if (this.#heldBack) {
       this.#layers.feel(check.layers);
+      // A mistake that the hand made is over.
+      if (this.grip.hasChanged) this.say("");
       this.#draw(false);
       return;
     }

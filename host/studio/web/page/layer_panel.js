@@ -36,7 +36,7 @@ export class LayerPanel {
   #kind = element("span", {});
   #note = element("p", { className: "fine note", role: "status" });
   #felt = element("div", { className: "layer-felt" });
-  /** Why it is felt or not: below the numbers, which stay where they are while a drag of one makes other words. */
+  /** Why it is felt or not. It stands below the numbers, so that no number moves when its words change. */
   #why = element("p", { className: "fine layer-why" });
   /** The fields of the sides of the box. */
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
@@ -99,7 +99,7 @@ export class LayerPanel {
   show(edited, numbers, reach, isNew) {
     const { layer, place, at } = edited;
     this.#place = place;
-    // While a layer is selected, its rows stay in their order, and its sliders keep their ends.
+    // While a layer is selected, its rows stay in their order.
     const fields = numbers.map(({ field }) => field).sort();
     const head = at === undefined ? layer.name : "";
     const madeFor = JSON.stringify([edited.key, head, layer.kind, fields, reach.naturalN, reach.reachN]);
@@ -197,13 +197,15 @@ export class LayerPanel {
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
     const named = at === undefined ? element("b", {}, name) : this.name.element;
     const head = element("div", { className: "layer-panel-head" }, named, this.#kind, close);
-    this.element.replaceChildren(head, this.#note);
-    if (at !== undefined) {
+    this.element.replaceChildren(head);
+    if (at === undefined) this.element.append(this.#note);
+    else {
       const sides = SIDES.map(([side, label]) => this.#side(side, label));
       this.element.append(
         this.#felt,
         element("div", { className: "layer-sides" }, ...sides),
         element("div", { className: "layer-numbers" }, ...numbers.map((number) => this.#row(number, name))),
+        this.#note,
         this.#why,
         this.#actions(),
       );

@@ -14,8 +14,8 @@ const CLOSE = 1e-9;
 
 export class NumberRow {
   #number;
-  /** As the row was made: with the ends that its slider has for usual values. */
-  #made;
+  /** The slider is being dragged. */
+  #isDragged = false;
   #slider;
   #track;
   #input;
@@ -32,7 +32,6 @@ export class NumberRow {
   constructor(number, layer) {
     const { label, unit, min, max, step, limit, words } = number;
     this.#number = number;
-    this.#made = number;
     this.#slider = element("input", { type: "range", step: "any" });
     this.#input = element("input", { type: "number", min, max, step });
     this.nameLayer(layer);
@@ -56,7 +55,10 @@ export class NumberRow {
 
   #listen() {
     const [slider, input] = [this.#slider, this.#input];
-    slider.oninput = () => this.#change(slider.valueAsNumber, this.#places);
+    slider.oninput = () => {
+      this.#isDragged = true;
+      this.#change(slider.valueAsNumber, this.#places);
+    };
     // An arrow key moves a slider without steps by next to nothing.
     slider.onkeydown = (event) => {
       const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
@@ -65,7 +67,11 @@ export class NumberRow {
       this.#change(slider.valueAsNumber + by * this.#number.step, this.#number.decimals);
     };
     slider.onkeyup = () => this.onEnd();
-    slider.onchange = () => this.onEnd();
+    slider.onchange = () => {
+      this.#isDragged = false;
+      this.onEnd();
+    };
+    slider.onpointercancel = () => (this.#isDragged = false);
     input.oninput = () => {
       const { min, max } = this.#number;
       if (input.value !== "" && input.valueAsNumber >= min && input.valueAsNumber <= max)
@@ -101,13 +107,14 @@ export class NumberRow {
   }
 
   /**
-   * Shows what the text has now. The ends of the slider stay, unless the number lies beyond them; while a pointer holds
-   * it, they do not come back either.
+   * Shows what the text has now. While the slider is dragged its ends stay, unless the number lies beyond them.
    * @param {LayerNumber} number
    */
   show({ value, path, least, most }) {
-    const before = this.#slider.matches(":active") ? this.#number : this.#made;
-    this.#number = { ...before, value, path, least: Math.min(before.least, least), most: Math.max(before.most, most) };
+    const before = this.#number;
+    const kept = this.#isDragged ? before : { least, most };
+    const ends = { least: Math.min(kept.least, least), most: Math.max(kept.most, most) };
+    this.#number = { ...before, value, path, ...ends };
     this.#showEnds();
     for (const input of [this.#slider, this.#input])
       if (input !== document.activeElement || Number(input.value) !== Number(this.#text)) input.value = this.#text;

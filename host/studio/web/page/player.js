@@ -88,7 +88,8 @@ export class Player {
     } finally {
       this.#expected -= 1;
       this.#report();
-      this.#playOn();
+      // A newer text comes in a moment.
+      if (this.#timer === undefined) this.#playOn();
     }
   }
 

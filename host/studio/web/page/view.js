@@ -29,20 +29,20 @@ export function makeView({ map, finger, scope, engine }) {
   makeReplay(engine);
 }
 
-/** Least distance of an open menu from the edges of the window, CSS pixels. */
+/** Least distance of open options from the edges of the window, CSS pixels. */
 const EDGE_PX = 8;
-/** Room between a menu's button and the menu, CSS pixels. */
+/** Room between options and their button, CSS pixels. */
 const BELOW_PX = 6;
 
 /**
- * Puts an open menu below its button, or above it where there is more room, whole within the window.
- * @param {HTMLDetailsElement} menu
+ * Puts open options below their button, or above it where there is more room, whole within the window.
+ * @param {HTMLDetailsElement} options
  */
-function placeOptions(menu) {
-  const list = /** @type {HTMLElement | null} */ (menu.querySelector(":scope > div"));
-  if (!menu.open || !list) return;
+function placeOptions(options) {
+  const list = /** @type {HTMLElement | null} */ (options.querySelector(":scope > div"));
+  if (!options.open || !list) return;
   list.style.maxHeight = "";
-  const button = menu.getBoundingClientRect();
+  const button = options.getBoundingClientRect();
   const { width, height } = list.getBoundingClientRect();
   const least = (document.querySelector("header")?.getBoundingClientRect().bottom ?? 0) + EDGE_PX;
   const [above, below] = [button.top - BELOW_PX - least, innerHeight - EDGE_PX - button.bottom - BELOW_PX];
@@ -58,26 +58,26 @@ function placeOptions(menu) {
 }
 
 /**
- * A press elsewhere closes the menu, and so does the focus that leaves it, and Escape wherever the focus is.
- * @param {HTMLDetailsElement} menu
+ * A press elsewhere closes the options, and so does the focus that leaves them, and Escape wherever the focus is.
+ * @param {HTMLDetailsElement} options
  */
-function makeOptions(menu) {
-  menu.addEventListener("toggle", () => placeOptions(menu));
-  addEventListener("resize", () => placeOptions(menu));
+function makeOptions(options) {
+  options.addEventListener("toggle", () => placeOptions(options));
+  addEventListener("resize", () => placeOptions(options));
   document.addEventListener("pointerdown", ({ target }) => {
-    if (!(target instanceof Node && menu.contains(target))) menu.open = false;
+    if (!(target instanceof Node && options.contains(target))) options.open = false;
   });
-  menu.addEventListener("focusout", ({ relatedTarget }) => {
-    if (relatedTarget instanceof Node && !menu.contains(relatedTarget)) menu.open = false;
+  options.addEventListener("focusout", ({ relatedTarget }) => {
+    if (relatedTarget instanceof Node && !options.contains(relatedTarget)) options.open = false;
   });
   addEventListener(
     "keydown",
     (event) => {
-      if (event.key !== "Escape" || !menu.open || document.querySelector("dialog[open]")) return;
+      if (event.key !== "Escape" || !options.open || document.querySelector("dialog[open]")) return;
       event.preventDefault();
       event.stopPropagation();
-      menu.open = false;
-      menu.querySelector("summary")?.focus();
+      options.open = false;
+      options.querySelector("summary")?.focus();
     },
     { capture: true },
   );
