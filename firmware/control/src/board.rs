@@ -151,9 +151,9 @@ impl Board {
     };
 
     /// Largest voltage until limits are stored, V peak: of a Pico and a Pico 2, and of a NUCLEO-G474RE that is built
-    /// for another series resistance. No bring-up has measured DAC, amplifier, monitor, one-shot and resistance before a
-    /// first play, so it is one that does no harm if gain or reference is twice as large as it should be, or the
-    /// resistance half.
+    /// for another series resistance. No bring-up has measured DAC, amplifier, monitor, one-shot and resistance
+    /// before a first play, so it is one that does no harm if gain or reference is twice as large as it should be, or
+    /// the resistance half.
     pub const UNMEASURED_V_PEAK: f32 = 10.0;
 
     /// The real board of a name.

@@ -171,7 +171,7 @@ test("a press takes a smaller layer that lies on the one that is selected, and d
   await page.mouse.up();
   assert.match(await selected(page), /^left, /);
   assert.equal(await textOf(page), text.replace("x_mm = 10.0", "x_mm = 15.0"));
-  // What a double click took is dragged from there.
+  // What a double click took stays selected at a press there, and at no other place.
   await page.mouse.dblclick(...(await onPage(page, 25, 30)));
   assert.match(await selected(page), /^ground, /);
   await page.mouse.click(...(await onPage(page, 25, 30)));

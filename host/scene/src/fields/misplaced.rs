@@ -117,7 +117,7 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
     let line_start = text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1);
     let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim();
     let has_single = || text.lines().any(|line| line.trim_start().starts_with("[layer]"));
-    let value = line.split_once('=').map_or("", |(_, value)| value.trim());
+    let value = line.split_once('=').map(|(_, value)| value.split('#').next().unwrap_or_default().trim());
     if let Some(after) = text.get(offset..).and_then(|rest| rest.strip_prefix(',')) {
         if after.starts_with(|next: char| next.is_ascii_digit()) {
             "; a decimal has a point, not a comma".to_owned()
@@ -126,11 +126,11 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
         }
     } else if (line.starts_with("[layer]") || line.starts_with("[[layer]]")) && has_single() {
         "; write `[[layer]]`, in double brackets, before the fields of each layer".to_owned()
-    } else if value.starts_with(CURLY_QUOTES) {
+    } else if value.is_some_and(|value| value.starts_with(CURLY_QUOTES)) {
         "; quotation marks are straight: \"".to_owned()
-    } else if let Some(percent) = percent(value) {
+    } else if let Some(percent) = value.and_then(percent) {
         format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
-    } else if line.contains('=') && value.split('#').next().unwrap_or_default().trim().is_empty() {
+    } else if value == Some("") {
         "; the value after the `=` is missing".to_owned()
     } else {
         String::new()
@@ -140,8 +140,7 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
 /// Quotation marks that text editors put in place of straight ones.
 const CURLY_QUOTES: [char; 6] = ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{ab}'];
 
-/// The number of a value with a percent sign, before a comment.
+/// The number of a value with a percent sign.
 fn percent(value: &str) -> Option<f64> {
-    let value = value.split('#').next().unwrap_or_default().trim();
     value.strip_suffix('%')?.trim().parse().ok()
 }

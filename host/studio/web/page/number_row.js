@@ -112,9 +112,11 @@ export class NumberRow {
    */
   show({ value, path, least, most }) {
     const before = this.#number;
-    const kept = this.#isDragged ? before : { least, most };
-    const ends = { least: Math.min(kept.least, least), most: Math.max(kept.most, most) };
-    this.#number = { ...before, value, path, ...ends };
+    this.#number = { ...before, value, path, least, most };
+    if (this.#isDragged) {
+      this.#number.least = Math.min(before.least, least);
+      this.#number.most = Math.max(before.most, most);
+    }
     this.#showEnds();
     for (const input of [this.#slider, this.#input])
       if (input !== document.activeElement || Number(input.value) !== Number(this.#text)) input.value = this.#text;
