@@ -36,6 +36,7 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
 /// The hello of a board in this state, with these scenes.
 pub(crate) fn hello(board: &Board, status: &Status, state: State, scenes: &Scenes) -> Hello {
     let skipped = if scenes.is_stored_scene_skipped() { notice::STORED_SCENE_SKIPPED } else { 0 };
+    let not_stored = if scenes.is_not_stored() { notice::SCENE_NOT_STORED } else { 0 };
     Hello {
         protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
         firmware: FIRMWARE,
@@ -50,6 +51,6 @@ pub(crate) fn hello(board: &Board, status: &Status, state: State, scenes: &Scene
         fault_detail: status.fault.map_or(0, |(_, detail)| detail),
         state,
         limits: board.limits,
-        notices: board.notices | skipped,
+        notices: board.notices | skipped | not_stored,
     }
 }

@@ -143,6 +143,12 @@ impl<'a> Session<'a> {
         self.commands.scenes.skips_stored_scene(&self.commands.board)
     }
 
+    /// Tells the hosts that the scene of this CRC-32 could not be stored.
+    #[cfg(feature = "store")]
+    pub(crate) fn could_not_store(&mut self, crc32: u32) {
+        self.commands.scenes.could_not_store(crc32);
+    }
+
     /// Whether a person has started the board: the power came on, or the reset pin was used.
     #[cfg(feature = "store")]
     pub(crate) fn was_started_by_a_person(&self) -> bool {

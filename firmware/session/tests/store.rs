@@ -204,7 +204,8 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
     let empty = SimulatedFlash::new(PAGES, false);
     assert_eq!(load(&empty, in_force), (built_in, 0));
     assert_eq!(load(&empty, lifted), (built_in, above));
-    assert_eq!(load_limits(None::<&SimulatedFlash>, SLOT, &built_in, in_force), (built_in, 0));
+    let without_flash = load_limits(None::<&SimulatedFlash>, SLOT, &built_in, in_force);
+    assert_eq!(without_flash, (built_in, notice::SCENE_NOT_STORED));
 
     let written = |limits, ceilings| flash_with(&[&write_limits(limits, ceilings).unwrap()], false);
     let flash = written(&low, in_force);
@@ -225,9 +226,9 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
 }
 
 /// Steps the scene store 30,000 times, enough to finish any write.
-fn finish_writing(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &TestBoard, mut now_tick: u32) {
+fn finish_writing(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &mut TestBoard, mut now_tick: u32) {
     for _ in 0..30_000 {
-        store.step(flash, &board.session, now_tick);
+        store.step(flash, &mut board.session, now_tick);
         now_tick = now_tick.wrapping_add(STORE_AFTER_TICKS / 3);
     }
 }
@@ -246,8 +247,8 @@ fn with_stored_texture() -> (TestBoard, SimulatedFlash, Vec<u8>) {
     board.hello();
     let scene = textured(&mut board);
     board.load(&scene).unwrap();
-    finish_writing(&mut store, &mut flash, &board, 0);
-    assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
+    finish_writing(&mut store, &mut flash, &mut board, 0);
+    assert_eq!((store.stored_crc32(), board.hello().notices), (Some(crc32(&scene)), 0));
     (board, flash, scene)
 }
 
@@ -295,7 +296,7 @@ fn a_skipped_scene_plays_again_once_a_start_has_not_followed_faults() {
     let (mut board, mut store) = start_after_faults(&flash, 3);
     let done = flash.done;
     board.hello();
-    finish_writing(&mut store, &mut flash, &board, 0);
+    finish_writing(&mut store, &mut flash, &mut board, 0);
     assert_eq!(flash.done, done, "skipping a scene writes nothing");
 
     let (mut board, _) = start_after_faults(&flash, 0);
@@ -313,10 +314,10 @@ fn a_scene_that_is_stored_in_place_of_a_skipped_one_plays_at_the_next_start() {
     board.load(&fine).unwrap();
     let hello = board.hello();
     assert_eq!((hello.scene_crc32, hello.notices), (crc32(&fine), 0));
-    store.step(&mut flash, &board.session, 0);
-    finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
+    store.step(&mut flash, &mut board.session, 0);
+    finish_writing_at(&mut store, &mut flash, &mut board, 44 * 60 * 40_000);
     assert_eq!(store.stored_crc32(), None, "a fault has reset the board: its first write waits");
-    finish_writing(&mut store, &mut flash, &board, 45 * 60 * 40_000);
+    finish_writing(&mut store, &mut flash, &mut board, 45 * 60 * 40_000);
     assert_eq!(store.stored_crc32(), Some(crc32(&fine)));
 
     let (mut board, _) = start_after_faults(&flash, 0);
@@ -341,28 +342,28 @@ fn a_scene_is_written_once_and_only_after_the_board_was_disarmed_for_a_while() {
     board.load(&constant_scene(0.01)).unwrap();
     let begun = u32::MAX - 1000; // the tick count may wrap
     for after in [0, 1, STORE_AFTER_TICKS - 1] {
-        store.step(&mut flash, &board.session, begun.wrapping_add(after));
+        store.step(&mut flash, &mut board.session, begun.wrapping_add(after));
         assert_eq!(flash.done, 0);
     }
-    finish_writing(&mut store, &mut flash, &board, begun.wrapping_add(STORE_AFTER_TICKS));
+    finish_writing(&mut store, &mut flash, &mut board, begun.wrapping_add(STORE_AFTER_TICKS));
     let done = flash.done;
     assert!(done > 0);
     board.load(&constant_scene(0.01)).unwrap();
-    finish_writing(&mut store, &mut flash, &board, 0);
+    finish_writing(&mut store, &mut flash, &mut board, 0);
     assert_eq!(flash.done, done, "the same scene is not written again");
 }
 
 /// Steps the scene store until its write has ended; time stands still.
-fn finish_writing_at(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &TestBoard, tick: u32) {
+fn finish_writing_at(store: &mut SceneStore, flash: &mut SimulatedFlash, board: &mut TestBoard, tick: u32) {
     for _ in 0..30_000 {
-        store.step(flash, &board.session, tick);
+        store.step(flash, &mut board.session, tick);
     }
 }
 
 /// Loads a scene, and lets the board be disarmed with it until it may be stored.
 fn load_and_wait(board: &mut TestBoard, store: &mut SceneStore, flash: &mut SimulatedFlash, scene: &[u8], tick: u32) {
     board.load(scene).unwrap();
-    store.step(flash, &board.session, tick);
+    store.step(flash, &mut board.session, tick);
 }
 
 #[test]
@@ -375,7 +376,7 @@ fn two_writes_of_a_slot_are_45_minutes_apart_and_the_last_scene_wins() {
     let mut begun = 100;
     load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), begun);
     begun += STORE_AFTER_TICKS;
-    finish_writing_at(&mut store, &mut flash, &board, begun);
+    finish_writing_at(&mut store, &mut flash, &mut board, begun);
     assert_eq!(store.stored_crc32(), Some(crc32(&constant_scene(0.01))), "the first does not wait");
 
     // Over the wrap of the tick count, too: 2^32 ticks are some 40 intervals.
@@ -385,12 +386,12 @@ fn two_writes_of_a_slot_are_45_minutes_apart_and_the_last_scene_wins() {
         for (scene, tenth) in scenes.iter().zip([2, 5, 8]) {
             let tick = begun.wrapping_add(INTERVAL_TICKS / 10 * tenth);
             load_and_wait(&mut board, &mut store, &mut flash, scene, tick);
-            finish_writing_at(&mut store, &mut flash, &board, tick.wrapping_add(STORE_AFTER_TICKS));
+            finish_writing_at(&mut store, &mut flash, &mut board, tick.wrapping_add(STORE_AFTER_TICKS));
         }
-        finish_writing_at(&mut store, &mut flash, &board, begun.wrapping_add(INTERVAL_TICKS - 1));
+        finish_writing_at(&mut store, &mut flash, &mut board, begun.wrapping_add(INTERVAL_TICKS - 1));
         assert_eq!(flash.done, erased, "{number}");
         begun = begun.wrapping_add(INTERVAL_TICKS);
-        finish_writing_at(&mut store, &mut flash, &board, begun);
+        finish_writing_at(&mut store, &mut flash, &mut board, begun);
         assert_eq!(store.stored_crc32(), Some(crc32(&scenes[2])), "{number}");
         erased = flash.done;
     }
@@ -405,7 +406,7 @@ fn a_board_that_resets_again_and_again_does_not_write() {
         let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
         board.hello();
         load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01 * f32::from(number)), 0);
-        finish_writing_at(&mut store, &mut flash, &board, 44 * 60 * 40_000);
+        finish_writing_at(&mut store, &mut flash, &mut board, 44 * 60 * 40_000);
         assert_eq!(flash.done, 0, "{reset_cause:?}");
     }
     for reset_cause in [ResetCause::PowerOn, ResetCause::Pin] {
@@ -414,7 +415,7 @@ fn a_board_that_resets_again_and_again_does_not_write() {
         let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
         board.hello();
         load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), 0);
-        finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
+        finish_writing_at(&mut store, &mut flash, &mut board, STORE_AFTER_TICKS);
         assert!(flash.done > 0, "{reset_cause:?}: a person's scene is stored at once");
     }
 }
@@ -432,25 +433,25 @@ fn a_write_that_arming_interrupts_goes_on_once_the_board_is_disarmed() {
     let mut cuts = 0;
     while store.stored_crc32().is_none() {
         for _ in 0..300 {
-            store.step(&mut flash, &board.session, STORE_AFTER_TICKS);
+            store.step(&mut flash, &mut board.session, STORE_AFTER_TICKS);
         }
         board.command(Command::Arm).unwrap();
         let done = flash.done;
-        finish_writing_at(&mut store, &mut flash, &board, STORE_AFTER_TICKS);
+        finish_writing_at(&mut store, &mut flash, &mut board, STORE_AFTER_TICKS);
         assert_eq!(flash.done, done);
         board.command(Command::Disarm).unwrap();
         board.press_switch();
         cuts += 1;
     }
     assert!(cuts > 3, "{cuts}");
-    assert_eq!((store.stored_crc32(), store.failures()), (Some(crc32(&scene)), 0));
+    assert_eq!((store.stored_crc32(), board.hello().notices), (Some(crc32(&scene)), 0));
 
     let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &uninterrupted, &mut board.session);
     board.hello();
     let scene = textured(&mut board);
     load_and_wait(&mut board, &mut store, &mut uninterrupted, &scene, 0);
-    finish_writing_at(&mut store, &mut uninterrupted, &board, STORE_AFTER_TICKS);
+    finish_writing_at(&mut store, &mut uninterrupted, &mut board, STORE_AFTER_TICKS);
     assert_eq!(uninterrupted.done, flash.done);
     assert!(uninterrupted.bytes == flash.bytes);
 }
@@ -463,27 +464,27 @@ fn nothing_is_written_unless_the_board_is_disarmed() {
     board.hello();
     let kept = constant_scene(0.01);
     board.load(&kept).unwrap();
-    finish_writing(&mut store, &mut flash, &board, 0);
+    finish_writing(&mut store, &mut flash, &mut board, 0);
 
     board.load(&constant_scene(0.02)).unwrap();
     board.command(Command::Arm).unwrap();
     let done = flash.done;
-    finish_writing(&mut store, &mut flash, &board, 0);
+    finish_writing(&mut store, &mut flash, &mut board, 0);
     board.command(Command::Play).unwrap();
-    finish_writing(&mut store, &mut flash, &board, 0);
+    finish_writing(&mut store, &mut flash, &mut board, 0);
     assert_eq!(flash.done, done);
 
     // Armed in the middle of a write: it ends there, and the copy before is still the one.
     board.command(Command::Disarm).unwrap();
     board.press_switch();
-    store.step(&mut flash, &board.session, 0);
+    store.step(&mut flash, &mut board.session, 0);
     while flash.done < done + PAGE_LEN + 40 {
-        store.step(&mut flash, &board.session, STORE_AFTER_TICKS);
+        store.step(&mut flash, &mut board.session, STORE_AFTER_TICKS);
     }
     board.command(Command::Arm).unwrap();
     let done = flash.done;
     assert!(!flash.is_at_rest());
-    finish_writing(&mut store, &mut flash, &board, 0);
+    finish_writing(&mut store, &mut flash, &mut board, 0);
     assert_eq!(flash.done, done);
     assert!(flash.is_at_rest(), "somebody has to see the operation to its end");
     let mut after = TestBoard::new();
@@ -525,17 +526,23 @@ fn a_bitmap_that_is_not_its_name_is_not_held() {
 }
 
 #[test]
-fn a_flash_that_fails_is_tried_once_for_each_scene() {
+fn a_flash_that_fails_is_tried_once_for_each_scene_and_the_hello_says_that_it_is_not_stored() {
     let mut flash = scene_flash();
     flash.operations_fail = true;
     let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
-    for (scene, failures) in [(constant_scene(0.01), 1), (constant_scene(0.01), 1), (constant_scene(0.02), 2)] {
+    for (scene, tries) in [(constant_scene(0.01), 1), (constant_scene(0.01), 1), (constant_scene(0.02), 2)] {
         board.load(&scene).unwrap();
-        finish_writing(&mut store, &mut flash, &board, 0);
-        assert_eq!(store.failures(), failures);
+        assert_eq!(board.hello().notices, if tries == 1 && flash.done > 0 { notice::SCENE_NOT_STORED } else { 0 });
+        finish_writing(&mut store, &mut flash, &mut board, 0);
+        assert_eq!((flash.done, board.hello().notices), (tries * PAGE_LEN, notice::SCENE_NOT_STORED));
     }
+    flash.operations_fail = false;
+    board.load(&constant_scene(0.03)).unwrap();
+    assert_eq!(board.hello().notices, 0, "it waits to be stored");
+    finish_writing(&mut store, &mut flash, &mut board, 0);
+    assert_eq!((store.stored_crc32(), board.hello().notices), (Some(crc32(&constant_scene(0.03))), 0));
 }
 
 proptest! {

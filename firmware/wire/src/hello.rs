@@ -72,9 +72,12 @@ pub mod notice {
     pub const STORED_LIMITS_REFUSED: u8 = 1 << 1;
     /// The firmware was built to take stored limits above its ceilings for voltage and current.
     pub const LIMITS_ABOVE_CEILINGS: u8 = 1 << 2;
+    /// The board's scene will not be stored: storing it has failed, it does not fit, or the board has no usable flash.
+    /// A scene that waits to be stored is not meant.
+    pub const SCENE_NOT_STORED: u8 = 1 << 3;
 
     /// What each notice means, and what to do, as a sentence without a full stop.
-    pub const SENTENCES: [(u8, &str); 3] = [
+    pub const SENTENCES: [(u8, &str); 4] = [
         (
             STORED_SCENE_SKIPPED,
             "the board did not load its stored scene, because its last starts ended in faults: look at the last \
@@ -91,6 +94,11 @@ pub mod notice {
             LIMITS_ABOVE_CEILINGS,
             "the board's firmware takes voltages and currents above the ceilings for a person who touches it: flash a \
              build without the feature limits-above-ceilings before anybody does",
+        ),
+        (
+            SCENE_NOT_STORED,
+            "the board loses its scene when it is switched off, because its flash has failed, has no room for it or \
+             cannot be used: play the scene again after each start, or use another board",
         ),
     ];
 }

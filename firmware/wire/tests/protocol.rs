@@ -125,6 +125,7 @@ fn notices_have_the_bits_that_the_table_says() {
         (notice::STORED_SCENE_SKIPPED, "STORED_SCENE_SKIPPED"),
         (notice::STORED_LIMITS_REFUSED, "STORED_LIMITS_REFUSED"),
         (notice::LIMITS_ABOVE_CEILINGS, "LIMITS_ABOVE_CEILINGS"),
+        (notice::SCENE_NOT_STORED, "SCENE_NOT_STORED"),
     ];
     assert_eq!(page, code);
     assert_eq!(page.len(), notice::SENTENCES.len());

@@ -80,6 +80,7 @@ fn cut_at(image: &Image, choose: impl FnOnce(u32) -> Vec<u32>) {
         let found = scene_crc32(&bench);
         assert!(crc32s.contains(&found), "after a cut at operation {operation} the scene is {found:#x}");
         old = found;
+        println!("operation {} of {operations}: the board has the old scene or the new one", operation + 1);
         bench.with(|rig| rig.power_cycle(operation).unwrap());
         bench.pass(START);
     }

@@ -53,6 +53,8 @@ pub(crate) struct Scenes<'a> {
     committed: Committed,
     /// The stored scene was not loaded at this start.
     stored_scene_skipped: bool,
+    /// CRC-32 of the last scene that the board could not store; zero without one.
+    not_stored_crc32: u32,
     pub(crate) stream: Stream<'a>,
 }
 
@@ -79,6 +81,7 @@ impl<'a> Scenes<'a> {
             commit: None,
             committed: Committed::default(),
             stored_scene_skipped: false,
+            not_stored_crc32: 0,
             stream: Stream::new(),
         }
     }
@@ -122,6 +125,11 @@ impl<'a> Scenes<'a> {
     /// The stored scene was not loaded at this start, and no other has been committed.
     pub(crate) fn is_stored_scene_skipped(&self) -> bool {
         self.stored_scene_skipped && self.committed.crc32 == 0
+    }
+
+    /// The committed scene could not be stored.
+    pub(crate) fn is_not_stored(&self) -> bool {
+        self.committed.crc32 != 0 && self.committed.crc32 == self.not_stored_crc32
     }
 
     /// Drops what the previous client has begun: an upload, a commit and announced bitmaps. The committed scene stays.

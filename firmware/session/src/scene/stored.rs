@@ -95,6 +95,11 @@ impl<'a> Scenes<'a> {
         self.stored_scene_skipped
     }
 
+    /// The board could not store the scene of this CRC-32; the hello says it until another scene is committed.
+    pub(crate) fn could_not_store(&mut self, crc32: u32) {
+        self.not_stored_crc32 = crc32;
+    }
+
     /// Commits a scene from the bytes of a [`StoredScene`]. If this fails, its bytes and bitmaps are dropped.
     pub(crate) fn restore(
         &mut self,

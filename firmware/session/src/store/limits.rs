@@ -240,14 +240,15 @@ pub fn read_limits(
 }
 
 /// The limits with which a board starts, and its notices: what is stored in `slot`, or else what is built in.
-/// `flash` is `None` on a board without a usable flash.
+/// `flash` is `None` on a board without a usable flash, which says that it stores no scene either.
 pub fn load_limits<F: Flash>(
     flash: Option<&F>,
     slot: Slot,
     built_in: &BoardLimits,
     ceilings: Ceilings,
 ) -> (BoardLimits, u8) {
-    match flash.and_then(|flash| find_limits(flash, slot, built_in, ceilings)) {
+    let Some(flash) = flash else { return (*built_in, ceilings.notices() | notice::SCENE_NOT_STORED) };
+    match find_limits(flash, slot, built_in, ceilings) {
         None => (*built_in, ceilings.notices()),
         Some(Ok(stored)) => (stored, ceilings.notices()),
         Some(Err(_)) => (*built_in, ceilings.notices() | notice::STORED_LIMITS_REFUSED),

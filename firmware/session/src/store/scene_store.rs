@@ -28,7 +28,6 @@ pub struct SceneStore {
     /// CRC-32 of the scene that is stored, or that could not be stored.
     stored_crc32: Option<u32>,
     pending: Option<Pending>,
-    failures: u32,
 }
 
 /// A scene that is not stored yet.
@@ -64,7 +63,6 @@ impl SceneStore {
             found,
             stored_crc32,
             pending: None,
-            failures: 0,
         }
     }
 
@@ -76,8 +74,11 @@ impl SceneStore {
     /// power came on, or the reset pin was used, does not wait. After any other reset it does: a board that resets
     /// again and again does not write.
     ///
-    /// A write under way pauses while the board is armed, and ends when the board has another scene.
-    pub fn step<F: Flash>(&mut self, flash: &mut F, session: &Session, now_tick: u32) {
+    /// A write under way pauses while the board is armed, and ends when the board has another scene. If the flash fails
+    /// or has no room for the scene, the hello says so ([`notice::SCENE_NOT_STORED`]).
+    ///
+    /// [`notice::SCENE_NOT_STORED`]: frixel_wire::hello::notice::SCENE_NOT_STORED
+    pub fn step<F: Flash>(&mut self, flash: &mut F, session: &mut Session, now_tick: u32) {
         let waits = |tick: &u32| now_tick.wrapping_sub(*tick) < self.write_interval_ticks;
         self.last_write_tick = self.last_write_tick.filter(waits);
         let Some(scene) = session.scene_to_store().filter(|scene| Some(scene.crc32()) != self.stored_crc32) else {
@@ -104,23 +105,19 @@ impl SceneStore {
                 if writer_slot.is_some() { Writing::UnderWay } else { Writing::Failed }
             }
         };
+        let crc32 = scene.crc32();
         match writing {
             Writing::UnderWay => return,
             Writing::Done(found) => self.found = Some(found),
             // Do not try again: a page that has failed is likely to fail again.
-            Writing::Failed => self.failures = self.failures.wrapping_add(1),
+            Writing::Failed => session.could_not_store(crc32),
         }
-        self.stored_crc32 = Some(scene.crc32());
+        self.stored_crc32 = Some(crc32);
         self.pending = None;
     }
 
     /// CRC-32 of the scene that is stored, or that could not be stored; `None` if nothing is stored.
     pub fn stored_crc32(&self) -> Option<u32> {
         self.stored_crc32
-    }
-
-    /// How often the flash failed or a scene did not fit.
-    pub fn failures(&self) -> u32 {
-        self.failures
     }
 }

@@ -115,6 +115,7 @@ mod tests {
             (notice::STORED_SCENE_SKIPPED, "play another scene"),
             (notice::STORED_LIMITS_REFUSED, "store them again"),
             (notice::LIMITS_ABOVE_CEILINGS, "flash a build"),
+            (notice::SCENE_NOT_STORED, "play the scene again"),
         ] {
             hello.notices = bit;
             let said = describe(&hello);
