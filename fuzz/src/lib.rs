@@ -12,14 +12,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use frixel::scene_file;
 use frixel_driver::{Device, DeviceError, PollingLink, Upload};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::simulation::{SimStream, board_costs};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
-use frixel_scene::{Scene, compile};
+use frixel_scene::{FileUnavailable, Files, Scene, compile};
 use frixel_testkit::scene_with_points;
 
 /// The files of the scenes that a fuzzer starts from: those of the gallery, and one whose finger is an empirical law.
@@ -34,11 +33,22 @@ pub fn scene_files() -> Vec<PathBuf> {
     files
 }
 
+/// The files that a scene of the gallery names.
+struct GalleryFiles;
+
+impl Files for GalleryFiles {
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+        fs::read(path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() })
+    }
+}
+
 /// Those of the same scenes that have no pictures, compiled, each with the name of its file.
 pub fn compiled_scenes() -> Vec<(String, Vec<u8>)> {
     let board = RigConfig::default().board;
     let programs = scene_files().into_iter().map(|file| {
-        let scene = scene_file::load(&file).expect("a scene");
+        let text = fs::read_to_string(&file).expect("a scene file");
+        let scene = Scene::parse(&text, "fuzz.toml", &GalleryFiles).expect("a scene");
         (file, compile(&scene, &board.limits, board.tick_hz).expect("a valid scene"))
     });
     let programs = programs.filter(|(_, program)| program.bitmaps.is_empty());
