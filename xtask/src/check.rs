@@ -266,7 +266,7 @@ fn check_images() -> Result<(), String> {
         cargo(&format!("build of {folder}"), folder, &[&["build"], &into[..]].concat(), &[])?;
     }
     let programs = [&["check"], &into[..], &["--bins"]].concat();
-    cargo("NUCLEO behind 370 kOhm", NUCLEO, &programs, &[("FRIXEL_SERIES_KOHM", "370")])
+    cargo("NUCLEO behind 374 kOhm", NUCLEO, &programs, &[("FRIXEL_SERIES_KOHM", "374")])
 }
 
 /// Counts instructions, measures sizes and compares them with their limits. Also checks that an image that

@@ -229,9 +229,11 @@ fn high_voltage(carrier: &Carrier) -> String {
          closed, opened with a tool only, with 200 V written on it. Amplifier, supply of the rails and **both series \
          resistors** are in it, the resistors at the amplifier's output without a cable. Only the electrode's wire, \
          the input of the supply and the low voltages leave it. Wires of these nets are rated for 600 V. Between any \
-         of them and any other net, and between the two rails, are 4 mm or more, through air and along surfaces; \
-         between them and protective earth, the host's USB, the supply's input and the outside, 8 mm or more (IEC \
-         61010-1, 6.7, unread: 400 V, reinforced, pollution degree 2, from memory).\n\n\
+         of them and any other net, and between the two rails, are 5 mm or more, through air and along surfaces; \
+         between them and protective earth, the host's USB, the supply's input and the outside, 10 mm or more: for \
+         420 V between the rails, 4.2 mm, and twice that where insulation is reinforced (IEC 60664-1, table F.4, \
+         pollution degree 2, material group III, in a public copy: 4 mm for 400 V, 5 mm for 500 V). A rail may be 5 % \
+         above its 200 V.\n\n\
          | net | V peak to the common | where |\n|---|---|---|\n",
     );
     for net in carrier.net.iter().filter(|net| net.is_dangerous()) {

@@ -29,9 +29,12 @@ const RETURN_PATHS: [(&str, ReturnPath); 3] = [
 ];
 /// Carriers of the tables, Hz: the slowest, the usual one and the fastest among them.
 const CARRIERS_HZ: [f64; 6] = [125.0, 250.0, 500.0, 1_000.0, 2_000.0, 5_000.0];
-/// Series resistances that are tried for a voltage, kOhm, and their step.
-const SERIES_KOHM_MAX: u32 = 2_000;
-const SERIES_KOHM_STEP: u32 = 10;
+/// Values of a decade of E96, the row of resistors of 1 %.
+const E96: u32 = 96;
+/// Decades of the halves of a series resistance, Ohm.
+const SERIES_DECADES_OHM: [f64; 3] = [1e3, 1e4, 1e5];
+/// A rail may be this much above the amplifier's full scale (PS1 in `hardware/carrier.toml`).
+const RAIL_TOLERANCE: f64 = 0.05;
 
 #[derive(Debug, Args)]
 pub(super) struct SafetyArgs {
@@ -152,7 +155,7 @@ impl Table {
 
     /// Currents of single faults beside a bridged coating.
     fn faults(&self) -> String {
-        let full_scale_v_peak = f64::from(self.board.limits.full_scale_v_peak);
+        let rail_v = (1.0 + RAIL_TOLERANCE) * f64::from(self.board.limits.full_scale_v_peak);
         let (usual_hz, direct_hz) = (1_000.0, 1.0);
         let bridged = |series_ohm: f64, drive_v_peak: f64, carrier_hz: f64| {
             let path = TouchPath { series_ohm, coating: Coating::Bridged };
@@ -160,12 +163,12 @@ impl Table {
         };
         format!(
             "Faults beside a bridged coating, mA peak of {:.0}\n{:.2}  one of two equal series resistors shorted, at the \
-             bound at 1 kHz\n{:.2}  the amplifier stuck at {full_scale_v_peak} V\n{:.2}  both (the amplifier's own current \
-             limit is the hardware for it)\n",
+             bound at 1 kHz\n{:.2}  the amplifier stuck at a rail of {rail_v:.0} V\n{:.2}  both (the amplifier's own \
+             current limit is the hardware for it)\n",
             1e3 * SINGLE_FAULT_CURRENT_MAX_A_PEAK,
             bridged(0.5 * self.series_ohm, self.bound_v_peak(usual_hz), usual_hz),
-            bridged(self.series_ohm, full_scale_v_peak, direct_hz),
-            bridged(0.5 * self.series_ohm, full_scale_v_peak, direct_hz),
+            bridged(self.series_ohm, rail_v, direct_hz),
+            bridged(0.5 * self.series_ohm, rail_v, direct_hz),
         )
     }
 
@@ -187,12 +190,12 @@ impl Table {
     /// The least series resistance at which a voltage is within the bound, by carrier.
     fn resistances(&self, voltage_v_rms: f64) -> String {
         let mut text = format!(
-            "Least series resistance for {voltage_v_rms} V rms at the electrode, edges of {:.2} nF included\n",
+            "Least series resistance for {voltage_v_rms} V rms at the electrode, of two equal resistors of E96, edges of {:.2} nF \
+             included\n",
             1e9 * self.board.limits.electrode_capacitance_max_f
         );
         for carrier_hz in CARRIERS_HZ {
-            let found = (1..=SERIES_KOHM_MAX / SERIES_KOHM_STEP)
-                .map(|step| 1e3 * f64::from(step * SERIES_KOHM_STEP))
+            let found = series_ohm()
                 .map(|series_ohm| Behind::new(&self.board, series_ohm, carrier_hz, voltage_v_rms))
                 .find(|behind| behind.drive_v_peak <= behind.bound_v_peak);
             let full_scale_v_peak = f64::from(self.board.limits.full_scale_v_peak);
@@ -204,6 +207,17 @@ impl Table {
         }
         text
     }
+}
+
+/// Series resistances that can be soldered as two equal resistors and built in, which takes whole kOhm; from the least
+/// on.
+fn series_ohm() -> impl Iterator<Item = f64> {
+    let halves = SERIES_DECADES_OHM.into_iter().flat_map(|decade_ohm| {
+        let of_decade = |step| 0.01 * decade_ohm * (100.0 * 10_f64.powf(f64::from(step) / f64::from(E96))).round();
+        (0..E96).map(of_decade)
+    });
+    let kohm = halves.map(|half_ohm| 2e-3 * half_ohm);
+    kohm.filter(|kohm| (kohm - kohm.round()).abs() < 1e-6).map(|kohm| 1e3 * kohm.round())
 }
 
 /// A way back for the finger's current, to the amplifier's common.

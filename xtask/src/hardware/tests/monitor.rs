@@ -13,13 +13,15 @@ struct Shifter {
     r22: f64,
     r23: f64,
     offset_v: f64,
+    /// What A2's input takes.
+    input_a: f64,
 }
 
 impl Shifter {
     /// V at the ADC, as parts of the supply's, which is the ADC's reference, too. `None` is a wire that is off.
     fn output_v(&self, monitor_v: Option<f64>) -> f64 {
         let from_monitor = monitor_v.map_or(0.0, |_| 1.0 / (self.source + self.r19));
-        let current = monitor_v.unwrap_or_default() * from_monitor + SUPPLY_V / self.r20;
+        let current = monitor_v.unwrap_or_default() * from_monitor + SUPPLY_V / self.r20 - self.input_a;
         let sum_v = current / (from_monitor + 1.0 / self.r20 + 1.0 / self.r21);
         ((sum_v + self.offset_v) * (1.0 + self.r22 / self.r23)).clamp(0.0, SUPPLY_V)
     }
@@ -29,15 +31,19 @@ const SUPPLY_V: f64 = 3.3;
 /// What the ratings say: the amplifier's monitor, and A2.
 const SOURCE_MAX_OHM: f64 = 1e3;
 const OFFSET_MAX_V: f64 = 1e-3;
+const INPUT_MAX_A: f64 = 10e-9;
+/// Parts and ratings of [`Shifter`], each of which is at one end of its tolerance.
+const ENDS: u32 = 8;
 const MONITOR_MAX_V: f64 = 2.2;
 /// A Pico's ADC has its reference behind 200 Ohm, on which its own 150 uA drop 30 mV (Raspberry Pi Pico Datasheet, "Using
-/// the ADC", from memory). R20 has the supply in front of them.
+/// the ADC"). R20 has the supply in front of them.
 const PICO_REFERENCE_DROP_V: f64 = 0.03;
 /// The largest error of its codes: 16 of 4,096 where others corrected five RP2040 and five RP2350
 /// (github.com/kitanokitsune/rp2040adc_correction). Most of the RP2040's are erratum RP2040-E11.
 const PICO_CODES_MAX: f64 = 16.0;
 
-/// The values of the table, each at one end of its tolerance by a bit of `corner`; the last bits are source and offset.
+/// The values of the table, each at one end of its tolerance by a bit of `corner`; the last bits are source, offset and
+/// A2's input.
 fn shifter(carrier: &Carrier, corner: Option<u32>) -> Shifter {
     let end = |bit: u32| corner.map_or(0.0, |corner| if (corner >> bit) & 1 == 1 { 1.0 } else { -1.0 });
     let mut bit = 0;
@@ -47,7 +53,7 @@ fn shifter(carrier: &Carrier, corner: Option<u32>) -> Shifter {
         resistor.value.unwrap() * (1.0 + resistor.tolerance.unwrap() * end(bit - 1))
     });
     let source = if corner.is_some() { SOURCE_MAX_OHM * (0.5 + 0.5 * end(5)) } else { 0.0 };
-    Shifter { source, r19, r20, r21, r22, r23, offset_v: OFFSET_MAX_V * end(6) }
+    Shifter { source, r19, r20, r21, r22, r23, offset_v: OFFSET_MAX_V * end(6), input_a: INPUT_MAX_A * end(7) }
 }
 
 /// V at the ADC for 1 V at the amplifier's output, in a board's source.
@@ -74,7 +80,7 @@ fn the_level_shifter_is_wired_as_it_is_computed() {
     for (name, ends) in [("3V3", &["R20.2", "A2.VCC"][..]), ("COMMON", &["R21.2", "R23.2", "A2.GND"])] {
         assert!(ends.iter().all(|end| net(&carrier, name).nodes.iter().any(|node| node == end)), "{name}");
     }
-    for (name, said) in [("A1", "MONITOR 1 kOhm or less"), ("A2", "offset 1 mV or less")] {
+    for (name, said) in [("A1", "MONITOR 1 kOhm or less"), ("A2", "offset 1 mV or less, inputs take 10 nA or less")] {
         let ratings = &part(&carrier, name).ratings;
         assert!(ratings.contains(said), "{ratings}");
     }
@@ -98,7 +104,7 @@ fn the_firmware_reads_the_voltage_that_the_parts_give() {
 fn the_tolerances_of_the_level_shifter_leave_half_of_what_bring_up_allows() {
     let carrier = read().unwrap();
     let (mut offset_v, mut gain_error) = (0.0_f64, 0.0_f64);
-    for corner in 0..1 << 7 {
+    for corner in 0..1 << ENDS {
         let shifter = shifter(&carrier, Some(corner));
         let read_v = |monitor_v| (shifter.output_v(Some(monitor_v)) - 0.5 * SUPPLY_V) / 0.0075;
         offset_v = offset_v.max(read_v(0.0).abs());
@@ -113,7 +119,7 @@ fn the_tolerances_of_the_level_shifter_leave_half_of_what_bring_up_allows() {
 fn what_the_adc_of_a_pico_adds_leaves_a_quarter_of_what_the_monitor_tolerates() {
     let carrier = read().unwrap();
     let (mut offset_v, mut gain_error) = (0.0_f64, 0.0_f64);
-    for corner in 0..1 << 7 {
+    for corner in 0..1 << ENDS {
         let shifter = shifter(&carrier, Some(corner));
         for codes in [-PICO_CODES_MAX, PICO_CODES_MAX] {
             let read_v = |monitor_v, codes| {
