@@ -213,7 +213,7 @@ impl Table {
 /// on.
 fn series_ohm() -> impl Iterator<Item = f64> {
     let halves = SERIES_DECADES_OHM.into_iter().flat_map(|decade_ohm| {
-        let of_decade = |step| 0.01 * decade_ohm * (100.0 * 10_f64.powf(f64::from(step) / f64::from(E96))).round();
+        let of_decade = move |step| 0.01 * decade_ohm * (100.0 * 10_f64.powf(f64::from(step) / f64::from(E96))).round();
         (0..E96).map(of_decade)
     });
     let kohm = halves.map(|half_ohm| 2e-3 * half_ohm);

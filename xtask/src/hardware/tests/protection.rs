@@ -12,12 +12,15 @@ fn the_enable_goes_through_both_one_shots_and_the_switch() {
     assert_eq!(net(&carrier, "ALIVE").nodes, ["U3.Q", "U4.B", "R25.1"]);
     assert!(net(&carrier, "ENABLE_MCU").nodes.iter().any(|node| node == "U4.A"));
     assert!(net(&carrier, "SYNC").nodes.iter().any(|node| node == "U3.B"));
-    // A wire that comes off an input of the gate reads as low.
+    // A wire that comes off an input of the gate reads as low: the resistor is on the gate's side of it.
     for input in ["U4.A", "U4.B"] {
         let net = net_of(&carrier, input);
         let pulls_down = |(part, nets): &(&Part, [&Net; 2])| {
             let names = nets.map(|net| net.name.as_str());
-            part.name.starts_with('R') && names.contains(&"COMMON") && names.contains(&net.name.as_str())
+            part.what.contains("soldered at U4")
+                && part.name.starts_with('R')
+                && names.contains(&"COMMON")
+                && names.contains(&net.name.as_str())
         };
         assert!(two_ended(&carrier).iter().any(pulls_down), "{input} floats without its wire");
     }
