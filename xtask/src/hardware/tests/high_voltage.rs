@@ -155,3 +155,17 @@ fn the_rails_have_a_switch_of_their_own_in_front_of_the_insulation() {
     assert_eq!(nodes("RAIL_SUPPLY_ON"), ["S2.2", "PS1.IN_PLUS"]);
     assert_eq!(nodes("RAIL_SUPPLY_RETURN"), ["J1.MINUS", "PS1.IN_MINUS"]);
 }
+
+/// R3 and the series resistance divide the voltage, and the limits do not count it.
+#[test]
+fn what_the_discharging_resistor_takes_is_said() {
+    let carrier = read().unwrap();
+    let hardware = fs::read_to_string(root().join("docs/hardware.md")).unwrap();
+    let series_ohm = value(&carrier, "R1") + value(&carrier, "R2");
+    // Built in, and for 150 V rms (`frixel safety`).
+    for series_ohm in [series_ohm, 374e3] {
+        let taken = series_ohm / (series_ohm + value(&carrier, "R3"));
+        let said = format!("{:.1} % at {} kOhm", 100.0 * taken, 1e-3 * series_ohm);
+        assert!(hardware.contains(&said), "{said}");
+    }
+}
