@@ -39,7 +39,7 @@ const MONITOR_MAX_V: f64 = 2.2;
 /// the ADC"). R20 has the supply in front of them.
 const PICO_REFERENCE_DROP_V: f64 = 0.03;
 /// The largest error of its codes: 16 of 4,096 where others corrected five RP2040 and five RP2350
-/// (github.com/kitanokitsune/rp2040adc_correction). Most of the RP2040's are erratum RP2040-E11.
+/// (`github.com/kitanokitsune/rp2040adc_correction`). Most of the RP2040's are erratum RP2040-E11.
 const PICO_CODES_MAX: f64 = 16.0;
 
 /// The values of the table, each at one end of its tolerance by a bit of `corner`; the last bits are source, offset and

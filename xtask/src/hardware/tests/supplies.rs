@@ -40,8 +40,8 @@ fn a_supply_comes_from_one_pin_and_not_from_those_that_are_left_open() {
     }
 }
 
-/// Each supply pin of a chip on the carrier has a capacitor of 0.1 uF to the common. The DAC's reference has 10 nF, as its
-/// data sheet asks for: 0.1 uF behind its 25 kOhm take ten times as long to start.
+/// Each supply pin of a chip on the carrier has a capacitor of 0.1 uF to the common. The DAC's reference has 10 nF, as
+/// its data sheet asks for: 0.1 uF behind its 25 kOhm take ten times as long to start.
 #[test]
 fn chips_are_decoupled() {
     let carrier = read().unwrap();
