@@ -118,7 +118,8 @@ impl Bench for WholeBench {
             output,
             enable_path: EnablePath::Right,
             switch_closed: self.inputs.switch_closed,
-            probe_v: GAIN * self.driven_v,
+            // 68 kOhm in front of the 9.1 MOhm of discharge resistor and probe.
+            probe_v: GAIN * self.driven_v / (1.0 + 68e3 / 9.1e6),
         };
         Line::try_from(person::answer(&self.said, &instruments).as_str()).unwrap()
     }

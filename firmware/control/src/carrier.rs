@@ -7,7 +7,7 @@
 //! period behind the edge takes back at most one half of the range, and the next one returns to where the edge was.
 //! From the second period after a change on, all half periods have their nominal length, and the codes of a period add
 //! up to zero. The mean of the integral stays where the changes have left it, which is no direct current. An integral
-//! beyond the smaller limit of a new scene falls first, with an eighth of the envelope: a coating that a slower carrier
+//! beyond the smaller limit of a new scene falls first, with a sixteenth of the envelope: a coating that a slower carrier
 //! has charged would add its voltage to the whole of it, and more than the touch current's limit would flow once
 //! (`frixel_model::TouchBound`).
 
@@ -15,9 +15,9 @@ use fixed::types::{I1F15, I17F15};
 use frixel_layers::{Waveform, cosine};
 use frixel_wire::dac_code::DacCode;
 
-/// An integral beyond its limit falls with the envelope divided by two to this power. Below eight codes, 0.05 V at 200
+/// An integral beyond its limit falls with the envelope divided by two to this power. Below sixteen codes, 0.1 V at 200
 /// V full scale, a positive one is nothing then, and the output waits for a larger envelope.
-const FALL_SHIFT: u32 = 3;
+const FALL_SHIFT: u32 = 4;
 
 /// Parameters of a carrier; part of [`Active`](crate::Active).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use frixel_wire::hello::{BoardLimits, ResetCause, notice};
 use frixel_wire::message::{Accepted, Command};
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
-use support::flash::{PAGE_LEN, SimulatedFlash};
+use support::flash::{Operations, PAGE_LEN, SimulatedFlash};
 use support::{HEADER, TestBoard, constant_scene, record, scene};
 
 const SLOT: Slot = Slot { first_page: 1, pages: 3 };
@@ -35,7 +35,7 @@ fn write(flash: &mut SimulatedFlash, found: Option<&Found>, content: &[u8]) -> W
     let mut writer = Writer::new::<SimulatedFlash>(SLOT, found, content.len() as u32).expect("it fits");
     loop {
         match writer.step(flash, |offset| word_of(content, offset)) {
-            Writing::UnderWay if flash.has_power() => {}
+            Writing::Busy | Writing::UnderWay if flash.has_power() => {}
             end => return end,
         }
     }
@@ -96,6 +96,28 @@ fn a_power_cut_at_any_byte_leaves_one_good_copy() {
     }
 }
 
+/// An operation that was begun before the board was armed may last as long as the play, and has its time afterwards.
+#[test]
+fn the_hello_says_that_a_flash_which_never_ends_an_operation_has_not_stored_the_scene() {
+    const OPERATION_MAX_TICKS: u32 = 5 * 40_000;
+    let mut flash = scene_flash();
+    flash.operations = Operations::NeverEnd;
+    let mut board = TestBoard::new();
+    let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
+    board.hello();
+    load_and_wait(&mut board, &mut store, &mut flash, &constant_scene(0.01), 0);
+    finish_writing_at(&mut store, &mut flash, &mut board, STORE_AFTER_TICKS);
+    board.command(Command::Arm).unwrap();
+    let disarmed_at = 60 * 40_000;
+    store.step(&mut flash, &mut board.session, disarmed_at);
+    board.command(Command::Disarm).unwrap();
+    board.press_switch();
+    store.step(&mut flash, &mut board.session, disarmed_at + OPERATION_MAX_TICKS - 1);
+    assert_eq!((flash.done, board.hello().notices), (PAGE_LEN, 0));
+    store.step(&mut flash, &mut board.session, disarmed_at + OPERATION_MAX_TICKS);
+    assert_eq!((flash.done, board.hello().notices), (PAGE_LEN, notice::SCENE_NOT_STORED));
+}
+
 proptest! {
     /// Any number of cuts, one after the other: what was whole before is there until something newer is.
     #[test]
@@ -119,7 +141,7 @@ proptest! {
 fn flash_that_fails_leaves_the_copy_before() {
     let kept = content(1, 700);
     let mut flash = flash_with(&[&kept], false);
-    flash.operations_fail = true;
+    flash.operations = Operations::Fail;
     let found_before = SLOT.find(&flash);
     assert_eq!(write(&mut flash, found_before.as_ref(), &content(2, 700)), Writing::Failed);
     assert_eq!(found(&flash), Some(kept));
@@ -528,7 +550,7 @@ fn a_bitmap_that_is_not_its_name_is_not_held() {
 #[test]
 fn a_flash_that_fails_is_tried_once_for_each_scene_and_the_hello_says_that_it_is_not_stored() {
     let mut flash = scene_flash();
-    flash.operations_fail = true;
+    flash.operations = Operations::Fail;
     let mut board = TestBoard::new();
     let mut store = SceneStore::new(SCENE_SLOT, 40_000, &flash, &mut board.session);
     board.hello();
@@ -538,7 +560,7 @@ fn a_flash_that_fails_is_tried_once_for_each_scene_and_the_hello_says_that_it_is
         finish_writing(&mut store, &mut flash, &mut board, 0);
         assert_eq!((flash.done, board.hello().notices), (tries * PAGE_LEN, notice::SCENE_NOT_STORED));
     }
-    flash.operations_fail = false;
+    flash.operations = Operations::Succeed;
     board.load(&constant_scene(0.03)).unwrap();
     assert_eq!(board.hello().notices, 0, "it waits to be stored");
     finish_writing(&mut store, &mut flash, &mut board, 0);

@@ -61,8 +61,8 @@ impl Ending {
         match self {
             Self::Panic | Self::HardFault => PANIC_MAX,
             Self::Hang => ONE_SHOT_MAX,
-            // The tick goes on, and hears no host: its timeout, 250 ms, and 1 ms to act.
-            Self::HangingMainLoop => Duration::from_millis(251),
+            // The tick goes on, and has no report of the finger any more: it trusts the last one for 40 ms.
+            Self::HangingMainLoop => Duration::from_millis(41),
             // As soon as the board runs again, for which the rig needs no time.
             Self::RunPin | Self::PowerCut => TICK,
         }

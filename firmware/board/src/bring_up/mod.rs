@@ -12,6 +12,7 @@
 //! - Voltage comes from the firmware's own session, ticker and supervisor, to which [`Drive`] is the host. Bring-up has
 //!   no way to clear a fault.
 
+mod amplifier;
 mod dialogue;
 mod drive;
 mod enable_path;

@@ -4,6 +4,7 @@ use core::fmt;
 
 use frixel_wire::hello::BoardLimits;
 
+use super::amplifier::{check_amplifier, check_isolation};
 use super::dialogue::{ask, ask_while, await_inputs, confirm, expect, expect_inputs};
 use super::enable_path::check_enable_path;
 use super::{Bench, Check, DriveError, Inputs, Reading, TestOutput};
@@ -16,14 +17,8 @@ const GREETING: &str = "frixel";
 /// The pull-downs of amplifier enable and DAC clear are 10 kOhm; a meter that supplies the processor through its
 /// protection diodes reads less.
 const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
-/// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
-const ISOLATION_MIN_MOHM: f32 = 10.0;
-
-/// Largest deviation of each half of the series resistance, as an ohmmeter shows it, from the half that is built in:
-/// resistors of 1 %, and an ohmmeter of 1 %. The touch bound rests on the sum, and nothing measures it later: half of
-/// it, with a resistor that is shorted, would let twice the current through a person.
-const SERIES_TOLERANCE: f32 = 0.02;
-
+/// Each supply of the DAC, V. It bears 16.5 V (AD5761R, table 1), and works with 4.75 V less than its output takes.
+const DAC_SUPPLY_V: (f32, f32) = (14.25, 15.75);
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
 const DAC_TOLERANCE_V: f32 = 0.15;
@@ -39,6 +34,9 @@ const EDGES_V_PEAK: f32 = 25.0;
 const GAIN_TOLERANCE: f32 = 0.1;
 /// What is added to it: the resolution of an oscilloscope with a 100:1 probe.
 const READ_OFF_V: f32 = 1.0;
+/// What R3, which discharges the capacitor, and the probe's hundred megohms have together, Ohm. The series resistor in
+/// front of them makes the probe show less than the amplifier puts out.
+const SHUNT_OHM: f32 = 1.0 / (1.0 / 10e6 + 1.0 / 100e6);
 /// Largest offset of the monitor: half of what the supervisor tolerates at 200 V full scale, so that it has the other
 /// half for the edges.
 const OFFSET_MAX_V: f32 = 4.0;
@@ -124,7 +122,7 @@ pub struct Pressed(());
 /// Neither ready nor switch.
 pub(super) const IDLE: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
 /// The amplifier is on.
-const READY: Inputs = Inputs { amplifier_ready: true, ..IDLE };
+pub(super) const READY: Inputs = Inputs { amplifier_ready: true, ..IDLE };
 /// The switch is closed.
 pub(super) const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
 
@@ -173,9 +171,12 @@ fn check_processor(bench: &mut impl Bench) -> Result<(), Stop> {
 }
 
 fn check_dac(bench: &mut impl Bench) -> Result<(), Stop> {
+    bench.say(format_args!("2. Measure the DAC's supplies; on a new board, before the DAC is connected to them."));
+    ask(bench, "the DAC's positive supply, V", DAC_SUPPLY_V)?;
+    ask(bench, "the DAC's negative supply, V", (-DAC_SUPPLY_V.1, -DAC_SUPPLY_V.0))?;
     confirm(
         bench,
-        format_args!("2. Connect the DAC, and a voltmeter to its output. The amplifier's supply stays off."),
+        format_args!("Connect the DAC, and a voltmeter to its output. The amplifier's supply stays off."),
         DONE,
     );
     expect_inputs(bench, IDLE, "amplifier off, switch released")?;
@@ -220,36 +221,7 @@ fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
     Ok(())
 }
 
-/// The amplifier's ready follows its supply, and the tick runs with the output at zero.
-fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<(), Stop> {
-    confirm(
-        bench,
-        format_args!(
-            "4. Connect the amplifier, supply off; the series resistor, and the capacitor in place of the electrode. \
-             The high-voltage probe on the capacitor, an ordinary one on the monitor."
-        ),
-        DONE,
-    );
-    expect_inputs(bench, IDLE, "amplifier off, switch released")?;
-    ask(
-        bench,
-        "GND to protective earth, with USB in its isolator, MOhm (999 for no reading)",
-        (ISOLATION_MIN_MOHM, f32::MAX),
-    )?;
-    confirm(bench, format_args!("Measure each rail against the common, and rail to rail: all below 1 V."), DONE);
-    let half_kohm = 0.5e-3 * built_in.series_resistance_ohm;
-    let half_kohm = ((1.0 - SERIES_TOLERANCE) * half_kohm, (1.0 + SERIES_TOLERANCE) * half_kohm);
-    ask(bench, "series resistor R1, at its own ends, kOhm", half_kohm)?;
-    ask(bench, "series resistor R2, at its own ends, kOhm", half_kohm)?;
-    confirm(bench, format_args!("Take the ohmmeter's leads off, and close the box."), DONE);
-    await_inputs(bench, IDLE, READY, "Switch the amplifier's supply on")?;
-    await_inputs(bench, READY, IDLE, "Switch it off")?;
-    await_inputs(bench, IDLE, READY, "Switch it on")?;
-    check(bench, Check::Dac)?;
-    check(bench, Check::Ticks)
-}
-
-/// Drives one voltage after the other, and returns the full scale, in V peak, as the probe shows it.
+/// Drives one voltage after the other, and returns the full scale, in V peak, as probe and monitor show it.
 fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
     bench.say(format_args!("5. Voltage. Hold the switch until the output is off: a release before that is a fault."));
     let mut full_scale_v_peak = built_in.full_scale_v_peak;
@@ -257,9 +229,12 @@ fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32,
     while let Some(peak_v) = next_voltage(passed_v_peak, built_in.voltage_max_v_peak) {
         let reading = drive(bench, peak_v)?;
         let probe_v = ask(bench, "half of the probe's peak-to-peak voltage, V", around(reading.driven_v_peak))?;
+        let probe_v = probe_v * (1.0 + built_in.series_resistance_ohm / SHUNT_OHM);
         let monitor_v = 0.5 * (reading.high_v - reading.low_v);
         expect("the monitor, V, against the probe", monitor_v, around(probe_v))?;
-        full_scale_v_peak = built_in.full_scale_v_peak * probe_v / reading.driven_v_peak;
+        // The larger one: a reading that is too low would raise every voltage that the firmware puts out later, beyond
+        // the margin of the touch bound.
+        full_scale_v_peak = built_in.full_scale_v_peak * probe_v.max(monitor_v) / reading.driven_v_peak;
         passed_v_peak = Some(peak_v);
     }
     Ok(full_scale_v_peak)
@@ -318,6 +293,8 @@ fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, 
 
 fn store(bench: &mut impl Bench, limits: &BoardLimits) -> Result<(), Stop> {
     await_inputs(bench, READY, IDLE, "7. Switch the amplifier's supply off")?;
+    confirm(bench, format_args!("Take all probes off: the clip of one may have tied the common to earth."), DONE);
+    check_isolation(bench)?;
     if !bench.may_store(limits) {
         return Err(Stop::Limits);
     }

@@ -58,10 +58,8 @@ impl Content {
         while operations.is_none_or(|operations| begun < operations) {
             meanwhile(board)?;
             let flash = board.flash().ok_or(Stop::NoFlash)?;
-            if flash.operation() == Operation::Busy {
-                continue;
-            }
             match writer.step(flash, |offset| self.word(offset)) {
+                Writing::Busy => {}
                 Writing::UnderWay => begun += 1,
                 Writing::Done(_) => return Ok(()),
                 Writing::Failed => return Err(Stop::FlashFailed),

@@ -16,12 +16,16 @@ pub(crate) enum EnablePath {
     MonostableSlow,
     /// The monostable never triggers.
     MonostableDead,
+    /// The monostable takes no trigger before its pulse is over.
+    MonostableNotRetriggered,
     /// The switch's second pole is bridged.
     PoleBridged,
     /// The second pole never closes.
     PoleOpen,
     /// The wires of the two poles touch each other.
     PolesBridged,
+    /// The amplifier's enable is plugged in front of the second pole.
+    PluggedBeforeThePole,
 }
 
 impl EnablePath {
@@ -36,6 +40,17 @@ impl EnablePath {
             _ => 1.0,
         };
         if kicked || self == Self::ProcessorLeftOut { 3.3 * alive } else { 0.0 }
+    }
+
+    /// Falling edges of `ENABLE_LOGIC` in a second.
+    fn logic_edges(self, output: TestOutput) -> u32 {
+        let falls = self == Self::MonostableNotRetriggered && self.logic_v(output) > 0.0;
+        if falls { 1_400 } else { 0 }
+    }
+
+    /// The resistance from `ENABLE_LOGIC` to the amplifier's enable, kOhm.
+    fn pole_kohm(self, switch_closed: bool) -> f32 {
+        if self == Self::PluggedBeforeThePole || switch_closed { 0.0 } else { 10.0 }
     }
 
     /// The mean voltage behind the switch, V.
@@ -88,12 +103,18 @@ pub(crate) fn answer(said: &str, instruments: &Instruments) -> String {
     let Some((_, what)) = said.split_once("Type a number: ") else { panic!("nothing was asked: {said}") };
     match what {
         what if what.contains("series resistor") => "33.8".to_owned(),
+        what if what.starts_with("released: ") || what.starts_with("held: ") => {
+            enable_path.pole_kohm(switch_closed).to_string()
+        }
         what if what.contains("kOhm") => "9.9".to_owned(),
         what if what.contains("MOhm") => "999".to_owned(),
         what if what.contains("voltmeter") => match output {
             TestOutput::Dac(volts) => volts.to_string(),
             TestOutput::Zero | TestOutput::Enable { .. } => "0".to_owned(),
         },
+        what if what.contains("positive supply") => "15.1".to_owned(),
+        what if what.contains("negative supply") => "-14.9".to_owned(),
+        what if what.contains("falling edges") => enable_path.logic_edges(output).to_string(),
         what if what.starts_with("ENABLE_LOGIC") => enable_path.logic_v(output).to_string(),
         what if what.starts_with("ENABLE,") => enable_path.enable_v(output, switch_closed).to_string(),
         what if what.contains("probe") => probe_v.to_string(),

@@ -163,7 +163,7 @@ fn a_sine_begins_a_whole_half_wave_at_an_early_edge() {
     assert_eq!(carrier.early_edges(), 1);
 }
 
-/// A new scene may allow less than what has gathered: every code then takes the integral towards zero, with an eighth
+/// A new scene may allow less than what has gathered: every code then takes the integral towards zero, with a sixteenth
 /// of the envelope.
 #[test]
 fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
@@ -176,15 +176,15 @@ fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
         carrier.retime(&narrow);
         let mut edges = 0;
         let mut last_sign = 0;
-        for tick in 0..1_000 {
+        for tick in 0..2_000 {
             let code = i32::from(carrier.next(20.0, &narrow, tick).bits());
             let beyond = integral.abs() - narrow.integral_max.to_bits();
             if beyond > 0 {
                 assert!((integral + code).abs() < integral.abs(), "{integral} and {code}");
             }
             // A whole code is put out only where it takes the integral within its limit.
-            assert!(code.abs() == 2_000 || code.abs() == 250 && beyond > 0, "{integral} and {code}");
-            assert!(code.abs() == 250 || beyond <= 2_000, "{integral} and {code}");
+            assert!(code.abs() == 2_000 || code.abs() == 125 && beyond > 0, "{integral} and {code}");
+            assert!(code.abs() == 125 || beyond <= 2_000, "{integral} and {code}");
             integral += code;
             edges += u32::from(code.signum() != last_sign && last_sign != 0);
             last_sign = code.signum();

@@ -7,6 +7,10 @@ use crate::Session;
 /// host that commits, arms and plays.
 const STORE_AFTER_S: u32 = 2;
 
+/// An operation of the flash that has not ended after this time has failed, in s. Erasing a page takes tens of
+/// milliseconds.
+const OPERATION_MAX_S: u32 = 5;
+
 /// Erasures that a page bears: the least that the STM32G474 is specified for (DS12288, "Flash memory endurance and data
 /// retention", unread). A page that bears less is found when the copy is read back; the copy before then stays.
 const PAGE_ERASURES: u32 = 10_000;
@@ -21,6 +25,7 @@ const WRITE_INTERVAL_S: u32 = LIFE_S / (2 * PAGE_ERASURES / 3 * 2);
 pub struct SceneStore {
     slot: Slot,
     store_after_ticks: u32,
+    operation_max_ticks: u32,
     write_interval_ticks: u32,
     /// When the last write began; `None` if that was long enough ago for the next one.
     last_write_tick: Option<u32>,
@@ -33,6 +38,7 @@ pub struct SceneStore {
 /// A scene that is not stored yet.
 struct Pending {
     crc32: u32,
+    /// When the wait began: that before the write, and then that for an operation of the flash.
     since_tick: u32,
     writer: Option<Writer>,
 }
@@ -58,6 +64,7 @@ impl SceneStore {
         Self {
             slot,
             store_after_ticks: STORE_AFTER_S * tick_hz,
+            operation_max_ticks: OPERATION_MAX_S * tick_hz,
             write_interval_ticks: WRITE_INTERVAL_S * tick_hz,
             last_write_tick: (!session.was_started_by_a_person()).then_some(0),
             found,
@@ -74,8 +81,8 @@ impl SceneStore {
     /// power came on, or the reset pin was used, does not wait. After any other reset it does: a board that resets
     /// again and again does not write.
     ///
-    /// A write under way pauses while the board is armed, and ends when the board has another scene. If the flash fails
-    /// or has no room for the scene, the hello says so ([`notice::SCENE_NOT_STORED`]).
+    /// A write under way pauses while the board is armed, and ends when the board has another scene. If the flash fails,
+    /// never ends an operation or has no room for the scene, the hello says so ([`notice::SCENE_NOT_STORED`]).
     ///
     /// [`notice::SCENE_NOT_STORED`]: frixel_wire::hello::notice::SCENE_NOT_STORED
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &mut Session, now_tick: u32) {
@@ -83,6 +90,9 @@ impl SceneStore {
         self.last_write_tick = self.last_write_tick.filter(waits);
         let Some(scene) = session.scene_to_store().filter(|scene| Some(scene.crc32()) != self.stored_crc32) else {
             self.pending.take_if(|pending| pending.writer.is_none());
+            if let Some(pending) = &mut self.pending {
+                pending.since_tick = now_tick;
+            }
             // Let an operation that began before arming end: polling it locks the flash again.
             let _ = flash.operation();
             return;
@@ -107,10 +117,14 @@ impl SceneStore {
         };
         let crc32 = scene.crc32();
         match writing {
-            Writing::UnderWay => return,
+            Writing::UnderWay => {
+                pending.since_tick = now_tick;
+                return;
+            }
+            Writing::Busy if now_tick.wrapping_sub(pending.since_tick) < self.operation_max_ticks => return,
             Writing::Done(found) => self.found = Some(found),
             // Do not try again: a page that has failed is likely to fail again.
-            Writing::Failed => session.could_not_store(crc32),
+            Writing::Busy | Writing::Failed => session.could_not_store(crc32),
         }
         self.stored_crc32 = Some(crc32);
         self.pending = None;

@@ -28,6 +28,8 @@ enum Next {
 /// Progress of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Writing {
+    /// The flash has not ended the last operation.
+    Busy,
     /// There is more to do.
     UnderWay,
     /// The copy was written and verified.
@@ -49,7 +51,7 @@ impl Writer {
     /// an offset; the content must not change until all of it is written.
     pub fn step<F: Flash>(&mut self, flash: &mut F, content: impl Fn(u32) -> [u8; WORD_LEN]) -> Writing {
         match flash.operation() {
-            Operation::Busy => return Writing::UnderWay,
+            Operation::Busy => return Writing::Busy,
             Operation::Failed => return Writing::Failed,
             Operation::Done => {}
         }

@@ -5,9 +5,16 @@ use frixel_testkit::Random;
 
 pub const PAGE_LEN: usize = 512;
 
+/// How operations end.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Operations {
+    Succeed,
+    Fail,
+    NeverEnd,
+}
+
 /// The flash of a board.
 #[derive(Clone)]
-#[allow(clippy::struct_excessive_bools, reason = "two of them are for the test to set, two are flash's own")]
 pub struct SimulatedFlash {
     pub bytes: Vec<u8>,
     /// Words that cannot be read, because they were half written when the power went, or half erased.
@@ -20,7 +27,7 @@ pub struct SimulatedFlash {
     busy: u32,
     /// `operation` has reported the end of the last one.
     seen_to_end: bool,
-    pub operations_fail: bool,
+    pub operations: Operations,
     failed: bool,
     /// What a torn word reads as: nothing, or something.
     torn_words_read: bool,
@@ -36,7 +43,7 @@ impl SimulatedFlash {
             done: 0,
             busy: 0,
             seen_to_end: true,
-            operations_fail: false,
+            operations: Operations::Succeed,
             failed: false,
             torn_words_read,
             noise: Random::new(1),
@@ -87,7 +94,7 @@ impl Flash for SimulatedFlash {
 
     fn begin_erase(&mut self, page: u32) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed, self.seen_to_end) = (3, self.operations_fail, false);
+        (self.busy, self.failed, self.seen_to_end) = (3, self.operations == Operations::Fail, false);
         let start = page as usize * PAGE_LEN;
         for at in start..start + PAGE_LEN {
             if !self.perform_byte() {
@@ -108,7 +115,7 @@ impl Flash for SimulatedFlash {
 
     fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed, self.seen_to_end) = (2, self.operations_fail, false);
+        (self.busy, self.failed, self.seen_to_end) = (2, self.operations == Operations::Fail, false);
         let start = offset as usize;
         assert_eq!(start % WORD_LEN, 0);
         assert!(self.bytes[start..start + WORD_LEN].iter().all(|byte| *byte == 0xff), "{start} is not erased");
@@ -126,7 +133,7 @@ impl Flash for SimulatedFlash {
 
     fn operation(&mut self) -> Operation {
         if self.busy > 0 {
-            self.busy -= 1;
+            self.busy -= u32::from(self.operations != Operations::NeverEnd);
             return Operation::Busy;
         }
         self.seen_to_end = true;

@@ -47,7 +47,7 @@ pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut goes_on: impl
     };
     while goes_on() {
         match writer.step(flash, word) {
-            Writing::UnderWay => {}
+            Writing::Busy | Writing::UnderWay => {}
             Writing::Done(_) => return load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits,
             Writing::Failed => break,
         }
