@@ -99,6 +99,22 @@ fn what_is_to_be_measured_is_what_the_parts_give() {
     }
 }
 
+/// The limits of both halves of the series resistance are those at which bring-up goes on.
+#[test]
+fn the_series_resistors_are_measured_as_bring_up_asks() {
+    let carrier = read().unwrap();
+    let script = source("firmware/board/src/bring_up", "amplifier");
+    let ratios = script.split_once("SERIES_RATIO: (f32, f32) = (").unwrap().1.split_once(')').unwrap().0;
+    let [least, most] = ratios.split(", ").collect::<Vec<_>>().try_into().unwrap();
+    for name in ["R1", "R2"] {
+        let measure = carrier.measure.iter().find(|measure| measure.parts == [name]).unwrap();
+        for (limit, ratio) in [(measure.least, least), (measure.most, most)] {
+            let asked = ratio.parse::<f64>().unwrap() * value(&carrier, name);
+            assert!((limit.unwrap() / asked - 1.0).abs() < 1e-9, "{name}: {limit:?}, bring-up asks for {asked}");
+        }
+    }
+}
+
 /// The largest resistance that a reading allows holds CLEAR low against the DAC's own pull-up: 55 uA at most, and low
 /// below 0.3 DVCC (AD5761R-EP).
 #[test]
