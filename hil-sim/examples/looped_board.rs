@@ -21,8 +21,10 @@ fn main() -> ExitCode {
     match TerminalPort::open() {
         Ok(port) => {
             println!("{}", port.path());
-            let result = LoopedRig::new(port, wrong).run();
-            println!("{result:?}");
+            match LoopedRig::new(port, wrong).run() {
+                Ok(wrong) => println!("the self-test has ended; measurements that are not right: {wrong}"),
+                Err(stop) => println!("the self-test has stopped: {stop}"),
+            }
             ExitCode::SUCCESS
         }
         Err(error) => {

@@ -50,6 +50,9 @@ pub trait Port {
 
     /// The board waits for a byte. Returns `false` if there will be none.
     fn wait(&mut self) -> bool;
+
+    /// The board has said everything, and stays on: returns once nobody reads it any more.
+    fn end(&mut self);
 }
 
 /// The board, at power-on.
@@ -108,6 +111,7 @@ impl<P: Port> LoopedRig<P> {
             if result != Err(Stop::Reset) {
                 // What the script has left as it is goes on.
                 (0..10 * one_shot::ONE_SHOT_US * one_shot::CYCLES_PER_US).for_each(|_| _ = self.cycles());
+                self.port.end();
                 return result;
             }
         }

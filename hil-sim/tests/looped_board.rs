@@ -104,6 +104,8 @@ impl Port for Person {
         }
         !self.typed.is_empty()
     }
+
+    fn end(&mut self) {}
 }
 
 fn self_test(wrong: Wrong, tests_line: bool) -> (Result<u32, Stop>, LoopedRig<Person>) {

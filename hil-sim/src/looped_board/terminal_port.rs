@@ -54,4 +54,39 @@ impl Port for TerminalPort {
         sleep(WAIT);
         true
     }
+
+    /// What the client has not read is lost with the terminal.
+    fn end(&mut self) {
+        while matches!(self.terminal.client_has_gone(), Ok(false)) {
+            // Its last bytes, without which other systems than Linux take it for gone.
+            self.read(&mut [0; 64]);
+            sleep(WAIT);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::OpenOptions;
+    use std::io::Read;
+    use std::thread;
+
+    use super::*;
+
+    #[test]
+    fn the_last_words_of_the_board_are_there_until_the_client_has_gone() {
+        let mut port = TerminalPort::open().unwrap();
+        let mut client = OpenOptions::new().read(true).write(true).open(port.path()).unwrap();
+        let board = thread::spawn(move || {
+            port.write(b"STOP");
+            port.end();
+        });
+        sleep(20 * WAIT);
+        assert!(!board.is_finished());
+        let mut words = [0; 4];
+        client.read_exact(&mut words).unwrap();
+        assert_eq!(&words, b"STOP");
+        drop(client);
+        board.join().unwrap();
+    }
 }
