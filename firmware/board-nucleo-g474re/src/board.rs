@@ -62,13 +62,17 @@ const fn limits_behind(series_kohm: Option<&str>) -> BoardLimits {
     let of_docs = Board::NUCLEO_G474RE.limits;
     let Some(series_kohm) = series_kohm else { return of_docs };
     let Ok(series_kohm) = u32::from_str_radix(series_kohm, 10) else {
-        panic!("FRIXEL_SERIES_KOHM is not a whole number of kOhm")
+        panic!("FRIXEL_SERIES_KOHM must be a whole number of kOhm, 42 or more")
     };
     let behind = Board::NUCLEO_G474RE.behind(1e3 * series_kohm as f32).limits;
     BoardLimits { voltage_max_v_peak: Board::UNMEASURED_V_PEAK, ..behind }
 }
 
-const _: () = assert!(check_touched_board(&LIMITS).is_ok());
+const _: () = assert!(
+    check_touched_board(&LIMITS).is_ok(),
+    "FRIXEL_SERIES_KOHM must be a whole number of kOhm, 42 or more: behind less, an amplifier that is stuck drives more \
+     than 5 mA through a person"
+);
 
 /// Whether stored limits above the ceilings are refused.
 pub const CEILINGS: Ceilings =

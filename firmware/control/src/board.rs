@@ -156,6 +156,15 @@ impl Board {
     /// the resistance half.
     pub const UNMEASURED_V_PEAK: f32 = 10.0;
 
+    /// The largest voltage that its image allows, V peak, if nothing stores limits on it: there is no bring-up for a
+    /// Pico or a Pico 2 yet.
+    pub const fn never_measured_v_peak(&self) -> Option<f32> {
+        match self.kind {
+            BoardKind::Pico | BoardKind::Pico2 => Some(Self::UNMEASURED_V_PEAK),
+            _ => None,
+        }
+    }
+
     /// The real board of a name.
     pub fn named(name: &str) -> Option<Self> {
         match name {

@@ -22,7 +22,10 @@ use frixel_model::Waveform;
 
 // A core without compare-and-swap is a Cortex-M0 or M0+.
 #[cfg(all(target_arch = "arm", not(target_has_atomic = "32"), not(feature = "every-core")))]
-compile_error!("this core has no costs without the feature `every-core` of `frixel-layers`");
+compile_error!(
+    "this core has no costs without the feature `every-core` of `frixel-layers`; an image for the Pico is built with \
+     --no-default-features --features rp2040,everything"
+);
 
 /// Core cycles on each core.
 ///

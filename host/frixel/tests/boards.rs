@@ -88,14 +88,42 @@ fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
     assert!(refusal.contains("layer 1 (noise) takes too long") && refusal.contains("has time for 13100"), "{refusal}");
 }
 
-/// A board that was not measured refuses what its kind will take: who checks for it learns so from the check.
+/// Nothing stores limits on a Pico: what its kind would take, it refuses.
 #[test]
-fn a_check_for_a_pico_says_what_it_allows_until_limits_are_stored() {
-    let scenes = repository().join("scenes");
+fn a_check_for_a_pico_says_what_it_allows_without_stored_limits() {
     for (board, says_so) in [("pico", true), ("pico-2", true), ("nucleo-g474re", false)] {
-        let output = run(&scenes, &["scene", "check", "constant.toml", "--board", board]);
-        let text = String::from_utf8_lossy(&output.stdout);
+        let text = succeed(&repository(), &["scene", "check", "hardware/first_voltage.toml", "--board", board]);
         assert!(text.contains("V rms at"), "{text}");
-        assert_eq!(text.contains("until limits are stored, this board allows 10 V peak"), says_so, "{text}");
+        assert_eq!(text.contains("nothing stores limits on this board yet: it allows 10 V peak"), says_so, "{text}");
+        assert_eq!(text.contains("refuses it as it is, and would take it once limits are stored"), says_so, "{text}");
+        assert_eq!(text.contains("takes it\n"), !says_so, "{text}");
+    }
+}
+
+#[test]
+fn the_command_that_builds_the_smallest_image_is_that_of_the_board() {
+    for (board, command) in [
+        ("nucleo-g474re", "cd firmware/board-nucleo-g474re && cargo build --release --no-default-features --features "),
+        ("pico-2", "cd firmware/board-pico && cargo build --release --no-default-features --features rp2350,"),
+        (
+            "pico",
+            "cd firmware/board-pico && cargo build --release --target thumbv6m-none-eabi --no-default-features \
+             --features rp2040,",
+        ),
+    ] {
+        let arguments = ["scene", "check", "hardware/first_voltage.toml", "--image", "--board", board];
+        let text = succeed(&repository(), &arguments);
+        assert!(text.contains(command), "{text}");
+    }
+}
+
+#[test]
+fn a_series_resistance_that_no_firmware_takes_is_refused() {
+    let arguments = ["scene", "check", "constant.toml", "--board", "nucleo-g474re", "--series-kohm"];
+    for (kohm, said) in [("41", "no firmware takes a series resistance of 41 kOhm"), ("5", "mA")] {
+        let output = run(&repository().join("scenes"), &[&arguments[..], &[kohm]].concat());
+        assert_eq!(output.status.code(), Some(1));
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert!(text.contains(said), "{text}");
     }
 }

@@ -39,7 +39,7 @@ fn rows(text: &str, is_bound: bool) -> Vec<Vec<f64>> {
 
 #[test]
 fn at_the_bound_no_current_is_above_its_limit_and_above_it_one_is() {
-    for args in [&[][..], &["--series-kohm", "34"], &["--series-kohm", "390"]] {
+    for args in [&[][..], &["--series-kohm", "43"], &["--series-kohm", "390"]] {
         let text = printed(args);
         let bounds = rows(&text, true);
         assert_eq!(bounds.len(), 6, "{text}");
@@ -83,6 +83,22 @@ fn the_resistance_for_a_voltage_keeps_it_within_the_bound() {
     }
     // Fast carriers lose too much at the edges.
     assert!(text.lines().any(|line| line.contains("1000 Hz") && line.contains("none")), "{text}");
+}
+
+#[test]
+fn what_a_pico_cannot_have_is_not_printed() {
+    let text = printed(&["--board", "pico"]);
+    assert!(text.contains("nothing stores them on this board yet, and it allows 10 V peak"), "{text}");
+    assert!(text.contains(" 1000 Hz") && !text.contains(" 2000 Hz"), "{text}");
+    assert!(printed(&[]).contains(" 5000 Hz"));
+}
+
+#[test]
+fn a_series_resistance_that_no_firmware_takes_is_named() {
+    for (kohm, is_taken) in [("10", false), ("41.9", false), ("42.1", true)] {
+        let text = printed(&["--series-kohm", kohm]);
+        assert_eq!(!text.contains("no firmware takes that: "), is_taken, "{text}");
+    }
 }
 
 #[test]

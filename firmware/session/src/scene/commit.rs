@@ -1,8 +1,9 @@
 //! Commit: passes the uploaded scene to the ticker.
 //!
 //! A commit takes the time of hundreds of ticks. [`Scenes::step_commit`] advances it by one step of at most a
-//! millisecond, so that touches, signs of life and stops are served in between. Requests whose outcome depends on the
-//! commit wait until it has ended. A hello drops it: the client that would have been answered is gone.
+//! millisecond (on an RP2040, 8 ms), so that touches, signs of life and stops are served in between. Requests whose
+//! outcome depends on the commit wait until it has ended. A hello drops it: the client that would have been answered is
+//! gone.
 
 use frixel_control::{Board, Order};
 use frixel_layers::{ActiveLayers, Scene, disabled_record};

@@ -2,11 +2,8 @@
 
 use frixel_layers::feature_names;
 use frixel_scene::Program;
-use frixel_wire::hello::feature;
+use frixel_wire::hello::{BoardKind, feature};
 use serde::Serialize;
-
-/// Folder of the board's firmware.
-const FOLDER: &str = "firmware/board-nucleo-g474re";
 
 /// A firmware image with only the features that a scene needs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -18,12 +15,19 @@ pub struct BoardImage {
 }
 
 impl BoardImage {
-    pub(super) fn of(program: &Program) -> Self {
+    /// The image for the board of this kind; for the NUCLEO-G474RE if it is no real board's.
+    pub(super) fn of(program: &Program, kind: BoardKind) -> Self {
+        let (folder, target, processor) = match kind {
+            BoardKind::Pico => ("firmware/board-pico", " --target thumbv6m-none-eabi", Some("rp2040")),
+            BoardKind::Pico2 => ("firmware/board-pico", "", Some("rp2350")),
+            _ => ("firmware/board-nucleo-g474re", "", None),
+        };
         // `frixel play` subscribes to telemetry.
         let needed = program.features() | feature::TELEMETRY;
-        let features: Vec<&str> = feature_names().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| name).collect();
+        let kinds = feature_names().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| name);
+        let features: Vec<&str> = processor.into_iter().chain(kinds).collect();
         let list = if features.is_empty() { String::new() } else { format!(" --features {}", features.join(",")) };
-        let command = format!("cd {FOLDER} && cargo build --release --no-default-features{list}");
+        let command = format!("cd {folder} && cargo build --release{target} --no-default-features{list}");
         Self { features, command }
     }
 }

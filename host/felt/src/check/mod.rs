@@ -11,7 +11,7 @@ use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
 use frixel_scene::{Program, TargetRange, middle_mm};
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardKind, BoardLimits};
 use serde::Serialize;
 
 use crate::perception::Perception;
@@ -196,10 +196,10 @@ impl SceneCheck {
         }
     }
 
-    /// Adds the smallest firmware image that plays the program.
+    /// Adds the smallest firmware image of a kind of board that plays the program.
     #[must_use]
-    pub fn with_board(self, program: &Program) -> Self {
-        Self { board: Some(BoardImage::of(program)), ..self }
+    pub fn with_board(self, program: &Program, kind: BoardKind) -> Self {
+        Self { board: Some(BoardImage::of(program, kind)), ..self }
     }
 
     /// The costs as one JSON object on one line.

@@ -30,6 +30,7 @@ use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
+use frixel_session::store::LimitsError;
 use rayon::ThreadPoolBuildError;
 use thiserror::Error;
 
@@ -43,6 +44,8 @@ pub(crate) enum CommandError {
     Device(#[from] DeviceError),
     #[error(transparent)]
     Rehearsal(#[from] RehearsalError),
+    #[error("no firmware takes a series resistance of {series_kohm} kOhm: {source}")]
+    SeriesResistance { series_kohm: f64, source: LimitsError },
     #[error(transparent)]
     Port(#[from] PortError),
     #[cfg(unix)]

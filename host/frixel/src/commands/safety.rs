@@ -5,10 +5,12 @@ use std::fmt::Write;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use frixel_hil_sim::Board;
+use frixel_layers::HALF_PERIOD_MIN_TICKS;
 use frixel_model::{
     Carrier, Coating, SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound, TouchPath,
     VACUUM_PERMITTIVITY_F_PER_M, Waveform,
 };
+use frixel_session::store::check_touched_board;
 
 use super::argument;
 use super::error::CommandError;
@@ -88,8 +90,8 @@ impl Table {
         let Self { board, series_ohm, capacitance_f } = self;
         let limits = &board.limits;
         [
-            ("board", format!("{}, at most {} V peak", board.kind, limits.voltage_max_v_peak)),
-            ("series", format!("{} kOhm between amplifier and electrode", 1e-3 * series_ohm)),
+            ("board", format!("{}, at most {} V peak{}", board.kind, limits.voltage_max_v_peak, self.until_measured())),
+            ("series", format!("{} kOhm between amplifier and electrode{}", 1e-3 * series_ohm, self.not_built())),
             ("screen", format!("{}: {:.2} nF to a fingertip of 2 cm2", args.screen, 1e9 * capacitance_f)),
             (
                 "person",
@@ -117,6 +119,26 @@ impl Table {
         .fold(String::new(), |text, (name, value)| text + &format!("{name:8} {value}\n"))
     }
 
+    /// What the board's own image allows, where that is less.
+    fn until_measured(&self) -> String {
+        self.board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
+            format!(" once limits are stored; nothing stores them on this board yet, and it allows {v_peak} V peak")
+        })
+    }
+
+    /// Why no firmware is built for the series resistance.
+    fn not_built(&self) -> String {
+        let behind = self.board.behind(self.series_ohm as f32);
+        check_touched_board(&behind.limits)
+            .map_or_else(|error| format!("; no firmware takes that: {error}"), |()| String::new())
+    }
+
+    /// Carriers that the board can have, Hz.
+    fn carriers_hz(&self) -> impl Iterator<Item = f64> {
+        let fastest_hz = f64::from(self.board.tick_hz) / f64::from(2 * HALF_PERIOD_MIN_TICKS);
+        CARRIERS_HZ.into_iter().filter(move |carrier_hz| *carrier_hz <= fastest_hz)
+    }
+
     /// Currents at the bound, and at the board's largest voltage.
     fn currents(&self) -> String {
         let intact = Coating::Intact { capacitance_f: self.capacitance_f };
@@ -126,7 +148,7 @@ impl Table {
              scratched    bridged      worst coating\n",
         );
         let largest_v_peak = f64::from(self.board.limits.voltage_max_v_peak);
-        for carrier_hz in CARRIERS_HZ {
+        for carrier_hz in self.carriers_hz() {
             let worst = TouchPath::worst_coating(self.series_ohm, carrier_hz);
             let bound_v_peak = self.bound_v_peak(carrier_hz);
             let drives = [("bound", bound_v_peak), ("", largest_v_peak)];
@@ -194,7 +216,7 @@ impl Table {
              included\n",
             1e9 * self.board.limits.electrode_capacitance_max_f
         );
-        for carrier_hz in CARRIERS_HZ {
+        for carrier_hz in self.carriers_hz() {
             let found = series_ohm()
                 .map(|series_ohm| Behind::new(&self.board, series_ohm, carrier_hz, voltage_v_rms))
                 .find(|behind| behind.drive_v_peak <= behind.bound_v_peak);

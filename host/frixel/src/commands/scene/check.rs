@@ -10,7 +10,7 @@ use frixel_hil_sim::{Board, RigConfig, TouchConfig};
 use frixel_lab::simulation::board_costs;
 use frixel_layers::Header;
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
-use frixel_wire::hello::BoardKind;
+use frixel_session::store::check_touched_board;
 
 use super::super::argument;
 use super::super::error::CommandError;
@@ -43,7 +43,7 @@ pub(in super::super) struct CheckArgs {
 
 pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
     let board = args.board.as_deref().and_then(Board::named);
-    let board = board.map(|board| args.series_kohm.map_or(board, |kohm| board.behind(1e3 * kohm as f32)));
+    let board = board.map(|board| behind(board, args.series_kohm)).transpose()?;
     let rig = board.map_or_else(RigConfig::default, RigConfig::of);
     let touch = args.touch.source(false)?.unwrap_or(TouchConfig::REALISTIC);
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
@@ -68,14 +68,32 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
         let path = printable(&path.display().to_string()).into_owned();
         format!("{path} is outside of the scene's folder: give it along with the scene")
     }));
-    let check = if args.image { check.with_board(&program) } else { check };
+    let check = if args.image { check.with_board(&program, rig.board.kind) } else { check };
     if args.json {
         return print_line(check.to_json());
     }
     if board.is_some() {
-        print(board_line(&rig.board, &program, "takes it"))?;
+        print(board_line(&rig.board, &program, verdict(&rig.board, &program)))?;
     }
     print(check.summary())
+}
+
+/// The board behind another resistance, if there is one.
+fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board, CommandError> {
+    let Some(series_kohm) = series_kohm else { return Ok(board) };
+    let board = board.behind(1e3 * series_kohm as f32);
+    check_touched_board(&board.limits).map_err(|source| CommandError::SeriesResistance { series_kohm, source })?;
+    Ok(board)
+}
+
+/// What the board does with a program that fits it.
+fn verdict(board: &Board, program: &Program) -> &'static str {
+    let allowed_v_peak = board.never_measured_v_peak().unwrap_or(f32::INFINITY);
+    if program.header.voltage_max_v_peak > allowed_v_peak {
+        "refuses it as it is, and would take it once limits are stored"
+    } else {
+        "takes it"
+    }
 }
 
 /// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
@@ -89,13 +107,11 @@ fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<(), 
 /// The board, the voltage that it gives at the scene's carrier, and the friction of the scene's finger there.
 fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
-    let is_pico = matches!(board.kind, BoardKind::Pico | BoardKind::Pico2);
-    let until_measured = if is_pico {
-        let v_peak = Board::UNMEASURED_V_PEAK;
-        format!("                   until limits are stored, this board allows {v_peak:.0} V peak (docs/pico.md)\n")
-    } else {
-        String::new()
-    };
+    let until_measured = board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
+        format!(
+            "                   nothing stores limits on this board yet: it allows {v_peak} V peak (docs/pico.md)\n"
+        )
+    });
     format!(
         "  board            {} behind {} kOhm {verdict}\n  voltage          {voltage_max_v_peak:.1} V peak, \
          {voltage_max_v_rms:.1} V rms at {carrier_hz:.0} Hz: up to {:.1} mN above natural, {} Weber steps\n{until_measured}",

@@ -63,7 +63,8 @@ pub(super) fn figure(subject: &Subject, counts: &Counts) -> Result<(Figure, Vec<
     let Subject { name, program } = *subject;
     let rig = RigConfig::default();
     let costs = board_costs(program, &rig)?;
-    let check = SceneCheck::of(program, &rig.board.limits, &costs, &rig.world.touch).with_board(program);
+    let check =
+        SceneCheck::of(program, &rig.board.limits, &costs, &rig.world.touch).with_board(program, rig.board.kind);
     let parts = parts(&check);
     let mut data = Data::new(["what", "unit", "needed", "whole"]);
     data.row(["layers that are played".into(), String::new().as_str().into(), check.layers.into(), Value::from("")]);
