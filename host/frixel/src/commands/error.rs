@@ -45,6 +45,8 @@ pub(crate) enum CommandError {
     Rehearsal(#[from] RehearsalError),
     #[error(transparent)]
     Port(#[from] PortError),
+    #[error("{source}; {advice}")]
+    NoSuchPort { source: PortError, advice: String },
     #[cfg(unix)]
     #[error(transparent)]
     Server(#[from] ServerError),

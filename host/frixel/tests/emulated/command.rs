@@ -15,6 +15,10 @@ use crate::emulator;
 
 /// Plays the brick with the longest host timeout that there is: on a busy machine pings are late.
 fn play(folder: &Path) -> Command {
+    play_on("qemu", folder)
+}
+
+fn play_on(port: &str, folder: &Path) -> Command {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     fs::create_dir_all(folder.join("textures")).unwrap();
     fs::copy(scenes.join("textures/brick.png"), folder.join("textures/brick.png")).unwrap();
@@ -22,7 +26,7 @@ fn play(folder: &Path) -> Command {
     let scene = folder.join("brick.toml");
     fs::write(&scene, brick.replace("[drive]\n", "[drive]\nhost_timeout_ms = 1000\n")).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-    command.arg("play").arg(scene).args(["--port", "qemu", "--ideal", "--json"]).current_dir(folder);
+    command.arg("play").arg(scene).args(["--port", port, "--ideal", "--json"]).current_dir(folder);
     command
 }
 
@@ -143,8 +147,12 @@ impl Tools {
 
     /// One sentence that names the cure, and an exit of one, before anything is written.
     fn refused(&self, checkout: Option<&Path>, parts: &[&str]) {
+        self.refused_on("qemu", checkout, parts);
+    }
+
+    fn refused_on(&self, port: &str, checkout: Option<&Path>, parts: &[&str]) {
         let folder = TempDir::new().unwrap();
-        let mut command = play(folder.path());
+        let mut command = play_on(port, folder.path());
         command.env("PATH", self.0.path()).env_remove("CARGO");
         if let Some(checkout) = checkout {
             command.env("FRIXEL_CHECKOUT", checkout);
@@ -180,7 +188,29 @@ fn a_missing_program_is_named_with_the_command_that_installs_it() {
 fn outside_a_checkout_it_says_what_it_takes() {
     let elsewhere = TempDir::new().unwrap();
     let tools = Tools::new(&[EMULATOR, ("rustc", "echo /")]);
-    tools.refused(Some(elsewhere.path()), &["frixel's sources", "in a checkout", "FRIXEL_CHECKOUT"]);
+    let named = format!("`FRIXEL_CHECKOUT={}` names no checkout", elsewhere.path().display());
+    tools.refused(Some(elsewhere.path()), &[&named, "it has no folder firmware/board-mps2-an386", "or unset it"]);
+    let nowhere = elsewhere.path().join("nowhere");
+    let named = format!("`FRIXEL_CHECKOUT={}` names no checkout", nowhere.display());
+    tools.refused(Some(&nowhere), &[&named, "there is no such folder", "or unset it"]);
+}
+
+/// Node comes without npm, too.
+#[test]
+fn the_program_that_fetches_the_picos_emulator_is_named_if_it_is_missing() {
+    let checkout = TempDir::new().unwrap();
+    for folder in ["firmware/board-pico", "hil-sim/pico"] {
+        fs::create_dir_all(checkout.path().join(folder)).unwrap();
+    }
+    fs::write(checkout.path().join("hil-sim/pico/package-lock.json"), "{}").unwrap();
+    let tools = Tools::new(&[("node", "exit 0"), ("rustc", "echo /"), ("cargo", "exit 0")]);
+    tools.refused_on(
+        "pico",
+        Some(checkout.path()),
+        &["fetched by npm, which is not installed", "`apt-get install npm`"],
+    );
+    let command = ["runs on node, which is not installed", "`apt-get install nodejs npm`"];
+    Tools::new(&[]).refused_on("pico", Some(checkout.path()), &command);
 }
 
 fn said(output: &Output) -> String {
