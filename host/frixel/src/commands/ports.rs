@@ -32,8 +32,7 @@ pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink, CommandErr
 
 /// What `--port` of a command takes, and what of it was meant.
 fn advice(port: &str, boards: &[&str]) -> String {
-    let words: String = boards.iter().map(|board| format!("`{board}`, ")).collect();
-    let words = words.strip_suffix(", ").map(|words| format!("{words} or ")).unwrap_or_default();
+    let words = if boards.is_empty() { String::new() } else { format!("`{}` or ", boards.join("`, `")) };
     let takes = format!("--port takes {words}the path of a board's serial port");
     match Nearest::new(port, BOARDS).suggestion {
         Some(board) if boards.contains(&board.as_str()) => format!("{takes}; did you mean `{board}`?"),

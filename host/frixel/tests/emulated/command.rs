@@ -11,14 +11,10 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 use crate::bench::turn;
-use crate::emulator;
+use crate::{emulator, pico};
 
 /// Plays the brick with the longest host timeout that there is: on a busy machine pings are late.
 fn play(folder: &Path) -> Command {
-    play_on("qemu", folder)
-}
-
-fn play_on(port: &str, folder: &Path) -> Command {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     fs::create_dir_all(folder.join("textures")).unwrap();
     fs::copy(scenes.join("textures/brick.png"), folder.join("textures/brick.png")).unwrap();
@@ -26,7 +22,7 @@ fn play_on(port: &str, folder: &Path) -> Command {
     let scene = folder.join("brick.toml");
     fs::write(&scene, brick.replace("[drive]\n", "[drive]\nhost_timeout_ms = 1000\n")).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-    command.arg("play").arg(scene).args(["--port", port, "--ideal", "--json"]).current_dir(folder);
+    command.arg("play").arg(scene).args(["--port", "qemu", "--ideal", "--json"]).current_dir(folder);
     command
 }
 
@@ -147,12 +143,12 @@ impl Tools {
 
     /// One sentence that names the cure, and an exit of one, before anything is written.
     fn refused(&self, checkout: Option<&Path>, parts: &[&str]) {
-        self.refused_on("qemu", checkout, parts);
+        self.refused_by(play, checkout, parts);
     }
 
-    fn refused_on(&self, port: &str, checkout: Option<&Path>, parts: &[&str]) {
+    fn refused_by(&self, play: fn(&Path) -> Command, checkout: Option<&Path>, parts: &[&str]) {
         let folder = TempDir::new().unwrap();
-        let mut command = play_on(port, folder.path());
+        let mut command = play(folder.path());
         command.env("PATH", self.0.path()).env_remove("CARGO");
         if let Some(checkout) = checkout {
             command.env("FRIXEL_CHECKOUT", checkout);
@@ -204,13 +200,13 @@ fn the_program_that_fetches_the_picos_emulator_is_named_if_it_is_missing() {
     }
     fs::write(checkout.path().join("hil-sim/pico/package-lock.json"), "{}").unwrap();
     let tools = Tools::new(&[("node", "exit 0"), ("rustc", "echo /"), ("cargo", "exit 0")]);
-    tools.refused_on(
-        "pico",
+    tools.refused_by(
+        pico::play,
         Some(checkout.path()),
         &["fetched by npm, which is not installed", "`apt-get install npm`"],
     );
     let command = ["runs on node, which is not installed", "`apt-get install nodejs npm`"];
-    Tools::new(&[]).refused_on("pico", Some(checkout.path()), &command);
+    Tools::new(&[]).refused_by(pico::play, Some(checkout.path()), &command);
 }
 
 fn said(output: &Output) -> String {

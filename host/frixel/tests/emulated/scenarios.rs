@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::bench::turn;
 use crate::emulator::{image, pico_image};
-use crate::example::{Example, page};
+use crate::example::{page, run, text};
 
 /// Runs scenarios on a rig, and returns what was not as expected.
 fn unmet(rig: &str, scenarios: &[&str]) -> Vec<String> {
@@ -49,7 +49,7 @@ fn the_pages_first_example_holds_on_the_emulated_board() {
         return;
     }
     let _turn = turn();
-    let output = Example::new().run("qemu");
+    let output = run(&text(), "qemu");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
@@ -60,7 +60,7 @@ fn the_pages_first_example_holds_on_the_picos_image() {
         return;
     }
     let _turn = turn();
-    let output = Example::new().run("pico");
+    let output = run(&text(), "pico");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let timeline = String::from_utf8(output.stdout).unwrap();
     let at_ms = |what: &str| {

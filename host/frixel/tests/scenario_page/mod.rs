@@ -4,11 +4,11 @@
 pub(crate) mod example;
 
 use crate::processes::said;
-use example::{Example, page};
+use example::{page, run, text};
 
 #[test]
 fn the_first_example_shows_what_the_page_says() {
-    let output = Example::new().run("sim");
+    let output = run(&text(), "sim");
     assert!(output.status.success(), "{}", said(&output));
     let timeline = String::from_utf8(output.stdout).unwrap();
     for line in [timeline.lines().next().unwrap(), timeline.lines().last().unwrap()] {
@@ -18,7 +18,8 @@ fn the_first_example_shows_what_the_page_says() {
 
 #[test]
 fn the_first_example_is_broken_as_the_page_says() {
-    let output = Example::new().edited("from_ms = 251 ", "from_ms = 200 ").run("sim");
+    let broken = text().replace("from_ms = 251 ", "from_ms = 200 ");
+    let output = run(&broken, "sim");
     assert_eq!(output.status.code(), Some(1));
     let sentence = said(&output).lines().next().unwrap().to_owned();
     assert!(page().contains(&format!("\n    {sentence}\n")), "{sentence}");
