@@ -14,6 +14,9 @@ pub enum EmulatorError {
     /// The program that runs the emulator of the Pico is not installed.
     #[error("the Pico's emulator runs on node, which is not installed: `apt-get install nodejs npm`")]
     NoNode,
+    /// The program that fetches the emulator of the Pico is not installed.
+    #[error("the Pico's emulator rp2040js is fetched by npm, which is not installed: `apt-get install npm`")]
+    NoNpm,
     /// The packages that run the image of the Pico could not be installed.
     #[error("the emulator rp2040js could not be installed by `npm ci` in {folder}:\n{output}")]
     NoPackages {
@@ -40,6 +43,17 @@ pub enum EmulatorError {
          are not here: run this in a checkout of frixel, or set FRIXEL_CHECKOUT to the folder of one"
     )]
     NoSources,
+    /// The environment names a folder that is no checkout.
+    #[error(
+        "`FRIXEL_CHECKOUT={folder}` names no checkout of frixel, because {missing}: set it to the folder of one, or unset \
+         it"
+    )]
+    NotACheckout {
+        /// The folder, as the environment has it.
+        folder: String,
+        /// What is missing.
+        missing: String,
+    },
     /// The image does not compile.
     #[error("the emulated board's image does not compile:\n{output}")]
     NotBuilt {

@@ -44,7 +44,7 @@ fn install(folder: &Path) -> Result<(), EmulatorError> {
             folder: folder.display().to_string(),
             output: String::from_utf8_lossy(&output.stderr).into_owned(),
         }),
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(EmulatorError::NoNode),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(EmulatorError::NoNpm),
         Err(error) => Err(EmulatorError::system("starting npm")(error)),
     }
 }

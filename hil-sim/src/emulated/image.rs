@@ -182,15 +182,23 @@ const BUILT_IN: Option<&str> = if cfg!(debug_assertions) { Some(env!("CARGO_MANI
 
 /// A folder of the sources.
 pub(super) fn source_folder(name: &str) -> Result<PathBuf, EmulatorError> {
+    if let Some(checkout) = env::var_os(CHECKOUT) {
+        return folder_of(Path::new(&checkout), name);
+    }
     let here = env::current_dir().unwrap_or_default();
-    let checkouts: Vec<PathBuf> = if let Some(checkout) = env::var_os(CHECKOUT) {
-        vec![checkout.into()]
-    } else {
-        let built_in = BUILT_IN.and_then(|folder| Path::new(folder).parent());
-        here.ancestors().chain(built_in).map(Path::to_path_buf).collect()
-    };
-    let mut folders = checkouts.into_iter().map(|checkout| checkout.join(name));
+    let built_in = BUILT_IN.and_then(|folder| Path::new(folder).parent());
+    let mut folders = here.ancestors().chain(built_in).map(|checkout| checkout.join(name));
     folders.find(|folder| folder.is_dir()).ok_or(EmulatorError::NoSources)
+}
+
+/// A folder of the checkout that the environment names.
+fn folder_of(checkout: &Path, name: &str) -> Result<PathBuf, EmulatorError> {
+    let folder = checkout.join(name);
+    if folder.is_dir() {
+        return Ok(folder);
+    }
+    let missing = if checkout.is_dir() { format!("it has no folder {name}") } else { "there is no such folder".into() };
+    Err(EmulatorError::NotACheckout { folder: checkout.display().to_string(), missing })
 }
 
 #[cfg(test)]

@@ -60,6 +60,10 @@ fn the_first_scene_after_bring_up_is_taken_and_drives_what_the_monitor_sees() {
     assert!(fs::read_to_string(repository().join("docs/hardware.md")).unwrap().contains(path));
     let said = succeed(&repository(), &["scene", "check", path, "--board", "nucleo-g474re"]);
     assert!(said.contains("NUCLEO-G474RE behind 68 kOhm takes it"), "{said}");
+    // A scene that asks for all that the drive gives has one target.
+    let targets = said.lines().find_map(|line| line.trim().strip_prefix("targets")).unwrap();
+    let [least_n, largest_n] = [0, 2].map(|word| targets.split_whitespace().nth(word).unwrap());
+    assert_eq!(least_n, largest_n, "{targets}");
     let board = Board::NUCLEO_G474RE;
     let text = fs::read_to_string(repository().join(path)).unwrap();
     let header = compile(&scene(&text), &board.limits, board.tick_hz).unwrap().header;

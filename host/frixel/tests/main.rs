@@ -21,6 +21,7 @@ mod processes;
 mod recording;
 mod report;
 mod safety;
+mod scenario_page;
 mod scene_command;
 mod score;
 mod server_credit;

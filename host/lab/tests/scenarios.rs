@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use frixel_hil_sim::{
     Board, BoardMemory, BoardRig, Felt, InProcessRig, NoiseConfig, RigConfig, RigError, RigFault, RigTick,
 };
-use frixel_lab::scenario::{ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
+use frixel_lab::scenario::{ScenarioError, ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
 use frixel_scene::{Action, At, Cause, Expectation, LineDamage, Scenario, Scene, Seen};
 use frixel_wire::dac_code::DacCode;
 
@@ -41,12 +41,18 @@ fn scene_of(name: &str) -> Scene {
     Scene::parse(&text, name, &BTreeMap::<String, Vec<u8>>::new()).unwrap()
 }
 
+/// Runs a scenario on the simulator's board.
+fn run_on_simulator(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome, ScenarioError> {
+    let config = RigConfig::default();
+    run_in_process(scenario, &programs(scenario, scenes, &config.board)?, &config)
+}
+
 #[test]
 fn every_scenario_shows_what_it_expects() {
     let mut unmet: Vec<String> = Vec::new();
     for (scenario, scenes) in scenarios() {
         assert!(!scenario.about.is_empty() && !scenario.expectations.is_empty(), "{}", scenario.file);
-        let outcome = run_in_process(&scenario, &scenes, &RigConfig::default()).unwrap();
+        let outcome = run_on_simulator(&scenario, &scenes).unwrap();
         unmet.extend(outcome.unmet.iter().map(ToString::to_string));
     }
     assert!(unmet.is_empty(), "{}", unmet.join("\n"));
@@ -58,7 +64,7 @@ fn a_scenario_runs_the_same_every_time() {
     let (mut scenario, scenes) = scenarios().into_iter().find(named).unwrap();
     let noise = NoiseConfig { bit_error_rate: 2e-3, ..NoiseConfig::default() };
     scenario.faults[0].cause = Cause::Line { directions: [true, true], damage: LineDamage::Noise(noise) };
-    let run = |seed| run_in_process(&Scenario { seed, ..scenario.clone() }, &scenes, &RigConfig::default()).unwrap();
+    let run = |seed| run_on_simulator(&Scenario { seed, ..scenario.clone() }, &scenes).unwrap();
     assert_eq!(run(1), run(1));
     assert_ne!(run(1), run(2));
 }
@@ -74,8 +80,12 @@ enum Break {
     Mute,
     /// What the scenario causes does not happen, nor does the host do anything after its first command.
     Harmless,
+    /// What is seen may be 5 ms late.
+    Late,
 }
 
+/// 5 ms of the simulator's board.
+const LATENESS_TICKS: u64 = 200;
 const BREAKS: [Break; 4] = [Break::Driven, Break::Dead, Break::Mute, Break::Harmless];
 
 struct Broken<'a> {
@@ -119,7 +129,7 @@ impl BoardRig for Broken<'_> {
                     tick.drive.dac_code = DacCode::ZERO;
                     tick.felt = Felt { friction_n: 0.0, ..tick.felt };
                 }
-                Break::Mute | Break::Harmless => {}
+                Break::Mute | Break::Harmless | Break::Late => {}
             }
             watch(&tick);
         })?;
@@ -135,6 +145,10 @@ impl BoardRig for Broken<'_> {
 
     fn start_stroke(&mut self) {
         self.rig.start_stroke();
+    }
+
+    fn lateness_ticks(&self) -> u64 {
+        if self.how == Break::Late { LATENESS_TICKS } else { 0 }
     }
 }
 
@@ -181,10 +195,50 @@ fn a_driven_output_over_a_short_span_is_unmet_on_a_dead_board() {
     let from_ms = 400.0;
     let seen = Seen::OutputDriven;
     scenario.expectations = vec![Expectation { line: 1, after: None, from_ms, to_ms: Some(from_ms + 4.0), seen }];
-    assert_eq!(run_in_process(&scenario, &scenes, &RigConfig::default()).unwrap().unmet, []);
+    assert_eq!(run_on_simulator(&scenario, &scenes).unwrap().unmet, []);
     let unmet = run_broken(&scenario, &scenes, Break::Dead).unmet;
     assert_eq!(unmet.len(), 1);
     assert!(unmet[0].sentence.ends_with("found DAC code 0 in each of its 160 ticks"), "{}", unmet[0]);
+}
+
+/// What is left of a span on a rig that is late is not what the file says.
+#[test]
+fn a_span_without_a_tick_says_why() {
+    let (mut scenario, scenes) = plays_and_stops();
+    scenario.seconds = 1.0;
+    scenario.commands.retain(|command| command.at.tick(1_000) < 1_000);
+    for (from_ms, to_ms, how, said) in [
+        (
+            1_000.0,
+            None,
+            Break::Dead,
+            "a driven output from 1000.000 ms on, and the scenario ends at 1000.000 ms: let it run for longer",
+        ),
+        (
+            400.0,
+            Some(400.0),
+            Break::Dead,
+            "a driven output from 400.000 to 400.000 ms, and there is no tick in it: expect it for longer",
+        ),
+        (
+            400.0,
+            Some(409.0),
+            Break::Late,
+            "a driven output from 400.000 to 409.000 ms, and this rig is up to 5 ms late, which shortens a span by as \
+             much at both ends: expect it for more than 10 ms",
+        ),
+        (
+            1_100.0,
+            Some(1_200.0),
+            Break::Late,
+            "a driven output from 1100.000 ms on, and the scenario ends at 1000.000 ms: let it run for longer",
+        ),
+    ] {
+        scenario.expectations = vec![Expectation { line: 1, after: None, from_ms, to_ms, seen: Seen::OutputDriven }];
+        let unmet = run_broken(&scenario, &scenes, how).unmet;
+        let sentences: Vec<&str> = unmet.iter().map(|unmet| unmet.sentence.as_str()).collect();
+        assert_eq!(sentences, [format!("expected {said}")]);
+    }
 }
 
 #[test]
@@ -193,7 +247,7 @@ fn a_tick_after_the_end_is_an_error() {
     let end = (scenario.seconds * f64::from(RigConfig::default().board.tick_hz)).round() as u64;
     for (tick, is_late) in [(end, false), (end + 1, true)] {
         scenario.commands.last_mut().unwrap().at = At::Tick(tick);
-        let outcome = run_in_process(&scenario, &scenes, &RigConfig::default());
+        let outcome = run_on_simulator(&scenario, &scenes);
         assert_eq!(outcome.is_err(), is_late, "{outcome:?}");
     }
 }

@@ -45,19 +45,21 @@ impl SceneCheck {
         );
         line("finger", format!("{}, {}", finger.title, finger.origin));
         let suffix = Origin::newtons_suffix_of(finger.origin);
+        // A limit is rounded down, and what is below it never above.
+        let total_max_n = rounded_down(reach.total_max_n);
         line(
             "reachable",
             format!(
                 "{:.4} to {:.4} N in total, up to {:.4} N above natural (at {:.1} V rms){suffix}",
-                reach.natural_n,
-                rounded_down(reach.total_max_n),
+                reach.natural_n.min(total_max_n),
+                total_max_n,
                 rounded_down(reach.electric_max_n),
                 reach.voltage_max_v_rms
             ),
         );
         // The limit is printed rounded down: round a target within reach down as well, so that it is not above.
         let most_n = if asked.above.screen_percent <= 0.0 { rounded_down(asked.most_n) } else { asked.most_n };
-        line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", asked.least_n));
+        line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", asked.least_n.min(most_n)));
         line("out of reach", out_of_reach(&asked.above, &asked.below));
         for warning in &self.warnings {
             line("warning", warning.clone());

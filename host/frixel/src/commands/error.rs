@@ -48,6 +48,8 @@ pub(crate) enum CommandError {
     SeriesResistance { series_kohm: f64, source: LimitsError },
     #[error(transparent)]
     Port(#[from] PortError),
+    #[error("{source}; {advice}")]
+    NoSuchPort { source: PortError, advice: String },
     #[cfg(unix)]
     #[error(transparent)]
     Server(#[from] ServerError),

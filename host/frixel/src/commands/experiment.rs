@@ -3,11 +3,12 @@
 
 use crate::output_file::Recording;
 use crate::rigs::PortLink;
-use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_driver::Device;
 use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
 use super::error::CommandError;
+use super::ports;
 use super::terminal::note;
 
 /// Highest voltage of an experiment, in volts rms.
@@ -17,9 +18,9 @@ const VOLTAGE_MAX_V_RMS: f64 = 150.0;
 const PEAK_SHARE: f64 = 0.99;
 
 /// Connects to the board at a serial port, says what a person should know of it, and rejects one whose electrode may
-/// not be driven.
-pub(super) fn connect(port: &str, arm: bool) -> Result<Device<PortLink>, CommandError> {
-    let device = Device::connect(PortLink::new(SerialLink::open(port, DEFAULT_BAUD)?))?;
+/// not be driven. The command takes these boards in place of a port.
+pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>, CommandError> {
+    let device = Device::connect(PortLink::new(ports::open(port, boards)?))?;
     for sentence in device.hello().notice_sentences() {
         note(format_args!("note: {sentence}"));
     }

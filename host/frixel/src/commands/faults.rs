@@ -1,12 +1,13 @@
 //! `frixel faults`: what a board says of its last fault.
 
 use clap::Args;
-use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_driver::Device;
 use frixel_scene::printable;
 use frixel_wire::fault::State;
 
 use super::error::CommandError;
 use super::interrupt::Interrupt;
+use super::ports;
 use super::terminal::print_line;
 use super::waiting;
 
@@ -21,7 +22,7 @@ pub(super) struct FaultsArgs {
 }
 
 pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
-    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(ports::open(&args.port, &[])?)?;
     let mut device = waiting::watch(device, &Interrupt::default());
     let hello = *device.hello();
     let line = |name: &str, value: String| print_line(format_args!("{name:16} {value}"));

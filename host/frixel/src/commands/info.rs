@@ -1,12 +1,13 @@
 //! `frixel info`.
 
 use clap::Args;
-use frixel_driver::{DEFAULT_BAUD, Device, SerialLink};
+use frixel_driver::Device;
 use frixel_layers::feature_names;
 use frixel_model::TouchBound;
 use frixel_wire::hello::{BoardLimits, Hello};
 
 use super::error::CommandError;
+use super::ports;
 use super::terminal::print;
 
 #[derive(Debug, Args)]
@@ -17,7 +18,7 @@ pub(super) struct InfoArgs {
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
-    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(ports::open(&args.port, &[])?)?;
     print(describe(device.hello()))
 }
 

@@ -1,9 +1,13 @@
-//! `frixel ports`.
+//! `frixel ports`, and how every command opens the port that its `--port` names.
 
-use frixel_driver::ports;
+use frixel_driver::{DEFAULT_BAUD, PortError, SerialLink, ports};
+use frixel_scene::Nearest;
 
 use super::error::CommandError;
 use super::terminal::print_line;
+
+/// The boards that `--port` of `frixel play` names in place of a path.
+pub(super) const BOARDS: [&str; 3] = ["sim", "qemu", "pico"];
 
 pub(super) fn run() -> Result<(), CommandError> {
     let found = ports()?;
@@ -14,4 +18,46 @@ pub(super) fn run() -> Result<(), CommandError> {
         print_line(port)?;
     }
     Ok(())
+}
+
+/// Opens the serial port that `--port` of a command names, where the command takes these boards in place of a path.
+pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink, CommandError> {
+    SerialLink::open(port, DEFAULT_BAUD).map_err(|source| match source {
+        PortError::NotThere { .. } if !port.contains(['/', '\\']) => {
+            CommandError::NoSuchPort { source, advice: advice(port, boards) }
+        }
+        source => source.into(),
+    })
+}
+
+/// What `--port` of a command takes, and what of it was meant.
+fn advice(port: &str, boards: &[&str]) -> String {
+    let words = if boards.is_empty() { String::new() } else { format!("`{}` or ", boards.join("`, `")) };
+    let takes = format!("--port takes {words}the path of a board's serial port");
+    match Nearest::new(port, BOARDS).suggestion {
+        Some(board) if boards.contains(&board.as_str()) => format!("{takes}; did you mean `{board}`?"),
+        Some(board) if board == "sim" => format!("{takes} here: start `frixel sim`, and give the port that it prints"),
+        Some(board) => format!("{takes} here, and `{board}` is a board of `frixel play`"),
+        None => takes,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_that_is_no_path_is_told_what_the_command_takes() {
+        let play = |port| advice(port, &BOARDS);
+        let takes = "--port takes `sim`, `qemu`, `pico` or the path of a board's serial port";
+        assert_eq!(play("picco"), format!("{takes}; did you mean `pico`?"));
+        assert_eq!(play("QEMU"), format!("{takes}; did you mean `qemu`?"));
+        assert_eq!(play("COM7"), takes);
+        let takes = "--port takes the path of a board's serial port";
+        assert_eq!(advice("pico", &[]), format!("{takes} here, and `pico` is a board of `frixel play`"));
+        let virtual_one = "start `frixel sim`, and give the port that it prints";
+        assert_eq!(advice("sim", &[]), format!("{takes} here: {virtual_one}"));
+        let takes = "--port takes `sim` or the path of a board's serial port";
+        assert_eq!(advice("qemu", &["sim"]), format!("{takes} here, and `qemu` is a board of `frixel play`"));
+    }
 }

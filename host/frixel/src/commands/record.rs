@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::output_file::{FileWriter, Inputs, Recording};
 use clap::Args;
-use frixel_driver::{DEFAULT_BAUD, Device, Event, Link, SerialLink};
+use frixel_driver::{Device, Event, Link};
 use frixel_felt::recorder::Observation;
 use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
@@ -17,6 +17,7 @@ use super::error::CommandError;
 use super::experiment::cut_off;
 use super::interrupt::Interrupt;
 use super::parquet;
+use super::ports;
 use super::terminal::{note, say};
 use super::waiting;
 
@@ -63,7 +64,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
     let port = args.port.as_deref().unwrap_or_default();
     let interrupt = Interrupt::watch()?;
     let writer = recording.start()?;
-    let device = Device::connect(SerialLink::open(port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(ports::open(port, &[])?)?;
     let mut device = waiting::watch(device, &interrupt);
     let mut rows = Rows::new(writer, device.hello().tick_hz)?;
     match record(args, &mut device, &interrupt, &mut rows) {

@@ -6,14 +6,12 @@ use std::path::Path;
 use std::sync::mpsc;
 
 use clap::ValueEnum;
-use frixel_hil_sim::RigConfig;
+#[cfg(unix)]
+use frixel_hil_sim::World;
 #[cfg(unix)]
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
-#[cfg(unix)]
-use frixel_hil_sim::{Board, World, WorldConfig};
-#[cfg(unix)]
-use frixel_lab::scenario::{self, Programs};
-use frixel_lab::scenario::{ScenarioOutcome, run_in_process};
+use frixel_hil_sim::{Board, RigConfig, WorldConfig};
+use frixel_lab::scenario::{self, Programs, ScenarioOutcome, run_in_process};
 use frixel_scene::{Scenario, Scene};
 
 use crate::input;
@@ -22,6 +20,7 @@ use crate::rigs::EmulatedRig;
 use crate::scene_file::{check_path, load};
 
 use super::error::CommandError;
+use super::stroke::check_on_screen;
 use super::terminal::{note, print_line};
 
 /// The rig that a scenario runs on.
@@ -44,7 +43,10 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), Command
     }
     let scenes = scenes(&scenario, file)?;
     let outcome = match rig {
-        RigKind::Sim => run_in_process(&scenario, &scenes, &RigConfig::default())?,
+        RigKind::Sim => {
+            let config = RigConfig::default();
+            run_in_process(&scenario, &programs(&scenario, &scenes, &config.board)?, &config)?
+        }
         #[cfg(unix)]
         RigKind::Qemu => run_emulated(&scenario, &scenes)?,
         #[cfg(unix)]
@@ -90,6 +92,17 @@ fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<
     Ok(scenario::run(scenario, &programs, &mut rig)?)
 }
 
+/// The programs of a scenario for a board. Says where its stroke is off their screen.
+fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<Programs, CommandError> {
+    let programs = scenario::programs(scenario, scenes, board)?;
+    if let (Some(_), Some(program)) = (&scenario.stroke, programs.get(&scenario.scene)) {
+        let (stroke, _) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
+        let [width_m, height_m] = [program.header.screen_width_m, program.header.screen_height_m].map(f64::from);
+        check_on_screen(&format!("{}: the stroke", scenario.file), &stroke, width_m, height_m, scenario.seconds)?;
+    }
+    Ok(programs)
+}
+
 /// The programs of a scenario for a board, and the world around it.
 #[cfg(unix)]
 fn prepare(
@@ -97,7 +110,7 @@ fn prepare(
     scenes: &BTreeMap<String, Scene>,
     board: &Board,
 ) -> Result<(Programs, World), CommandError> {
-    let programs = scenario::programs(scenario, scenes, board)?;
+    let programs = programs(scenario, scenes, board)?;
     let (stroke, config) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
     let mut world = World::new(config, stroke, scenario.seed)?;
     if let Some(program) = programs.get(&scenario.scene) {

@@ -9,12 +9,13 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use frixel_driver::{DEFAULT_BAUD, Device, Event, SerialLink};
+use frixel_driver::{Device, Event, SerialLink};
 use frixel_wire::fault::State;
 use frixel_wire::message::TickTimes;
 
 use super::error::CommandError;
 use super::interrupt::Interrupt;
+use super::ports;
 use super::terminal::print_line;
 use super::waiting;
 
@@ -60,7 +61,7 @@ pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
     if args.wires {
         return wires::run(&args.port, args.seconds, args.output.as_deref());
     }
-    let device = Device::connect(SerialLink::open(&args.port, DEFAULT_BAUD)?)?;
+    let device = Device::connect(ports::open(&args.port, &[])?)?;
     let mut device = waiting::watch(device, &Interrupt::default());
     device.disarm()?;
     let hello = *device.hello();

@@ -11,7 +11,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 use crate::bench::turn;
-use crate::emulator;
+use crate::{emulator, pico};
 
 /// Plays the brick with the longest host timeout that there is: on a busy machine pings are late.
 fn play(folder: &Path) -> Command {
@@ -143,6 +143,10 @@ impl Tools {
 
     /// One sentence that names the cure, and an exit of one, before anything is written.
     fn refused(&self, checkout: Option<&Path>, parts: &[&str]) {
+        self.refused_by(play, checkout, parts);
+    }
+
+    fn refused_by(&self, play: fn(&Path) -> Command, checkout: Option<&Path>, parts: &[&str]) {
         let folder = TempDir::new().unwrap();
         let mut command = play(folder.path());
         command.env("PATH", self.0.path()).env_remove("CARGO");
@@ -180,7 +184,29 @@ fn a_missing_program_is_named_with_the_command_that_installs_it() {
 fn outside_a_checkout_it_says_what_it_takes() {
     let elsewhere = TempDir::new().unwrap();
     let tools = Tools::new(&[EMULATOR, ("rustc", "echo /")]);
-    tools.refused(Some(elsewhere.path()), &["frixel's sources", "in a checkout", "FRIXEL_CHECKOUT"]);
+    let named = format!("`FRIXEL_CHECKOUT={}` names no checkout", elsewhere.path().display());
+    tools.refused(Some(elsewhere.path()), &[&named, "it has no folder firmware/board-mps2-an386", "or unset it"]);
+    let nowhere = elsewhere.path().join("nowhere");
+    let named = format!("`FRIXEL_CHECKOUT={}` names no checkout", nowhere.display());
+    tools.refused(Some(&nowhere), &[&named, "there is no such folder", "or unset it"]);
+}
+
+/// Node comes without npm, too.
+#[test]
+fn the_program_that_fetches_the_picos_emulator_is_named_if_it_is_missing() {
+    let checkout = TempDir::new().unwrap();
+    for folder in ["firmware/board-pico", "hil-sim/pico"] {
+        fs::create_dir_all(checkout.path().join(folder)).unwrap();
+    }
+    fs::write(checkout.path().join("hil-sim/pico/package-lock.json"), "{}").unwrap();
+    let tools = Tools::new(&[("node", "exit 0"), ("rustc", "echo /"), ("cargo", "exit 0")]);
+    tools.refused_by(
+        pico::play,
+        Some(checkout.path()),
+        &["fetched by npm, which is not installed", "`apt-get install npm`"],
+    );
+    let command = ["runs on node, which is not installed", "`apt-get install nodejs npm`"];
+    Tools::new(&[]).refused_by(pico::play, Some(checkout.path()), &command);
 }
 
 fn said(output: &Output) -> String {

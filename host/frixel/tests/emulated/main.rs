@@ -10,6 +10,8 @@ mod command;
 mod credit;
 #[path = "../../../../hil-sim/tests/emulator/mod.rs"]
 mod emulator;
+#[path = "../scenario_page/example.rs"]
+mod example;
 mod injected_faults;
 mod link;
 mod pico;

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use frixel_hil_sim::Board;
 use tempfile::TempDir;
@@ -13,11 +13,11 @@ use crate::emulator;
 const BAND: &str = "version = 2\n[[layer]]\nname = \"band\"\nkind = \"constant\"\n\
                     region = { x_mm = 30, y_mm = 0, width_mm = 6, height_mm = 80 }\nfriction_fraction = 0.9\n";
 
-fn play(folder: &Path, more: &[&str]) -> Output {
+pub(super) fn play(folder: &Path) -> Command {
     fs::write(folder.join("band.toml"), BAND).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-    command.args(["play", "band.toml", "--port", "pico", "--ideal", "--json"]).args(more).current_dir(folder);
-    command.output().unwrap()
+    command.args(["play", "band.toml", "--port", "pico", "--ideal", "--json"]).current_dir(folder);
+    command
 }
 
 /// README's goal for a finger at constant speed: within 5 % rms of what the drive can reach.
@@ -27,7 +27,7 @@ fn a_band_is_felt_as_the_scene_asks_for_it() {
         return;
     }
     let folder = TempDir::new().unwrap();
-    let output = play(folder.path(), &["--from", "4,30", "--to", "116,45", "--seconds", "0.5"]);
+    let output = play(folder.path()).args(["--from", "4,30", "--to", "116,45", "--seconds", "0.5"]).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

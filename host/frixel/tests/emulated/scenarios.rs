@@ -5,6 +5,7 @@ use std::process::Command;
 
 use crate::bench::turn;
 use crate::emulator::{image, pico_image};
+use crate::example::{page, run, text};
 
 /// Runs scenarios on a rig, and returns what was not as expected.
 fn unmet(rig: &str, scenarios: &[&str]) -> Vec<String> {
@@ -40,4 +41,32 @@ fn scenarios_show_on_the_picos_image_what_they_expect() {
     let _turn = turn();
     let unmet = unmet("pico", &["monitor-dead", "switch-let-go", "reset", "switch-welded", "cable-cut"]);
     assert!(unmet.is_empty(), "{}", unmet.join("\n"));
+}
+
+#[test]
+fn the_pages_first_example_holds_on_the_emulated_board() {
+    if image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let output = run(&text(), "qemu");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// A `play` of it ends when the image has computed the scene's table, which the page has the time of.
+#[test]
+fn the_pages_first_example_holds_on_the_picos_image() {
+    if pico_image().is_none() {
+        return;
+    }
+    let _turn = turn();
+    let output = run(&text(), "pico");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let timeline = String::from_utf8(output.stdout).unwrap();
+    let at_ms = |what: &str| {
+        let line = timeline.lines().find_map(|line| line.strip_suffix(what)).unwrap();
+        line.trim().strip_suffix(" ms").unwrap().parse::<f64>().unwrap()
+    };
+    let play_s = 1e-3 * (at_ms("  play: done") - at_ms("  play"));
+    assert!(page().contains(&format!("which takes {play_s:.2} s: so long does each `play`")), "{play_s}");
 }

@@ -175,7 +175,7 @@ impl Check {
         let Found { wrong, ticks, last_driven_tick, friction_sum_n, friction_ticks } = self.found;
         let is_of_ticks = !matches!(self.expectation.seen, Seen::State(_) | Seen::Fault(_) | Seen::Error(_));
         if is_of_ticks && ticks == 0 {
-            return Some(format!("{expected}, and there is no tick in it: let the scenario run for longer"));
+            return Some(self.no_tick(clock, [start, end]));
         }
         match &self.expectation.seen {
             Seen::Friction([least_n, largest_n]) => {
@@ -217,6 +217,30 @@ impl Check {
                     "{expected}; found DAC code {code}, the amplifier {enabled} and {electrode_v:.2} V at {at:.3} ms"
                 ))
             }
+        }
+    }
+
+    /// The sentence about a span without a tick. On a rig that is late, it is what is left of a longer one.
+    fn no_tick(&self, clock: Clock, [start, end]: [u64; 2]) -> String {
+        let late = clock.lateness_ticks;
+        let [start, end] = [start.saturating_sub(late), end + late];
+        let (expected, from_ms, to_ms) = (self.expected(), clock.ms(start), clock.ms(end));
+        if start >= clock.end_tick {
+            return format!(
+                "expected {expected} from {from_ms:.3} ms on, and the scenario ends at {:.3} ms: let it run for longer",
+                clock.ms(clock.end_tick)
+            );
+        }
+        let span = format!("expected {expected} from {from_ms:.3} to {to_ms:.3} ms");
+        let late_ms = 1e3 * late as f64 / f64::from(clock.tick_hz);
+        if start < end && end - start <= 2 * late {
+            format!(
+                "{span}, and this rig is up to {late_ms:.0} ms late, which shortens a span by as much at both ends: \
+                 expect it for more than {:.0} ms",
+                2.0 * late_ms
+            )
+        } else {
+            format!("{span}, and there is no tick in it: expect it for longer")
         }
     }
 

@@ -153,18 +153,17 @@ pub fn stroke_and_world(
     Ok((stroke, world))
 }
 
-/// Runs a scenario on the in-process rig of `config`'s board. `scenes` has its scenes by their files' names.
+/// Runs a scenario on the in-process rig of `config`'s board, for which its [`programs`] are.
 pub fn run_in_process(
     scenario: &Scenario,
-    scenes: &BTreeMap<String, Scene>,
+    programs: &Programs,
     config: &RigConfig,
 ) -> Result<ScenarioOutcome, ScenarioError> {
-    let programs = programs(scenario, scenes, &config.board)?;
-    let (stroke, world) = stroke_and_world(scenario, &programs, config.world)?;
+    let (stroke, world) = stroke_and_world(scenario, programs, config.world)?;
     let mut memories: Vec<_> = (0..=scenario.resets()).map(|_| BoardMemory::new()).collect();
     let config = RigConfig { world, ..*config };
     let mut rig = InProcessRig::new(&mut memories, &config, stroke, scenario.seed)?;
-    run(scenario, &programs, &mut rig)
+    run(scenario, programs, &mut rig)
 }
 
 /// Checks that nothing begins after the end, for a board of so many ticks a second.

@@ -41,6 +41,22 @@ pub enum Mistake {
         /// The name, as written.
         found: String,
     },
+    /// A command or a fault of a scenario has the name of another one.
+    #[error("`name = \"{}\"` is the name of line {line}, too: give each its own", brief(.name))]
+    NameTwice {
+        /// The name.
+        name: String,
+        /// The line that has it first.
+        line: usize,
+    },
+    /// An expectation of a scenario ends before it begins.
+    #[error("`to_ms = {to_ms}` is before `from_ms = {from_ms}`: give a later end, or an earlier beginning")]
+    EndsBeforeStart {
+        /// First time, in ms.
+        from_ms: f64,
+        /// Last time, in ms.
+        to_ms: f64,
+    },
     /// A command or a fault of a scenario begins after its end.
     #[error(
         "`at_ms = {at_ms}` is after the end of the scenario, which runs for {seconds} s: raise `seconds`, \

@@ -38,14 +38,17 @@ pub(super) fn scenario(mut fields: Fields, name: &str, log: &mut Log) -> Option<
     let worlds = [("ideal", false), ("realistic", true)];
     let is_realistic = fields.choice(log, &file::WORLD, &worlds).unwrap_or_default();
     let stroke = fields.table(log, &file::STROKE).map(|table| straight_stroke(table, log));
+    let before = log.mistakes();
     let commands = fields.tables(log, &file::COMMAND).unwrap_or_default();
     let faults = fields.tables(log, &file::FAULT).unwrap_or_default();
+    let mut names = Names { given: Vec::new(), are_known: log.mistakes() == before };
     let expectations = fields.tables(log, &file::EXPECT).unwrap_or_default();
     fields.close(log);
-    let commands: Vec<_> = commands.into_iter().filter_map(|table| scenario_command(table, seconds, log)).collect();
-    let faults: Vec<_> = faults.into_iter().filter_map(|table| scenario_fault(table, seconds, log)).collect();
-    let names = commands.iter().map(|command| &command.name).chain(faults.iter().map(|fault| &fault.name));
-    let names: Vec<&str> = names.flatten().map(String::as_str).collect();
+    let commands: Vec<_> =
+        commands.into_iter().filter_map(|table| scenario_command(table, seconds, &mut names, log)).collect();
+    let faults: Vec<_> =
+        faults.into_iter().filter_map(|table| scenario_fault(table, seconds, &mut names, log)).collect();
+    names.check(log);
     let expectations = expectations.into_iter().flat_map(|table| expected(table, &names, log)).collect();
     let stroke = match stroke {
         Some(stroke) => Some(stroke?),
@@ -72,6 +75,51 @@ fn place(fields: &mut Fields, log: &mut Log, field: &FieldSpec) -> Option<[f64; 
         log.add(place, FieldMistake::Count { field: field.name, found, min: 2, max: 2 });
     }
     pair
+}
+
+/// The names of commands and faults, also of those that have mistakes.
+struct Names {
+    /// Each name with its place in the file.
+    given: Vec<(usize, String)>,
+    /// Whether no name is hidden by a mistake.
+    are_known: bool,
+}
+
+impl Names {
+    /// Reads the name of a command or a fault.
+    fn read(&mut self, fields: &mut Fields, log: &mut Log) -> Option<String> {
+        let (place, before) = (fields.place(when::NAME.name), log.mistakes());
+        let name = fields.text(log, &when::NAME);
+        self.are_known &= log.mistakes() == before;
+        self.given.extend(name.iter().map(|name| (place, name.clone())));
+        name
+    }
+
+    /// Reports each name that stands in the file before.
+    fn check(&mut self, log: &mut Log) {
+        self.given.sort_by_key(|(place, _)| *place);
+        for (number, (place, name)) in self.given.iter().enumerate() {
+            let earlier = self.given.iter().take(number).find(|(_, earlier)| earlier == name);
+            if let Some((first, _)) = earlier {
+                let (line, _) = log.source().line_and_column(*first);
+                log.add(*place, Mistake::NameTwice { name: name.clone(), line });
+            }
+        }
+    }
+
+    /// Reports an `after` that is no name.
+    fn check_after(&self, found: &str, place: usize, log: &mut Log) {
+        let mut names = self.given.iter().map(|(_, name)| name.as_str());
+        if !self.are_known || names.clone().any(|name| name == found) {
+            return;
+        }
+        let (nearest, found) = (Nearest::new(found, &mut names), found.to_owned());
+        if nearest.suggestion.is_some() {
+            log.add(place, FieldMistake::UnknownChoice { field: expect::AFTER.name, found, nearest });
+        } else {
+            log.add(place, Mistake::UnknownEvent { found });
+        }
+    }
 }
 
 fn line_of(fields: &Fields, log: &Log) -> usize {
@@ -116,10 +164,15 @@ pub(super) const VERBS: [(&str, Verb); 11] = [
     ("other-client", Verb::Plain(|| Action::OtherClient)),
 ];
 
-fn scenario_command(mut fields: Fields, seconds: Option<f64>, log: &mut Log) -> Option<ScenarioCommand> {
+fn scenario_command(
+    mut fields: Fields,
+    seconds: Option<f64>,
+    names: &mut Names,
+    log: &mut Log,
+) -> Option<ScenarioCommand> {
     let line = line_of(&fields, log);
     let at = at(&mut fields, seconds, log);
-    let name = fields.text(log, &when::NAME);
+    let name = names.read(&mut fields, log);
     let action = match fields.choice_or_nearest(log, &command::DO, &VERBS) {
         Some(Verb::Plain(action)) => Some(action()),
         Some(Verb::Replace) => fields.text(log, &command::SCENE).map(|scene| Action::Replace { scene }),
@@ -183,10 +236,10 @@ pub(super) const KINDS: [(&str, Kind); 20] = [
 ];
 const NO_NOISE: NoiseConfig = NoiseConfig { bit_error_rate: 0.0, lost_share: 0.0, doubled_share: 0.0 };
 
-fn scenario_fault(mut fields: Fields, seconds: Option<f64>, log: &mut Log) -> Option<ScenarioFault> {
+fn scenario_fault(mut fields: Fields, seconds: Option<f64>, names: &mut Names, log: &mut Log) -> Option<ScenarioFault> {
     let line = line_of(&fields, log);
     let at = at(&mut fields, seconds, log);
-    let name = fields.text(log, &when::NAME);
+    let name = names.read(&mut fields, log);
     let Some(kind) = fields.choice_or_nearest(log, &fault::CAUSE, &KINDS) else {
         fields.give_up_without(log, fault::CAUSE.name);
         return None;
@@ -233,20 +286,19 @@ enum Output {
 }
 
 /// The expectations of one table, which share their span of time.
-fn expected(mut fields: Fields, names: &[&str], log: &mut Log) -> Vec<Expectation> {
+fn expected(mut fields: Fields, names: &Names, log: &mut Log) -> Vec<Expectation> {
     let (line, before) = (line_of(&fields, log), log.mistakes());
     let after_place = fields.place(expect::AFTER.name);
     let after = fields.text(log, &expect::AFTER);
-    if let Some(found) = after.clone().filter(|after| !names.contains(&after.as_str())) {
-        let nearest = Nearest::new(&found, names.iter().copied());
-        if nearest.suggestion.is_some() {
-            log.add(after_place, FieldMistake::UnknownChoice { field: expect::AFTER.name, found, nearest });
-        } else {
-            log.add(after_place, Mistake::UnknownEvent { found });
-        }
+    if let Some(after) = &after {
+        names.check_after(after, after_place, log);
     }
     let from_ms = fields.number_or_default(log, &expect::FROM_MS);
+    let to_place = fields.place(expect::TO_MS.name);
     let to_ms = fields.number(log, &expect::TO_MS);
+    if let Some(to_ms) = to_ms.filter(|to_ms| *to_ms < from_ms) {
+        log.add(to_place, Mistake::EndsBeforeStart { from_ms, to_ms });
+    }
     let outputs = [("zero", Output::Zero), ("off", Output::Off), ("driven", Output::Driven)];
     let output = fields.choice(log, &expect::OUTPUT, &outputs);
     let seen = [

@@ -60,12 +60,45 @@ fn a_mistake_is_a_sentence_with_line_and_column() {
             "[[command]]\nat_ms = 2e4\ndo = \"play\"\n",
             "test.toml:5:9: `at_ms = 20000` is after the end of the scenario",
         ),
+        (
+            "[[command]]\nname = \"go\"\nat_ms = 0\ndo = \"play\"\n\
+             [[fault]]\nat_ms = 5\nname = \"go\"\ncause = \"reset\"\n",
+            "test.toml:10:8: `name = \"go\"` is the name of line 5, too: give each its own",
+        ),
+        (
+            "[[fault]]\nat_ms = 5\nname = \"go\"\ncause = \"reset\"\n\
+             [[command]]\nname = \"go\"\nat_ms = 0\ndo = \"play\"\n",
+            "test.toml:9:8: `name = \"go\"` is the name of line 6, too: give each its own",
+        ),
+        (
+            "[[expect]]\nfrom_ms = 700\nto_ms = 600\noutput = \"off\"\n",
+            "test.toml:6:9: `to_ms = 600` is before `from_ms = 700`: give a later end, or an earlier beginning",
+        ),
         ("[[expect]]\nfrom_ms = 4\n", "test.toml:4:1: this [[expect]] expects nothing: add `output`"),
         ("stroke = { from_mm = [1], to_mm = [1, 2] }\n", "test.toml:4:22: `from_mm`"),
         ("colour = 1\n", "test.toml:4:1: unknown field `colour` in this scenario"),
     ] {
         let error = parsed(tables).unwrap_err();
         assert!(error.starts_with(expected), "{tables}{error}");
+    }
+}
+
+/// A mistake in a command or a fault does not hide its name from an expectation.
+#[test]
+fn one_mistake_is_one_sentence() {
+    let sag = "[[fault]]\nname = \"sag\"\nat_ms = 5\n";
+    for tables in [
+        format!("{sag}cause = \"amplifier-sags\"\n"),
+        format!("{sag}cause = \"amplifier-sags\"\ngian = 0.3\n"),
+        format!("{sag}cause = \"amplifier-sags\"\ngain = \"low\"\n"),
+        format!("{sag}cause = \"amplifier-sag\"\n"),
+        sag.to_owned(),
+        "[[fault]]\nname = 3\nat_ms = 5\ncause = \"reset\"\n".to_owned(),
+        "[[command]]\nname = \"sag\"\nat_ms = 5\ndo = \"trigger\"\n".to_owned(),
+        "[fault]\nname = \"sag\"\nat_ms = 5\ncause = \"reset\"\n".to_owned(),
+    ] {
+        let error = parsed(&format!("{tables}[[expect]]\nafter = \"sag\"\noutput = \"off\"\n")).unwrap_err();
+        assert_eq!(error.lines().count(), 1, "{error}");
     }
 }
 

@@ -95,7 +95,13 @@ impl Met {
             Message::Mistake(Mistake::Fit(mistake)) => Some(fit_name(mistake)),
             Message::Warning(warning) => Some(warning_name(warning)),
             Message::Optimisation(optimisation) => Some(optimisation_name(optimisation)),
-            Message::Mistake(Mistake::NothingExpected | Mistake::UnknownEvent { .. } | Mistake::AfterEnd { .. })
+            Message::Mistake(
+                Mistake::NothingExpected
+                | Mistake::UnknownEvent { .. }
+                | Mistake::NameTwice { .. }
+                | Mistake::EndsBeforeStart { .. }
+                | Mistake::AfterEnd { .. },
+            )
             | Message::Note(_) => None,
         }));
         let lines: Vec<String> =

@@ -83,7 +83,7 @@ pub(super) fn on_port(
     if args.finger_seed.is_some() {
         return Err(CommandError::FingerOnBoard { port: args.port.clone() });
     }
-    let device = experiment::connect(&args.port, args.arm)?;
+    let device = experiment::connect(&args.port, &["sim"], args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
     plan.say(recording)?;

@@ -7,6 +7,7 @@ use frixel_lab::simulation::SimStream;
 use frixel_scene::Scene;
 
 use super::super::experiment;
+use super::super::ports::BOARDS;
 #[cfg(unix)]
 pub(super) use super::emulator::{play_on_emulator, play_on_pico};
 use super::follow::follow;
@@ -83,7 +84,7 @@ pub(super) fn play_on_port(
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played, CommandError> {
-    let device = experiment::connect(&args.port, args.arm)?;
+    let device = experiment::connect(&args.port, &BOARDS, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     check_measured(&plan.program, hello.board)?;

@@ -9,6 +9,7 @@ use frixel_driver::{DEFAULT_BAUD, Link, LinkClosed, SerialLink};
 use thiserror::Error;
 
 use super::super::error::CommandError;
+use super::super::ports;
 use super::super::terminal::print_line;
 use super::report::Report;
 use crate::input;
@@ -64,7 +65,7 @@ pub(crate) enum WiresError {
 /// Does the self-test of the board at a port.
 pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<(), CommandError> {
     let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
-    let link = SerialLink::open(port, DEFAULT_BAUD)?;
+    let link = ports::open(port, &[])?;
     let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
     if line_seconds > 0 {
         print_line(format_args!("The line will be tested for {line_seconds} s; --seconds is another time."))?;

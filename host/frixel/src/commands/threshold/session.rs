@@ -54,7 +54,7 @@ pub(super) fn measure(
     } else if args.observer.is_some() {
         Err(CommandError::ObserverOnBoard { port: port.to_owned() })
     } else {
-        let device = experiment::connect(port, args.arm)?;
+        let device = experiment::connect(port, &["sim"], args.arm)?;
         let protocol = protocol(args, &device.hello().limits)?;
         session(args, interrupt, device, protocol, answers)
     }

@@ -1,0 +1,29 @@
+//! The first example of `docs/scenarios.md`, as a reader of the page has it.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+pub(crate) fn page() -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios.md")).unwrap()
+}
+
+/// The scenario of the page.
+pub(crate) fn text() -> String {
+    let page = page();
+    let (_, example) = page.split_once("```toml\n").unwrap();
+    example.split_once("```").unwrap().0.to_owned()
+}
+
+/// Runs a scenario beside the page's scene, with the page's command.
+pub(crate) fn run(scenario: &str, rig: &str) -> Output {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("cut.toml"), scenario).unwrap();
+    let frixel = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    assert!(frixel(&["new", "waves"]).status.success());
+    frixel(&["sim", "--scenario", "cut.toml", "--expect", "--rig", rig])
+}
