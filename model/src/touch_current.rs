@@ -223,8 +223,8 @@ pub struct TouchBound {
 }
 
 impl TouchBound {
-    /// Least ratio of the allowed current to that at the bound: 5 % for what the amplifier's gain is above the one
-    /// that bring-up has stored, and 1 % for the resistor (`docs/hardware.md`).
+    /// Least ratio of the allowed current to that at the bound: 4 % for what the amplifier's gain is above the one
+    /// that bring-up has stored, and 1.5 % for a series resistance that is small (`docs/hardware.md`, "Bring-up").
     pub const MARGIN: f32 = 1.06;
     /// Current at 1 kHz, A.
     const CURRENT_A: f32 = 0.645e-3;

@@ -187,8 +187,8 @@ fn page(carrier: &Carrier) -> String {
     );
     text += &pin_table(carrier, &carrier.pin, &carrier.supply, "on the NUCLEO");
     text += "\n## With a Pico or Pico 2\n\n**Connect no amplifier to these boards yet**: \
-             they have no bring-up ([pico.md](pico.md)). In place of the NUCLEO: the pins around the board, by their number. The \
-             nodes of U1 among the nets below are the NUCLEO's.\n\n";
+             they have no bring-up ([pico.md](pico.md)). In place of the NUCLEO: the pins around the board, by their \
+             number. The nodes of U1 among the nets below are the NUCLEO's.\n\n";
     text += &pin_table(carrier, &carrier.pico, &carrier.pico_supply, "serial port, or on the board");
     text += "\n## Left open\n\nPins of the processor boards that look like a supply of the carrier and must not be \
              wired to it.\n\n\

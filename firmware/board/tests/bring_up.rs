@@ -9,6 +9,7 @@ use crate::support::person::{self, EnablePath, Instruments};
 use frixel_board::bring_up::{
     Bench, Check, DriveError, FAULTS, Injection, Inputs, Line, Pressed, Reading, Stop, TestOutput, run,
 };
+use frixel_control::Board;
 use frixel_model::TouchBound;
 use frixel_session::store::{Ceilings, write_limits};
 use frixel_wire::fault::{Fault, State};
@@ -329,7 +330,8 @@ fn a_wrong_reading_stops_whatever_is_asked() {
         for wrong in ["-1000", "1e6", "0,01"] {
             let mut bench = TestBench { wrong_answer: Some((index as u32 + 1, wrong)), ..TestBench::new() };
             let end = bench.bring_up().unwrap();
-            if question.contains("MOhm") && wrong == "1e6" || answer == "0" && wrong == "0,01" {
+            let is_nothing = answer == "0" || question.contains("held: the same, Ohm");
+            if question.contains("MOhm") && wrong == "1e6" || is_nothing && wrong == "0,01" {
                 assert!(end.is_ok(), "an isolator may have a million megohms, and 0 V are 0.01 V: {end:?}");
             } else {
                 readings += 1;
@@ -573,15 +575,37 @@ fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typ
 
 /// The clip of an oscilloscope on mains ties the common to earth, and hides an isolator that was left out.
 #[test]
-fn the_isolation_is_measured_before_an_oscilloscope_is_connected_and_after_it_is_taken_off() {
+fn rails_and_isolation_are_measured_before_the_probes_of_the_amplifier_and_after_them() {
     let mut bench = TestBench::new();
     bench.bring_up().unwrap().unwrap();
-    let orders =
-        ["No oscilloscope is connected", "MOhm", "probe on the capacitor", "probe's", "Take all probes off", "MOhm"];
+    let orders = [
+        "measure each rail",
+        "No oscilloscope is connected",
+        "MOhm",
+        "probe on the capacitor",
+        "probe's",
+        "measure each rail",
+        "Take all probes off",
+        "MOhm",
+    ];
     let mut questions = bench.questions.iter();
     for order in orders {
         assert!(questions.any(|question| question.contains(order)), "{order}");
     }
     assert!(!questions.any(|question| question.contains("probe")));
     assert!(matches!(bench.events[..], [.., Event::Asked, Event::Stored(_)]));
+}
+
+/// What may be measured is checked before anything is: 44 kOhm, behind which an amplifier of gain 20 may be stuck, and
+/// one of the largest gain that readings may give may not.
+#[test]
+fn a_series_resistance_that_a_large_gain_would_make_too_small_stops_before_anything_else() {
+    for (series_ohm, is_taken) in [(44e3, false), (48e3, true)] {
+        let behind = Board { limits: LIMITS, ..Board::NUCLEO_G474RE }.behind(series_ohm).limits;
+        let limits = BoardLimits { voltage_max_v_peak: LIMITS.voltage_max_v_peak, ..behind };
+        assert!(write_limits(&limits, Ceilings::InForce).is_ok());
+        let mut bench = TestBench { limits, ..TestBench::new() };
+        let stops_at_once = bench.bring_up() == Some(Err(Stop::Limits)) && bench.events == [Event::Start];
+        assert_eq!(stops_at_once, !is_taken, "{series_ohm}");
+    }
 }

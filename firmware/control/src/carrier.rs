@@ -7,9 +7,9 @@
 //! period behind the edge takes back at most one half of the range, and the next one returns to where the edge was.
 //! From the second period after a change on, all half periods have their nominal length, and the codes of a period add
 //! up to zero. The mean of the integral stays where the changes have left it, which is no direct current. An integral
-//! beyond the smaller limit of a new scene falls first, with a sixteenth of the envelope: a coating that a slower carrier
-//! has charged would add its voltage to the whole of it, and more than the touch current's limit would flow once
-//! (`frixel_model::TouchBound`).
+//! beyond the smaller limit of a new scene falls first, with a sixteenth of the envelope: a coating that a slower
+//! carrier has charged would add its voltage to the whole of it, and more than the touch current's limit would flow
+//! once (`frixel_model::TouchBound`).
 
 use fixed::types::{I1F15, I17F15};
 use frixel_layers::{Waveform, cosine};

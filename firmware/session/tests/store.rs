@@ -565,6 +565,8 @@ fn a_flash_that_fails_is_tried_once_for_each_scene_and_the_hello_says_that_it_is
     assert_eq!(board.hello().notices, 0, "it waits to be stored");
     finish_writing(&mut store, &mut flash, &mut board, 0);
     assert_eq!((store.stored_crc32(), board.hello().notices), (Some(crc32(&constant_scene(0.03))), 0));
+    board.load(&constant_scene(0.02)).unwrap();
+    assert_eq!(board.hello().notices, 0, "it is tried again");
 }
 
 proptest! {

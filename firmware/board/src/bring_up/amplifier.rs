@@ -4,36 +4,34 @@
 use frixel_wire::hello::BoardLimits;
 
 use super::dialogue::{ask, await_inputs, confirm, expect_inputs};
-use super::script::{CLOSED, DONE, IDLE, READY, check};
+use super::script::{CLOSED, DONE, IDLE, PULL_DOWN_KOHM, READY, check};
 use super::{Bench, Check, Stop};
 
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
 /// Smallest and largest ratio of each half of the series resistance, as an ohmmeter of 0.5 % shows it, to the half that
-/// is built in. The touch bound rests on the sum, has a margin of 1 % for it, and nothing measures it later: half of it,
-/// with a resistor that is shorted, would let twice the current through a person.
+/// is built in. The touch bound rests on the sum, and its margin counts a sum that is 1.5 % small. Nothing measures it
+/// later: half of it, with a resistor that is shorted, would let twice the current through a person.
 const SERIES_RATIO: (f32, f32) = (0.99, 1.02);
 
-/// Resistance between the two sides of the switch's second pole while it is open, kOhm: the pull-down of 10 kOhm behind
-/// it, and an amplifier's input beside that.
-const OPEN_POLE_KOHM: (f32, f32) = (5.0, 12.0);
-/// The same while it is closed, kOhm.
-const CLOSED_POLE_KOHM: (f32, f32) = (0.0, 0.1);
+/// Resistance between the two sides of the switch's second pole while it is closed, Ohm.
+const CLOSED_POLE_OHM: (f32, f32) = (-1.0, 100.0);
 
 /// Ready follows the amplifier's supply, and the tick runs with the output at zero.
 pub(super) fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<(), Stop> {
+    bench.say(format_args!("4. The amplifier, with its supply off."));
+    check_rails(bench);
     confirm(
         bench,
         format_args!(
-            "4. Connect the amplifier, supply off; the series resistor, and the capacitor in place of the electrode. \
+            "Connect the amplifier; the series resistor, and the capacitor in place of the electrode. \
              No oscilloscope is connected yet."
         ),
         DONE,
     );
     expect_inputs(bench, IDLE, "amplifier off, switch released")?;
     check_isolation(bench)?;
-    confirm(bench, format_args!("Measure each rail against the common, and rail to rail: all below 1 V."), DONE);
     check_plug(bench)?;
     let half_kohm = 0.5e-3 * built_in.series_resistance_ohm;
     let half_kohm = (SERIES_RATIO.0 * half_kohm, SERIES_RATIO.1 * half_kohm);
@@ -54,7 +52,19 @@ pub(super) fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) ->
     check(bench, Check::Ticks)
 }
 
-/// Nothing that a hand on earth would close a circuit with. To be asked while no oscilloscope is connected.
+/// What may still be charged is measured before a hand comes near it.
+pub(super) fn check_rails(bench: &mut impl Bench) {
+    confirm(
+        bench,
+        format_args!(
+            "Wait ten seconds, open the box with one hand, and measure each rail against the common, and rail to rail: \
+             all below 1 V."
+        ),
+        DONE,
+    );
+}
+
+/// Checks that the common has no connection to protective earth. To be asked while no oscilloscope is connected.
 pub(super) fn check_isolation(bench: &mut impl Bench) -> Result<(), Stop> {
     ask(
         bench,
@@ -67,9 +77,9 @@ pub(super) fn check_isolation(bench: &mut impl Bench) -> Result<(), Stop> {
 /// The amplifier's enable is plugged behind the switch's second pole: it was unplugged for the step before. In front of
 /// the pole, everything would work as well, and the switch would no longer stop the amplifier by itself.
 fn check_plug(bench: &mut impl Bench) -> Result<(), Stop> {
-    ask(bench, "released: ENABLE_LOGIC to ENABLE at the amplifier's own terminal, kOhm", OPEN_POLE_KOHM)?;
+    ask(bench, "released: ENABLE_LOGIC to ENABLE at the amplifier's own terminal, kOhm", PULL_DOWN_KOHM)?;
     await_inputs(bench, IDLE, CLOSED, "Hold the switch")?;
-    ask(bench, "held: the same, kOhm", CLOSED_POLE_KOHM)?;
+    ask(bench, "held: the same, Ohm", CLOSED_POLE_OHM)?;
     expect_inputs(bench, CLOSED, "switch held, amplifier off")?;
     await_inputs(bench, CLOSED, IDLE, "Release the switch")
 }

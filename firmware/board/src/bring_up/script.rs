@@ -4,7 +4,7 @@ use core::fmt;
 
 use frixel_wire::hello::BoardLimits;
 
-use super::amplifier::{check_amplifier, check_isolation};
+use super::amplifier::{check_amplifier, check_isolation, check_rails};
 use super::dialogue::{ask, ask_while, await_inputs, confirm, expect, expect_inputs};
 use super::enable_path::check_enable_path;
 use super::{Bench, Check, DriveError, Inputs, Reading, TestOutput};
@@ -14,10 +14,10 @@ pub(super) const DONE: &str = "done";
 /// The word that the person types first, which shows that the board receives.
 const GREETING: &str = "frixel";
 
-/// The pull-downs of amplifier enable and DAC clear are 10 kOhm; a meter that supplies the processor through its
+/// The pull-downs of amplifier enable, in front of and behind the second pole, and of DAC clear are 10 kOhm; a meter that supplies the processor through its
 /// protection diodes reads less.
-const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
-/// Each supply of the DAC, V. It bears 16.5 V (AD5761R, table 1), and works with 4.75 V less than its output takes.
+pub(super) const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
+/// Each supply of the DAC, V: 15 V, regulated within 5 %. The DAC bears 16.5 V (AD5761R, table 1).
 const DAC_SUPPLY_V: (f32, f32) = (14.25, 15.75);
 /// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
@@ -129,7 +129,8 @@ pub(super) const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
 /// Brings a board up, from nothing connected to stored limits, and returns these: `built_in`, with full scale and edges
 /// as measured. Voltages go up to `built_in.voltage_max_v_peak`.
 pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits, Stop> {
-    if !bench.may_store(built_in) {
+    let largest = BoardLimits { full_scale_v_peak: largest_full_scale_v_peak(built_in), ..*built_in };
+    if ![built_in, &largest].into_iter().all(|limits| bench.may_store(limits)) {
         return Err(Stop::Limits);
     }
     greet(bench);
@@ -229,7 +230,7 @@ fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32,
     while let Some(peak_v) = next_voltage(passed_v_peak, built_in.voltage_max_v_peak) {
         let reading = drive(bench, peak_v)?;
         let probe_v = ask(bench, "half of the probe's peak-to-peak voltage, V", around(reading.driven_v_peak))?;
-        let probe_v = probe_v * (1.0 + built_in.series_resistance_ohm / SHUNT_OHM);
+        let probe_v = probe_v * amplifier_v_per_probe_v(built_in);
         let monitor_v = 0.5 * (reading.high_v - reading.low_v);
         expect("the monitor, V, against the probe", monitor_v, around(probe_v))?;
         // The larger one: a reading that is too low would raise every voltage that the firmware puts out later, beyond
@@ -238,6 +239,18 @@ fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32,
         passed_v_peak = Some(peak_v);
     }
     Ok(full_scale_v_peak)
+}
+
+/// The largest full scale that readings may give, V peak. What it lets a stuck amplifier drive is checked before any
+/// voltage.
+fn largest_full_scale_v_peak(built_in: &BoardLimits) -> f32 {
+    let (_, most_v) = around(built_in.voltage_max_v_peak);
+    built_in.full_scale_v_peak * amplifier_v_per_probe_v(built_in) * most_v / built_in.voltage_max_v_peak
+}
+
+/// The voltage in front of the series resistor, as a multiple of that at the probe.
+fn amplifier_v_per_probe_v(built_in: &BoardLimits) -> f32 {
+    1.0 + built_in.series_resistance_ohm / SHUNT_OHM
 }
 
 /// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the
@@ -293,6 +306,7 @@ fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, 
 
 fn store(bench: &mut impl Bench, limits: &BoardLimits) -> Result<(), Stop> {
     await_inputs(bench, READY, IDLE, "7. Switch the amplifier's supply off")?;
+    check_rails(bench);
     confirm(bench, format_args!("Take all probes off: the clip of one may have tied the common to earth."), DONE);
     check_isolation(bench)?;
     if !bench.may_store(limits) {

@@ -141,6 +141,9 @@ impl<'a> Scenes<'a> {
         let committed = Committed::new(crc32, &scene, &active.layers);
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         self.committed = committed;
+        if !self.is_not_stored() {
+            self.not_stored_crc32 = 0;
+        }
         if !self.committed.has_stream {
             // No order: the ticker ends the stream when it takes the scene.
             let _ = self.stream.end();

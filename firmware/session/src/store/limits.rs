@@ -94,9 +94,9 @@ pub enum LimitsError {
         /// The current, in A.
         found: f32,
     },
-    /// The full scale over the series resistance is above [`CURRENT_CEILING_A_PEAK`]: an amplifier that is stuck at its
-    /// rail drives that current through a person.
-    CurrentAtFullScale {
+    /// A rail of the amplifier over the series resistance is above [`CURRENT_CEILING_A_PEAK`]: an amplifier that is
+    /// stuck there drives that current through a person.
+    CurrentAtRail {
         /// The current, in A.
         found: f32,
     },
@@ -139,10 +139,10 @@ impl fmt::Display for LimitsError {
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),
-            Self::CurrentAtFullScale { found } => write!(
+            Self::CurrentAtRail { found } => write!(
                 f,
-                "an amplifier that is stuck at a rail drives {} mA through the series resistance, its ceiling {} mA: take a larger \
-                 resistance",
+                "an amplifier that is stuck at a rail drives {} mA through the series resistance, its ceiling {} mA: take \
+                 a larger resistance",
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),
@@ -167,22 +167,22 @@ impl fmt::Display for LimitsError {
 impl core::error::Error for LimitsError {}
 
 /// Largest ratio of a rail of the amplifier to the full scale (`hardware/carrier.toml`, PS1).
-const RAIL_MAX: f32 = 1.05;
+pub const RAIL_MAX: f32 = 1.05;
 
 /// Checks limits of a board that people touch against the ceilings. A board asserts it of the limits that are built in.
 pub const fn check_touched_board(limits: &BoardLimits) -> Result<(), LimitsError> {
     const fn exceeds(number: f32, ceiling: f32) -> bool {
         number > ceiling * (1.0 + ROUNDING)
     }
-    let at_full_scale_a = RAIL_MAX * limits.full_scale_v_peak / limits.series_resistance_ohm;
+    let at_rail_a = RAIL_MAX * limits.full_scale_v_peak / limits.series_resistance_ohm;
     if exceeds(limits.voltage_max_v_peak, VOLTAGE_CEILING_V_PEAK) {
         Err(LimitsError::VoltagePeak { found: limits.voltage_max_v_peak })
     } else if exceeds(limits.current_max_a_rms, CURRENT_CEILING_A_RMS) {
         Err(LimitsError::CurrentRms { found: limits.current_max_a_rms })
     } else if exceeds(limits.current_max_a_peak, CURRENT_CEILING_A_PEAK) {
         Err(LimitsError::CurrentPeak { found: limits.current_max_a_peak })
-    } else if exceeds(at_full_scale_a, CURRENT_CEILING_A_PEAK) {
-        Err(LimitsError::CurrentAtFullScale { found: at_full_scale_a })
+    } else if exceeds(at_rail_a, CURRENT_CEILING_A_PEAK) {
+        Err(LimitsError::CurrentAtRail { found: at_rail_a })
     } else {
         check_edges(limits)
     }
@@ -425,7 +425,7 @@ mod tests {
             let limits = Board::NUCLEO_G474RE.behind(series_ohm).limits;
             let found = check_touched_board(&limits);
             assert_eq!(found.is_ok(), is_taken, "{series_ohm}: {found:?}");
-            assert!(is_taken || matches!(found, Err(LimitsError::CurrentAtFullScale { .. })), "{found:?}");
+            assert!(is_taken || matches!(found, Err(LimitsError::CurrentAtRail { .. })), "{found:?}");
         }
     }
 

@@ -15,7 +15,7 @@ mod writer;
 
 pub use copy::{Found, Slot};
 pub use limits::{
-    CURRENT_CEILING_A_PEAK, CURRENT_CEILING_A_RMS, Ceilings, LIMITS_LEN, LimitsError, VOLTAGE_CEILING_V_PEAK,
+    CURRENT_CEILING_A_PEAK, CURRENT_CEILING_A_RMS, Ceilings, LIMITS_LEN, LimitsError, RAIL_MAX, VOLTAGE_CEILING_V_PEAK,
     check_touched_board, load_limits, read_limits, write_limits,
 };
 pub use scene_store::SceneStore;

@@ -10,7 +10,7 @@ use frixel_model::{
     Carrier, Coating, SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound, TouchPath,
     VACUUM_PERMITTIVITY_F_PER_M, Waveform,
 };
-use frixel_session::store::check_touched_board;
+use frixel_session::store::{LimitsError, RAIL_MAX, check_touched_board};
 
 use super::argument;
 use super::error::CommandError;
@@ -35,8 +35,6 @@ const CARRIERS_HZ: [f64; 6] = [125.0, 250.0, 500.0, 1_000.0, 2_000.0, 5_000.0];
 const E96: u32 = 96;
 /// Decades of the halves of a series resistance, Ohm.
 const SERIES_DECADES_OHM: [f64; 3] = [1e3, 1e4, 1e5];
-/// A rail may be this much above the amplifier's full scale (PS1 in `hardware/carrier.toml`).
-const RAIL_TOLERANCE: f64 = 0.05;
 
 #[derive(Debug, Args)]
 pub(super) struct SafetyArgs {
@@ -128,9 +126,12 @@ impl Table {
 
     /// Why no firmware is built for the series resistance.
     fn not_built(&self) -> String {
-        let behind = self.board.behind(self.series_ohm as f32);
-        check_touched_board(&behind.limits)
-            .map_or_else(|error| format!("; no firmware takes that: {error}"), |()| String::new())
+        let refusal = self.check_built(self.series_ohm).err();
+        refusal.map_or_else(String::new, |error| format!("; no firmware takes that: {error}"))
+    }
+
+    fn check_built(&self, series_ohm: f64) -> Result<(), LimitsError> {
+        check_touched_board(&self.board.behind(series_ohm as f32).limits)
     }
 
     /// Carriers that the board can have, Hz.
@@ -177,7 +178,7 @@ impl Table {
 
     /// Currents of single faults beside a bridged coating.
     fn faults(&self) -> String {
-        let rail_v = (1.0 + RAIL_TOLERANCE) * f64::from(self.board.limits.full_scale_v_peak);
+        let rail_v = f64::from(RAIL_MAX * self.board.limits.full_scale_v_peak);
         let (usual_hz, direct_hz) = (1_000.0, 1.0);
         let bridged = |series_ohm: f64, drive_v_peak: f64, carrier_hz: f64| {
             let path = TouchPath { series_ohm, coating: Coating::Bridged };
@@ -218,6 +219,7 @@ impl Table {
         );
         for carrier_hz in self.carriers_hz() {
             let found = series_ohm()
+                .filter(|series_ohm| self.check_built(*series_ohm).is_ok())
                 .map(|series_ohm| Behind::new(&self.board, series_ohm, carrier_hz, voltage_v_rms))
                 .find(|behind| behind.drive_v_peak <= behind.bound_v_peak);
             let full_scale_v_peak = f64::from(self.board.limits.full_scale_v_peak);
