@@ -14,6 +14,7 @@ use frixel_hil_sim::{BoardMemory, LineNoise, NoiseConfig, Rig, RigConfig, Stroke
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::frame::Decoder;
 use frixel_wire::scene::bitmap_crc32;
+use rayon::prelude::*;
 
 const SCENE: &str = "version = 2\n[[layer]]\nkind = \"stream\"\nlow_fraction = 0.0\nhigh_fraction = 0.5\n";
 const SAMPLE_HZ: u32 = 8_000;
@@ -175,7 +176,7 @@ fn measured(bit_error_rate: f64, stream_s: f64) -> Row {
 }
 
 fn rows(stream_s: f64) -> Vec<Row> {
-    [0.0, 1e-6, 1e-5, 1e-4, 3e-4, 1e-3].into_iter().map(|rate| measured(rate, stream_s)).collect()
+    [0.0, 1e-6, 1e-5, 1e-4, 3e-4, 1e-3].into_par_iter().map(|rate| measured(rate, stream_s)).collect()
 }
 
 fn check(rows: &[Row], stream_s: f64) {
