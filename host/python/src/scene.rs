@@ -133,7 +133,7 @@ impl Scene {
         let program = program.map_err(|error| scene_error(py, &error))?;
         let json = py.detach(|| {
             let check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, &touch);
-            Ok((if with_board { check.with_board(&program) } else { check }).to_json())
+            Ok((if with_board { check.with_board(&program, rig.board.kind) } else { check }).to_json())
         });
         json.map_err(|error: frixel_lab::simulation::RehearsalError| raised(py, "PlayError", (error.to_string(),)))
     }
