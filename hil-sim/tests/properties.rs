@@ -226,8 +226,8 @@ fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
         script.send(Command::ClearFault);
         script.play(&scene_of(Waveform::Square, &mut random));
         script.run(1_000 + u64::from(random.below(400)));
-        // A voltage at which the monitor's tolerance of 4 % of full scale is exceeded. Of the envelope, only a sixteenth
-        // is driven while volt-seconds of a slower carrier are taken back.
+        // A voltage at which the monitor's tolerance of 4 % of full scale is exceeded. Of the envelope, only a
+        // sixteenth is driven while volt-seconds of a slower carrier are taken back.
         let record = script.step();
         let code = record.drive.dac_code;
         if full_scale_v_peak * f32::from(code.bits().unsigned_abs()) < 30.0 * f32::from(i16::MAX) {

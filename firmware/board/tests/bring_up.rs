@@ -596,8 +596,8 @@ fn rails_and_isolation_are_measured_before_the_probes_of_the_amplifier_and_after
     assert!(matches!(bench.events[..], [.., Event::Asked, Event::Stored(_)]));
 }
 
-/// What may be measured is checked before anything is: 44 kOhm, behind which an amplifier of gain 20 may be stuck, and
-/// one of the largest gain that readings may give may not.
+/// The script checks the largest full scale that readings may give before it begins. Behind 44 kOhm an amplifier of
+/// gain 20 may be stuck at its rail, and one of the largest gain that the script accepts may not.
 #[test]
 fn a_series_resistance_that_a_large_gain_would_make_too_small_stops_before_anything_else() {
     for (series_ohm, is_taken) in [(44e3, false), (48e3, true)] {

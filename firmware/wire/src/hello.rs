@@ -98,8 +98,8 @@ pub mod notice {
         (
             SCENE_NOT_STORED,
             "the board loses its scene when it is switched off, because its flash has failed, has no room for it or \
-             cannot be used: play the scene again after each start, and look at the board's option bytes (docs/hardware.md) or \
-             use another board",
+             cannot be used: play the scene again after each start, and look at the board's option bytes \
+             (docs/hardware.md) or use another board",
         ),
     ];
 }

@@ -55,10 +55,10 @@ impl Port for TerminalPort {
         true
     }
 
-    /// What the client has not read is lost with the terminal.
+    /// Waits until the client has closed the terminal: bytes that it has not read would be lost.
     fn end(&mut self) {
         while matches!(self.terminal.client_has_gone(), Ok(false)) {
-            // Its last bytes, without which other systems than Linux take it for gone.
+            // Systems other than Linux take a client for gone from which nothing is read.
             self.read(&mut [0; 64]);
             sleep(WAIT);
         }

@@ -121,8 +121,8 @@ fn a_board_that_nobody_can_touch_has_no_bound() {
 
 /// A scene replaces one with a slower carrier: the integral of the slow one is at its limit, and the firmware drives
 /// towards zero with a sixteenth of the voltage until the integral is within the new limit
-/// (`firmware/control/src/carrier.rs`). With all of it, 0.90 mA would flow once; with an eighth, the margin for amplifier
-/// and resistor would be gone.
+/// (`firmware/control/src/carrier.rs`). With all of it, 0.90 mA would flow once; with an eighth, the margin for
+/// amplifier and resistor would be gone.
 #[test]
 fn a_fast_scene_in_place_of_a_slow_one_stays_within_the_limit() {
     let bound = TouchBound::behind(68e3);

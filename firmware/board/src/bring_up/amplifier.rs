@@ -52,7 +52,7 @@ pub(super) fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) ->
     check(bench, Check::Ticks)
 }
 
-/// What may still be charged is measured before a hand comes near it.
+/// Has the person measure the rails, which may still be charged, before a hand comes near them.
 pub(super) fn check_rails(bench: &mut impl Bench) {
     confirm(
         bench,

@@ -11,8 +11,8 @@ use super::{Bench, Check, Stop, Sync, TestOutput};
 const UNPLUGGED: &str = "unplugged";
 /// A gate's low level, V. The voltmeter may be off by some millivolts.
 const LOW_V: (f32, f32) = (-0.1, 0.4);
-/// A gate's high level, V: 3.3 V that fall no tenth of the time. A monostable that takes no new trigger before its pulse
-/// is over, and so falls once in each, still shows this.
+/// A gate's high level, V: 3.3 V that fall no tenth of the time. A monostable that takes no new trigger before its
+/// pulse is over, and so falls once in each, still shows this.
 const HIGH_V: (f32, f32) = (3.0, 3.6);
 /// Falling edges in a second of a level that is high for good.
 const NO_EDGES: (f32, f32) = (-0.5, 0.5);

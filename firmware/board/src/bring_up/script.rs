@@ -34,8 +34,8 @@ const EDGES_V_PEAK: f32 = 25.0;
 const GAIN_TOLERANCE: f32 = 0.1;
 /// What is added to it: the resolution of an oscilloscope with a 100:1 probe.
 const READ_OFF_V: f32 = 1.0;
-/// What R3, which discharges the capacitor, and the probe's hundred megohms have together, Ohm. The series resistor in
-/// front of them makes the probe show less than the amplifier puts out.
+/// Resistance behind the series resistor, Ohm: R3, which discharges the capacitor, beside the probe's hundred megohms.
+/// The probe shows less than the amplifier puts out by what the series resistor drops.
 const SHUNT_OHM: f32 = 1.0 / (1.0 / 10e6 + 1.0 / 100e6);
 /// Largest offset of the monitor: half of what the supervisor tolerates at 200 V full scale, so that it has the other
 /// half for the edges.

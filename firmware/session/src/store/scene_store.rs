@@ -81,8 +81,8 @@ impl SceneStore {
     /// power came on, or the reset pin was used, does not wait. After any other reset it does: a board that resets
     /// again and again does not write.
     ///
-    /// A write under way pauses while the board is armed, and ends when the board has another scene. If the flash fails,
-    /// never ends an operation or has no room for the scene, the hello says so ([`notice::SCENE_NOT_STORED`]).
+    /// A write under way pauses while the board is armed, and ends when the board has another scene. If the flash
+    /// fails, never ends an operation or has no room for the scene, the hello says so ([`notice::SCENE_NOT_STORED`]).
     ///
     /// [`notice::SCENE_NOT_STORED`]: frixel_wire::hello::notice::SCENE_NOT_STORED
     pub fn step<F: Flash>(&mut self, flash: &mut F, session: &mut Session, now_tick: u32) {

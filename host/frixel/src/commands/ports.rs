@@ -30,7 +30,7 @@ pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink, CommandErr
     })
 }
 
-/// What `--port` of a command takes, and what of it was meant.
+/// Names what `--port` of a command takes, and guesses which of it was meant.
 fn advice(port: &str, boards: &[&str]) -> String {
     let words = if boards.is_empty() { String::new() } else { format!("`{}` or ", boards.join("`, `")) };
     let takes = format!("--port takes {words}the path of a board's serial port");
