@@ -20,7 +20,7 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use crate::check::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
+use crate::ci::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
 use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, empty_folder, root, run, target_folder};
 use crate::licences::{self, Program};
 use crate::machine_paths;

@@ -6,12 +6,7 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use crate::command::{cargo_in, root, run, target_folder, text_of};
-use crate::inputs::{self, packages};
-use crate::outcome::Outcome;
-use crate::stamps;
 
-/// How long each target runs in `cargo xtask test --all`.
-const TIME: Duration = Duration::from_mins(2);
 const TARGETS: [&str; 3] = ["scene_text", "scene_bytes", "scene_load"];
 /// Longest time of one input: beyond it, the target hangs.
 const INPUT_MAX: Duration = Duration::from_secs(30);
@@ -21,11 +16,6 @@ const RUSTFLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanit
                          -Cllvm-args=-sanitizer-coverage-pc-table \
                          -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
 const PROFILE: &str = "fuzz";
-/// Runs every target for the minutes of `cargo xtask test --all`.
-pub(crate) fn run_all() -> Result<Outcome, String> {
-    let inputs = inputs::of_libraries(&["frixel-fuzz"], &packages()?);
-    stamps::unless_unchanged("fuzz", &inputs, || run_for(TIME).map(|()| Outcome::Passed))
-}
 
 /// Runs every target for this time, all at once. Inputs that are worth starting from the next time are kept in
 /// `target/fuzz`.

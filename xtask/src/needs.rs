@@ -9,8 +9,6 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use crate::outcome::is_ci;
-
 /// Where Debian installs the browser; the environment's CHROMIUM names another.
 const CHROMIUM: &str = "/usr/bin/chromium";
 const FIREFOX: &str = "/usr/bin/firefox-esr";
@@ -29,8 +27,6 @@ pub(crate) enum Need {
     Target(&'static str),
     /// The emulator of Cortex-M processors.
     Emulator,
-    /// Which lists the files that a check depends on.
-    Git,
     Node,
     Npm,
     Chromium,
@@ -48,7 +44,6 @@ impl Need {
             Self::Component(_, component) => component.to_owned(),
             Self::Target(target) => format!("target {target}"),
             Self::Emulator => "qemu-system-arm".to_owned(),
-            Self::Git => "git".to_owned(),
             Self::Node => format!("node {NODE_MAJOR_MIN} or newer"),
             Self::Npm => "npm".to_owned(),
             Self::Chromium => "Chromium".to_owned(),
@@ -64,7 +59,6 @@ impl Need {
             Self::Component(_, component) => format!("`rustup component add {component}`"),
             Self::Target(target) => format!("`rustup target add {target}` (rustup: https://rustup.rs)"),
             Self::Emulator => "Debian: `apt-get install qemu-system-arm`".to_owned(),
-            Self::Git => "Debian: `apt-get install git`".to_owned(),
             Self::Node => "Debian: `apt-get install nodejs`".to_owned(),
             Self::Npm => "Debian: `apt-get install npm`".to_owned(),
             Self::Chromium => "Debian: `apt-get install chromium`, or set CHROMIUM to its path".to_owned(),
@@ -106,7 +100,7 @@ impl Machine {
             path: env::var_os("PATH").unwrap_or_default(),
             cargo: env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
             chromium: env::var_os("CHROMIUM").unwrap_or_else(|| CHROMIUM.into()).into(),
-            is_ci: is_ci(),
+            is_ci: env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0"),
         }
     }
 
@@ -129,7 +123,6 @@ impl Machine {
                 .text("rustc", &["--print", "target-libdir", "--target", target])
                 .is_some_and(|libraries| Path::new(&libraries).is_dir()),
             Need::Emulator => runs("qemu-system-arm"),
-            Need::Git => runs("git"),
             Need::Node => self.text("node", &["--version"]).is_some_and(|version| is_new_enough(&version)),
             Need::Npm => runs("npm"),
             Need::Chromium => self.chromium.is_file(),
@@ -230,12 +223,11 @@ mod tests {
 
     const TARGET: Need = Need::Target("thumbv7m-none-eabi");
     const CLIPPY: Need = Need::Component("clippy", "clippy");
-    const STAGES: [(&str, &[Need]); 6] = [
+    const STAGES: [(&str, &[Need]); 5] = [
         ("lints", &[CLIPPY]),
         ("images", &[TARGET, CLIPPY]),
         ("browser", &[Need::Node, Need::Npm, Need::Chromium]),
         ("emulators", &[TARGET, Need::Emulator]),
-        ("tests", &[Need::Git]),
         ("python", &[Need::Python]),
     ];
 
@@ -288,9 +280,7 @@ mod tests {
             "missing  node 20 or newer",
             "missing  npm",
             "missing  Chromium",
-            "missing  git: Debian: `apt-get install git`",
             "missing  python3, 3.11 or newer, with venv: Debian: `apt-get install python3-venv`",
-            "SKIPPED  tests: without git",
             "SKIPPED  python: without python3, 3.11 or newer, with venv",
             "SKIPPED  lints: without clippy",
             "SKIPPED  images: without target thumbv7m-none-eabi, clippy",

@@ -4,8 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::command::{cargo_in, target_folder, text_of};
-use crate::results;
+use crate::command::{cargo_in, run, target_folder, text_of};
 
 /// Packages every published crate, and compiles each from its package alone, with the others from theirs.
 pub(crate) fn check() -> Result<(), String> {
@@ -17,19 +16,27 @@ pub(crate) fn check() -> Result<(), String> {
     let mut package = cargo_in(".");
     // What is checked is the working tree, committed or not.
     package.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&target).args(names);
-    let checked = results::run("packages", &mut package);
+    let checked = run("packages", &mut package);
     fs::remove_dir_all(&target).map_err(|error| format!("{}: {error}", target.display()))?;
     checked
 }
 
-/// The manifests of the crates that are published, as cargo reports them.
+/// The manifests of the crates that are published.
 fn published() -> Result<Vec<Value>, String> {
+    Ok(packages()?.into_iter().filter(is_published).collect())
+}
+
+/// The manifests of the workspace, as cargo reports them.
+fn packages() -> Result<Vec<Value>, String> {
     let metadata = text_of(cargo_in(".").args(["metadata", "--locked", "--no-deps", "--format-version", "1"]))?;
     let metadata: Value = serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
     let packages = metadata["packages"].as_array().ok_or("cargo metadata names no packages")?;
-    // `publish = false` is an empty list of registries.
-    let published = packages.iter().filter(|package| package["publish"].as_array().is_none_or(|to| !to.is_empty()));
-    Ok(published.cloned().collect())
+    Ok(packages.clone())
+}
+
+/// `publish = false` is an empty list of registries.
+fn is_published(manifest: &Value) -> bool {
+    manifest["publish"].as_array().is_none_or(|registries| !registries.is_empty())
 }
 
 #[cfg(test)]
@@ -38,7 +45,7 @@ mod tests {
 
     use super::*;
     use crate::command::root;
-    use crate::inputs::tests::files_below;
+    use crate::test_files::files_below;
 
     /// The crates of which no other program is made.
     const UNPUBLISHED: [&str; 6] =
@@ -54,10 +61,8 @@ mod tests {
 
     #[test]
     fn every_crate_but_the_developers_own_is_published() {
-        let published = published().unwrap();
-        let names: Vec<&str> = published.iter().map(name).collect();
-        for name in crate::inputs::packages().unwrap().into_keys() {
-            assert_eq!(names.contains(&name.as_str()), !UNPUBLISHED.contains(&name.as_str()), "{name}");
+        for manifest in packages().unwrap() {
+            assert_eq!(is_published(&manifest), !UNPUBLISHED.contains(&name(&manifest)), "{}", name(&manifest));
         }
     }
 

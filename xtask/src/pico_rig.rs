@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::command::{root, run};
-use crate::results;
 use crate::studio_tests::install;
 
 const FOLDER: &str = "hil-sim/pico";
@@ -30,7 +29,7 @@ pub(crate) fn check_scripts(linter: &Path) -> Result<(), String> {
 /// Runs the tests of the scripts, which need no image.
 pub(crate) fn test_scripts() -> Result<(), String> {
     install(&folder())?;
-    results::run("scripts of the Pico's rig", Command::new("npm").current_dir(folder()).args(["test", "--silent"]))
+    run("scripts of the Pico's rig", Command::new("npm").current_dir(folder()).args(["test", "--silent"]))
 }
 
 /// Copies the programs and the emulator.

@@ -1,25 +1,17 @@
 //! Checks that the crates compile for other platforms: WebAssembly, Windows, macOS. That scenes have the same bits in
 //! WebAssembly is checked in the studio's page (`studio_tests.rs`).
 
-use std::collections::BTreeMap;
-
 use crate::command::{WASM, cargo_in, run};
-use crate::inputs::{self, Package};
 use crate::needs::Need;
 use crate::studio;
 
 const WINDOWS: &str = "x86_64-pc-windows-gnu";
 const MACOS: &str = "aarch64-apple-darwin";
 /// What [`other_systems`] needs.
-pub(crate) const NEEDS: [Need; 3] = [Need::Target(WINDOWS), Need::Target(MACOS), Need::Git];
+pub(crate) const NEEDS: [Need; 2] = [Need::Target(WINDOWS), Need::Target(MACOS)];
 /// The crates of the page whose code differs for WebAssembly. The `clippy.toml` of these, and of those that they
 /// depend on, disallows clocks, files, threads and processes on every platform.
 const WASM_CRATES: [&str; 3] = ["frixel-hil-sim", "frixel-lab", "frixel-studio"];
-
-/// What [`page_crates`] reads.
-pub(crate) fn page_inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
-    inputs::of_libraries(&WASM_CRATES, packages)
-}
 
 /// Compiles the whole command for Windows and macOS. Functions that need a pseudo-terminal fail there at run time.
 pub(crate) fn other_systems() -> Result<(), String> {

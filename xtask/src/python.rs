@@ -1,29 +1,18 @@
 //! The checks of the Python module: its wheel, built and installed into a fresh virtual environment, with types, lints,
 //! tests and examples. The tests of its widget run in the studio's Chromium.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::command::{WASM, cargo_in, root, run, target_folder};
-use crate::inputs::{self, Package};
 use crate::needs::Need;
-use crate::{results, studio, studio_tests};
+use crate::{studio, studio_tests};
 
-/// The package of its compiled part.
-const MODULE: &str = "frixel-python";
 /// The folder of the module.
 const FOLDER: &str = "host/python";
 /// What the checks need: that of the studio's tests, and Python.
-pub(crate) const NEEDS: [Need; 6] =
-    [Need::Python, Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium, Need::Git];
-
-/// What the checks read: the module, the crates that it is made of, the command that it is compared with, the
-/// documents whose examples are run, and what the widget is made of.
-pub(crate) fn inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
-    studio_tests::command_inputs(packages).into_iter().chain(inputs::of_libraries(&[MODULE], packages)).collect()
-}
+pub(crate) const NEEDS: [Need; 5] = [Need::Python, Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
 
 /// Builds the wheel, installs it into a fresh virtual environment, and checks it there.
 pub(crate) fn check() -> Result<(), String> {
@@ -58,7 +47,7 @@ pub(crate) fn check() -> Result<(), String> {
     let frixel = absolute(&target_folder().join("debug/frixel"))?;
     studio_tests::install(&studio_tests::folder())?;
     let mut tests = in_environment("pytest");
-    results::run("tests of the Python module", tests.arg("--quiet").env("FRIXEL", frixel).env("STUDIO_PAGE", page))
+    run("tests of the Python module", tests.arg("--quiet").env("FRIXEL", frixel).env("STUDIO_PAGE", page))
 }
 
 /// The one file in a folder.

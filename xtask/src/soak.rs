@@ -1,15 +1,13 @@
-//! `cargo xtask soak`: what takes too long for `cargo xtask test --all`, in parts that take an hour at most.
+//! `cargo xtask soak`: what takes too long for `cargo xtask ci`, in parts that take an hour at most.
 
 use std::fmt::Write;
 use std::time::Duration;
 
 use crate::bench::programs::{self, Pace};
-use crate::check::{M0_PLUS_TARGET, M4F_TARGET};
-use crate::command::{WASM, cargo_in};
+use crate::ci::{M0_PLUS_TARGET, M4F_TARGET};
+use crate::command::{WASM, cargo_in, run as run_command};
 use crate::needs::{self, Need};
-use crate::outcome::Outcome;
-use crate::stages::Stages;
-use crate::{fuzz, packages, results, studio_tests};
+use crate::{fuzz, packages, studio_tests};
 
 /// How long each fuzz target runs.
 const FUZZ_TIME: Duration = Duration::from_mins(15);
@@ -98,11 +96,7 @@ pub(crate) fn run(name: &str) -> Result<(), String> {
     let part = PARTS.iter().find(|part| part.name == name);
     let part = part.ok_or_else(|| format!("the soak has no part `{name}`; it has:\n{}", list()))?;
     needs::require(part.needs)?;
-    let mut stages = Stages::new();
-    let result = stages.run(part.name, || (part.run)().map(|()| Outcome::Passed));
-    eprint!("{}", stages.table());
-    results::print();
-    result
+    (part.run)()
 }
 
 /// The parts and what they do, a line each.
@@ -117,7 +111,7 @@ pub(crate) fn list() -> String {
 /// Runs the ignored tests of a package that have this filter in their name.
 fn ignored(name: &str, build: &[&str], run: &[&str]) -> Result<(), String> {
     let arguments = [&["test", "--locked"], build, &["--", "--ignored", "--nocapture"], run].concat();
-    results::run(name, cargo_in(".").args(arguments))
+    run_command(name, cargo_in(".").args(arguments))
 }
 
 fn tables() -> Result<(), String> {

@@ -1,25 +1,22 @@
 //! The checks of JavaScript, most of which is the studio's: types and lints of its scripts, and its tests in Chromium
 //! (`host/studio/test`), driven by node and playwright-core.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
-use crate::inputs::{self, Package};
 use crate::needs::{self, Need};
-use crate::{pico_rig, results, studio};
+use crate::{pico_rig, studio};
 
 /// What types and lints need.
-pub(crate) const SCRIPT_NEEDS: [Need; 3] = [Need::Node, Need::Npm, Need::Git];
+pub(crate) const SCRIPT_NEEDS: [Need; 2] = [Need::Node, Need::Npm];
 /// What the tests need.
-pub(crate) const NEEDS: [Need; 5] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium, Need::Git];
+pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
-/// The tests in which the page meets the command `frixel`. All others run without it, so that a change in the command
-/// does not concern them.
+/// The tests in which the page meets the command `frixel`. All others run without it.
 const COMMAND_TESTS: &str = "command.test.mjs";
 /// Takes the pictures of docs/studio.
 const SHOTS: &str = "shots.mjs";
@@ -38,17 +35,6 @@ pub(crate) fn check_scripts() -> Result<(), String> {
     pico_rig::check_scripts(&folder())
 }
 
-/// What the tests of the page read: the crates and files that the page is made of, and how it is built.
-pub(crate) fn page_inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
-    let more = ["LICENSE-APACHE", "LICENSE-MIT", "docs", "scenes", "xtask"].map(str::to_owned);
-    inputs::of_libraries(&["frixel-studio"], packages).into_iter().chain(more).collect()
-}
-
-/// What the tests of the page beside the command read.
-pub(crate) fn command_inputs(packages: &BTreeMap<String, Package>) -> Vec<String> {
-    page_inputs(packages).into_iter().chain(inputs::of_libraries(&["frixel"], packages)).collect()
-}
-
 /// Builds the page, and runs the tests in it that need no command: they are not told where it is.
 pub(crate) fn run_page() -> Result<(), String> {
     let tests: Vec<String> = tests()?.into_iter().filter(|name| name != COMMAND_TESTS).collect();
@@ -57,13 +43,13 @@ pub(crate) fn run_page() -> Result<(), String> {
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
     fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
     runner.env("STUDIO_HASHES", absolute(&hashes)?).env("STUDIO_SITE", site()?).env_remove("FRIXEL");
-    results::run("studio in a browser", runner.args(tests))
+    run("studio in a browser", runner.args(tests))
 }
 
 /// Builds the page and the command, and runs the tests in which one meets the other.
 pub(crate) fn run_beside_command() -> Result<(), String> {
     let mut runner = runner(&["--bin", "frixel"])?;
-    results::run("studio beside the command", runner.env("FRIXEL", built("frixel")?).arg(COMMAND_TESTS))
+    run("studio beside the command", runner.env("FRIXEL", built("frixel")?).arg(COMMAND_TESTS))
 }
 
 /// Builds the site, and opens it in Firefox.
@@ -73,7 +59,7 @@ pub(crate) fn run_in_firefox() -> Result<(), String> {
     install(&folder)?;
     let mut node = Command::new("npm");
     node.current_dir(&folder).args(["run", "--silent", "test"]).env("STUDIO_SITE", site);
-    results::run("site in Firefox", node.env("FIREFOX", needs::firefox()))
+    run("site in Firefox", node.env("FIREFOX", needs::firefox()))
 }
 
 /// Builds the site anew, and returns its folder.

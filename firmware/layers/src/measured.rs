@@ -1,5 +1,5 @@
 //! Core cycles on a Cortex-M4F and on a Cortex-M0+ at the worst input, estimated. Written by
-//! `FRIXEL_BLESS=1 cargo xtask bench`; `cargo xtask test` measures again and fails when it finds others.
+//! `FRIXEL_BLESS=1 cargo xtask bench`; `cargo xtask ci budgets` measures again and fails when it finds others.
 #![allow(dead_code, reason = "a kind whose feature is off costs nothing")]
 
 use crate::cost::Cost;

@@ -93,7 +93,7 @@ def test_widgets_play_in_a_browser(scenes: Path, tmp_path: Path) -> None:
     (tmp_path / "widget.js").write_text(shown[0]._esm, encoding="utf-8")
     states = [each.get_state(["scene", "touch"]) for each in shown]
     (tmp_path / "widgets.json").write_text(json.dumps(states, default=base64_text), encoding="utf-8")
-    assert "STUDIO_PAGE" in os.environ, "run the tests with `cargo xtask python`"
+    assert "STUDIO_PAGE" in os.environ, "run the tests with `cargo xtask ci python`"
     told = {"WIDGETS": str(tmp_path / "widgets.json"), "WIDGET_MODULE": str(tmp_path / "widget.js")}
     command = ["node", "--test", str(REPOSITORY / "host/studio/test/widget.mjs")]
     run = subprocess.run(command, env={**os.environ, **told}, capture_output=True, text=True, timeout=300)

@@ -1,6 +1,6 @@
 // What the browser tests share: the page in Chromium, the bundled scenes, and a virtual board.
 //
-// `cargo xtask studio-test` builds what they need, and says in the environment where it is:
+// `cargo xtask ci studio` builds what they need, and says in the environment where it is:
 // STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), REAL_BOARD
 // (examples/real_board.rs), and for `command.test.mjs` alone FRIXEL (the command).
 
@@ -27,7 +27,7 @@ export const pageUrl = pathToFileURL(required("STUDIO_PAGE")).href;
 
 export function required(name) {
   const value = process.env[name];
-  if (!value) throw new Error(`${name} is not set: run the tests with \`cargo xtask studio-test\``);
+  if (!value) throw new Error(`${name} is not set: run the tests with \`cargo xtask ci studio\``);
   return value;
 }
 

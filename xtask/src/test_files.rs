@@ -1,0 +1,72 @@
+//! Every file of tests belongs to a test program. The files of `tests` are modules of few programs, which cargo does not
+//! look for by itself, so a file that no program names would never run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::command::root;
+
+/// The folders of the workspace's packages.
+fn packages() -> Vec<PathBuf> {
+    let text = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let manifest: toml::Table = toml::from_str(&text).unwrap();
+    let members = manifest["workspace"]["members"].as_array().unwrap().iter();
+    members.map(|folder| root().join(folder.as_str().unwrap())).collect()
+}
+
+/// Adds the files below a folder that have this ending, build artefacts apart.
+pub(crate) fn files_below(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let is_built = path.file_name().is_some_and(|name| name == "target" || name == "node_modules");
+        if path.is_dir() && !is_built {
+            files_below(&path, ending, found);
+        } else if path.extension().is_some_and(|found| found == ending) {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_file_of_tests_belongs_to_a_test_program() {
+    for folder in packages() {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = toml::from_str(&manifest).unwrap();
+        if manifest["package"].get("autotests").is_none() {
+            continue;
+        }
+        let programs = manifest["test"].as_array().unwrap().iter();
+        let programs: Vec<PathBuf> = programs.map(|test| folder.join(test["path"].as_str().unwrap())).collect();
+        let modules: Vec<PathBuf> = programs.iter().flat_map(|program| modules_of(program)).collect();
+        let mut files = Vec::new();
+        files_below(&folder.join("tests"), "rs", &mut files);
+        for file in files.iter().filter(|file| !programs.contains(file)) {
+            assert!(modules.contains(file), "{} is in no test program: name it in main.rs", file.display());
+        }
+    }
+}
+
+/// The files of the modules that a source file declares, of theirs, and so on.
+fn modules_of(file: &Path) -> Vec<PathBuf> {
+    let text = fs::read_to_string(file).unwrap();
+    let is_root = ["main", "mod", "emulated", "safety"].iter().any(|name| file.file_stem().unwrap() == *name);
+    let beside = file.parent().unwrap();
+    let folder = if is_root { beside.to_owned() } else { file.with_extension("") };
+    let mut attribute = None;
+    let mut found = Vec::new();
+    for line in text.lines().map(str::trim) {
+        if let Some(path) = line.strip_prefix("#[path = \"") {
+            attribute = path.split('"').next();
+        } else if let Some(name) = line.strip_suffix(';').and_then(|line| line.rsplit_once("mod ")) {
+            let candidates = match attribute.take() {
+                Some(path) => vec![beside.join(path)],
+                None => vec![folder.join(format!("{}.rs", name.1)), folder.join(name.1).join("mod.rs")],
+            };
+            for module in candidates.into_iter().filter(|module| module.is_file()) {
+                found.extend(modules_of(&module));
+                found.push(module);
+            }
+        }
+    }
+    found
+}
