@@ -7,7 +7,7 @@
 //!   error. An absent, silent or unplugged board is reported within a second, a board that answers too slowly within
 //!   10 s of a request or of the last byte of an upload that it has acknowledged; see [`Device::while_waiting`].
 //! - [`Link`] carries the bytes, keeps the board alive, and has the clock. [`PollingLink`] makes a link of any
-//!   [`ByteStream`]: a WebSocket, a browser's serial port, a simulated line in virtual time.
+//!   [`ByteStream`]: a TCP connection, a browser's serial port, a simulated line in virtual time.
 //! - With the feature `native` (on by default) `SerialLink` is a serial port of the operating system, with a thread
 //!   that keeps the board alive, and `ports` lists the ports of this machine.
 //!

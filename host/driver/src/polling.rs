@@ -8,7 +8,7 @@ use super::link::{Link, Written};
 
 /// A byte stream to one board, with the clock that deadlines are measured on.
 ///
-/// For example a TCP connection, a WebSocket, a browser's serial port behind an import that waits, or a simulated line
+/// For example a TCP connection, a browser's serial port behind an import that waits, or a simulated line
 /// with a virtual clock.
 pub trait ByteStream {
     /// Queues bytes for sending, without waiting for the other end to take them.

@@ -17,8 +17,6 @@ pub(crate) const PICTURE_MAX_BYTES: u64 = 64 << 20;
 pub(crate) const CSV_MAX_BYTES: u64 = 512 << 20;
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
 pub(crate) const WAV_MAX_BYTES: u64 = 128 << 20;
-/// Largest page of the studio.
-pub(crate) const PAGE_MAX_BYTES: u64 = 64 << 20;
 /// Longest line of a person on standard input, in bytes; what is beyond it is dropped.
 pub(crate) const LINE_MAX_BYTES: usize = 4096;
 

@@ -10,7 +10,6 @@ pub mod report;
 pub mod rigs;
 pub mod scene_file;
 pub mod stream;
-pub mod studio;
 
 use std::process::ExitCode;
 

@@ -1,26 +1,19 @@
-//! Everything ends: signals, inputs without an end, and what a page does not read.
+//! Everything ends: signals, and inputs without an end.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::io::{BufRead as _, BufReader, Read, Write};
-use std::net::TcpStream;
+use std::io::Write as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use crate::processes::{frixel, run, said, until};
-use frixel::studio::Studio;
-use frixel_hil_sim::PseudoTerminal;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
-use tungstenite::client;
-use tungstenite::client::IntoClientRequest;
 
 const SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
@@ -192,60 +185,4 @@ fn a_list_of_mistakes_stops_at_100() {
     let output = run(folder.path(), &["scene", "check", "scene.toml", "--json"]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((json["mistakes"].as_array().unwrap().len(), json["has_more"].as_bool()), (100, Some(true)));
-}
-
-/// Memory of a process, in bytes.
-fn memory_bytes(process: &Child) -> u64 {
-    let status = fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
-    1024 * line.trim().trim_end_matches(" kB").parse::<u64>().unwrap()
-}
-
-/// The bridge is a process of its own: other tests share the memory of this one.
-#[test]
-fn the_bridge_bounds_what_a_page_does_not_read() {
-    let mut terminal = PseudoTerminal::open().unwrap();
-    let folder = folder();
-    fs::write(folder.path().join("page.html"), "page").unwrap();
-    let mut studio = frixel();
-    studio.args(["studio", "--no-browser", "--page", "page.html", "--port", terminal.path()]);
-    studio.current_dir(folder.path()).stdout(Stdio::piped()).stderr(Stdio::null());
-    let mut studio = Running(studio.spawn().unwrap());
-    let mut url = String::new();
-    BufReader::new(studio.0.stdout.take().unwrap()).read_line(&mut url).unwrap();
-    let (host, token) = url.trim().strip_prefix("http://").unwrap().split_once("/#bridge=").unwrap();
-    let mut request = format!("ws://{host}/serial?token={token}").into_client_request().unwrap();
-    request.headers_mut().insert("Origin", format!("http://{host}").parse().unwrap());
-    let Ok((_socket, _)) = client(request, TcpStream::connect(host).unwrap()) else { panic!("no bridge") };
-    let before = memory_bytes(&studio.0);
-    let flood = vec![7; 4096];
-    let mut written = 0;
-    until("the flood is taken", || {
-        for _ in 0..200 {
-            written += terminal.write(&flood).unwrap();
-        }
-        written > 64 << 20
-    });
-    let grown = memory_bytes(&studio.0).saturating_sub(before);
-    println!("{grown} bytes for {written} of a flood");
-    assert!(grown < 12 << 20, "{grown} bytes");
-}
-
-#[test]
-fn the_page_comes_with_a_content_security_policy() {
-    let studio = Studio::open(0, b"page".to_vec(), None).unwrap();
-    let host = studio.url().strip_prefix("http://").unwrap().trim_end_matches('/').to_owned();
-    let is_over = Arc::new(AtomicBool::new(false));
-    let over = Arc::clone(&is_over);
-    let server = thread::spawn(move || studio.run(&|| over.load(Ordering::Relaxed)).unwrap());
-    let mut stream = TcpStream::connect(&host).unwrap();
-    write!(stream, "GET / HTTP/1.1\r\nHost: {host}\r\n\r\n").unwrap();
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer).unwrap();
-    let policy = answer.lines().find_map(|line| line.strip_prefix("Content-Security-Policy: ")).unwrap();
-    for part in ["default-src 'none'", "connect-src 'self'", "frame-ancestors 'none'", "worker-src blob:"] {
-        assert!(policy.split("; ").any(|found| found.trim() == part), "{part} is not in {policy}");
-    }
-    is_over.store(true, Ordering::Relaxed);
-    server.join().unwrap();
 }

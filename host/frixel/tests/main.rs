@@ -26,7 +26,6 @@ mod scene_command;
 mod score;
 mod server_credit;
 mod stream;
-mod studio;
 mod sweep;
 mod untrusted_text;
 mod virtual_board;

@@ -1,5 +1,5 @@
-// The page beside the command: `frixel sim` behind a `navigator.serial` made of byte streams, the bridge of `frixel
-// studio`, and the sentences of `frixel scene check`. Only these tests are told where the command is.
+// The page beside the command: `frixel sim` behind a `navigator.serial` made of byte streams, and the sentences of
+// `frixel scene check`. Only these tests are told where the command is.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -8,8 +8,7 @@ import os from "node:os";
 import path from "node:path";
 import { after, afterEach, test } from "node:test";
 import {
-  addOnlyEngine, addSerialPort, cleanUp, CONSTANT, endLeftovers, openOnlyEngine, openPage, required, rowsOf,
-  startRealBoard, startStudio, startVirtualBoard, stateOf, WAIT_MAX_MS,
+  addSerialPort, cleanUp, endLeftovers, openOnlyEngine, required, rowsOf, startVirtualBoard, WAIT_MAX_MS,
 } from "./harness.mjs";
 import { openStudio } from "./page.mjs";
 
@@ -100,53 +99,6 @@ test("a killed worker: the board is at zero within its host timeout", async () =
   const driven = rowsOf(path.join(board.out, "felt.csv")).filter((row) => Math.abs(Number(row.voltage_v_rms)) > 1);
   const last = Number(driven.at(-1).t_s);
   assert.ok(last <= Number(silent.t_s) + 1e-3, `driven at ${last} s, silent at ${silent.t_s} s`);
-  await close();
-});
-
-test("the page of `frixel studio` plays, and reaches a board through the bridge", async () => {
-  const board = await startVirtualBoard();
-  const { page, errors, close } = await openPage(await startStudio(board.terminal));
-  await page.waitForFunction(() => document.documentElement.dataset.state === "active");
-  await addOnlyEngine(page);
-  await page.evaluate(async () => {
-    const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-    await tested.connectSocket(bridgeUrl());
-  });
-  await play(page, "constant.toml");
-  await page.waitForFunction(() => felt.some((frame) => !frame.simulated));
-  await page.waitForFunction(() => states.at(-1).state === "active");
-  assert.equal(await page.evaluate(() => states.at(-1).link), "socket");
-  assert.deepEqual(errors, []);
-  await silenceAfter(board, close);
-  await board.stop();
-  const events = eventsOf(board).map((row) => row.event);
-  assert.deepEqual(events.slice(0, 2), ["armed", "active"]);
-  assert.equal(events.at(-1), "host-silent", "a page that is closed leaves the board to its host timeout");
-});
-
-test("the bridge can be connected again after a failed connection and after a silent board", async () => {
-  const board = await startRealBoard();
-  const { page, close } = await openOnlyEngine(await startStudio(board.terminal));
-  const connect = () =>
-    page.evaluate(async () => {
-      const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-      return tested.connectSocket(bridgeUrl()).catch((error) => error.message);
-    });
-  board.hang(true);
-  assert.match(await connect(), /no frixel board answered/);
-  board.hang(false);
-  assert.equal(await connect(), undefined);
-  await page.evaluate(async (text) => {
-    await tested.play({ "a.toml": text }, "a.toml", {});
-    await tested.arm();
-  }, CONSTANT);
-  await board.until("driving", stateOf.driving);
-  board.hang(true);
-  await page.waitForFunction(() => states.at(-1).link === "none");
-  assert.match(await page.evaluate(() => states.at(-1).fault), /not answered/);
-  board.hang(false);
-  await board.until("disarmed", stateOf.disarmed);
-  assert.equal(await connect(), undefined, "connected again");
   await close();
 });
 

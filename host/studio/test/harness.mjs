@@ -110,7 +110,7 @@ export async function openOnlyEngine(url, options) {
  * Gives the page an engine of the test's own, as `tested`, with a function `sceneFiles(name)`. That of the page itself
  * ends, so that the machine has time for this one.
  */
-export async function addOnlyEngine(page) {
+async function addOnlyEngine(page) {
   await page.waitForFunction(() => globalThis.studioPage);
   await page.evaluate(async () => {
     studioPage.engine.close();
@@ -222,18 +222,6 @@ export async function startRealBoard({ baud = 2_000_000 } = {}) {
     assert.ok(since.every(stateOf.disarmed) && !since.at(-1).isDriving, found);
   };
   return { terminal, events, fail: () => board.stdin.write("fault\n"), hang, stop, until, assertDisarmed };
-}
-
-/** Starts `frixel studio` with the port of a board; returns the page's address. */
-export async function startStudio(terminal) {
-  const port = terminal ? ["--port", terminal] : [];
-  const options = ["studio", "--no-browser", "--page", required("STUDIO_PAGE"), ...port];
-  const server = spawn(required("FRIXEL"), options, { stdio: ["ignore", "pipe", "inherit"] });
-  endLater(() => endProgram(server, () => server.kill("SIGINT")));
-  return new Promise((resolve, reject) => {
-    server.stdout.once("data", (line) => resolve(String(line).trim()));
-    server.on("exit", () => reject(new Error("frixel studio ended")));
-  });
 }
 
 /** Hides the page, or shows it again: `value` is "hidden" or "visible". */

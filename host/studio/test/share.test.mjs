@@ -1,41 +1,12 @@
 // The page in a browser: a scene as a link, and as a zip: what is said of it, and how it comes back.
 
 import assert from "node:assert/strict";
-import fs from "node:fs";
-import { fileURLToPath } from "node:url";
 import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers, openPage, pageUrl } from "./harness.mjs";
+import { cleanUp, endLeftovers } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
 
 afterEach(endLeftovers);
 after(cleanUp);
-
-test("Share and a reload keep the bridge of the command, and the link does not have its token", async () => {
-  const { page, close } = await openPage("about:blank", { isSimulated: true });
-  const body = fs.readFileSync(fileURLToPath(pageUrl));
-  await page.route("http://127.0.0.1:9/**", (route) => route.fulfill({ body, contentType: "text/html" }));
-  await page.goto("http://127.0.0.1:9/#bridge=0123abcd");
-  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
-  const bridge = page.locator("#board-dialog button", { hasText: "Board of frixel studio" });
-  const assertBridge = async (when) => {
-    await page.click("#open-board");
-    assert.equal(await bridge.count(), 1, when);
-    await page.click("#board-dialog >> text=Close");
-  };
-  await assertBridge("at the start");
-  await page.click("#share");
-  await page.waitForFunction(() => location.hash.startsWith("#scene="));
-  assert.ok(!page.url().includes("0123abcd"), page.url());
-  await page.reload();
-  await page.waitForFunction(() => globalThis.studioPage && document.getElementById("check").textContent === "plays");
-  await assertBridge("after Share and a reload");
-  const url = await page.evaluate(async () => {
-    const { bridgeUrl } = await import(await studio.moduleUrl("engine/lines.js"));
-    return bridgeUrl();
-  });
-  assert.equal(url, "ws://127.0.0.1:9/serial?token=0123abcd");
-  await close();
-});
 
 test("Share says that the scene has a mistake, and Save where the file is", async () => {
   const { page, errors, close } = await openStudio();

@@ -59,16 +59,3 @@ test("what a worker was asked is rejected when it fails, and the simulator can b
   assert.deepEqual(outcomes.failures, ["the board worker: out of memory", "the host worker: out of memory"]);
   await close();
 });
-
-test("a bridge that does not answer is given up", async () => {
-  const { page, close } = await openOnlyEngine();
-  await page.evaluate(addOutcome);
-  const found = await page.evaluate(() => {
-    globalThis.WebSocket = class {
-      close() {}
-    };
-    return outcome(tested.connectSocket("ws://localhost/"));
-  });
-  assert.match(found, /gives no connection/);
-  await close();
-});

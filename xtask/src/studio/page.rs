@@ -18,7 +18,7 @@ const NOT_PACKED: [&str; 2] = ["styles/", "element/"];
 
 /// Where a page opens from.
 pub(super) enum Place<'t> {
-    /// A disk, or `frixel studio`: nothing is beside it.
+    /// A disk: nothing is beside it.
     File { icon_svg: &'t str },
     /// A site, with these lines in its head.
     Site { head: &'t str },
@@ -54,8 +54,7 @@ fn joined(index: &str, web: &Path, files: &Files, place: &Place) -> Result<Strin
     Ok(format!("{before}<head>\n    {policy}{behind}"))
 }
 
-/// What the page may load: what it carries, the bridge of `frixel studio` where it was served by it, and manifest,
-/// icons and service worker of its site.
+/// What the page may load: what it carries, and manifest, icons and service worker of its site.
 fn policy(boot: &str, of_site: &str) -> String {
     let boot = STANDARD.encode(Sha256::digest(boot.as_bytes()));
     let manifest = if of_site.is_empty() { " 'none'" } else { of_site };

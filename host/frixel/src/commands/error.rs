@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::selftest::WiresError;
+use super::studio::StudioError;
 use crate::output::{DrawingError, FeltLogError};
 use crate::output_file::OutputFileError;
 use crate::report::ReportError;
@@ -11,7 +12,6 @@ use crate::report::ReportError;
 use crate::rigs::ServerError;
 use crate::scene_file::{SceneFileError, check_path};
 use crate::stream::StreamError;
-use crate::studio::StudioError;
 use frixel_driver::{DeviceError, PortError};
 #[cfg(unix)]
 use frixel_hil_sim::emulated::EmulatorError;

@@ -4,10 +4,9 @@
 /** @import * as T from "./types" */
 
 import { after, clock } from "../clock.js";
-import { serialLine, socketLine } from "./lines.js";
+import { serialLine } from "./lines.js";
 import { WorkerClient } from "./worker_client.js";
 
-export { bridgeUrl } from "./lines.js";
 
 /**
  * Creates the engine with the simulator as its board. `seed` is that of the simulated world.
@@ -284,11 +283,6 @@ export class Engine {
   /** @param {SerialPort} port */
   connectSerial(port) {
     return this.#connect("serial", () => serialLine(port));
-  }
-
-  /** @param {string} url */
-  connectSocket(url) {
-    return this.#connect("socket", () => socketLine(url));
   }
 
   /**

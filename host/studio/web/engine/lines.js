@@ -7,15 +7,8 @@ import { after } from "../clock.js";
 
 /** Line rate of a serial port, bits a second; native USB ignores it. */
 const BAUD = 2_000_000;
-const NO_BRIDGE =
-  "The bridge of `frixel studio` gives no connection: is the command still running, its board plugged in, and no " +
-  "other page connected to it?";
 /** Longest wait for each step of closing a port, ms: a port that is stuck is left. */
 const CLOSE_MAX_MS = 500;
-/** Where the tab remembers the token of its bridge. */
-const BRIDGE = "frixel.bridge";
-/** Longest wait for the bridge to accept a connection, ms. */
-const OPEN_MAX_MS = 5000;
 
 /**
  * A line over Web Serial.
@@ -72,52 +65,6 @@ async function closePort(port, reader, writer) {
  */
 function ended(promise) {
   return Promise.race([promise.catch(() => {}), after(CLOSE_MAX_MS)]);
-}
-
-/**
- * The address of the bridge of `frixel studio`, if it serves this page and has a port; else null. The tab remembers its
- * token, since a shared scene takes the token's place in the page's address.
- */
-export function bridgeUrl({ protocol, host, hash } = location) {
-  if (protocol !== "http:") return null;
-  const given = new URLSearchParams(hash.slice(1)).get("bridge");
-  try {
-    if (given) sessionStorage.setItem(BRIDGE, given);
-    const token = given ?? sessionStorage.getItem(BRIDGE);
-    return token ? `ws://${host}/serial?token=${token}` : null;
-  } catch {
-    // Without a session's store, the bridge is known as long as the address has its token.
-    return given ? `ws://${host}/serial?token=${given}` : null;
-  }
-}
-
-/**
- * A line over a WebSocket to the bridge of `frixel studio`.
- * @param {string} url
- */
-export async function socketLine(url) {
-  const socket = new WebSocket(url);
-  socket.binaryType = "arraybuffer";
-  const opened = new Promise((resolve) => (socket.onopen = () => resolve(true)));
-  const failed = new Promise((resolve) => (socket.onerror = () => resolve(false)));
-  if (!(await Promise.race([opened, failed, after(OPEN_MAX_MS)]))) {
-    socket.close();
-    throw new Error(NO_BRIDGE);
-  }
-  return line((local) => {
-    const closed = new Promise((resolve) => (socket.onclose = resolve));
-    closed.then(() => local.close());
-    socket.onmessage = ({ data }) => local.receive(new Uint8Array(data));
-    return {
-      async write(bytes) {
-        if (socket.readyState === WebSocket.OPEN) socket.send(bytes);
-      },
-      async close() {
-        socket.close();
-        await ended(closed);
-      },
-    };
-  });
 }
 
 /**

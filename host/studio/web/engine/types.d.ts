@@ -119,7 +119,7 @@ export type BoardState = "disarmed" | "armed" | "active" | "faulted";
 /** What a board reports of itself. */
 export type Reported = { state: BoardState; fault?: string | null };
 export type State = {
-  link: "simulator" | "serial" | "socket" | "none";
+  link: "simulator" | "serial" | "none";
   state: BoardState;
   fault?: string;
   needsArm: boolean;

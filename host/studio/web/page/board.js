@@ -1,8 +1,7 @@
-// The board that plays: the simulator in the page, or one on a serial port or behind `frixel studio`.
+// The board that plays: the simulator in the page, or one on a serial port.
 // @ts-check
 
 import { clock } from "../clock.js";
-import { bridgeUrl } from "../engine/engine.js";
 import { byId, element } from "./dom.js";
 import { attempt, notify } from "./notices.js";
 
@@ -43,8 +42,6 @@ export class Board {
   #isArmResting = false;
   /** @type {number | undefined} */
   #armRestTimer;
-  /** The bridge of `frixel studio`, or null; read at the start, since a shared scene takes its place in the address. */
-  #bridge = bridgeUrl();
   /** Another board is connected: the scene is played there. */
   onBoard = () => {};
   /** The board plays, or no longer. */
@@ -128,16 +125,11 @@ export class Board {
       return port !== undefined;
     };
     const hasSerial = "serial" in navigator;
-    const whySerial = hasSerial ? "over Web Serial" : "this browser has no Web Serial (Chrome 89 or newer has it)";
+    const whySerial = hasSerial ? "over Web Serial" : "this browser has no Web Serial: Chromium and Firefox have it";
     const choices = [
       this.#choice("Simulator", () => this.#engine.simulate(), "the same firmware, in this page"),
       this.#choice("Board on a USB port…", hasSerial && serial, whySerial),
     ];
-    const bridge = this.#bridge;
-    if (bridge) {
-      const connect = () => this.#engine.connectSocket(bridge);
-      choices.push(this.#choice("Board of frixel studio", connect, "the serial port that the command was given"));
-    }
     this.#dialog.replaceChildren(
       element("div", { className: "head" }, element("h2", {}, "Board"), close),
       element(
