@@ -6,6 +6,7 @@
 export const FLASH_LEN = 2 * 1024 * 1024;
 const FLASH_START = 0x1000_0000;
 const FLASH_END = 0x1400_0000;
+
 /** Code of a ROM function or table: two letters. @param {string} letters */
 const code = (letters) => letters.charCodeAt(0) | (letters.charCodeAt(1) << 8);
 /** The ROM's functions that an image calls; each is one breakpoint instruction, whose number is its place here. */
