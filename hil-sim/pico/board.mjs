@@ -193,11 +193,6 @@ export class Board {
     return this.#pins.hasI2cPins;
   }
 
-  /** The power is cut now, by the flash. */
-  losePower() {
-    this.#end(CAUSE.POWER);
-  }
-
   #end(cause) {
     this.#endsWith ??= cause;
     this.#hasStopped = true;
@@ -326,11 +321,6 @@ export class Board {
   jump(address) {
     this.#core.PC = address;
     this.#core.waiting = false;
-  }
-
-  /** @param {number} operations @param {number} fraction */
-  cutAtFlashOperation(operations, fraction) {
-    this.#flash.cutAfter(operations, fraction);
   }
 
   /** What the next start finds. @param {number} cause @param {(sram: Uint8Array) => void} scramble */

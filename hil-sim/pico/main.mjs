@@ -86,9 +86,6 @@ class Rig {
       case REQUEST.JUMP:
         this.#board.jump(values[0]);
         return [];
-      case REQUEST.CUT_AT_FLASH_OPERATION:
-        this.#board.cutAtFlashOperation(values[0], values[1] / 2 ** 32);
-        return [];
       case REQUEST.ADDRESS_OF:
         return [this.#image.addressOf(String.fromCharCode(...values)) ?? 0];
       case REQUEST.STOP_CRYSTAL:

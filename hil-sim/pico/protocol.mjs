@@ -15,9 +15,6 @@ export const REQUEST = {
   HANG_MAIN_LOOP: 5,
   /** Jump to an address. */
   JUMP: 6,
-  /** Cut the power at a flash operation: how many are still carried out, and which part of the
-   *  next one, as a fraction of 2^32. */
-  CUT_AT_FLASH_OPERATION: 7,
   /** The address of a function: bytes of its name. */
   ADDRESS_OF: 8,
   /** Stop the crystal for ever: core and state machines stand still, pins stay as they are. */
@@ -48,7 +45,7 @@ export const ENDED = {
   FRAME: 1,
   /** So many instructions were carried out. */
   INSTRUCTIONS: 2,
-  /** The board has reset itself, or lost its power at a flash operation. */
+  /** The board has reset itself. */
   RESET: 3,
   /** The touch frame is asked for an answer, or hears that a transfer or a clock has ended. */
   FRAME_ASKED: 4,
@@ -66,8 +63,6 @@ export const EVENT = {
   LED: 4,
   /** The board starts: cause. */
   START: 5,
-  /** A flash operation begins: address, and bytes that are erased (0) or programmed. */
-  FLASH: 6,
   /** The firmware reads the amplifier's monitor: ns since SYNC rose last. */
   MONITOR_READ: 7,
   /** A transfer on I2C begins, and waits for an acknowledgement: address; 1 if it reads. */

@@ -14,6 +14,8 @@ pub enum RigFault {
     World(WorldFault),
     /// The board is reset.
     Reset,
+    /// The board is reset, and finds wrong option bytes from then on.
+    OptionBytes,
     /// One tick of the board is late.
     LateTick,
     /// The board's tick count is set to this many ticks before its 32 bits wrap around.

@@ -88,9 +88,12 @@ impl BoardRig for InProcessRig<'_> {
                 let now = world.tick();
                 world.schedule_fault(now..now.saturating_add(ticks), fault)?;
             }
-            RigFault::Reset => {
+            RigFault::Reset | RigFault::OptionBytes => {
                 let reason = "its board has no memory left for another start";
                 let memory = self.memories.next().ok_or(RigError::FaultUnavailable { rig: "sim", reason })?;
+                if fault == RigFault::OptionBytes {
+                    self.rig.change_option_bytes();
+                }
                 self.rig.reset(memory);
             }
             RigFault::LateTick => self.rig.raise(Fault::Deadline, LATE_TICK_CYCLES),

@@ -35,7 +35,6 @@ mod person;
 mod pseudo_terminal;
 mod random;
 mod rig;
-mod simulated_flash;
 mod stroke;
 mod touch;
 mod world;

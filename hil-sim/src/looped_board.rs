@@ -15,19 +15,15 @@ use frixel_board::self_test::{
 use frixel_control::{Active, Board, Sense, Status, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
-use frixel_session::store::Slot;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::TickTimes;
 
-pub use crate::simulated_flash::SimulatedFlash;
 use one_shot::OneShot;
 #[cfg(unix)]
 pub use terminal_port::TerminalPort;
 use wrong::Progress;
 pub use wrong::Wrong;
 
-/// Memory as the NUCLEO has it, and enough of it for limits and a scene.
-type BoardFlash = SimulatedFlash<34, 2048>;
 /// Ticks of a round of the main loop.
 const ROUND_TICKS: u32 = 4;
 /// Cycles of a tick at rest, and under the largest scene.
@@ -65,8 +61,6 @@ pub struct LoopedRig<P> {
     ticker: Ticker<'static>,
     status: Status,
     meter: TickMeter,
-    flash: BoardFlash,
-    kept: u32,
     /// Bytes that the board has received, for a line that loses some.
     received: usize,
     latch_moved: bool,
@@ -91,8 +85,6 @@ impl<P: Port> LoopedRig<P> {
             status: ticker.status(),
             ticker,
             meter: TickMeter::new(DEADLINE_CYCLES),
-            flash: BoardFlash::new(),
-            kept: 0,
             received: 0,
             latch_moved: false,
             one_shot: OneShot::default(),
@@ -103,18 +95,13 @@ impl<P: Port> LoopedRig<P> {
         }
     }
 
-    /// Runs the self-test to its end, over its resets.
+    /// Runs the self-test to its end.
     pub fn run(&mut self) -> Result<u32, Stop> {
-        loop {
-            let kept = core::mem::take(&mut self.kept);
-            let result = frixel_board::self_test::run(self, kept);
-            if result != Err(Stop::Reset) {
-                // What the script has left as it is goes on.
-                (0..10 * one_shot::ONE_SHOT_US * one_shot::CYCLES_PER_US).for_each(|_| _ = self.cycles());
-                self.port.end();
-                return result;
-            }
-        }
+        let result = frixel_board::self_test::run(self);
+        // What the script has left as it is goes on.
+        (0..10 * one_shot::ONE_SHOT_US * one_shot::CYCLES_PER_US).for_each(|_| _ = self.cycles());
+        self.port.end();
+        result
     }
 
     /// The other end of its line.
@@ -165,9 +152,6 @@ impl<P: Port> LoopedRig<P> {
 }
 
 impl<P: Port> LoopedBoard for LoopedRig<P> {
-    type Flash = BoardFlash;
-
-    const SLOT: Slot = Slot { first_page: 2, pages: 16 };
     const LATCH_CYCLES: u32 = 4_100;
     const ONE_SHOT_US: u32 = one_shot::ONE_SHOT_US;
     const CYCLES_PER_US: u32 = one_shot::CYCLES_PER_US;
@@ -310,10 +294,6 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
         self.meter.times(self.ticker.status().counters.missed_deadlines)
     }
 
-    fn flash(&mut self) -> Option<&mut BoardFlash> {
-        (!self.is(Wrong::OneBank)).then_some(&mut self.flash)
-    }
-
     fn read(&mut self, bytes: &mut [u8]) -> usize {
         let len = self.port.read(bytes);
         self.received += len;
@@ -327,13 +307,5 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
 
     fn write(&mut self, bytes: &[u8]) -> usize {
         self.port.write(bytes)
-    }
-
-    fn reset(&mut self, kept: u32) {
-        self.kept = kept;
-        self.flash.reset();
-        if self.is(Wrong::StoreLost) {
-            self.flash.erase_all();
-        }
     }
 }

@@ -6,6 +6,7 @@ use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
 use frixel_session::{Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 use frixel_wire::fault::Fault;
+use frixel_wire::hello::notice;
 use frixel_wire::message::Refusal;
 
 use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
@@ -128,6 +129,11 @@ impl<'a> Rig<'a> {
         (self.session, self.ticker) = started(self.board, memory);
         self.status = self.ticker.status();
         self.scene = None;
+    }
+
+    /// Makes the board's option bytes wrong, which it finds at its next start.
+    pub fn change_option_bytes(&mut self) {
+        self.board.notices |= notice::OPTION_BYTES;
     }
 
     /// Lets the board find a fault of its own, as a late tick does.

@@ -120,7 +120,7 @@ fn a_board_in_order_passes_and_its_last_line_says_so() {
     assert_eq!(result, Ok(0), "{}", person.said);
     let measured = person.measured().len() as u32;
     assert_eq!(Said::parse(person.said.trim_end().lines().last().unwrap()), Some(Said::End { measured, failed: 0 }));
-    assert!(measured >= 25, "{}", person.said);
+    assert!(measured >= 20, "{}", person.said);
     let found = |name| person.measured().into_iter().find(|(known, ..)| *known == name).unwrap().1;
     // Half a second of blocks of 137 bytes, at 200,000 bytes a second.
     assert!((700..=740).contains(&found("line_blocks_received")), "{}", person.said);
@@ -128,7 +128,6 @@ fn a_board_in_order_passes_and_its_last_line_says_so() {
     assert!(received > 700 && missing == 0 && damaged <= 1, "{:?}", person.result);
     // The scene fills what a tick may take but for the smallest layer.
     assert!((1_900..=2_040).contains(&found("tick_estimated_core_cycles")), "{}", person.said);
-    assert_eq!(person.said.matches("frixel self-test").count(), 4, "three resets");
 }
 
 #[test]
@@ -161,7 +160,6 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
         (Wrong::AdcDead, Stop::MonitorNotZero(0)),
         (Wrong::EnableStuckHigh, Stop::Resting(Wire::Enable, Levels::HIGH)),
         (Wrong::EnableStaysHigh, Stop::EnableStaysHigh),
-        (Wrong::OneBank, Stop::NoFlash),
         (Wrong::TickLate, Stop::Drive(DriveError::Fault(Fault::Deadline, 3_701))),
     ] {
         let (result, rig) = self_test(wrong, true);
@@ -196,7 +194,6 @@ fn each_wrong_measurement_fails_by_its_name() {
         (Wrong::LatchMoves, &["latch_spread_cycles", "latch_spread_cycles_under_ticks"]),
         (Wrong::LatchMovesUnderTicks, &["latch_spread_cycles_under_ticks"]),
         (Wrong::AdcFrozen, &["adc_at_300_mv", "adc_at_3000_mv"]),
-        (Wrong::StoreLost, &["store_whole_after_reset_in_erasure"]),
         (Wrong::TicksSlow, &["flash_wait_percent"]),
         (Wrong::LineLoses, &["line_blocks_missing", "line_pieces_damaged"]),
     ] {

@@ -42,7 +42,6 @@ fn scene_of(waveform: Waveform, random: &mut Random) -> Vec<u8> {
         voltage_max_v_peak: PEAK_V,
         slew_v_per_s: SLEW_V_PER_S,
         host_timeout_s: HOST_TIMEOUT_TICKS as f32 / TICK_HZ,
-        autonomous: false,
         ..HEADER
     };
     scene(&header, &[constant(random.pick([0.002, 0.01, 0.03]))])

@@ -8,9 +8,8 @@ use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::payload::{self, Payload};
 
-/// A scene that needs no host.
-const HEADER: Header =
-    Header { voltage_max_v_peak: 220.0, host_timeout_s: 1.0, autonomous: true, ..frixel_testkit::HEADER };
+/// A scene whose host may be silent for a second.
+const HEADER: Header = Header { voltage_max_v_peak: 220.0, host_timeout_s: 1.0, ..frixel_testkit::HEADER };
 
 /// Plays a constant under the finger's stroke.
 fn playing(header: &Header, electric_friction_n: f32, seed: u64) -> Script {
@@ -88,7 +87,7 @@ fn the_plant_has_the_boards_law_where_the_peak_limit_binds() {
     for (waveform, voltage_max_v_peak) in
         [(Waveform::Square, 141.0), (Waveform::Square, 100.3), (Waveform::Sine, 170.0)]
     {
-        let header = Header { waveform, voltage_max_v_peak, host_timeout_s: 1.0, autonomous: true, ..whole };
+        let header = Header { waveform, voltage_max_v_peak, host_timeout_s: 1.0, ..whole };
         let mut differs_from_rms_limit = false;
         // At the bends, and between them.
         for friction_n in [2.47e-3_f32, 5.52e-3, 6.07e-3, 0.01, 0.0135, 0.0159] {
@@ -109,7 +108,7 @@ fn the_plant_has_the_boards_law_where_the_peak_limit_binds() {
 
 #[test]
 fn a_cut_cable_ends_at_zero_within_the_host_timeout() {
-    let header = Header { autonomous: false, host_timeout_s: 0.1, ..HEADER };
+    let header = Header { host_timeout_s: 0.1, ..HEADER };
     let mut rig = playing(&header, 0.01, 1).rig;
     let cut_at_tick = rig.tick();
     let sent = rig.line_to_board_mut().bytes().sent;

@@ -150,7 +150,7 @@ pub(crate) const IMAGES: [Image; 5] = [
             &["--features", "optical-frame"],
             &["--no-default-features"],
             &["--no-default-features", "--features", "grating"],
-            &["--no-default-features", "--features", "bitmap,store,panic-message"],
+            &["--no-default-features", "--features", "bitmap,panic-message"],
         ],
     },
     Image {

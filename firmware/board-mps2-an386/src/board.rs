@@ -27,7 +27,6 @@ impl Hardware for Mps2 {
     type Switch = Switch;
     type Light = NoLight;
     type Serial = Uart;
-    type Store = ();
     type Watchdog = NoWatchdog;
 }
 

@@ -84,9 +84,7 @@ fn run(
         serial: Some(SerialLink::new(Uart::start(bytes, &mut peripherals.NVIC))),
         dac: NoDac,
         light: StateLight::new(NoLight, Mps2::TICK_HZ),
-        store: (),
         watchdog: NoWatchdog,
-        record: &fault::RECORD,
     };
     // Without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by several ticks,
     // which the tick treats as a missed deadline.
@@ -98,10 +96,10 @@ fn run(
 
 /// The board's description at the start.
 fn started(text: &'static mut Text) -> Board {
-    let LastReset { cause, fault, text, fault_starts } = fault::last_reset(text);
+    let LastReset { cause, fault, text } = fault::last_reset(text);
     let (number, detail) = fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
     shared::set(layout::LAST_FAULT, number.into());
     shared::set(layout::LAST_FAULT_DETAIL, detail);
     shared::publish(layout::STARTS, shared::get(layout::STARTS).wrapping_add(1));
-    Board { reset_cause: cause, reset_fault: fault, reset_text: text, reset_fault_starts: fault_starts, ..BOARD }
+    Board { reset_cause: cause, reset_fault: fault, reset_text: text, ..BOARD }
 }

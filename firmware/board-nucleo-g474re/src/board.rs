@@ -1,20 +1,17 @@
-//! Identity, stores and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them,
+//! Identity and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them,
 //! too.
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
 use frixel_control::{AmplifierSpec, Board};
 use frixel_drivers::monitor::MonitorScale;
-#[cfg(feature = "store")]
-use frixel_session::store::SceneStore;
-use frixel_session::store::{Ceilings, Flash, Slot, check_touched_board, load_limits};
-use frixel_wire::hello::{BoardKind, BoardLimits};
-use frixel_wire::scene::RECORDS_MAX;
+use frixel_session::store::{Ceilings, Slot, check_touched_board, load_limits};
+use frixel_wire::hello::{BoardKind, BoardLimits, notice};
 use stm32_metapac::UID;
 
 use crate::adc::Adc;
 use crate::dac::{Dac, Frames};
-use crate::flash::{BankTwo, PAGES};
+use crate::flash::{self, BankTwo};
 use crate::output::Output;
 use crate::period::Period;
 use crate::pins::Pin;
@@ -36,10 +33,6 @@ impl Hardware for Nucleo {
     type Switch = Pin;
     type Light = Pin;
     type Serial = Serial;
-    #[cfg(feature = "store")]
-    type Store = Option<(SceneStore, BankTwo)>;
-    #[cfg(not(feature = "store"))]
-    type Store = ();
     type Watchdog = Watchdog;
 }
 
@@ -81,19 +74,12 @@ pub const CEILINGS: Ceilings =
 pub const AMPLIFIER: AmplifierSpec = Board::NUCLEO_G474RE.amplifier;
 
 /// Where the limits are stored: the first two pages of bank 2.
-pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: 1 };
-/// Where the last scene is stored: the rest of bank 2, 126 KiB a copy. 64 KiB of bitmaps and the largest scene need 71
-/// KiB.
-pub const SCENE_SLOT: Slot = Slot { first_page: 2, pages: (PAGES - 2) / 2 };
-
-const _: () = assert!(
-    SCENE_SLOT.capacity::<BankTwo>() as usize
-        >= frixel_layers::BITMAP_POOL_LEN + frixel_layers::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
-);
-
-/// The board's description, with the cause of the last reset.
+pub const LIMITS_SLOT: Slot = Slot { first_page: 0 };
+/// The board's description, with the cause of the last reset. Wrong option bytes are one of its notices, and refuse
+/// arming.
 pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
     let (limits, notices) = load_limits(flash, LIMITS_SLOT, &LIMITS, CEILINGS);
+    let wrong = if flash::option_bytes_are_right() { 0 } else { notice::OPTION_BYTES };
     // Field by field: the rest of `Board::NUCLEO_G474RE` copied would take 90 bytes of flash.
     Board {
         kind: BoardKind::NucleoG474re,
@@ -101,13 +87,11 @@ pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
         tick_hz: TICK_HZ,
         limits,
         amplifier: AMPLIFIER,
-        hold_to_run: Board::NUCLEO_G474RE.hold_to_run,
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
-        reset_fault_starts: last_reset.fault_starts,
         touch_from_host: !cfg!(feature = "optical-frame"),
-        notices,
+        notices: notices | wrong,
     }
 }
 
@@ -119,5 +103,3 @@ fn unique_number() -> [u8; 12] {
     }
     id
 }
-
-const _: () = assert!(BankTwo::PAGE_LEN == 2048);

@@ -1,4 +1,4 @@
-//! Bank 2 of the flash, which holds the stores. The image runs from bank 1, and operations on bank 2 do not stall it
+//! Bank 2 of the flash, which holds the stored limits. The image runs from bank 1, and operations on bank 2 do not stall it
 //! unless bank 2 is read meanwhile (RM0440, "Embedded flash memory": "Read-while-write", "Flash program and erase
 //! operations").
 
@@ -6,13 +6,13 @@ use core::ptr;
 use core::sync::atomic::{AtomicBool, Ordering, compiler_fence};
 
 use frixel_drivers::stm32g4;
-use frixel_session::store::{Flash, Operation, WORD_LEN};
+use frixel_session::store::{Flash, Operation, WORD_LEN, WritableFlash};
 use stm32_metapac::FLASH;
 
 /// First byte of bank 2.
 const START: u32 = 0x0804_0000;
 /// Number of pages of bank 2.
-pub const PAGES: u32 = 128;
+const PAGES: u32 = 128;
 const LEN: u32 = PAGES * BankTwo::PAGE_LEN;
 /// Keys that unlock the control register, in this order.
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
@@ -71,7 +71,9 @@ impl Flash for BankTwo {
         READING.store(false, Ordering::Relaxed);
         !UNREADABLE.load(Ordering::Relaxed)
     }
+}
 
+impl WritableFlash for BankTwo {
     fn begin_erase(&mut self, page: u32) {
         if page >= PAGES {
             return;
@@ -130,9 +132,9 @@ fn clear_flags() {
     FLASH.sr().modify(|_| {});
 }
 
-/// What differs in the option bytes from what the board needs.
-pub fn option_byte_warnings() -> impl Iterator<Item = &'static str> {
-    stm32g4::option_byte_warnings(FLASH.optr().read().0)
+/// Whether the option bytes are those that the board needs.
+pub fn option_bytes_are_right() -> bool {
+    stm32g4::option_bytes_are_right(FLASH.optr().read().0)
 }
 
 /// Returns whether a non-maskable interrupt has reported a word of bank 2 that cannot be corrected, as when power

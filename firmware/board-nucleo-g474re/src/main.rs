@@ -5,8 +5,6 @@
 use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::dac::DacError;
 use board_nucleo_g474re::fault;
-#[cfg(feature = "log")]
-use board_nucleo_g474re::flash;
 use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
@@ -25,8 +23,6 @@ use frixel_control::StreamBuffer;
 use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
-#[cfg(feature = "store")]
-use frixel_session::store::SceneStore;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 use stm32_metapac::interrupt;
 
@@ -64,9 +60,8 @@ fn start(text: &'static mut Text, memory: &'static mut Memory) -> MainLoop<Nucle
     let (frames, mut dac) = dac::start();
     log_dac(dac.prepare());
 
-    let flash = BankTwo::new();
-    let board = board::board(&last_reset, flash.as_ref());
-    log(&board, flash.is_some());
+    let board = board::board(&last_reset, BankTwo::new().as_ref());
+    log(&board);
     #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
     let (mut ticker, session, session_ends, tick_ends) = memory.make(board);
     #[cfg(feature = "telemetry")]
@@ -77,10 +72,6 @@ fn start(text: &'static mut Text, memory: &'static mut Memory) -> MainLoop<Nucle
         session.attach_stream(&STREAM);
     }
     let status = ticker.status();
-    #[cfg(not(feature = "store"))]
-    let store = ();
-    #[cfg(feature = "store")]
-    let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, board::TICK_HZ, &flash, session), flash));
 
     let serial = Some(SerialLink::new(Serial::new()));
     tick::start(&TICK, ticker, tick_ends, frames, output);
@@ -92,21 +83,13 @@ fn start(text: &'static mut Text, memory: &'static mut Memory) -> MainLoop<Nucle
         serial,
         dac,
         light,
-        store,
         watchdog: Watchdog::start(),
-        record: &fault::RECORD,
     }
 }
 
 #[cfg(feature = "log")]
-fn log(board: &Board, bank: bool) {
-    defmt::info!("at most {=f32} V peak", board.limits.voltage_max_v_peak);
-    if !bank {
-        defmt::warn!("the flash is not in two banks (option byte DBANK): the scene is not stored");
-    }
-    for warning in flash::option_byte_warnings() {
-        defmt::warn!("option bytes: {=str}", warning);
-    }
+fn log(board: &Board) {
+    defmt::info!("at most {=f32} V peak, notices {=u8:#b}", board.limits.voltage_max_v_peak, board.notices);
 }
 
 /// A missing DAC is not a fault yet: it is checked again before the board arms.
@@ -121,4 +104,4 @@ fn log_dac(prepared: Result<(), DacError>) {
 fn log_dac(_: Result<(), DacError>) {}
 
 #[cfg(not(feature = "log"))]
-fn log(_: &Board, _: bool) {}
+fn log(_: &Board) {}

@@ -8,8 +8,7 @@ use stm32_metapac::{DBGMCU, IWDG};
 use crate::{clock, wait_until};
 
 /// Reload value, in counts of 4 clocks of the 32 kHz oscillator: 100 ms. The longest operations of the main loop are
-/// the table of a committed scene, 14 ms as measured on the emulated board (2026-11-20), and the check of a written
-/// scene, 85 KiB through a CRC without a table, some 30 ms.
+/// the table of a committed scene, 14 ms as measured on the emulated board (2026-11-20).
 const RELOAD: u16 = 800;
 
 /// The watchdog.

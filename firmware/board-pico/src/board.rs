@@ -1,21 +1,18 @@
-//! Identity, stores and limits of this board. The limits stand in `Board::PICO_2` and `Board::PICO`, where the host
+//! Identity and limits of this board. The limits stand in `Board::PICO_2` and `Board::PICO`, where the host
 //! finds them, too.
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
 use frixel_control::Board;
 use frixel_drivers::monitor::MonitorScale;
-use frixel_drivers::rp2::LIMITS_PAGES;
-#[cfg(feature = "store")]
-use frixel_session::store::SceneStore;
 use frixel_session::store::{Ceilings, Slot, check_touched_board, load_limits};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::scene::RECORDS_MAX;
 
 use crate::adc::Adc;
 use crate::chip::{BOARD, TICK_HZ};
 use crate::dac::{Dac, Frames};
-use crate::flash::{PAGES, StoreFlash};
+use crate::flash::StoreFlash;
+use crate::unique_number::unique_number;
 use crate::output::Output;
 use crate::period::Period;
 use crate::pins::Pin;
@@ -37,10 +34,6 @@ impl Hardware for Pico {
     type Switch = Pin;
     type Light = Pin;
     type Serial = Serial;
-    #[cfg(feature = "store")]
-    type Store = Option<(SceneStore, StoreFlash)>;
-    #[cfg(not(feature = "store"))]
-    type Store = ();
     type Watchdog = Watchdog;
 }
 
@@ -64,22 +57,14 @@ const _: () = assert!(check_touched_board(&LIMITS).is_ok());
 pub const CEILINGS: Ceilings =
     if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
 
-/// Where the limits are stored: at the beginning of the stores.
-pub const LIMITS_SLOT: Slot = Slot { first_page: 0, pages: LIMITS_PAGES };
-/// Where the last scene is stored: the rest, 124 KiB a copy. 64 KiB of bitmaps and the largest scene need 71 KiB.
-pub const SCENE_SLOT: Slot = Slot { first_page: 2 * LIMITS_PAGES, pages: (PAGES - 2 * LIMITS_PAGES) / 2 };
-
-const _: () = assert!(
-    SCENE_SLOT.capacity::<StoreFlash>() as usize
-        >= frixel_layers::BITMAP_POOL_LEN + frixel_layers::SCENE_MAX_LEN + (1 + RECORDS_MAX) * 16
-);
-
+/// Where the limits are stored.
+pub const LIMITS_SLOT: Slot = Slot { first_page: 0 };
 /// The board's description, with the cause of the last reset.
-pub fn board(last_reset: &LastReset, flash: Option<&StoreFlash>) -> Board {
-    let (limits, notices) = load_limits(flash, LIMITS_SLOT, &LIMITS, CEILINGS);
+pub fn board(last_reset: &LastReset) -> Board {
+    let (limits, notices) = load_limits(Some(&StoreFlash), LIMITS_SLOT, &LIMITS, CEILINGS);
     let mut id = *b"pico\0\0\0\0\0\0\0\0";
-    if let (Some(number), Some(flash)) = (id.last_chunk_mut(), flash) {
-        *number = flash.unique_number();
+    if let (Some(place), Some(number)) = (id.last_chunk_mut(), unique_number()) {
+        *place = number;
     }
     Board {
         id,
@@ -87,7 +72,6 @@ pub fn board(last_reset: &LastReset, flash: Option<&StoreFlash>) -> Board {
         reset_cause: last_reset.cause,
         reset_fault: last_reset.fault,
         reset_text: last_reset.text,
-        reset_fault_starts: last_reset.fault_starts,
         touch_from_host: !cfg!(feature = "optical-frame"),
         notices,
         ..BOARD

@@ -4,7 +4,7 @@
 //!
 //! The Pico 2 is the board. The RP2040 has no floating-point unit, so that the Pico manages a fifth of the tick rate;
 //! it is there because an emulator runs its image in this repository's CI. One source serves both. The differences are
-//! in [`chip`], [`clock`], [`rom`] and [`boot`].
+//! in [`chip`], [`clock`], [`boot`] and the unique number.
 //!
 //! One interrupt, [`tick`], runs above everything. Everything else runs in the main loop, but for the interrupt that
 //! stores received bytes ([`serial`]). The code that knows neither chip is in `firmware/board`.
@@ -37,7 +37,8 @@ pub mod output;
 pub mod period;
 pub mod pins;
 mod pio;
-pub mod rom;
+#[cfg(feature = "rp2040")]
+mod rom;
 pub mod serial;
 pub mod tick;
 mod unique_number;

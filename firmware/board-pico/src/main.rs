@@ -6,10 +6,7 @@
 use core::pin::pin;
 
 use board_pico::board::Pico;
-#[cfg(feature = "store")]
-use board_pico::chip::TICK_HZ;
 use board_pico::dac::DacError;
-use board_pico::flash::StoreFlash;
 #[cfg(feature = "optical-frame")]
 use board_pico::optical_frame;
 use board_pico::output::Output;
@@ -29,8 +26,6 @@ use frixel_control::StreamBuffer;
 use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::serial::SerialLink;
-#[cfg(feature = "store")]
-use frixel_session::store::SceneStore;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 /// Samples of a stream, written by the session and read by the tick.
@@ -77,8 +72,7 @@ fn start(text: &'static mut Text, memory: &'static mut Memory) -> MainLoop<Pico>
     let (frames, mut dac) = dac::start();
     log_dac(dac.prepare());
 
-    let flash = StoreFlash::new();
-    let board = board::board(&last_reset, flash.as_ref());
+    let board = board::board(&last_reset);
     #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
     let (mut ticker, session, session_ends, tick_ends) = memory.make(board);
     #[cfg(feature = "telemetry")]
@@ -89,10 +83,6 @@ fn start(text: &'static mut Text, memory: &'static mut Memory) -> MainLoop<Pico>
         session.attach_stream(&STREAM);
     }
     let status = ticker.status();
-    #[cfg(not(feature = "store"))]
-    let store = ();
-    #[cfg(feature = "store")]
-    let store = flash.map(|flash| (SceneStore::new(board::SCENE_SLOT, TICK_HZ, &flash, session), flash));
 
     let serial = Some(SerialLink::new(Serial::new()));
     tick::start(&mut core.NVIC, ticker, tick_ends, frames, output);
@@ -104,9 +94,7 @@ fn start(text: &'static mut Text, memory: &'static mut Memory) -> MainLoop<Pico>
         serial,
         dac,
         light,
-        store,
         watchdog: Watchdog::start(),
-        record: &fault::RECORD,
     }
 }
 

@@ -2,8 +2,9 @@
 
 /// Of the flash, because the RP2040 has none (data sheet of the W25Q16JV, "Read Unique ID Number", unread).
 #[cfg(feature = "rp2040")]
-pub(crate) fn unique_number(rom: &crate::rom::FlashFunctions) -> [u8; 8] {
-    rom.without_xip(|| {
+pub(crate) fn unique_number() -> Option<[u8; 8]> {
+    let rom = crate::rom::FlashFunctions::find()?;
+    Some(rom.without_xip(|| {
         /// The command, and four bytes that do not matter.
         const COMMAND: [u8; 5] = [0x4b, 0, 0, 0, 0];
         let mut number = [0; 8];
@@ -16,19 +17,20 @@ pub(crate) fn unique_number(rom: &crate::rom::FlashFunctions) -> [u8; 8] {
         }
         flash::select(false);
         number
-    })
+    }))
 }
 
 /// Of the chip (RP2350, 13.10, "Predefined OTP Data Locations": CHIPID0).
 #[cfg(feature = "rp2350")]
-pub(crate) fn unique_number(_: &crate::rom::FlashFunctions) -> [u8; 8] {
+#[allow(clippy::unnecessary_wraps, reason = "on the other chip, there may be none")]
+pub(crate) fn unique_number() -> Option<[u8; 8]> {
     let otp = rp_pac::OTP_DATA;
     let rows = [otp.chipid0(), otp.chipid1(), otp.chipid2(), otp.chipid3()];
     let mut number = [0; 8];
     for (bytes, row) in number.as_chunks_mut::<2>().0.iter_mut().zip(rows) {
         *bytes = row.read().to_le_bytes();
     }
-    number
+    Some(number)
 }
 
 /// The interface of the flash as the boot ROM leaves it: bytes in both directions, with the chip select as software

@@ -8,10 +8,7 @@ use rp_pac::{PSM, WATCHDOG};
 use crate::chip::WATCHDOG_COUNTS_PER_TICK;
 
 /// Time in which the main loop and the tick must both have run, if the ring oscillator is as fast as it may be; a slow
-/// one makes it up to seven times as long. The longest operation is an erasure of the flash, before which the watchdog
-/// is fed: 400 ms at most. The check of a written scene, 85 KiB through a CRC without a table, takes some 25 ms on an
-/// RP2040 (estimated), and three times that under ticks of the longest scene. No limit of the output depends on this
-/// time.
+/// one makes it up to seven times as long. No limit of the output depends on this time.
 const LIFE_US: u32 = 500_000;
 
 /// The watchdog.

@@ -26,12 +26,10 @@ pub struct LastReset {
     pub fault: Option<(Fault, u32)>,
     /// The text stored with the fault.
     pub text: &'static [u8],
-    /// Number of starts in a row before this one that ended in a fault.
-    pub fault_starts: u8,
 }
 
 impl LastReset {
-    /// Takes the stored fault from the record and counts this start in it. To be called once in each start. `cause` is
+    /// Takes the stored fault from the record and marks the record as used. To be called once in each start. `cause` is
     /// what the processor says.
     pub fn take(cause: ResetCause, record: &FaultRecord, text: &'static mut Text) -> Self {
         let (fault, text): (_, &[u8]) = match record.take(text) {
@@ -41,7 +39,8 @@ impl LastReset {
             }
             None => (None, b""),
         };
-        Self { cause, fault, text, fault_starts: record.count_start(fault.is_some()) }
+        record.mark();
+        Self { cause, fault, text }
     }
 
     /// Logs it.

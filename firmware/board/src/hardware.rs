@@ -10,7 +10,6 @@
 //! | amplifier's ready line, arm switch | [`InputPin`] of `embedded-hal` | tick |
 //! | state light | [`OutputPin`] of `embedded-hal` | main loop |
 //! | serial port | [`Read`], [`Write`] and their readiness, of `embedded-io` | main loop |
-//! | stored scene | [`Store`], over the [`Flash`] of `frixel-session` | main loop |
 //! | watchdog | [`Watchdog`] | main loop |
 //! | processor | [`Processor`] | faults |
 //!
@@ -26,8 +25,6 @@ use embedded_hal::spi::SpiDevice;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_drivers::ad5761r::Ad5761r;
 use frixel_drivers::amplifier::KickedEnable;
-use frixel_session::Session;
-use frixel_session::store::{Flash, SceneStore};
 use frixel_wire::dac_code::DacCode;
 
 /// The parts of a board. The type that implements it needs no value: it only names the parts.
@@ -53,8 +50,6 @@ pub trait Hardware: 'static {
     type Light: OutputPin;
     /// The serial port to the host. Neither direction fails; bytes that are lost damage a frame, which is sent again.
     type Serial: ErrorType<Error = Infallible> + Read + ReadReady + Write + WriteReady;
-    /// The stored scene.
-    type Store: Store;
     /// The watchdog.
     type Watchdog: Watchdog;
 
@@ -140,24 +135,4 @@ pub trait Processor {
 
     /// Resets the processor.
     fn reset(&self) -> !;
-}
-
-/// The stored scene. A board with flash for it implements [`Flash`], and its store is an `Option<(SceneStore, F)>`:
-/// `None` if the flash turned out not to be usable. The store of a board without flash is `()`.
-pub trait Store {
-    /// Begins at most one operation of the flash, and only while the board is disarmed.
-    fn step(&mut self, session: &mut Session<'static>, now_tick: u32);
-}
-
-impl<F: Flash> Store for Option<(SceneStore, F)> {
-    #[inline]
-    fn step(&mut self, session: &mut Session<'static>, now_tick: u32) {
-        if let Some((store, flash)) = self {
-            store.step(flash, session, now_tick);
-        }
-    }
-}
-
-impl Store for () {
-    fn step(&mut self, _: &mut Session<'static>, _: u32) {}
 }

@@ -1,4 +1,4 @@
-//! A host on the board, which plays a stored scene to session and ticker: for programs that have no host at their port.
+//! A host on the board, which plays a scene to session and ticker: for programs that have no host at their port.
 
 use core::fmt;
 
@@ -6,7 +6,8 @@ use frixel_control::Status;
 use frixel_session::{Session, Touch};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
-use frixel_wire::message::{Command, Request};
+use frixel_wire::hello::notice;
+use frixel_wire::message::{Command, Refusal, Request};
 use frixel_wire::payload;
 
 /// Host timeout of the scenes that this host plays, s.
@@ -22,8 +23,8 @@ const FINGER_Y_M: f32 = 0.05;
 /// Why a scene was not played to the end. The output is zero, and the board is disarmed or faulted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveError {
-    /// The session has refused the scene: it is beyond the board's limits.
-    Refused,
+    /// The session has refused the scene.
+    Refused(Refusal),
     /// The board was not armed, or not disarmed, in time; it was in this state.
     State(State),
     /// The supervisor has latched a fault.
@@ -35,7 +36,7 @@ pub enum DriveError {
 impl fmt::Display for DriveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Refused => f.write_str("the firmware refuses this voltage: it is beyond the limits of this build"),
+            Self::Refused(refusal) => refusal.fmt(f),
             Self::State(state) => write!(f, "the board did not do what it was told, and is {state}"),
             Self::Fault(fault, detail) => write!(f, "{fault} (detail {detail})"),
             Self::NoReading => f.write_str("the monitor was not read: the main loop is too slow"),
@@ -43,13 +44,15 @@ impl fmt::Display for DriveError {
     }
 }
 
-/// Plays one stored scene for a time under a moving finger, and disarms the board again. The board's main loop calls
+/// Plays one scene for a time under a moving finger, and disarms the board again. The board's main loop calls
 /// [`LocalHost::step`] in every round, beside the session and with the tick running.
 #[derive(Debug)]
 pub(crate) struct LocalHost {
     tick_hz: f32,
     touch_period_ticks: u32,
     play_ticks: u32,
+    /// The board refuses to arm.
+    has_wrong_option_bytes: bool,
     phase: Phase,
     /// Tick at which the phase has begun.
     since_tick: u32,
@@ -86,6 +89,7 @@ impl LocalHost {
             tick_hz,
             touch_period_ticks: board.ticks(board.limits.touch_report_period_s),
             play_ticks: (play_s * tick_hz) as u32,
+            has_wrong_option_bytes: board.notices & notice::OPTION_BYTES != 0,
             phase: Phase::Loading,
             since_tick: 0,
             pinged_at_tick: 0,
@@ -100,8 +104,8 @@ impl LocalHost {
         self.play_ticks = 0;
     }
 
-    /// One round: tells the session what a host would. `scene` is as the store keeps it. The caller discards what the
-    /// session sends, so that it goes on listening.
+    /// One round: tells the session what a host would. The caller discards what the session sends, so that it goes on
+    /// listening.
     pub(crate) fn step(
         &mut self,
         scene: &[u8],
@@ -117,10 +121,9 @@ impl LocalHost {
         let ticks = now_tick.wrapping_sub(self.since_tick);
         let is_late = ticks > (ANSWER_S * self.tick_hz) as u32;
         match self.phase {
+            Phase::Loading if self.has_wrong_option_bytes => return Err(DriveError::Refused(Refusal::OptionBytes)),
             Phase::Loading => {
-                if !session.restore(|offset, bytes| read_at(scene, offset, bytes)) {
-                    return Err(DriveError::Refused);
-                }
+                session.commit_own(scene).map_err(DriveError::Refused)?;
                 self.send(Command::Arm, session, status);
                 self.enter(Phase::Arming, now_tick);
             }
@@ -184,16 +187,4 @@ impl LocalHost {
         };
         session.touch(Touch::Down { x_m: FINGER_SPEED_M_PER_S * played_s, y_m: FINGER_Y_M, age_ticks: 0 }, now_tick);
     }
-}
-
-/// Fills `bytes` from an offset of a stored scene; `false` beyond its end.
-fn read_at(stored: &[u8], offset: u32, bytes: &mut [u8]) -> bool {
-    let Some(rest) = stored.get(offset as usize..) else { return false };
-    if rest.is_empty() {
-        return false;
-    }
-    for (to, from) in bytes.iter_mut().zip(rest) {
-        *to = *from;
-    }
-    true
 }

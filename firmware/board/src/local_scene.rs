@@ -1,4 +1,4 @@
-//! Stored scenes for a [`LocalHost`](crate::local_host::LocalHost).
+//! Scenes for a [`LocalHost`](crate::local_host::LocalHost).
 
 use frixel_layers::{HEADER_LEN, Header, Leader, RECORD_LEN, Record, Waveform};
 
@@ -12,12 +12,9 @@ pub(crate) const CARRIER_HZ: f32 = 125.0;
 /// scene's limit.
 pub(crate) const OUT_OF_REACH_N: f32 = 100.0;
 
-/// Bytes of a stored scene without bitmaps in front of the scene: its length.
-const SCENE_OFFSET: usize = 8;
-
-/// Bytes of a stored scene with so many layers.
-pub(crate) const fn stored_len(layers: usize) -> usize {
-    SCENE_OFFSET + HEADER_LEN + layers * RECORD_LEN
+/// Bytes of a scene with so many layers.
+pub(crate) const fn scene_len(layers: usize) -> usize {
+    HEADER_LEN + layers * RECORD_LEN
 }
 
 /// The header of a scene that drives up to `peak_v` with a square carrier.
@@ -36,7 +33,6 @@ pub(crate) fn header(peak_v: f32) -> Header {
         carrier_hz: CARRIER_HZ,
         host_timeout_s: HOST_TIMEOUT_S,
         waveform: Waveform::Square,
-        autonomous: false,
         prediction: true,
         leader: Leader::First,
         layers_fixed: true,
@@ -45,9 +41,8 @@ pub(crate) fn header(peak_v: f32) -> Header {
     }
 }
 
-/// A scene as the store would keep it; `LEN` is [`stored_len`] of the largest number of records.
-pub(crate) fn stored<const LEN: usize>(header: &Header, records: &[Record]) -> heapless::Vec<u8, LEN> {
-    let len = ((HEADER_LEN + RECORD_LEN * records.len()) as u64).to_le_bytes();
+/// The bytes of a scene; `LEN` is [`scene_len`] of the largest number of records.
+pub(crate) fn scene<const LEN: usize>(header: &Header, records: &[Record]) -> heapless::Vec<u8, LEN> {
     let head = header.write(records.len() as u8, 0);
-    len.into_iter().chain(head).chain(records.iter().flat_map(Record::write)).take(LEN).collect()
+    head.into_iter().chain(records.iter().flat_map(Record::write)).take(LEN).collect()
 }

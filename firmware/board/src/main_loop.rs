@@ -1,13 +1,12 @@
 //! The main loop: runs the session between serial port and tick, and all work that is not urgent.
 
 use frixel_control::{Order, Status};
-use frixel_drivers::fault_record::FaultRecord;
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 use frixel_session::{Session, SessionEnds, Touch};
 use frixel_wire::fault::{Fault, State};
 
-use crate::hardware::{Dac, Hardware, Store, Watchdog};
+use crate::hardware::{Dac, Hardware, Watchdog};
 use crate::tick::TickShared;
 
 /// All that runs in the main loop.
@@ -26,12 +25,8 @@ pub struct MainLoop<H: Hardware> {
     pub dac: H::Dac,
     /// The light that shows the state.
     pub light: StateLight<H::Light>,
-    /// The stored scene.
-    pub store: H::Store,
     /// Resets the processor when this loop or the tick stops.
     pub watchdog: H::Watchdog,
-    /// The record that counts the starts that ended in a fault.
-    pub record: &'static FaultRecord,
 }
 
 impl<H: Hardware> MainLoop<H> {
@@ -51,10 +46,7 @@ impl<H: Hardware> MainLoop<H> {
         if let Some(serial) = &mut self.serial {
             let Ok(()) = serial.transmit(|bytes| self.session.transmit(bytes));
         }
-        let now_tick = self.shared.count();
-        self.store.step(self.session, now_tick);
-        self.light.show(self.status.telemetry.state, now_tick);
-        self.record.has_run_for(now_tick, H::TICK_HZ);
+        self.light.show(self.status.telemetry.state, self.shared.count());
     }
 
     /// Takes a new status, if there is one. Only then it feeds the watchdog: a tick that stands still sends none.

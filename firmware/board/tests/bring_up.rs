@@ -14,6 +14,7 @@ use frixel_model::TouchBound;
 use frixel_session::store::{Ceilings, write_limits};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
+use frixel_wire::message::Refusal;
 
 const LIMITS: BoardLimits = BUILT_IN;
 /// What the board may store.
@@ -500,7 +501,7 @@ fn a_fault_ends_the_script_and_no_voltage_follows() {
             DriveError::Fault(Fault::ArmSwitch, 0),
             DriveError::Fault(Fault::Monitor, 7),
             DriveError::State(State::Disarmed),
-            DriveError::Refused,
+            DriveError::Refused(Refusal::OptionBytes),
             DriveError::NoReading,
         ] {
             let mut bench = TestBench { wrong_drive: Some((number, Err(error))), ..TestBench::new() };

@@ -7,6 +7,7 @@ use frixel_control::{Sense, Ticker};
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::fault::{Fault, State};
+use frixel_wire::message::Refusal;
 
 /// Ticks from one round of the main loop to the next, as long as a test says nothing else.
 const ROUND_TICKS: u32 = 4;
@@ -137,7 +138,8 @@ fn nothing_is_driven_without_a_press_after_the_last_drive() {
 fn a_voltage_beyond_the_limits_is_refused() {
     let mut board = TestBoard::new();
     board.press();
-    assert_eq!(board.drive(51.0, GOOD), Err(DriveError::Refused));
+    let refused = board.drive(51.0, GOOD);
+    assert!(matches!(refused, Err(DriveError::Refused(Refusal::Config(_)))), "{refused:?}");
     assert_eq!(board.last_driven_tick, None);
 }
 

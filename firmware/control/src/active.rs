@@ -17,9 +17,8 @@ pub struct Active {
     pub slew_step_v: f32,
     /// Largest rms voltage within all limits, in V.
     pub voltage_max_v_rms: f32,
-    /// Ticks without a frame from the host after which the board disarms; `None` for a scene that continues without a
-    /// host.
-    pub host_timeout_ticks: Option<u32>,
+    /// Ticks without a frame from the host after which the board disarms.
+    pub host_timeout_ticks: u32,
     /// Extrapolate the finger's position along its track. Otherwise the last measured position is used.
     pub prediction: bool,
     /// From electric friction to voltage; `None` without a scene.
@@ -38,7 +37,7 @@ impl Active {
             carrier: CarrierTiming::ZERO_OUTPUT,
             slew_step_v: 0.0,
             voltage_max_v_rms: 0.0,
-            host_timeout_ticks: None,
+            host_timeout_ticks: 0,
             prediction: true,
         }
     }
@@ -50,7 +49,7 @@ impl Active {
         self.carrier = CarrierTiming::ZERO_OUTPUT;
         self.slew_step_v = 0.0;
         self.voltage_max_v_rms = 0.0;
-        self.host_timeout_ticks = None;
+        self.host_timeout_ticks = 0;
         self.prediction = true;
     }
 

@@ -21,19 +21,12 @@ pub struct Board {
     pub limits: BoardLimits,
     /// What the amplifier is specified to do.
     pub amplifier: AmplifierSpec,
-    /// A person must hold the arm switch for as long as the board is armed, and a contact that does not open for ten
-    /// minutes of play is a fault. `false` for a switch that stays where it is put, and for a simulated one.
-    pub hold_to_run: bool,
     /// Why the processor started.
     pub reset_cause: ResetCause,
     /// The fault that caused the reset, and its detail number.
     pub reset_fault: Option<(Fault, u32)>,
     /// Description of that fault by the firmware, in UTF-8; empty without a fault.
     pub reset_text: &'static [u8],
-    /// Number of starts in a row before this one that ended in a fault: a panic, a hard fault or the watchdog. 0 after
-    /// power-on and after any reset that was not a fault. A start that has run for a minute ends the row: its own fault
-    /// is the first of the next. At most 255. Boards that do not count say 0.
-    pub reset_fault_starts: u8,
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
     /// Notices of the hello that hold from the start on ([`frixel_wire::hello::notice`]).
@@ -73,11 +66,9 @@ impl Board {
             turn_off: SwitchingTime::from_s(0.0),
             ready_while_disabled: ReadyWhileDisabled::High,
         },
-        hold_to_run: false,
         reset_cause: ResetCause::PowerOn,
         reset_fault: None,
         reset_text: b"",
-        reset_fault_starts: 0,
         touch_from_host: false,
         notices: 0,
     };
@@ -115,7 +106,6 @@ impl Board {
             turn_off: SwitchingTime::from_s(1e-3),
             ready_while_disabled: ReadyWhileDisabled::High,
         },
-        hold_to_run: true,
         touch_from_host: true,
         ..Self::SIMULATOR
     };

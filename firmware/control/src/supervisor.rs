@@ -9,11 +9,6 @@ use crate::{Board, Order, Sense};
 
 /// Host timeout before a scene has set one.
 const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
-/// Longest time of play without the arm switch open. A contact that is welded never opens, and a person who holds the
-/// switch is asked to let go from time to time. Ten minutes are longer than any stroke or trial (assumed).
-const SWITCH_HELD_MAX_S: f32 = 600.0;
-/// A number of ticks that never passes: longer than two tick counts can be apart.
-const NEVER: u32 = u32::MAX;
 
 /// State of the supervisor.
 #[derive(Clone, Copy, Debug)]
@@ -21,20 +16,11 @@ pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
     host_heard_at_tick: u32,
-    /// [`NEVER`] for a scene that continues without a host.
     host_timeout_ticks: u32,
     host_silent: bool,
     /// The arm switch was open at some tick since the reset or the last disarming: if it is held now, it was pressed
     /// since.
     switch_was_released: bool,
-    /// `None` on a board whose switch need not be held.
-    held_ticks_max: Option<u32>,
-    /// Ticks in Active since the switch was last open, up to the last time that Active was left for Armed. Every other
-    /// way out of Active leads through Disarmed, from where only an open switch leads back.
-    held_ticks: u32,
-    active_since_tick: u32,
-    /// Ticks from then on for which the switch may stay closed; [`NEVER`] on a board whose switch need not be held.
-    held_ticks_left: u32,
     monitor: MonitorCheck,
 }
 
@@ -47,10 +33,6 @@ impl Supervisor {
             host_timeout_ticks: host_timeout_default_ticks(board),
             host_silent: false,
             switch_was_released: false,
-            held_ticks_max: board.hold_to_run.then(|| board.ticks(SWITCH_HELD_MAX_S)),
-            held_ticks: 0,
-            active_since_tick: 0,
-            held_ticks_left: NEVER,
             monitor: MonitorCheck::new(board),
         }
     }
@@ -79,15 +61,8 @@ impl Supervisor {
                 self.state = State::Armed;
                 self.host_silent = false;
             }
-            (Order::Play, State::Armed) => {
-                self.state = State::Active;
-                self.active_since_tick = now_tick;
-                self.held_ticks_left = self.held_ticks_max.map_or(NEVER, |max| max.saturating_sub(self.held_ticks));
-            }
-            (Order::Stop, State::Active) => {
-                self.state = State::Armed;
-                self.held_ticks = self.held_ticks.saturating_add(now_tick.wrapping_sub(self.active_since_tick));
-            }
+            (Order::Play, State::Armed) => self.state = State::Active,
+            (Order::Stop, State::Active) => self.state = State::Armed,
             (Order::Disarm, State::Armed | State::Active) | (Order::ClearFault, State::Faulted) => {
                 self.disarm();
             }
@@ -114,10 +89,9 @@ impl Supervisor {
         }
     }
 
-    /// Sets the host timeout; `None` for a scene that plays without a host. Called after every order that is not about
-    /// the finger.
-    pub(crate) fn set_host_timeout(&mut self, ticks: Option<u32>) {
-        self.host_timeout_ticks = ticks.unwrap_or(NEVER);
+    /// Sets the host timeout. Called after every order that is not about the finger.
+    pub(crate) fn set_host_timeout(&mut self, ticks: u32) {
+        self.host_timeout_ticks = ticks;
     }
 
     /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `driven_code` is the code of the
@@ -138,7 +112,6 @@ impl Supervisor {
         let monitor_wrong = self.monitor.count(comparison);
         if !sense.arm_switch {
             self.switch_was_released = true;
-            self.held_ticks = 0;
         }
         if self.state == State::Faulted {
             return;
@@ -158,25 +131,11 @@ impl Supervisor {
         self.monitor.set_enabled(is_enabled, driven_code.bits());
     }
 
-    /// Latches a fault if the switch has been held for too long, and disarms if the host timeout has passed. Called at
-    /// every tick.
+    /// Disarms an armed or active board whose host timeout has passed. Called at every tick.
     #[inline]
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        let is_held_too_long = now_tick.wrapping_sub(self.active_since_tick) > self.held_ticks_left;
         let is_host_silent = now_tick.wrapping_sub(self.host_heard_at_tick) > self.host_timeout_ticks;
-        if is_held_too_long || is_host_silent {
-            self.leave_expired(is_held_too_long, is_host_silent);
-        }
-    }
-
-    /// Leaves the state if what has passed applies to it: only play is limited by the switch, and only an armed or
-    /// active board needs a host.
-    #[cold]
-    #[inline(never)]
-    fn leave_expired(&mut self, is_held_too_long: bool, is_host_silent: bool) {
-        if is_held_too_long && self.state == State::Active {
-            self.raise(Fault::ContactWelded, 0);
-        } else if is_host_silent && matches!(self.state, State::Armed | State::Active) {
+        if is_host_silent && matches!(self.state, State::Armed | State::Active) {
             self.disarm();
             self.host_silent = true;
         }

@@ -4,9 +4,8 @@
 //! [saves](FaultRecord::save) into it and resets; the next start [takes](FaultRecord::take) the record, once. After
 //! power-on the memory holds random bits, which a CRC-32 distinguishes from a record.
 //!
-//! The record counts the starts in a row that ended in a fault, too, so that a board that cannot start with what it has
-//! stored starts without it. Each start calls [`FaultRecord::count_start`] once, and then
-//! [`FaultRecord::has_run_for`] repeatedly, which ends the row after a minute.
+//! Each start [marks](FaultRecord::mark) the record, so that the next one can tell a brown-out, in which RAM keeps its
+//! content, from power-on.
 
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
@@ -15,24 +14,17 @@ use frixel_wire::fault::Fault;
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
-/// Seconds for which a start must run until the faults before it no longer count. Much longer than the few seconds in
-/// which a board takes its stored scene and a host reconnects: what makes every start fail there fails within this
-/// time. A board that runs longer between two faults can be reached, and needs no help.
-const STARTS_FORGOTTEN_AFTER_S: u32 = 60;
+/// Value of the mark: no single changed bit leaves it valid, and random memory is unlikely to hold it.
+const MARK: u32 = 0x96c3_6a00;
 
-/// The count's word has this value, with the count in every byte: 24 bits distinguish it from random memory, and no
-/// single changed bit leaves it valid.
-const STARTS_MARK: u32 = 0x96c3_6a00;
-
-/// A fault, its detail (a number whose meaning depends on the fault), and a text; and the number of starts in a row
-/// that ended in a fault.
+/// A fault, its detail (a number whose meaning depends on the fault), and a text.
 pub struct FaultRecord {
     number: AtomicU32,
     detail: AtomicU32,
     len: AtomicU32,
     check: AtomicU32,
     text: [AtomicU8; FAULT_TEXT_MAX_LEN],
-    starts: AtomicU32,
+    mark: AtomicU32,
 }
 
 /// Room for the text of a record.
@@ -48,40 +40,19 @@ impl FaultRecord {
             len: AtomicU32::new(0),
             check: AtomicU32::new(0),
             text: [const { AtomicU8::new(0) }; FAULT_TEXT_MAX_LEN],
-            starts: AtomicU32::new(0),
+            mark: AtomicU32::new(0),
         }
     }
 
     /// Whether the record was in memory that has kept its content since an earlier start. To be asked before this start
-    /// is counted.
+    /// marks it.
     pub fn has_outlasted_reset(&self) -> bool {
-        self.starts().is_some()
+        self.mark.load(Ordering::Relaxed) == MARK
     }
 
-    /// Counts this start, once, and returns the number of starts in a row before it that ended in a fault, at most 255.
-    /// `after_fault` is whether a fault ended the last start; otherwise the row ends.
-    pub fn count_start(&self, after_fault: bool) -> u8 {
-        let starts = if after_fault { self.starts().unwrap_or(0).saturating_add(1) } else { 0 };
-        self.store_starts(starts);
-        starts
-    }
-
-    /// The count of the last start; `None` if no start has counted since power-on.
-    fn starts(&self) -> Option<u8> {
-        let [count, rest @ ..] = (self.starts.load(Ordering::Relaxed) ^ STARTS_MARK).to_le_bytes();
-        (rest == [count; 3]).then_some(count)
-    }
-
-    /// Ends the row of starts that ended in a fault once this start has run for a minute: its own fault is the first of
-    /// the next row. To be called repeatedly, with the ticks since the start.
-    pub fn has_run_for(&self, ticks: u32, tick_hz: u32) {
-        if ticks >= STARTS_FORGOTTEN_AFTER_S.saturating_mul(tick_hz) {
-            self.store_starts(0);
-        }
-    }
-
-    fn store_starts(&self, count: u8) {
-        self.starts.store(u32::from_le_bytes([count; 4]) ^ STARTS_MARK, Ordering::Relaxed);
+    /// Marks the record, for the next start.
+    pub fn mark(&self) {
+        self.mark.store(MARK, Ordering::Relaxed);
     }
 
     /// Stores a fault and the text that `write_text` writes, cut to [`FAULT_TEXT_MAX_LEN`] bytes.
@@ -218,49 +189,20 @@ mod tests {
     }
 
     #[test]
-    fn starts_that_ended_in_a_fault_are_counted_until_one_did_not() {
+    fn only_a_record_that_a_start_has_marked_has_outlasted_a_reset() {
         let record = FaultRecord::new();
-        assert_eq!([true, true, true].map(|after_fault| record.count_start(after_fault)), [1, 2, 3]);
-        assert_eq!([false, true].map(|after_fault| record.count_start(after_fault)), [0, 1]);
-    }
-
-    #[test]
-    fn a_start_that_has_run_for_a_minute_ends_the_row() {
-        const TICK_HZ: u32 = 40_000;
-        let record = FaultRecord::new();
-        assert_eq!([true, true].map(|after_fault| record.count_start(after_fault)), [1, 2]);
-        record.has_run_for(60 * TICK_HZ - 1, TICK_HZ);
-        assert_eq!(record.count_start(true), 3, "a fault within the minute goes on with the row");
-        record.has_run_for(60 * TICK_HZ, TICK_HZ);
-        // The ticks wrap after 30 hours.
-        record.has_run_for(0, TICK_HZ);
-        assert_eq!([true, true].map(|after_fault| record.count_start(after_fault)), [1, 2]);
-    }
-
-    #[test]
-    fn the_count_of_starts_outlives_the_fault_that_is_taken_and_ends_at_255() {
-        let record = FaultRecord::new();
-        for start in 1..=300_u32 {
-            record.save(Fault::Panic, start, &mut |text| _ = text.text("again"));
-            assert!(take(&record).is_some());
-            assert_eq!(u32::from(record.count_start(true)), start.min(255));
-        }
-    }
-
-    #[test]
-    fn random_memory_and_any_changed_bit_are_not_a_count_of_starts() {
-        let record = FaultRecord::new();
-        for fill in 0..=u8::MAX {
-            for pattern in [[fill; 4], [fill, !fill, fill, !fill], [fill, fill, !fill, !fill]] {
-                record.starts.store(u32::from_le_bytes(pattern), Ordering::Relaxed);
-                assert_eq!(record.count_start(true), 1, "{pattern:02x?}");
-            }
-        }
+        assert!(!record.has_outlasted_reset());
+        record.mark();
+        record.save(Fault::Panic, 1, &mut |text| _ = text.text("again"));
+        assert!(record.has_outlasted_reset() && take(&record).is_some() && record.has_outlasted_reset());
         for bit in 0..32 {
-            record.count_start(false);
-            assert_eq!([true; 4].map(|_| record.count_start(true)), [1, 2, 3, 4]);
-            record.starts.fetch_xor(1 << bit, Ordering::Relaxed);
-            assert_eq!(record.count_start(true), 1, "bit {bit}");
+            record.mark();
+            record.mark.fetch_xor(1 << bit, Ordering::Relaxed);
+            assert!(!record.has_outlasted_reset(), "bit {bit}");
+        }
+        for fill in 0..=u8::MAX {
+            record.mark.store(u32::from_le_bytes([fill; 4]), Ordering::Relaxed);
+            assert!(!record.has_outlasted_reset(), "{fill:#04x}");
         }
     }
 

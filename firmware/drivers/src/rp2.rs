@@ -1,12 +1,10 @@
 //! What registers of the RP2040 and the RP2350 mean: values in, values out, so that tests can hold it without the
-//! processor. And where the flash holds the stores, for whoever writes them beforehand.
+//! processor. And where the flash holds the limits, for whoever writes them beforehand.
 
 use frixel_wire::hello::ResetCause;
 
-/// Offset of the stores in the flash: what is in front belongs to the image.
-pub const STORES_OFFSET: u32 = 1 << 20;
-/// Pages of each of the two copies of the stored limits, with which the stores begin.
-pub const LIMITS_PAGES: u32 = 1;
+/// Offset of the stored limits in the flash: what is in front belongs to the image.
+pub const LIMITS_OFFSET: u32 = 1 << 20;
 
 /// What the chips say of the last reset, whichever registers they say it in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -48,19 +48,15 @@ pub const fn is_store_ecc_error(flash_eccr: u32, reading_store: bool) -> bool {
 const BROWN_OUT_LEVEL: u32 = 0b111 << 8;
 const BROWN_OUT_LEVEL_4: u32 = 4 << 8;
 const SOFTWARE_WATCHDOG: u32 = 1 << 16;
+const BOOT_FROM_BANK_2: u32 = 1 << 20;
+const TWO_BANKS: u32 = 1 << 22;
 const NO_RAM_PARITY: u32 = 1 << 24;
-const RESET_PIN_MODE: u32 = 0b11 << 28;
 const RESET_PIN_IN_AND_OUT: u32 = 0b11 << 28;
 
-/// What differs in the option bytes, as `FLASH_OPTR` shows them, from what `docs/hardware.md` asks for.
-pub fn option_byte_warnings(flash_optr: u32) -> impl Iterator<Item = &'static str> {
-    let checks = [
-        (flash_optr & BROWN_OUT_LEVEL == BROWN_OUT_LEVEL_4, "BOR_LEV is not 4: below 2.8 V the processor runs on"),
-        (flash_optr & SOFTWARE_WATCHDOG == 0, "IWDG_SW is 1: no watchdog runs until the firmware starts it"),
-        (flash_optr & NO_RAM_PARITY != 0, "SRAM_PE is 0: the fault record is read before it is written"),
-        (flash_optr & RESET_PIN_MODE == RESET_PIN_IN_AND_OUT, "NRST_MODE is not 3: NRST does not show every reset"),
-    ];
-    checks.into_iter().filter(|(is_right, _)| !is_right).map(|(_, warning)| warning)
+/// Whether the option bytes, as `FLASH_OPTR` shows them, are those that `docs/hardware.md` asks for ("Option bytes").
+pub const fn option_bytes_are_right(flash_optr: u32) -> bool {
+    const SET: u32 = BROWN_OUT_LEVEL_4 | TWO_BANKS | NO_RAM_PARITY | RESET_PIN_IN_AND_OUT;
+    flash_optr & (SET | BROWN_OUT_LEVEL | SOFTWARE_WATCHDOG | BOOT_FROM_BANK_2) == SET
 }
 
 #[cfg(test)]
@@ -89,25 +85,22 @@ mod tests {
         }
     }
 
+    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": `0xffef_f8aa`, unread).
+    const FACTORY: u32 = 0xffef_f8aa;
+
     #[test]
-    fn each_option_byte_that_differs_is_a_warning() {
-        let right = BROWN_OUT_LEVEL_4 | NO_RAM_PARITY | RESET_PIN_IN_AND_OUT;
-        assert_eq!(option_byte_warnings(right).count(), 0);
-        for (differs, warning) in [
-            (0b001 << 8, "BOR_LEV"),
-            (SOFTWARE_WATCHDOG, "IWDG_SW"),
-            (NO_RAM_PARITY, "SRAM_PE"),
-            (0b10 << 28, "NRST_MODE"),
-        ] {
-            let warnings: Vec<_> = option_byte_warnings(right ^ differs).collect();
-            assert!(warnings.len() == 1 && warnings[0].starts_with(warning), "{warnings:?}");
-        }
+    fn the_factorys_option_bytes_are_right_once_the_documented_command_has_set_two() {
+        let set = FACTORY & !(BROWN_OUT_LEVEL | SOFTWARE_WATCHDOG) | BROWN_OUT_LEVEL_4;
+        assert!(option_bytes_are_right(set) && !option_bytes_are_right(FACTORY));
+        assert!(!option_bytes_are_right(set | SOFTWARE_WATCHDOG));
     }
 
-    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": `0xffef_f8aa`, unread).
     #[test]
-    fn the_factorys_option_bytes_lack_brown_out_level_and_watchdog() {
-        let warnings: Vec<_> = option_byte_warnings(0xffef_f8aa).collect();
-        assert!(matches!(warnings[..], [level, watchdog] if level.starts_with("BOR") && watchdog.starts_with("IWDG")));
+    fn each_option_byte_that_differs_is_wrong() {
+        let right = BROWN_OUT_LEVEL_4 | TWO_BANKS | NO_RAM_PARITY | RESET_PIN_IN_AND_OUT;
+        let bits = [8, 9, 10, 16, 20, 22, 24, 28, 29];
+        for bit in 0..32 {
+            assert_eq!(option_bytes_are_right(right ^ 1 << bit), !bits.contains(&bit), "bit {bit}");
+        }
     }
 }

@@ -37,14 +37,12 @@ mod field {
 
 /// Bits of the flags.
 mod flag {
-    pub(super) const AUTONOMOUS: u8 = 1;
     pub(super) const PREDICTION: u8 = 1 << 1;
     pub(super) const LEADER_LATEST: u8 = 1 << 2;
     pub(super) const LAYERS_FIXED: u8 = 1 << 3;
     pub(super) const ELECTRIC_FRICTION_MAX: u8 = 1 << 4;
     pub(super) const EMPIRICAL: u8 = 1 << 5;
-    pub(super) const ALL: u8 = AUTONOMOUS
-        | PREDICTION
+    pub(super) const ALL: u8 = PREDICTION
         | LEADER_LATEST
         | LAYERS_FIXED
         | ELECTRIC_FRICTION_MAX
@@ -80,8 +78,6 @@ pub struct Header {
     pub host_timeout_s: f32,
     /// Shape of the carrier.
     pub waveform: Waveform,
-    /// The scene continues without a host.
-    pub autonomous: bool,
     /// The tick estimates the finger's current position from late samples. Otherwise it uses the last sample unchanged.
     pub prediction: bool,
     /// Which finger is followed when the host reports several.
@@ -114,7 +110,6 @@ impl Header {
     pub fn write(&self, records: u8, points: u8) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];
         let flags = [
-            (self.autonomous, flag::AUTONOMOUS),
             (self.prediction, flag::PREDICTION),
             (self.leader == Leader::Latest, flag::LEADER_LATEST),
             (self.layers_fixed, flag::LAYERS_FIXED),
@@ -173,7 +168,6 @@ impl Header {
         let max = u16::from_le_bytes(get_at(bytes, field::ELECTRIC_FRICTION_MAX));
         let mut header = Self {
             waveform,
-            autonomous: is_set(flag::AUTONOMOUS),
             prediction: is_set(flag::PREDICTION),
             leader: if is_set(flag::LEADER_LATEST) { Leader::Latest } else { Leader::First },
             layers_fixed: is_set(flag::LAYERS_FIXED),
@@ -218,7 +212,6 @@ impl Header {
         carrier_hz: 0.0,
         host_timeout_s: 0.0,
         waveform: Waveform::Square,
-        autonomous: false,
         prediction: false,
         leader: Leader::First,
         layers_fixed: false,

@@ -6,6 +6,7 @@
 use frixel_control::{Active, Board, Order, Status, TickMeter};
 use frixel_layers::BitmapPool;
 use frixel_wire::fault::{Flags, State};
+use frixel_wire::hello::notice;
 use frixel_wire::message::{Accepted, Command, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, Refusal, Request, TickTimes};
 use frixel_wire::payload::{ParseError, Payload};
 
@@ -13,7 +14,7 @@ use crate::hello::hello;
 use crate::link::Link;
 use crate::motion::{Motion, ONLY_FINGER};
 use crate::scene::{PROGRESS_PERIOD_S, Removal, Scenes};
-use crate::states::{States, may_play_alone};
+use crate::states::States;
 
 /// The command handler.
 pub(crate) struct Commands<'a> {
@@ -72,12 +73,10 @@ impl<'a> Commands<'a> {
     }
 
     /// Begins a session with a new client: resets the credit, drops an unfinished upload or commit, and disarms the
-    /// board, because the previous client is gone. A scene that continues without a host keeps playing.
+    /// board, because the previous client is gone.
     fn handle_hello(&mut self, status: &Status) {
-        if !(self.states.state() == State::Active && self.scenes.is_autonomous()) {
-            self.states.disarm_for_new_client();
-            self.end_stream_unless_active();
-        }
+        self.states.disarm_for_new_client();
+        self.end_stream_unless_active();
         self.link.restart();
         self.scenes.drop_unfinished();
         self.motion.forget_fingers(status);
@@ -161,16 +160,9 @@ impl<'a> Commands<'a> {
                 Err(Refusal::UnknownCommand)
             }
             Command::ClearFault => states.clear_fault(),
+            Command::Arm if board.notices & notice::OPTION_BYTES != 0 => Err(Refusal::OptionBytes),
             Command::Arm | Command::Disarm | Command::Play | Command::Stop => {
-                let may_play = || {
-                    if scenes.crc32() == 0 {
-                        return Err(Refusal::NoScene);
-                    }
-                    let needs_host = !scenes.is_autonomous();
-                    let may_play = needs_host || may_play_alone(board, motion.own_touch_works());
-                    if may_play { Ok(()) } else { Err(Refusal::Autonomous) }
-                };
-                states.drive(command, status, may_play)
+                states.drive(command, status, scenes.crc32() != 0)
             }
         }
     }
@@ -198,20 +190,13 @@ impl<'a> Commands<'a> {
 
     fn step_commit(&mut self, status: &Status) {
         if self.scenes.is_committing() {
-            let may_play_alone = self.may_commit_alone();
-            let outcome = self.scenes.step_commit(&self.board, may_play_alone, &mut self.states.orders);
+            let outcome = self.scenes.step_commit(&self.board, &mut self.states.orders);
             if let Some(outcome) = outcome {
                 self.link.answer_commit(outcome, self.states.state());
             }
         } else if let Some(request) = self.link.next_waiting() {
             self.carry_out(request, status);
         }
-    }
-
-    /// Whether a scene that continues without a host may be committed. It plays at once if the board is Active.
-    fn may_commit_alone(&self) -> bool {
-        let plays_at_once = self.states.state() == State::Active;
-        may_play_alone(&self.board, self.motion.own_touch_works() || !plays_at_once)
     }
 
     /// Reports a change of state that the host did not request.
@@ -254,17 +239,9 @@ impl<'a> Commands<'a> {
         self.states.next_order(|| self.motion.next_order(predicts))
     }
 
-    /// CRC-32 of the scene to store: the committed one, if the board is disarmed.
-    #[cfg(feature = "store")]
-    pub(crate) fn crc32_to_store(&self) -> Option<u32> {
-        (self.states.state() == State::Disarmed && self.scenes.bytes().is_some()).then_some(self.scenes.crc32())
-    }
-
-    /// Commits a stored scene. Returns whether it is one.
-    #[cfg(feature = "store")]
-    pub(crate) fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
-        let may_play_alone = self.may_commit_alone();
-        self.scenes.restore(read, &self.board, may_play_alone, &mut self.states.orders).is_some()
+    /// Commits a scene of the board's own at once.
+    pub(crate) fn commit_own(&mut self, scene: &[u8]) -> Result<(), Refusal> {
+        self.scenes.commit_own(scene, &self.board, &mut self.states.orders)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use frixel_control::{Board, Status};
 use frixel_wire::fault::State;
-use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature, notice};
+use frixel_wire::hello::{Hello, PROTOCOL_MAJOR, PROTOCOL_MINOR, feature};
 
 use crate::scene::Scenes;
 
@@ -35,8 +35,6 @@ const fn features(board: &Board, has_stream: bool) -> u32 {
 
 /// The hello of a board in this state, with these scenes.
 pub(crate) fn hello(board: &Board, status: &Status, state: State, scenes: &Scenes) -> Hello {
-    let skipped = if scenes.is_stored_scene_skipped() { notice::STORED_SCENE_SKIPPED } else { 0 };
-    let not_stored = if scenes.is_not_stored() { notice::SCENE_NOT_STORED } else { 0 };
     Hello {
         protocol: (PROTOCOL_MAJOR, PROTOCOL_MINOR),
         firmware: FIRMWARE,
@@ -51,6 +49,6 @@ pub(crate) fn hello(board: &Board, status: &Status, state: State, scenes: &Scene
         fault_detail: status.fault.map_or(0, |(_, detail)| detail),
         state,
         limits: board.limits,
-        notices: board.notices | skipped | not_stored,
+        notices: board.notices,
     }
 }

@@ -43,13 +43,12 @@
 //! | `states` | orders, commands that arm and play, the ticker's status | refusals, changes of state, the next order |
 //!
 //! `scene` puts its orders into the queue of `states`. `hello` describes the board. `queues` connects a session in a
-//! main loop with a ticker in an interrupt. `store` keeps the scene over power-off.
+//! main loop with a ticker in an interrupt. `store` keeps the measured limits over power-off.
 //!
 //! # Cargo features
 //!
 //! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: the kinds of layers
-//! (`edge` has buttons, too), `polygon` regions, the `sine-carrier`, `telemetry`; and the `store`, which keeps a scene
-//! over power-off. An image without one of them
+//! (`edge` has buttons, too), `polygon` regions, the `sine-carrier` and `telemetry`. An image without one of them
 //! is smaller, clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses,
 //! all blends and the square carrier are always included.
 #![cfg_attr(not(test), no_std)]
@@ -63,13 +62,10 @@ mod queues;
 mod scene;
 mod session;
 mod states;
-#[cfg(feature = "store")]
 pub mod store;
 
 pub use frixel_wire::touch::Touch;
 pub use motion::Tracker;
 pub use queues::{Queues, SessionEnds, TickEnds};
-#[cfg(feature = "store")]
-pub use scene::StoredScene;
 pub use scene::{TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 pub use session::Session;

@@ -6,14 +6,11 @@ use frixel_control::{Active, Board, Order, Status, TickMeter, Ticker};
 use frixel_layers::{BitmapPool, Header};
 use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
-#[cfg(feature = "store")]
-use frixel_wire::hello::ResetCause;
+use frixel_wire::message::Refusal;
 use frixel_wire::payload::Payload;
 
 use crate::Touch;
 use crate::commands::Commands;
-#[cfg(feature = "store")]
-use crate::scene::StoredScene;
 
 /// The board's end of the serial line.
 pub struct Session<'a> {
@@ -70,7 +67,7 @@ impl<'a> Session<'a> {
 
     /// Takes a report of the board's touch source that arrived at `tick`.
     pub fn touch(&mut self, touch: Touch, tick: u32) {
-        self.commands.motion.report(touch, tick, &self.commands.board);
+        self.commands.motion.report(touch, tick);
     }
 
     /// The next order for the ticker, which takes one before each tick.
@@ -104,55 +101,15 @@ impl<'a> Session<'a> {
         self.commands.states.state()
     }
 
-    /// The bytes of the committed scene; `None` without a scene, or once the upload of another has begun.
-    pub fn scene(&self) -> Option<&[u8]> {
-        self.commands.scenes.bytes()
-    }
-
-    /// Header of the committed scene; `None` without a scene. Unlike [`Session::scene`], it stays available during the
-    /// upload of the next scene.
+    /// Header of the committed scene; `None` without a scene.
     pub fn scene_header(&self) -> Option<&Header> {
         self.commands.scenes.header()
     }
 
-    /// CRC-32 of the scene that [`Session::scene_to_store`] returns; `None` when that returns `None`.
-    #[cfg(feature = "store")]
-    pub fn crc32_to_store(&self) -> Option<u32> {
-        self.commands.crc32_to_store()
-    }
-
-    /// The committed scene with its bitmaps, as bytes to store; `None` without a scene, or if the board is not
-    /// disarmed.
-    #[cfg(feature = "store")]
-    pub fn scene_to_store(&self) -> Option<StoredScene<'_>> {
-        self.commands.crc32_to_store().and_then(|_| self.commands.scenes.to_store())
-    }
-
-    /// Commits a stored scene: `read` fills a buffer with the bytes at an offset, and returns `false` beyond the end.
-    /// Returns whether the bytes are a scene that this firmware can play; other bytes are ignored.
-    #[cfg(feature = "store")]
-    pub fn restore(&mut self, read: impl Fn(u32, &mut [u8]) -> bool) -> bool {
-        self.commands.restore(read)
-    }
-
-    /// Whether this start must leave the stored scene alone; if so, the hello says it. See [`SceneStore::new`].
-    ///
-    /// [`SceneStore::new`]: crate::store::SceneStore::new
-    #[cfg(feature = "store")]
-    pub(crate) fn skips_stored_scene(&mut self) -> bool {
-        self.commands.scenes.skips_stored_scene(&self.commands.board)
-    }
-
-    /// Tells the hosts that the scene of this CRC-32 could not be stored.
-    #[cfg(feature = "store")]
-    pub(crate) fn could_not_store(&mut self, crc32: u32) {
-        self.commands.scenes.could_not_store(crc32);
-    }
-
-    /// Whether a person has started the board: the power came on, or the reset pin was used.
-    #[cfg(feature = "store")]
-    pub(crate) fn was_started_by_a_person(&self) -> bool {
-        matches!(self.commands.board.reset_cause, ResetCause::PowerOn | ResetCause::Pin)
+    /// Commits a scene of the board's own at once: one without bitmaps, for bring-up or self-test. A host uploads and
+    /// commits it by messages.
+    pub fn commit_own(&mut self, scene: &[u8]) -> Result<(), Refusal> {
+        self.commands.commit_own(scene)
     }
 
     /// Number of frames received intact and within the host's credit, and number of frames discarded as corrupt or

@@ -118,39 +118,6 @@ fn the_hello_of_a_new_client_disarms_the_board() {
     assert_eq!(board.status().telemetry.state, State::Active);
 }
 
-fn autonomous() -> Vec<u8> {
-    let header = Header { autonomous: true, ..HEADER };
-    scene(&header, &[constant(0.02)])
-}
-
-#[test]
-fn an_autonomous_scene_goes_on_without_a_host() {
-    let mut board = TestBoard::new();
-    board.play(&autonomous());
-    board.ticks(2 * HOST_TIMEOUT_TICKS);
-    assert_eq!(board.status().telemetry.state, State::Active);
-    assert_eq!(board.hello().state, State::Active, "another client may say hello");
-    board.ticks(2 * HOST_TIMEOUT_TICKS);
-    assert_eq!(board.status().telemetry.state, State::Active);
-}
-
-/// Only a playing scene may continue without a host.
-#[test]
-fn a_board_armed_for_an_autonomous_scene_needs_its_host() {
-    let mut board = TestBoard::connected();
-    board.load(&autonomous()).unwrap();
-    board.command(Command::Arm).unwrap();
-    board.ticks(HOST_TIMEOUT_TICKS - 1);
-    assert_eq!(board.status().telemetry.state, State::Armed);
-    board.ticks(2);
-    assert_eq!(board.status().telemetry.state, State::Disarmed);
-
-    board.press_switch();
-    board.command(Command::Arm).unwrap();
-    board.tick();
-    assert_eq!(board.hello().state, State::Disarmed, "nothing plays that a hello would end");
-}
-
 fn assert_faults(board: &mut TestBoard, fault: Fault, within_ticks: u32) {
     let driven = board.slide(within_ticks + 400);
     assert!(driven[within_ticks as usize..].iter().all(|drive| *drive == OFF), "{fault:?}");
@@ -363,8 +330,7 @@ fn a_source_that_reports_at_every_tick_is_followed_as_any_other() {
     }
 }
 
-/// A board that a person can touch, with a touch source of its own and a switch that must be held. Its amplifier takes
-/// a millisecond to switch.
+/// A board that a person can touch. Its amplifier takes a millisecond to switch.
 const REAL_BOARD: Board = Board {
     kind: BoardKind::NucleoG474re,
     amplifier: AmplifierSpec {
@@ -372,18 +338,12 @@ const REAL_BOARD: Board = Board {
         turn_off: SwitchingTime::from_s(1e-3),
         ..Board::SIMULATOR.amplifier
     },
-    hold_to_run: true,
     ..Board::SIMULATOR
 };
 /// Ticks of those switching times, and the two in which an edge of the enable shows.
 const SWITCHING_TICKS: u32 = 42;
 /// Ticks with a wrong monitor voltage after which the board faults.
 const WRONG_TICKS: u32 = 16;
-
-fn touched(board: &mut TestBoard) {
-    board.touch = Some(Touch::Down { x_m: 0.03, y_m: 0.03, age_ticks: 0 });
-    board.tick();
-}
 
 /// The monitor's voltage on top of what is right, from now on, and the ticks until the board faults.
 fn ticks_to_fault(board: &mut TestBoard, monitor_v: impl Fn(u32) -> f32) -> Option<u32> {
@@ -508,99 +468,4 @@ fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it
         board.sense.amplifier_fault = true;
         assert_faults(&mut board, Fault::Amplifier, 0);
     }
-}
-
-#[test]
-fn an_autonomous_scene_needs_a_switch_that_must_be_held_and_a_touch_source_on_the_board() {
-    for (hold_to_run, touch_from_host) in [(false, false), (true, true), (false, true)] {
-        let mut board = TestBoard::of(Board { hold_to_run, touch_from_host, ..REAL_BOARD });
-        board.hello();
-        assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous), "{hold_to_run}, {touch_from_host}");
-        board.load(&constant_scene(0.02)).unwrap();
-    }
-}
-
-#[test]
-fn an_autonomous_scene_plays_only_if_the_boards_touch_source_has_reported_lately() {
-    let mut board = TestBoard::of(REAL_BOARD);
-    board.hello();
-    board.load(&autonomous()).unwrap();
-    board.command(Command::Arm).unwrap();
-    assert_eq!(board.command(Command::Play), Err(Refusal::Autonomous), "it has never reported");
-    touched(&mut board);
-    for _ in 0..50 {
-        board.command(Command::Ping).unwrap();
-        board.ticks(8_000);
-    }
-    assert_eq!(board.command(Command::Play), Err(Refusal::Autonomous), "its report is ten seconds old");
-    touched(&mut board);
-    board.command(Command::Play).unwrap();
-    board.ticks(2 * HOST_TIMEOUT_TICKS);
-    assert_eq!(board.status().telemetry.state, State::Active);
-}
-
-#[test]
-fn a_playing_scene_is_not_replaced_by_an_autonomous_one_without_a_report_of_the_touch_source() {
-    let mut board = TestBoard::of(REAL_BOARD);
-    board.play(&constant_scene(0.02));
-    assert_eq!(board.load(&autonomous()), Err(Refusal::Autonomous));
-    touched(&mut board);
-    board.load(&autonomous()).unwrap();
-}
-
-#[test]
-fn a_switch_that_is_let_go_ends_an_autonomous_scene() {
-    let mut board = TestBoard::of(REAL_BOARD);
-    board.hello();
-    board.load(&autonomous()).unwrap();
-    touched(&mut board);
-    board.command(Command::Arm).unwrap();
-    board.command(Command::Play).unwrap();
-    assert!(board.slide(1000).last().unwrap().amplifier_enable);
-    board.sense.arm_switch = false;
-    assert_eq!(board.tick(), OFF);
-    assert_eq!(board.status().fault, Some((Fault::ArmSwitch, 0)));
-}
-
-/// Stopping and playing again does not start the ten minutes anew, and letting go of the switch does.
-#[test]
-fn a_switch_that_never_opens_in_ten_minutes_of_play_is_a_fault() {
-    const TICK_HZ: u32 = 5_000;
-    const MINUTE: u32 = 60 * TICK_HZ;
-    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..REAL_BOARD });
-    let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
-    board.hello();
-    board.load(&scene(&header, &[constant(0.02)])).unwrap();
-    let play = |board: &mut TestBoard| {
-        touched(board);
-        board.command(Command::Play).unwrap();
-    };
-    board.command(Command::Arm).unwrap();
-    play(&mut board);
-    board.ticks(9 * MINUTE);
-    board.command(Command::Disarm).unwrap();
-    board.press_switch();
-    board.command(Command::Arm).unwrap();
-    for _ in 0..9 {
-        play(&mut board);
-        board.ticks(MINUTE);
-        board.command(Command::Stop).unwrap();
-        board.tick();
-    }
-    play(&mut board);
-    board.ticks(MINUTE - 10);
-    assert_eq!(board.status().telemetry.state, State::Active, "{:?}", board.status().fault);
-    board.ticks(30);
-    assert_eq!(board.status().fault, Some((Fault::ContactWelded, 0)));
-    assert_eq!(board.tick(), OFF);
-}
-
-#[test]
-fn a_simulated_board_plays_an_autonomous_scene_for_longer_than_ten_minutes() {
-    const TICK_HZ: u32 = 5_000;
-    let mut board = TestBoard::of(Board { tick_hz: TICK_HZ, ..Board::SIMULATOR });
-    let header = Header { autonomous: true, carrier_hz: 500.0, ..HEADER };
-    board.play(&scene(&header, &[constant(0.02)]));
-    board.ticks(11 * 60 * TICK_HZ);
-    assert_eq!(board.status().telemetry.state, State::Active);
 }

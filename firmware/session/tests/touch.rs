@@ -264,8 +264,7 @@ fn friction_falls_before_touch_data_is_stale() {
 #[test]
 fn a_track_that_ended_long_ago_never_comes_back() {
     let mut board = TestBoard::new();
-    let header = Header { autonomous: true, ..HEADER };
-    board.play(&scene(&header, &[constant(0.02)]));
+    board.play(&constant_scene(0.02));
     let first_tick = board.status().telemetry.tick;
     for tick in 0..400 {
         slide(&mut board, tick);
@@ -274,6 +273,7 @@ fn a_track_that_ended_long_ago_never_comes_back() {
     assert_eq!(board.tick(), OFF);
     // The tick count comes round.
     board.ticker.set_tick(first_tick);
+    board.command(Command::Ping).unwrap();
     assert!((0..1_000).all(|_| board.tick() == OFF));
     assert_eq!(board.status().telemetry.state, State::Active);
 }

@@ -94,7 +94,6 @@ fn header(random: &mut Random) -> Header {
         slew_v_per_s: random.pick([1e4, 1e6, 5e6]),
         carrier_hz: random.pick([250.0, 1000.0, 1700.0]),
         waveform: random.pick([Waveform::Square, Waveform::Sine]),
-        autonomous: random.once_in(4),
         prediction: !random.once_in(4),
         leader: random.pick([Leader::First, Leader::Latest]),
         layers_fixed: random.once_in(2),

@@ -22,7 +22,6 @@ pub const HEADER: Header = Header {
     carrier_hz: 1000.0,
     host_timeout_s: 0.25,
     waveform: Waveform::Square,
-    autonomous: false,
     prediction: true,
     leader: Leader::First,
     layers_fixed: false,

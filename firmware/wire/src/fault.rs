@@ -77,8 +77,6 @@ pub enum Fault {
     /// The configuration read back from the DAC before arming or playing was wrong. Since protocol 1.3; the fault's
     /// detail is the control register as read.
     Dac,
-    /// The arm switch did not open in ten minutes of play. Since protocol 1.4.
-    ContactWelded,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),
 }
@@ -96,7 +94,6 @@ impl Fault {
             Self::Watchdog => 7,
             Self::ArmSwitch => 8,
             Self::Dac => 9,
-            Self::ContactWelded => 10,
             Self::Other(number) => number,
         }
     }
@@ -118,7 +115,6 @@ impl TryFrom<u8> for Fault {
             7 => Ok(Self::Watchdog),
             8 => Ok(Self::ArmSwitch),
             9 => Ok(Self::Dac),
-            10 => Ok(Self::ContactWelded),
             number => Ok(Self::Other(number)),
         }
     }
@@ -160,10 +156,6 @@ impl fmt::Display for Fault {
             Self::Dac => {
                 "the DAC did not answer with its configuration before arming or playing; check its supplies and wires, \
                  clear the fault and arm again"
-            }
-            Self::ContactWelded => {
-                "the arm switch did not open in ten minutes of play, as if its contact were welded; release it, clear \
-                 the fault, press and hold it, and arm again; if it does not arm, replace the switch"
             }
             Self::Other(_) => "unknown to this version; update the frixel command",
         })

@@ -62,27 +62,23 @@ pub struct Hello {
 
 /// Bits of [`Hello::notices`]: what a person should know of a board before playing. Since protocol 1.4.
 pub mod notice {
-    /// The last starts of the board ended in faults one after the other, so this start left the stored scene alone.
-    /// Cleared once a scene is committed.
-    pub const STORED_SCENE_SKIPPED: u8 = 1;
-
+    /// The processor's option bytes are not those that the board needs, such as the brown-out level and the start of
+    /// the watchdog. The board refuses to arm ([`Refusal::OptionBytes`](crate::message::Refusal::OptionBytes)).
+    pub const OPTION_BYTES: u8 = 1;
     /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because they were
     /// stored for another series resistance or by a build with other ceilings. The limits that are built in are in
     /// effect.
     pub const STORED_LIMITS_REFUSED: u8 = 1 << 1;
     /// The firmware was built to take stored limits above its ceilings for voltage and current.
     pub const LIMITS_ABOVE_CEILINGS: u8 = 1 << 2;
-    /// The board's scene will not be stored: storing it has failed, it does not fit, or the board has no usable flash.
-    /// A scene that waits to be stored is not meant.
-    pub const SCENE_NOT_STORED: u8 = 1 << 3;
 
     /// What each notice means, and what to do, as a sentence without a full stop.
-    pub const SENTENCES: [(u8, &str); 4] = [
+    pub const SENTENCES: [(u8, &str); 3] = [
         (
-            STORED_SCENE_SKIPPED,
-            "the board did not load its stored scene, because its last starts ended in faults: look at the last \
-             fault, then play another scene, which is stored in its place after 45 minutes, or switch the board off \
-             and on to try the stored one again",
+            OPTION_BYTES,
+            "the processor's option bytes are not those that the board needs, so it refuses to arm: switch the amplifier \
+             off, set them with `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0` and reset the board \
+             (docs/hardware.md, Option bytes)",
         ),
         (
             STORED_LIMITS_REFUSED,
@@ -94,12 +90,6 @@ pub mod notice {
             LIMITS_ABOVE_CEILINGS,
             "the board's firmware takes voltages and currents above the ceilings for a person who touches it: flash a \
              build without the feature limits-above-ceilings before anybody does",
-        ),
-        (
-            SCENE_NOT_STORED,
-            "the board loses its scene when it is switched off, because its flash has failed, has no room for it or \
-             cannot be used: play the scene again after each start, and look at the board's option bytes \
-             (docs/hardware.md) or use another board",
         ),
     ];
 }

@@ -111,7 +111,7 @@ fn limits_that_are_left_out_allow_nothing() {
 /// A host of protocol 1.3 ignores the notices by their tag; they are behind the limits that it knows.
 #[test]
 fn notices_follow_the_limits_of_protocol_1_3() {
-    let with = Hello { notices: notice::STORED_SCENE_SKIPPED, ..hello() };
+    let with = Hello { notices: notice::OPTION_BYTES, ..hello() };
     assert_eq!(Hello::parse(&with.write()), Ok(with));
     let at = HELLO_LEN - 12;
     assert_eq!(with.write()[at..at + 3], [12, 1, 1]);

@@ -122,10 +122,9 @@ fn flags_have_the_bits_that_the_table_says() {
 fn notices_have_the_bits_that_the_table_says() {
     let page: Vec<(u8, &str)> = numbered("Notices").into_iter().map(|(bit, name)| (1 << bit, name)).collect();
     let code = [
-        (notice::STORED_SCENE_SKIPPED, "STORED_SCENE_SKIPPED"),
+        (notice::OPTION_BYTES, "OPTION_BYTES"),
         (notice::STORED_LIMITS_REFUSED, "STORED_LIMITS_REFUSED"),
         (notice::LIMITS_ABOVE_CEILINGS, "LIMITS_ABOVE_CEILINGS"),
-        (notice::SCENE_NOT_STORED, "SCENE_NOT_STORED"),
     ];
     assert_eq!(page, code);
     assert_eq!(page.len(), notice::SENTENCES.len());

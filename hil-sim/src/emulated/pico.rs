@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use frixel_control::{Board, Drive};
-use frixel_drivers::rp2::STORES_OFFSET;
+use frixel_drivers::rp2::LIMITS_OFFSET;
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -95,7 +95,7 @@ impl PicoRig {
     /// the board's tick rate.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = Self::factory_new(image, world)?;
-        let words = [&[STORES_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
+        let words = [&[LIMITS_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
         rig.process.request(Request::WriteFlash, &words)?;
         Ok(rig)
     }
@@ -347,7 +347,6 @@ impl PicoRig {
                 self.starts += 1;
             }
             WireEvent::Light(_)
-            | WireEvent::Flash { .. }
             | WireEvent::MonitorRead { .. }
             | WireEvent::I2cAddress { .. }
             | WireEvent::I2cWrite(_)

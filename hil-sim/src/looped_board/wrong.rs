@@ -81,10 +81,6 @@ wrongs! {
     AdcDead = "adc-dead",
     /// The ADC reads the middle.
     AdcFrozen = "adc-frozen",
-    /// The flash is in one bank.
-    OneBank = "one-bank",
-    /// A reset in a store leaves nothing.
-    StoreLost = "store-lost",
     /// Flash wait states cost more than is assumed.
     TicksSlow = "ticks-slow",
     /// A tick misses its deadline.

@@ -20,8 +20,6 @@ const SWITCH_TIME: Duration = Duration::from_millis(50);
 
 /// The friction of a scene that most tests play.
 pub(super) const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n";
-/// Another one.
-pub(super) const WEAKER: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
 /// Stripes as wide as a finger tells apart, from nothing to nearly all that the board can give.
 pub(super) const GRATING: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\n\

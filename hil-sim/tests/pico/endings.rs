@@ -5,7 +5,7 @@ use std::time::Duration;
 use frixel_hil_sim::emulated::{Image, PicoRig, WireEvent};
 use frixel_testkit::Random;
 use frixel_wire::fault::{Fault, State};
-use frixel_wire::hello::{Hello, ResetCause, notice};
+use frixel_wire::hello::{Hello, ResetCause};
 
 use super::bench::{BOARD, Bench, CONSTANT, TICK};
 use crate::emulator;
@@ -190,27 +190,4 @@ fn the_watchdog_is_given_the_ring_oscillator() {
     let hello = *bench.connect().hello();
     let expected = (ResetCause::Watchdog, Some(Fault::Watchdog), State::Disarmed);
     assert_eq!((hello.reset_cause, hello.last_fault, hello.state), expected);
-}
-
-#[test]
-fn three_starts_that_end_in_a_fault_leave_the_stored_scene_alone() {
-    let Some(image) = emulator::pico_image() else { return };
-    let bench = Bench::new(&image);
-    let mut random = Random::new(5);
-    let mut host = bench.play(CONSTANT);
-    host.disarm().unwrap();
-    drop(host);
-    // The scene is stored 2 s after the board was disarmed.
-    bench.pass(Duration::from_millis(2_600));
-    bench.with(|rig| rig.power_cycle(1).unwrap());
-    bench.pass(Duration::from_millis(50));
-    let scene_crc32 = bench.connect().hello().scene_crc32;
-    assert_ne!(scene_crc32, 0, "the scene was stored");
-    for fault in 1..=3 {
-        bench.with(|rig| Ending::Panic.happen(rig, 0));
-        bench.pass(Duration::from_millis(50 + u64::from(random.below(20))));
-        let hello = *bench.connect().hello();
-        let is_skipped = hello.notices & notice::STORED_SCENE_SKIPPED != 0;
-        assert_eq!((is_skipped, hello.scene_crc32 == 0), (fault == 3, fault == 3), "after {fault} faults");
-    }
 }

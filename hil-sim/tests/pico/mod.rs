@@ -9,5 +9,4 @@ mod felt;
 mod frame;
 mod parity;
 mod play;
-mod store;
 mod twin;

@@ -69,6 +69,23 @@ fn a_scenario_runs_the_same_every_time() {
     assert_ne!(run(1), run(2));
 }
 
+#[test]
+fn wrong_option_bytes_refuse_arming_with_the_command_that_sets_them() {
+    let text = "scenario = 1\nscene = \"plate.toml\"\nseconds = 0.6\n\
+         [[command]]\nat_ms = 0\ndo = \"play\"\n\
+         [[fault]]\nat_ms = 200\ncause = \"option-bytes\"\n\
+         [[command]]\nat_ms = 300\ndo = \"connect\"\n\
+         [[command]]\nat_ms = 400\ndo = \"play\"\n\
+         [[expect]]\nfrom_ms = 100\nto_ms = 190\noutput = \"driven\"\n\
+         [[expect]]\nfrom_ms = 210\nto_ms = 300\nerror = \"restarted\"\n\
+         [[expect]]\nfrom_ms = 210\noutput = \"off\"\n\
+         [[expect]]\nfrom_ms = 400\nerror = \"STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0\"\n";
+    let scenario = Scenario::parse(text, "option-bytes.toml").unwrap();
+    let scenes = BTreeMap::from([("plate.toml".to_owned(), scene_of("plate.toml"))]);
+    let outcome = run_on_simulator(&scenario, &scenes).unwrap();
+    assert_eq!(outcome.unmet.iter().map(ToString::to_string).collect::<Vec<_>>(), Vec::<String>::new());
+}
+
 /// How a rig is broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Break {

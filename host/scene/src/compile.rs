@@ -168,7 +168,6 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         saturates: scene.drive.saturate,
         diagnostics: Vec::new(),
     };
-    check_starts(scene, log);
     if is_reach_known {
         let raise = |friction_n| voltage.raised_for(scene, &program.header, friction_n);
         excess::check(scene, &layers, &raise, &program, log);
@@ -215,14 +214,6 @@ fn note_absent_layers(scene: &Scene, played: &[&Layer], log: &mut Log) {
     if let [first, ..] = absent[..] {
         let titles: Vec<&str> = absent.iter().map(|layer| layer.title.as_str()).collect();
         log.note(first.places.table(), format!("absent from this draft: {}", titles.join(", ")));
-    }
-}
-
-/// Refuses layers that are off at the start of a scene that goes on without the host that could switch them.
-fn check_starts(scene: &Scene, log: &mut Log) {
-    let off = scene.layers.iter().find(|layer| !layer.starts_on);
-    if let Some(layer) = off.filter(|_| scene.drive.autonomous) {
-        log.add(layer.places.field("start"), FitMistake::OffWithoutHost { layer: layer.title.to_string() });
     }
 }
 
@@ -315,7 +306,6 @@ fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um:
         carrier_hz: (0.5 / half_period_s) as f32,
         host_timeout_s: (drive.host_timeout_ms * 1e-3) as f32,
         waveform: scene.carrier.waveform,
-        autonomous: drive.autonomous,
         prediction: scene.touch.prediction,
         leader: scene.touch.leader,
         layers_fixed: !scene.layers.iter().any(|layer| layer.live),

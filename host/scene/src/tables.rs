@@ -299,7 +299,6 @@ pub(super) mod drive {
         Number(250.0),
         "the output goes to zero when the host is silent for so long",
     );
-    pub(crate) const AUTONOMOUS: FieldSpec = flag("autonomous", false, "the scene goes on without a host");
     pub(crate) const SATURATE: FieldSpec =
         flag("saturate", false, "friction out of reach is clamped and flagged, not refused");
 }

@@ -148,9 +148,9 @@ mod tests {
             notices: 0,
         };
         assert_eq!(driven_board(&hello), "NUCLEO-G474RE with an electrode, up to 300 V peak");
-        hello.notices = notice::LIMITS_ABOVE_CEILINGS | notice::STORED_SCENE_SKIPPED;
+        hello.notices = notice::LIMITS_ABOVE_CEILINGS | notice::OPTION_BYTES;
         let said = driven_board(&hello);
         assert!(said.contains("300 V peak; note: ") && said.contains("above the ceilings"), "{said}");
-        assert!(said.contains("stored scene"), "{said}");
+        assert!(said.contains("option bytes"), "{said}");
     }
 }

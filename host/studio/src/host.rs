@@ -29,9 +29,6 @@ pub(crate) fn stream_mut<S: ByteStream + Recorded>(host: &mut Host<S>) -> &mut S
 pub(crate) fn load<S: ByteStream + Recorded>(host: &mut Host<S>, request: &Request) -> Result<(), HostError> {
     let Hello { limits, tick_hz, board, .. } = *host.device().hello();
     let program = compiled(request, &limits, tick_hz)?;
-    if program.header.autonomous && !board.is_simulated() {
-        return Err(HostError::Autonomous);
-    }
     if let Some(warning) = program.warnings().find(|warning| warning.is_refused_by_boards())
         && !board.is_simulated()
     {

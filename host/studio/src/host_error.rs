@@ -40,9 +40,6 @@ pub enum HostError {
         /// The compiler's warning.
         warning: String,
     },
-    /// The scene would play on after the page is gone, which only a simulator may.
-    #[error("this scene plays without its host, so a board would drive on without this page: leave `autonomous` out")]
-    Autonomous,
     /// There is no board.
     #[error("no board is connected: connect one, or use the simulator")]
     NoBoard,

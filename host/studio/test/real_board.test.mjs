@@ -10,7 +10,6 @@ import {
 const FOUR_LAYERS = CONSTANT + '[[layer]]\nkind = "constant"\nabove = "natural"\nfriction_n = 0.01\n'.repeat(3);
 const NO_DRIVE = CONSTANT.replace("0.11", "0.0");
 const MISTAKEN = CONSTANT.replace('"constant"', '"constan"');
-const AUTONOMOUS = CONSTANT.replace("host_timeout_ms = 1000", "autonomous = true");
 
 after(cleanUp);
 
@@ -239,14 +238,13 @@ test("a press where Arm has only just appeared arms nothing", async () => {
   await board.assertDisarmed(from, "the stop");
 });
 
-test("a scene for another board and one that plays without its host are refused, and cannot be armed", async () => {
+test("a scene for another board and a draft are refused, and cannot be armed", async () => {
   await board.until("disarmed", stateOf.disarmed);
   const from = board.events.length;
   await write(page, CONSTANT);
   await armable(page);
   for (const [text, sentence] of [
     [FOUR_LAYERS, /4 layers, and the board takes 3/],
-    [AUTONOMOUS, /plays without its host/],
     [CONSTANT.replace(/friction_(\w+) = .*/, "friction_n = 9"), /does not play this draft/],
   ]) {
     await write(page, text);

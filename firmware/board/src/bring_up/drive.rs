@@ -5,7 +5,7 @@ use frixel_layers::{Blend, Constant, Layer, Record, Region};
 use frixel_session::Session;
 
 use crate::local_host::{DriveError, LocalHost, Progress};
-use crate::local_scene::{CARRIER_HZ, OUT_OF_REACH_N, header, stored, stored_len};
+use crate::local_scene::{CARRIER_HZ, OUT_OF_REACH_N, header, scene, scene_len};
 
 /// Seconds that the output is driven: time to read a voltage from an oscilloscope that was set up before.
 const DRIVEN_S: f32 = 3.0;
@@ -36,7 +36,7 @@ pub struct Reading {
 /// [`Drive::step`] in every round, beside the session and with the tick running.
 #[derive(Debug)]
 pub struct Drive {
-    scene: heapless::Vec<u8, { stored_len(1) }>,
+    scene: heapless::Vec<u8, { scene_len(1) }>,
     timing: Timing,
     volts_per_code: f32,
     host: LocalHost,
@@ -94,7 +94,7 @@ impl Drive {
         let layer = Layer::Constant(Constant { electric_friction_n: OUT_OF_REACH_N });
         let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
         Self {
-            scene: stored(&header(peak_v), &[record]),
+            scene: scene(&header(peak_v), &[record]),
             timing: Timing { tick_hz, half_period_ticks: 0.5 * tick_hz / CARRIER_HZ },
             volts_per_code: board.limits.full_scale_v_peak / f32::from(i16::MAX),
             host: LocalHost::new(DRIVEN_S, board),

@@ -8,14 +8,14 @@ use heapless::Vec;
 use super::script::refuse_inputs;
 use super::{LoopedBoard, Round, Stop};
 use crate::local_host::{LocalHost, Progress};
-use crate::local_scene::{header, stored, stored_len};
+use crate::local_scene::{header, scene, scene_len};
 
 /// Peak voltage of the scene, V. The wires show the monitor of an amplifier at 0 V, up to 4 V beside that: the
 /// supervisor takes what is within 8 V and 25 % of the driven voltage for right.
 const PEAK_V: f32 = 5.0;
 /// Largest electric friction of a layer, N: of the size that [`PEAK_V`] reaches, so that the tick looks up voltages.
 const HIGH_N: f32 = 2.5e-5;
-/// Longest time that the scene plays in one piece, s: a switch that is held for ten minutes is a fault.
+/// Longest time that the scene plays in one piece, s.
 const PIECE_S: f32 = 60.0;
 /// Time for which the switch is let go between two pieces, s.
 const RELEASED_S: f32 = 0.1;
@@ -24,7 +24,7 @@ const LAYERS_MAX: usize = 16;
 
 /// Plays the largest scene again and again.
 pub(super) struct Load {
-    scene: Vec<u8, { stored_len(LAYERS_MAX) }>,
+    scene: Vec<u8, { scene_len(LAYERS_MAX) }>,
     core_cycles: u32,
     stage: Stage,
     since_tick: u32,
@@ -52,7 +52,7 @@ impl Load {
                 core_cycles = with_it;
             }
         }
-        Self { scene: stored(&header, &records), core_cycles, stage: Stage::Released, since_tick: 0, now_tick: 0 }
+        Self { scene: scene(&header, &records), core_cycles, stage: Stage::Released, since_tick: 0, now_tick: 0 }
     }
 
     /// Cycles of its longest tick, as they are estimated without wait states of the flash.

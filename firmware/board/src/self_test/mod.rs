@@ -10,21 +10,17 @@
 //! - The enable is pulsed only after its wire was found with the enable low, and the person has said that the amplifier
 //!   is unplugged. It is low whenever the tick runs: [`LoopedBoard::round`] kicks nothing and sends zeros to the DAC.
 //! - A missing wire ends it. A measurement out of its range does not: the rest is measured, and all of it is reported.
-//!
-//! The board resets meanwhile: what [`LoopedBoard::reset`] keeps says where the script goes on.
 
 mod enable;
 mod line;
 mod load;
 mod measurement;
 mod script;
-mod store;
 
 use core::fmt;
 
 use frixel_control::{Board, Status};
 use frixel_session::Session;
-use frixel_session::store::{Flash, Slot};
 use frixel_wire::message::TickTimes;
 
 pub use crate::bring_up::{Inputs, Line, LineReader, Typed};
@@ -98,10 +94,6 @@ pub struct Round<'b> {
 
 /// A board with its wires, and the person at its serial port.
 pub trait LoopedBoard {
-    /// The memory of the stored scene.
-    type Flash: Flash;
-    /// Where the scene is stored; the self-test erases it.
-    const SLOT: Slot;
     /// Cycle of the tick's period at which a code is put out.
     const LATCH_CYCLES: u32;
     /// Time from the last kick until the enable falls, us.
@@ -174,16 +166,9 @@ pub trait LoopedBoard {
     /// How long the ticks have taken since their start.
     fn tick_times(&mut self) -> TickTimes;
 
-    /// The memory of the stored scene; `None` if it cannot be written while the firmware runs.
-    fn flash(&mut self) -> Option<&mut Self::Flash>;
-
     /// Takes received bytes, and returns their number, without waiting.
     fn read(&mut self, bytes: &mut [u8]) -> usize;
 
     /// Begins to send bytes, and returns the number of those that were taken, without waiting.
     fn write(&mut self, bytes: &[u8]) -> usize;
-
-    /// Resets the board at once. The next start calls [`run`] with `kept`, any other one with 0. Returns only where
-    /// nothing resets, as in a test.
-    fn reset(&mut self, kept: u32);
 }

@@ -4,7 +4,6 @@ use core::fmt;
 
 use super::enable::measure_enable;
 use super::load::{Load, counted_since};
-use super::store::{self, Content};
 use super::{Clocks, Inputs, Levels, LineTest, LoopedBoard, Measurement, Said, VERSION, Wire};
 use crate::bring_up::DriveError;
 
@@ -61,14 +60,8 @@ pub enum Stop {
     EnableStaysHigh,
     /// SDO did not receive what SDI sent: so many of the bytes were others, all of them if the wire is missing.
     Data(u32),
-    /// The flash is not in two banks.
-    NoFlash,
-    /// An operation of the flash has failed.
-    FlashFailed,
     /// The scene was not played.
     Drive(DriveError),
-    /// The board resets, and goes on at its next start.
-    Reset,
 }
 
 impl fmt::Display for Stop {
@@ -98,10 +91,7 @@ impl fmt::Display for Stop {
                 "of {} bytes over SDI, {wrong} came back wrong on SDO: is the wire there, and the DAC unplugged?",
                 PATTERNS.len()
             ),
-            Self::NoFlash => f.write_str("the flash is not in two banks: set the option byte DBANK, clear BFB2"),
-            Self::FlashFailed => f.write_str("an operation of the flash has failed: it is worn out or protected"),
             Self::Drive(error) => write!(f, "the largest scene did not play: {error}"),
-            Self::Reset => f.write_str("the board resets"),
         }
     }
 }
@@ -140,22 +130,19 @@ impl Counts {
     }
 }
 
-/// Tests a board, and returns the number of measurements out of their range. `kept` is what [`LoopedBoard::reset`] has
-/// kept over the last reset, and 0 after any other one.
-pub fn run<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
-    let result = steps(board, kept);
-    match &result {
-        Ok(_) | Err(Stop::Reset) => {}
-        Err(stop) => board.say(format_args!("{}{stop}.", Said::Stopped(""))),
+/// Tests a board, and returns the number of measurements out of their range.
+pub fn run(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
+    let result = steps(board);
+    if let Err(stop) = &result {
+        board.say(format_args!("{}{stop}.", Said::Stopped("")));
     }
     result
 }
 
-fn steps<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
+fn steps(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
     let mut counts = Counts::default();
     greet(board);
     refuse_amplifier(board)?;
-    check_store(board, kept, &mut counts)?;
     unplug(board)?;
     find_wires(board)?;
     measure_frames(board, &mut counts)?;
@@ -165,7 +152,6 @@ fn steps<B: LoopedBoard>(board: &mut B, kept: u32) -> Result<u32, Stop> {
     let mut load = Load::largest(board.board());
     measure_ticks(board, &mut load, &mut counts)?;
     measure_line(board, &mut load, &mut counts)?;
-    store::forget(board, |board| load.round(board).map(drop))?;
     load.rest(board)?;
     let Counts { measured, failed } = counts;
     board.say(format_args!("{}", Said::End { measured, failed }));
@@ -217,38 +203,11 @@ pub(super) fn refuse_inputs_or_voltage<B: LoopedBoard>(board: &mut B) -> Result<
     if found_mv.abs_diff(B::MONITOR_ZERO_MV) <= most_mv { Ok(()) } else { Err(Stop::MonitorNotZero(found_mv)) }
 }
 
-/// Stores something, and resets in the middle of the next stores: what was stored before must be there.
-fn check_store<B: LoopedBoard>(board: &mut B, kept: u32, counts: &mut Counts) -> Result<(), Stop> {
-    let idle = |board: &mut B| {
-        board.idle();
-        refuse_inputs(board)
-    };
-    let done = (kept as usize).min(store::RESETS.len());
-    if done == 0 {
-        board.say(format_args!(
-            "1. Flash: the stored scene is replaced. The board resets {} times, and begins again.",
-            store::RESETS.len()
-        ));
-        Content::Before.store(board, None, idle)?;
-    }
-    let is_whole = Content::Before.is_stored(board);
-    if let Some(next) = store::RESETS.get(done).filter(|_| done == 0 || is_whole) {
-        Content::Interrupted.store(board, Some(*next), idle)?;
-        board.reset(done as u32 + 1);
-        return Err(Stop::Reset);
-    }
-    // Each reset was reached only because the one before had left it whole.
-    for (number, name) in (1..).zip(store::NAMES).take(done) {
-        counts.say(board, name, u32::from(is_whole || number < done), Some((1, 1)));
-    }
-    Ok(())
-}
-
 fn unplug<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     confirm(
         board,
         format_args!(
-            "2. Put the wires on, as docs/first-board.md lists them. The enable is pulsed: the amplifier is unplugged, and \
+            "1. Put the wires on, as docs/first-board.md lists them. The enable is pulsed: the amplifier is unplugged, and \
              so is the DAC."
         ),
         UNPLUGGED,
@@ -329,10 +288,10 @@ fn measure_adc<B: LoopedBoard>(board: &mut B, counts: &mut Counts) {
     board.loop_mv(B::MONITOR_ZERO_MV);
 }
 
-/// Counts the cycles of ticks under the largest scene, alone and while the flash is written.
+/// Counts the cycles of ticks under the largest scene.
 fn measure_ticks<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Counts) -> Result<(), Stop> {
     let ticks = board.board().ticks(COUNTED_S);
-    board.say(format_args!("3. The tick, under the largest scene that this board accepts."));
+    board.say(format_args!("2. The tick, under the largest scene that this board accepts."));
     while !load.round(board)? {}
     counting(board, load, ["alone", "ticks_late_alone", "tick_longest_cycles_alone"], counts, |board, load| {
         let from_tick = load.now_tick();
@@ -346,10 +305,7 @@ fn measure_ticks<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Co
     counts.say(board, "tick_estimated_core_cycles", load.core_cycles(), None);
     counts.say(board, "flash_wait_percent", wait_percent, Some((50, frixel_layers::cost::FLASH_WAIT_PERCENT)));
     let names = ["latch_earliest_cycles_under_ticks", "latch_spread_cycles_under_ticks"];
-    measure_latch(board, names, counts, |board| load.round(board).map(drop))?;
-    counting(board, load, ["flash", "ticks_late_flash", "tick_longest_cycles_flash"], counts, |board, load| {
-        Content::Interrupted.store(board, None, |board| load.round(board).map(drop))
-    })
+    measure_latch(board, names, counts, |board| load.round(board).map(drop))
 }
 
 /// Says the ticks that were counted while `work` ran: their histogram, the late ones, and the longest so far.
@@ -374,7 +330,7 @@ fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Cou
     load.rest(board)?;
     let wants_it = loop {
         board.say(format_args!(
-            "4. The line, against `frixel selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
+            "3. The line, against `frixel selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
         ));
         match board.read_line().trim() {
             LINE_TEST => break true,

@@ -129,7 +129,6 @@ impl Hardware for Fake {
     type Switch = Input;
     type Light = Part;
     type Serial = Part;
-    type Store = ();
     type Watchdog = Part;
 
     fn wait_for_tick() {

@@ -6,7 +6,6 @@ use std::rc::Rc;
 use frixel_board::bring_up::Drive;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::tick::TickShared;
-use frixel_drivers::fault_record::FaultRecord;
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
 use frixel_session::Queues;
@@ -26,7 +25,6 @@ pub(crate) struct Board {
     pub(crate) main_loop: MainLoop<Fake>,
     pub(crate) wires: Rc<Wires>,
     pub(crate) shared: &'static TickShared,
-    pub(crate) record: &'static FaultRecord,
     drive: Drive,
 }
 
@@ -35,7 +33,6 @@ impl Board {
     pub(crate) fn new() -> Self {
         let wires = wires();
         let shared: &TickShared = Box::leak(Box::new(TickShared::new::<Part>()));
-        let record: &FaultRecord = Box::leak(Box::new(FaultRecord::new()));
         let (session, ticker) = firmware();
         let (session_ends, tick_ends) = Box::leak(Box::new(Queues::new())).split();
         let main_loop = MainLoop {
@@ -46,12 +43,10 @@ impl Board {
             serial: Some(SerialLink::new(Part(Rc::clone(&wires)))),
             dac: Part(Rc::clone(&wires)),
             light: StateLight::new(Part(Rc::clone(&wires)), BOARD.tick_hz),
-            store: (),
             watchdog: Part(Rc::clone(&wires)),
-            record,
         };
         start(tick(&wires, shared, ticker, tick_ends));
-        Self { main_loop, wires, shared, record, drive: Drive::new(10.0, &BOARD) }
+        Self { main_loop, wires, shared, drive: Drive::new(10.0, &BOARD) }
     }
 
     /// A tick, and a turn of the main loop.

@@ -6,9 +6,8 @@
 //!
 //! - The state is not Active. A fault leaves Active in the tick that detects it: the amplifier's ready line or the arm
 //!   switch ([`Sense`]) at once, the monitor voltage once wrong ticks exceed right ones by those of 0.4 ms (at once
-//!   after the enable has fallen), an arm switch that has not opened in ten minutes of play, and a fault that the board
-//!   detects by [`Ticker::raise`]. [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it too. Only an Active
-//!   scene may continue without a host; an Armed board always needs one.
+//!   after the enable has fallen), and a fault that the board detects by [`Ticker::raise`]. [`Order::Stop`],
+//!   [`Order::Disarm`] and the host timeout leave it too: an armed or active board needs a host.
 //! - No finger has a valid track: after [`Order::Lift`], and when a track expires. A [`Track`] of another contact than
 //!   the previous one counts as a lift: zero in the tick that takes it.
 //! - There is no scene ([`Order::Unload`]). [`Order::Load`] of another scene lowers the envelope to the new voltage

@@ -1,6 +1,6 @@
 //! Applies the session's orders and the faults that the board raises.
 
-use frixel_wire::fault::{Fault, State};
+use frixel_wire::fault::Fault;
 
 use super::Ticker;
 use crate::finger::Finger;
@@ -66,13 +66,12 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// The host timeout in the current state. Only a playing scene may continue without a host.
+    /// The host timeout of the scene, or the default without a scene.
     #[inline]
-    fn host_timeout_ticks(&self) -> Option<u32> {
-        if self.supervisor.state() == State::Active {
-            self.active.host_timeout_ticks
-        } else {
-            Some(self.active.host_timeout_ticks.unwrap_or(self.timing.host_timeout_default_ticks))
+    fn host_timeout_ticks(&self) -> u32 {
+        match self.active.table() {
+            Some(_) => self.active.host_timeout_ticks,
+            None => self.timing.host_timeout_default_ticks,
         }
     }
 

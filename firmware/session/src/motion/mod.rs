@@ -12,7 +12,7 @@ mod fingers;
 mod standstill;
 mod tracker;
 
-use frixel_control::{Board, Order, Status, is_past};
+use frixel_control::{Board, Order, Status};
 use frixel_layers::range::LENGTH_MAX_M;
 use frixel_layers::{Leader, within};
 use frixel_wire::fault::Flags;
@@ -24,23 +24,17 @@ pub use tracker::Tracker;
 
 /// Number of the finger if the host reports only one.
 pub(crate) const ONLY_FINGER: u8 = 0;
-/// Age of the last report of the board's own touch source up to which the source counts as working, in s. Long enough
-/// to touch the screen and then the host; a source that reports nothing while no finger is there must be touched first.
-const OWN_TOUCH_AGE_MAX_S: f32 = 10.0;
 
 /// Fingers and tracker.
 pub(crate) struct Motion {
     /// Fingers that the host reported.
     fingers: Fingers,
     tracker: Tracker,
-    /// The tick from which on the last report of the board's own touch source is too old to show that the source works;
-    /// `None` without one.
-    own_touch_until_tick: Option<u32>,
 }
 
 impl Motion {
     pub(crate) fn new(board: &Board) -> Self {
-        Self { fingers: Fingers::new(), tracker: Tracker::new(board), own_touch_until_tick: None }
+        Self { fingers: Fingers::new(), tracker: Tracker::new(board) }
     }
 
     /// Takes a finger's place that the host reports, as of the next tick.
@@ -89,21 +83,14 @@ impl Motion {
     }
 
     /// Takes a report of the board's own touch source that arrived at `tick`.
-    pub(crate) fn report(&mut self, touch: Touch, tick: u32, board: &Board) {
-        self.own_touch_until_tick = Some(tick.wrapping_add(board.ticks(OWN_TOUCH_AGE_MAX_S)));
+    pub(crate) fn report(&mut self, touch: Touch, tick: u32) {
         self.tracker.report(touch, tick);
-    }
-
-    /// Whether the board's own touch source has reported lately.
-    pub(crate) fn own_touch_works(&self) -> bool {
-        self.own_touch_until_tick.is_some()
     }
 
     /// Forgets a track that has ended, and a report that has become too old. Called more often than tick counts wrap
     /// around.
     pub(crate) fn expire(&mut self, now_tick: u32) {
         self.tracker.expire(now_tick);
-        self.own_touch_until_tick = self.own_touch_until_tick.filter(|tick| !is_past(*tick, now_tick));
     }
 
     /// The next lift or track. See [`Tracker::next_order`].

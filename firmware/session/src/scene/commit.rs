@@ -7,6 +7,7 @@
 
 use frixel_control::{Board, Order};
 use frixel_layers::{ActiveLayers, Scene, disabled_record};
+use frixel_wire::frame::crc32;
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::{RECORDS_MAX, SceneError};
 
@@ -47,16 +48,25 @@ impl<'a> Scenes<'a> {
         self.commit.is_some()
     }
 
-    /// Does the next step of the commit under way. Returns its outcome after the last. A scene that continues
-    /// without a host is refused unless it `may_play_alone`.
-    pub(crate) fn step_commit(
-        &mut self,
-        board: &Board,
-        may_play_alone: bool,
-        orders: &mut Orders<'a>,
-    ) -> Option<Result<(), Refusal>> {
+    /// Commits a scene of the board's own at once: one without bitmaps, for bring-up or self-test.
+    pub(crate) fn commit_own(&mut self, scene: &[u8], board: &Board, orders: &mut Orders<'a>) -> Result<(), Refusal> {
+        self.drop_unfinished();
+        let crc32 = crc32(scene);
+        self.staging.begin();
+        self.staging.write(0, scene);
+        self.staging.finish(scene.len() as u32, crc32);
+        self.begin_commit(crc32);
+        loop {
+            if let Some(outcome) = self.step_commit(board, orders) {
+                return outcome;
+            }
+        }
+    }
+
+    /// Does the next step of the commit under way. Returns its outcome after the last.
+    pub(crate) fn step_commit(&mut self, board: &Board, orders: &mut Orders<'a>) -> Option<Result<(), Refusal>> {
         let mut commit = self.commit.take()?;
-        match self.step(&mut commit, board, may_play_alone, orders) {
+        match self.step(&mut commit, board, orders) {
             Ok(false) => {
                 self.commit = Some(commit);
                 None
@@ -68,13 +78,7 @@ impl<'a> Scenes<'a> {
 
     /// Does one step. Returns whether it was the last.
     #[inline(never)]
-    fn step(
-        &mut self,
-        commit: &mut Commit,
-        board: &Board,
-        may_play_alone: bool,
-        orders: &mut Orders<'a>,
-    ) -> Result<bool, Refusal> {
+    fn step(&mut self, commit: &mut Commit, board: &Board, orders: &mut Orders<'a>) -> Result<bool, Refusal> {
         let crc32 = commit.crc32;
         match &mut commit.step {
             Step::Check => {
@@ -93,7 +97,7 @@ impl<'a> Scenes<'a> {
                     commit.step = Step::HandOver;
                 }
             }
-            Step::HandOver => return self.hand_over(crc32, may_play_alone, orders).map(|()| true),
+            Step::HandOver => return self.hand_over(crc32, orders).map(|()| true),
         }
         Ok(false)
     }
@@ -131,19 +135,13 @@ impl<'a> Scenes<'a> {
         stepped
     }
 
-    fn hand_over(&mut self, crc32: u32, may_play_alone: bool, orders: &mut Orders<'a>) -> Result<(), Refusal> {
+    fn hand_over(&mut self, crc32: u32, orders: &mut Orders<'a>) -> Result<(), Refusal> {
         orders.check_room()?;
         let scene = self.uploaded_scene()?;
-        if scene.header().autonomous && !may_play_alone {
-            return Err(Refusal::Autonomous);
-        }
         let active = self.spare.as_deref().ok_or(Refusal::Busy)?;
         let committed = Committed::new(crc32, &scene, &active.layers);
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         self.committed = committed;
-        if !self.is_not_stored() {
-            self.not_stored_crc32 = 0;
-        }
         if !self.committed.has_stream {
             // No order: the ticker ends the stream when it takes the scene.
             let _ = self.stream.end();

@@ -134,7 +134,7 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     header.check(&board.limits, board.tick_hz).map_err(Refusal::Config)?;
     (active.carrier, active.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
     active.slew_step_v = header.slew_v_per_s * board.tick_period_s();
-    active.host_timeout_ticks = (!header.autonomous).then(|| board.ticks(header.host_timeout_s));
+    active.host_timeout_ticks = board.ticks(header.host_timeout_s);
     active.prediction = header.prediction;
     active.layers.begin(header, scene.points());
     Ok(())

@@ -2,20 +2,16 @@
 //!
 //! Takes the bytes of scenes, bitmaps and streams, and the changes of a scene while it plays; gives the coefficients of
 //! a scene and what changes it as orders, through the [`Orders`](crate::states::Orders) that are passed to it. It knows
-//! no line, no finger and no state: whether the scene that plays may be removed, and whether one may play without a
-//! host, are passed to it.
+//! no line, no finger and no state: whether the scene that plays may be removed is passed to it.
 //!
 //! `upload` collects bytes, `memory` allocates for them and ends uploads, `commit` hands a scene over (`loading`
-//! computes its coefficients step by step), `live` changes layers, `stream` holds the samples of a stream, and `stored`
-//! converts a scene to bytes that outlast power-off.
+//! computes its coefficients step by step), `live` changes layers, and `stream` holds the samples of a stream.
 
 mod bitmap_directory;
 mod commit;
 mod live;
 mod loading;
 mod memory;
-#[cfg(feature = "store")]
-mod stored;
 #[cfg_attr(not(feature = "stream"), path = "no_stream.rs")]
 mod stream;
 mod upload;
@@ -29,8 +25,6 @@ use bitmap_directory::Directory;
 use commit::Commit;
 pub use loading::{TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 pub(crate) use memory::Removal;
-#[cfg(feature = "store")]
-pub use stored::StoredScene;
 pub(crate) use stream::PROGRESS_PERIOD_S;
 use stream::Stream;
 use upload::{Staging, Upload};
@@ -51,10 +45,6 @@ pub(crate) struct Scenes<'a> {
     /// The commit under way.
     commit: Option<Commit>,
     committed: Committed,
-    /// The stored scene was not loaded at this start.
-    stored_scene_skipped: bool,
-    /// CRC-32 of the last scene that the board could not store; zero without one.
-    not_stored_crc32: u32,
     pub(crate) stream: Stream<'a>,
 }
 
@@ -80,8 +70,6 @@ impl<'a> Scenes<'a> {
             spare: Some(spare),
             commit: None,
             committed: Committed::default(),
-            stored_scene_skipped: false,
-            not_stored_crc32: 0,
             stream: Stream::new(),
         }
     }
@@ -101,17 +89,6 @@ impl<'a> Scenes<'a> {
         self.committed.header.as_ref()
     }
 
-    /// The bytes of the committed scene, until the upload of another begins.
-    pub(crate) fn bytes(&self) -> Option<&[u8]> {
-        let (bytes, crc32) = self.staging.scene()?;
-        (crc32 == self.committed.crc32).then_some(bytes)
-    }
-
-    /// Whether the committed scene continues without a host.
-    pub(crate) fn is_autonomous(&self) -> bool {
-        self.header().is_some_and(|header| header.autonomous)
-    }
-
     /// Whether the finger's place is predicted; yes without a scene.
     pub(crate) fn predicts(&self) -> bool {
         self.header().is_none_or(|header| header.prediction)
@@ -120,16 +97,6 @@ impl<'a> Scenes<'a> {
     /// The rule for which of several fingers is followed; the earliest one without a scene.
     pub(crate) fn leader(&self) -> Leader {
         self.header().map_or(Leader::First, |header| header.leader)
-    }
-
-    /// The stored scene was not loaded at this start, and no other has been committed.
-    pub(crate) fn is_stored_scene_skipped(&self) -> bool {
-        self.stored_scene_skipped && self.committed.crc32 == 0
-    }
-
-    /// The committed scene could not be stored.
-    pub(crate) fn is_not_stored(&self) -> bool {
-        self.committed.crc32 != 0 && self.committed.crc32 == self.not_stored_crc32
     }
 
     /// Drops what the previous client has begun: an upload, a commit and announced bitmaps. The committed scene stays.

@@ -2,16 +2,14 @@
 //!
 //! Takes the commands that arm, disarm, play and stop, and the ticker's status; gives refusals, changes of state to
 //! report, and the next order for the ticker. Orders of other parts go through its [`Orders`]. It knows no scene and no
-//! finger: whether the scene may play, and the order that the finger has next, are passed to it.
+//! finger: whether there is a scene, and the order that the finger has next, are passed to it.
 
-mod autonomous;
 mod orders;
 
 use frixel_control::{Order, Status};
 use frixel_wire::fault::State;
 use frixel_wire::message::{Accepted, Command, Refusal};
 
-pub(crate) use autonomous::may_play_alone;
 pub(crate) use orders::Orders;
 
 /// The board's state and the orders to the ticker.
@@ -62,14 +60,8 @@ impl<'a> States<'a> {
         }
     }
 
-    /// Handles the commands that are refused while a fault is latched. `may_play` refuses a Play without a scene, and
-    /// one of a scene that may not play here.
-    pub(crate) fn drive(
-        &mut self,
-        command: Command,
-        status: &Status,
-        may_play: impl FnOnce() -> Result<(), Refusal>,
-    ) -> Result<Accepted, Refusal> {
+    /// Handles the commands that are refused while a fault is latched. A Play is refused unless there `is_scene`.
+    pub(crate) fn drive(&mut self, command: Command, status: &Status, is_scene: bool) -> Result<Accepted, Refusal> {
         if self.state == State::Faulted
             && let Some((fault, _)) = status.fault
         {
@@ -79,10 +71,8 @@ impl<'a> States<'a> {
             Command::Disarm if self.orders.ends_with_disarm() => Ok(Accepted::Done),
             Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
             Command::Arm => self.change(Order::Arm, &[State::Disarmed], State::Armed),
-            Command::Play => {
-                may_play()?;
-                self.change(Order::Play, &[State::Armed], State::Active)
-            }
+            Command::Play if !is_scene => Err(Refusal::NoScene),
+            Command::Play => self.change(Order::Play, &[State::Armed], State::Active),
             Command::Stop => self.change(Order::Stop, &[State::Active], State::Armed),
             _ => self.change(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
         }

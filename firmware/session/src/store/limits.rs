@@ -10,10 +10,10 @@ use core::fmt;
 
 use frixel_wire::hello::{BoardLimits, notice};
 
-use super::{Flash, Slot};
+use super::{Flash, Slot, WORD_LEN};
 
 /// Bytes of the stored limits: the version, then seven numbers.
-pub const LIMITS_LEN: usize = 32;
+pub const LIMITS_LEN: usize = 4 * WORD_LEN;
 
 /// Largest voltage that is stored, in V peak.
 ///
@@ -243,32 +243,19 @@ pub fn read_limits(
 }
 
 /// The limits with which a board starts, and its notices: what is stored in `slot`, or else what is built in.
-/// `flash` is `None` on a board without a usable flash, which says that it stores no scene either.
+/// `flash` is `None` on a board without a usable flash.
 pub fn load_limits<F: Flash>(
     flash: Option<&F>,
     slot: Slot,
     built_in: &BoardLimits,
     ceilings: Ceilings,
 ) -> (BoardLimits, u8) {
-    let Some(flash) = flash else { return (*built_in, ceilings.notices() | notice::SCENE_NOT_STORED) };
-    match find_limits(flash, slot, built_in, ceilings) {
+    let stored = flash.and_then(|flash| slot.find(flash));
+    match stored.map(|bytes| read_limits(&bytes, built_in, ceilings)) {
         None => (*built_in, ceilings.notices()),
-        Some(Ok(stored)) => (stored, ceilings.notices()),
+        Some(Ok(limits)) => (limits, ceilings.notices()),
         Some(Err(_)) => (*built_in, ceilings.notices() | notice::STORED_LIMITS_REFUSED),
     }
-}
-
-/// `None` if no good copy is stored.
-fn find_limits<F: Flash>(
-    flash: &F,
-    slot: Slot,
-    built_in: &BoardLimits,
-    ceilings: Ceilings,
-) -> Option<Result<BoardLimits, LimitsError>> {
-    let found = slot.find(flash)?;
-    let mut bytes = [0; LIMITS_LEN];
-    let is_read = found.len as usize == LIMITS_LEN && slot.read(flash, &found, 0, &mut bytes);
-    Some(if is_read { read_limits(&bytes, built_in, ceilings) } else { Err(LimitsError::Layout) })
 }
 
 fn check(limits: &BoardLimits, ceilings: Ceilings) -> Result<(), LimitsError> {

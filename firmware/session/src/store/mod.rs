@@ -1,31 +1,24 @@
-//! Persistent storage of a board: the last scene, with the finger profile in its header, and the limits that were
-//! measured during bring-up.
+//! Persistent storage of the limits that were measured during bring-up.
 //!
-//! Each is stored in a [`Slot`] of two copies. A new copy replaces the older one: its pages are erased, then its
-//! content is written, and last its header, with CRC-32s over both. A power cut at any byte therefore leaves one good
-//! copy, which [`Slot::find`] finds. No function waits: [`Writer::step`] begins one operation of the flash at a time,
-//! and [`SceneStore`] does so only while the board is disarmed.
+//! They are stored in a [`Slot`] of two copies. A new copy replaces the older one: its page is erased, then its words
+//! are written, the last of which holds a CRC-32 over the others. A power cut at any byte therefore leaves one good
+//! copy, which [`Slot::find`] finds. [`Writer::step`] does not wait: it begins one operation of the flash at a time.
 //!
-//! A board implements the [`Flash`] trait.
+//! A board implements the [`Flash`] trait, and [`WritableFlash`] if one of its images stores limits.
 
-mod copy;
 mod limits;
-mod scene_store;
-mod writer;
+mod slot;
 
-pub use copy::{Found, Slot};
 pub use limits::{
     CURRENT_CEILING_A_PEAK, CURRENT_CEILING_A_RMS, Ceilings, LIMITS_LEN, LimitsError, RAIL_MAX, VOLTAGE_CEILING_V_PEAK,
     check_touched_board, load_limits, read_limits, write_limits,
 };
-pub use scene_store::SceneStore;
-pub use writer::{Writer, Writing};
+pub use slot::{COPY_LEN, Slot, Writer, Writing, first_copy};
 
 /// Bytes that the flash writes at once: a double word on the STM32G4 (RM0440, 3.3.7).
 pub const WORD_LEN: usize = 8;
 
-/// The flash memory of a store. It is erased in pages, to 0xff, and written in words, each at most once between two
-/// erasures. Offsets count from the beginning of this memory.
+/// The flash memory of a store. Offsets count from the beginning of this memory.
 pub trait Flash {
     /// Bytes of a page.
     const PAGE_LEN: u32;
@@ -34,7 +27,11 @@ pub trait Flash {
     /// read, such as a word that was half written when the power failed.
     #[must_use]
     fn read(&self, offset: u32, bytes: &mut [u8]) -> bool;
+}
 
+/// A flash that an image writes. It is erased in pages, to 0xff, and written in words, each at most once between two
+/// erasures.
+pub trait WritableFlash: Flash {
     /// Begins to erase a page.
     fn begin_erase(&mut self, page: u32);
 

@@ -1,6 +1,6 @@
 //! Flash that can lose its power at any byte of what it does.
 
-use frixel_session::store::{Flash, Operation, WORD_LEN};
+use frixel_session::store::{Flash, Operation, WORD_LEN, WritableFlash};
 use frixel_testkit::Random;
 
 pub const PAGE_LEN: usize = 512;
@@ -10,7 +10,6 @@ pub const PAGE_LEN: usize = 512;
 pub enum Operations {
     Succeed,
     Fail,
-    NeverEnd,
 }
 
 /// The flash of a board.
@@ -25,8 +24,6 @@ pub struct SimulatedFlash {
     pub done: usize,
     /// Calls of `operation` for which an operation is busy.
     busy: u32,
-    /// `operation` has reported the end of the last one.
-    seen_to_end: bool,
     pub operations: Operations,
     failed: bool,
     /// What a torn word reads as: nothing, or something.
@@ -42,7 +39,6 @@ impl SimulatedFlash {
             power_left: None,
             done: 0,
             busy: 0,
-            seen_to_end: true,
             operations: Operations::Succeed,
             failed: false,
             torn_words_read,
@@ -52,11 +48,6 @@ impl SimulatedFlash {
 
     pub fn has_power(&self) -> bool {
         self.power_left != Some(0)
-    }
-
-    /// Whether nothing is under way, and the last operation was seen to end.
-    pub fn is_at_rest(&self) -> bool {
-        self.seen_to_end
     }
 
     /// The same flash once the power has come back.
@@ -91,10 +82,12 @@ impl Flash for SimulatedFlash {
         let torn = self.torn[offset / WORD_LEN..(offset + bytes.len()).div_ceil(WORD_LEN)].iter().any(|torn| *torn);
         self.torn_words_read || !torn
     }
+}
 
+impl WritableFlash for SimulatedFlash {
     fn begin_erase(&mut self, page: u32) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed, self.seen_to_end) = (3, self.operations == Operations::Fail, false);
+        (self.busy, self.failed) = (3, self.operations == Operations::Fail);
         let start = page as usize * PAGE_LEN;
         for at in start..start + PAGE_LEN {
             if !self.perform_byte() {
@@ -115,7 +108,7 @@ impl Flash for SimulatedFlash {
 
     fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed, self.seen_to_end) = (2, self.operations == Operations::Fail, false);
+        (self.busy, self.failed) = (2, self.operations == Operations::Fail);
         let start = offset as usize;
         assert_eq!(start % WORD_LEN, 0);
         assert!(self.bytes[start..start + WORD_LEN].iter().all(|byte| *byte == 0xff), "{start} is not erased");
@@ -133,10 +126,9 @@ impl Flash for SimulatedFlash {
 
     fn operation(&mut self) -> Operation {
         if self.busy > 0 {
-            self.busy -= u32::from(self.operations != Operations::NeverEnd);
+            self.busy -= 1;
             return Operation::Busy;
         }
-        self.seen_to_end = true;
         if core::mem::take(&mut self.failed) { Operation::Failed } else { Operation::Done }
     }
 }

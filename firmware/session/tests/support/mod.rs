@@ -10,7 +10,6 @@
     reason = "a test uses its part, and may fail"
 )]
 
-#[cfg(feature = "store")]
 pub mod flash;
 
 #[cfg(feature = "stream")]

@@ -19,7 +19,6 @@ pub fn header() -> Header {
         carrier_hz: 1_000.0,
         host_timeout_s: 0.25,
         waveform: Waveform::Square,
-        autonomous: false,
         prediction: true,
         leader: Leader::First,
         layers_fixed: false,
@@ -32,7 +31,6 @@ pub fn headers() -> Vec<Header> {
     vec![
         header(),
         Header { waveform: Waveform::Sine, prediction: false, ..header() },
-        Header { autonomous: true, ..header() },
         Header { leader: Leader::Latest, ..header() },
         Header { layers_fixed: true, ..header() },
         Header { layers_fixed: true, electric_friction_max_n: Some(0.025_024_414), ..header() },

@@ -92,9 +92,9 @@ pub enum Refusal {
     },
     /// The playing scene declares its layers fixed (`frixel_layers::Header::layers_fixed`).
     LayersFixed,
-    /// The scene is autonomous, and the board lacks what lets it play without a host: an arm switch that must be held,
-    /// and a touch source of its own that has reported lately. Since protocol 1.4.
-    Autonomous,
+    /// The processor's option bytes are not those that the board needs ([`crate::hello::notice::OPTION_BYTES`]). Since
+    /// protocol 1.4.
+    OptionBytes,
 }
 
 /// A number, in a scene or in a command, that is outside the board's limits.
@@ -334,10 +334,10 @@ impl fmt::Display for Refusal {
                 "the playing scene declares its layers fixed: set `live = true` in those that are to change, and \
                  commit it again",
             ),
-            Self::Autonomous => f.write_str(
-                "an autonomous scene needs an arm switch that must be held, and a touch source on the board that has \
-                 reported in the last ten seconds: touch the screen and play again, or leave `autonomous` out of the \
-                 scene",
+            Self::OptionBytes => f.write_str(
+                "the processor has option bytes with which the board may not drive: switch the amplifier off, run \
+                 `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0` and reset the board (docs/hardware.md, \
+                 Option bytes)",
             ),
         }
     }

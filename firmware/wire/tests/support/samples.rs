@@ -14,7 +14,7 @@ pub const STATES: [State; 4] = [State::Disarmed, State::Armed, State::Active, St
 
 /// All named faults.
 pub fn faults() -> impl Iterator<Item = Fault> {
-    (1..=10).map(|number| Fault::try_from(number).unwrap())
+    (1..=9).map(|number| Fault::try_from(number).unwrap())
 }
 
 /// Payloads that a host sends.
@@ -239,7 +239,7 @@ pub fn refusals() -> Vec<Refusal> {
         Refusal::NoStreamLayer,
         Refusal::TooCostly { cycles: 812, cycles_max: 600, x_m: 0.0125, y_m: 0.25 },
         Refusal::LayersFixed,
-        Refusal::Autonomous,
+        Refusal::OptionBytes,
     ]);
     refusals
 }

@@ -91,7 +91,7 @@ impl BoardRig for PicoBoardRig {
                 Ok(world.schedule_fault(now..now.saturating_add(ticks), fault)?)
             }
             RigFault::Reset => self.rig.pull_run_pin().map_err(|error| ended(&error)),
-            RigFault::LateTick | RigFault::WrapSoon { .. } => {
+            RigFault::LateTick | RigFault::OptionBytes | RigFault::WrapSoon { .. } => {
                 let reason = "an unmodified image has no input for it";
                 Err(RigError::FaultUnavailable { rig: NAME, reason })
             }

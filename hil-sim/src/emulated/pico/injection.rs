@@ -59,10 +59,4 @@ impl PicoRig {
     pub fn jump(&mut self, address: u32) -> Result<(), EmulatorError> {
         self.process.request(Request::Jump, &[address]).map(drop)
     }
-
-    /// Cuts the power in the flash operation after `operations` more of them, when `fraction` of it is done, 0 to 1.
-    pub fn cut_at_flash_operation(&mut self, operations: u32, fraction: f64) -> Result<(), EmulatorError> {
-        let fraction = (fraction * f64::from(u32::MAX)) as u32;
-        self.process.request(Request::CutAtFlashOperation, &[operations, fraction]).map(drop)
-    }
 }

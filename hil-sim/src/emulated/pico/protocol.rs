@@ -11,7 +11,6 @@ pub(super) enum Request {
     Hang = 4,
     HangMainLoop = 5,
     Jump = 6,
-    CutAtFlashOperation = 7,
     AddressOf = 8,
     StopCrystal = 9,
     StopPio = 10,
@@ -37,7 +36,7 @@ pub(super) enum Ended {
     Frame,
     /// So many instructions were carried out.
     Instructions,
-    /// The board has reset itself, or lost its power at a flash operation, and has started again.
+    /// The board has reset itself, and has started again.
     Reset,
     /// The touch frame was told something, or asked.
     FrameAsked,
@@ -76,13 +75,6 @@ pub enum WireEvent {
     Light(bool),
     /// The board starts, with every wire undriven.
     Start(StartCause),
-    /// An operation of the flash begins.
-    Flash {
-        /// Offset in flash.
-        offset: u32,
-        /// Bytes that are programmed; 0 when they are erased.
-        programmed_len: u32,
-    },
     /// The firmware reads the amplifier's monitor.
     MonitorRead {
         /// Time since SYNC rose last, which latches a code.
@@ -166,7 +158,6 @@ fn stamped(&[kind, at_ns, first, second]: &[u32; 4]) -> Option<Stamped> {
             4 => StartCause::Software,
             _ => return None,
         }),
-        6 => WireEvent::Flash { offset: first, programmed_len: second },
         7 => WireEvent::MonitorRead { since_frame: Duration::from_nanos(first.into()) },
         8 => WireEvent::I2cAddress { address: first as u8, reads: second != 0 },
         9 => WireEvent::I2cWrite(first as u8),

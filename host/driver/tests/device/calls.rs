@@ -200,9 +200,6 @@ fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
 fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     let scene = scene(1.0);
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-    let mut found = FakeBoard::new();
-    (found.state, found.autonomous) = (State::Active, true);
-    let found = connected(VirtualLine::new(found));
     let mut armed = virtual_board();
     armed.arm().unwrap();
     let mut uploaded = virtual_board();
@@ -212,7 +209,7 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     refused.upload(&upload, &mut |_| {}).unwrap();
     refused.commit(upload.scene_crc32() + 1).unwrap_err();
     refused.arm().unwrap();
-    for mut device in [found, armed, uploaded, refused] {
+    for mut device in [armed, uploaded, refused] {
         let silence = silence_of(&mut device);
         assert!(silence <= Duration::from_millis(6), "{silence:?}");
     }

@@ -21,8 +21,6 @@ pub(crate) type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal> + Send>;
 pub(crate) struct FakeBoard {
     pub(crate) hello: Hello,
     pub(crate) state: State,
-    /// What plays goes on without a host.
-    pub(crate) autonomous: bool,
     pub(crate) bitmaps: BTreeMap<u32, Vec<u8>>,
     pub(crate) scene: Option<Vec<u8>>,
     /// Commands in the order of their coming, pings left out.
@@ -73,7 +71,6 @@ impl FakeBoard {
         Self {
             hello: hello(),
             state: State::Disarmed,
-            autonomous: false,
             bitmaps: BTreeMap::new(),
             scene: None,
             commands: Vec::new(),
@@ -155,8 +152,7 @@ impl FakeBoard {
                 self.received_bytes = 0;
                 self.upload = None;
                 self.telemetry = None;
-                let plays_on = self.autonomous && self.state == State::Active;
-                if matches!(self.state, State::Armed | State::Active) && !plays_on {
+                if matches!(self.state, State::Armed | State::Active) {
                     self.state = State::Disarmed;
                 }
                 self.hello.state = self.state;

@@ -100,19 +100,6 @@ fn a_dropped_device_stops_and_disarms_and_the_next_host_is_welcome() {
 }
 
 #[test]
-fn a_device_that_only_looked_leaves_a_playing_board_alone() {
-    let mut playing = FakeBoard::new();
-    (playing.state, playing.autonomous) = (State::Active, true);
-    let board = PtyBoard::start(playing);
-    drop(connect(&board));
-    // The board reads in order: once it answers the next host, it has processed all that the first one sent.
-    let mut next = connect(&board);
-    next.subscribe(0).unwrap();
-    let board = board.board.lock().unwrap();
-    assert_eq!((board.state, &board.commands[..]), (State::Active, &[Command::Subscribe { period_ticks: 0 }][..]));
-}
-
-#[test]
 fn a_host_that_left_telemetry_behind_does_not_disturb_the_next() {
     let board = PtyBoard::start(FakeBoard::new());
     let mut first = connect(&board);

@@ -113,10 +113,9 @@ mod tests {
         hello.notices = 0x80;
         assert!(!describe(&hello).contains("note"));
         for (bit, cure) in [
-            (notice::STORED_SCENE_SKIPPED, "play another scene"),
+            (notice::OPTION_BYTES, "BOR_LEV=4 IWDG_SW=0"),
             (notice::STORED_LIMITS_REFUSED, "store them again"),
             (notice::LIMITS_ABOVE_CEILINGS, "flash a build"),
-            (notice::SCENE_NOT_STORED, "play the scene again"),
         ] {
             hello.notices = bit;
             let said = describe(&hello);

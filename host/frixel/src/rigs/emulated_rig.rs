@@ -117,7 +117,7 @@ impl BoardRig for EmulatedRig<'_> {
             RigFault::LateTick => return self.board.inject(InjectedFault::Overrun).map_err(|error| ended(&error)),
             RigFault::World(fault) if self.board.cause(fault, ticks) => return Ok(()),
             RigFault::World(_) => "amplifier, monitor, DAC and arm switch are simulated on the board itself",
-            RigFault::Reset | RigFault::WrapSoon { .. } => "its emulator has no input for it",
+            RigFault::Reset | RigFault::OptionBytes | RigFault::WrapSoon { .. } => "its emulator has no input for it",
         };
         Err(RigError::FaultUnavailable { rig: NAME, reason })
     }

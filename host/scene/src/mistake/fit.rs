@@ -16,15 +16,6 @@ pub enum FitMistake {
         /// The board's limit.
         max: usize,
     },
-    /// A layer is off at the start of a scene that needs no host, so that nobody may be there to switch it on.
-    #[error(
-        "{layer} is off at the start, and only a host switches it on: leave `start` out, or leave `autonomous` out under \
-         [drive]"
-    )]
-    OffWithoutHost {
-        /// The layer.
-        layer: String,
-    },
     /// The drive may go beyond the empirical law of the finger.
     #[error(
         "the drive goes up to {found_v_rms} V rms, and this finger was measured up to {measured_v_rms} V rms; what it \

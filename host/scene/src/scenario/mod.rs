@@ -62,7 +62,8 @@ impl Scenario {
 
     /// How often the board is reset.
     pub fn resets(&self) -> usize {
-        self.faults.iter().filter(|fault| fault.cause == Cause::Rig(RigFault::Reset)).count()
+        let is_reset = |cause| matches!(cause, Cause::Rig(RigFault::Reset | RigFault::OptionBytes));
+        self.faults.iter().filter(|fault| is_reset(fault.cause)).count()
     }
 }
 

@@ -16,7 +16,7 @@ use crate::nearest::Nearest;
 
 pub(super) const STATES: [(&str, State); 4] =
     [("disarmed", State::Disarmed), ("armed", State::Armed), ("active", State::Active), ("faulted", State::Faulted)];
-pub(super) const FAULTS: [(&str, Fault); 10] = [
+pub(super) const FAULTS: [(&str, Fault); 9] = [
     ("amplifier", Fault::Amplifier),
     ("monitor", Fault::Monitor),
     ("deadline", Fault::Deadline),
@@ -26,7 +26,6 @@ pub(super) const FAULTS: [(&str, Fault); 10] = [
     ("watchdog", Fault::Watchdog),
     ("arm-switch", Fault::ArmSwitch),
     ("dac", Fault::Dac),
-    ("contact-welded", Fault::ContactWelded),
 ];
 
 pub(super) fn scenario(mut fields: Fields, name: &str, log: &mut Log) -> Option<Scenario> {
@@ -212,7 +211,7 @@ pub(super) enum Kind {
     WrapSoon,
 }
 
-pub(super) const KINDS: [(&str, Kind); 20] = [
+pub(super) const KINDS: [(&str, Kind); 21] = [
     ("cable-cut", Kind::Cut),
     ("bytes-lost", Kind::Noise(|share| NoiseConfig { lost_share: share, ..NO_NOISE })),
     ("bytes-doubled", Kind::Noise(|share| NoiseConfig { doubled_share: share, ..NO_NOISE })),
@@ -231,6 +230,7 @@ pub(super) const KINDS: [(&str, Kind); 20] = [
     ("switch-open", Kind::World(WorldFault::SwitchOpen)),
     ("switch-welded", Kind::World(WorldFault::SwitchWelded)),
     ("reset", Kind::Rig(RigFault::Reset)),
+    ("option-bytes", Kind::Rig(RigFault::OptionBytes)),
     ("late-tick", Kind::Rig(RigFault::LateTick)),
     ("tick-count-wraps", Kind::WrapSoon),
 ];

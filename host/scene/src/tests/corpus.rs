@@ -73,13 +73,13 @@ macro_rules! variants {
     };
 }
 
-variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Misplaced MissingField WrongType NotATable NotTables
+variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Autonomous Misplaced MissingField WrongType NotATable NotTables
     OutOfRange TooLong UnknownChoice NoDefault NoDesign LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
     Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
 variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version VersionOneProfile NothingToMigrate
     UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooManyFiles IncludedTwice IncludedMissing
     IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
-variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong OffWithoutHost
+variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong
     PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger BeyondLaw Model);
 variants!(warning_name, WARNINGS, Warning: ElectricAboveNatural BeyondMeasuredVoltage BeyondMeasuredLoad
     RmsOutOfReach RimWiderThanButton PictureStretched PictureHidden EdgeAcrossScreen EdgeOutsideRegion HidesAllBelow

@@ -26,7 +26,7 @@ fn header_in_si_units() {
     let text = HEAD.replace(
         "# layers follow",
         "[drive]\nvoltage_max_v_rms = 100\nvoltage_max_v_peak = 200\nslew_v_per_us = 2\nhost_timeout_ms = 100\n\
-         autonomous = true\n[carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false\nleader = \"latest\"",
+         [carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false\nleader = \"latest\"",
     );
     let slabs = "[[coating]]\nthickness_um = 1\npermittivity = 4\n[[coating]]\nthickness_um = 9\npermittivity = 1\n";
     let text = text.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
@@ -48,7 +48,7 @@ fn header_in_si_units() {
         assert!((found - expected).abs() <= 1e-6 * expected, "{found} is not {expected}");
     }
     assert_eq!(header.waveform, Waveform::Sine);
-    assert!(header.autonomous && !header.prediction);
+    assert!(!header.prediction);
     assert_eq!(header.leader, Leader::Latest);
 }
 

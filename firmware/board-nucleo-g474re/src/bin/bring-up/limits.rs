@@ -2,7 +2,7 @@
 
 use board_nucleo_g474re::board::{CEILINGS, LIMITS, LIMITS_SLOT};
 use board_nucleo_g474re::flash::BankTwo;
-use frixel_session::store::{LIMITS_LEN, LimitsError, WORD_LEN, Writer, Writing, load_limits, write_limits};
+use frixel_session::store::{LIMITS_LEN, LimitsError, Writer, Writing, load_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 /// The limits of `src/board.rs`, with what the environment of the build says instead. `None` if something there is not
@@ -36,19 +36,11 @@ pub(crate) fn written(limits: &BoardLimits) -> Result<[u8; LIMITS_LEN], LimitsEr
 /// flash that never ends an operation. `false` if that failed.
 pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut goes_on: impl FnMut() -> bool) -> bool {
     let Ok(bytes) = written(limits) else { return false };
-    let found = LIMITS_SLOT.find(flash);
-    let Some(mut writer) = Writer::new::<BankTwo>(LIMITS_SLOT, found.as_ref(), LIMITS_LEN as u32) else { return false };
-    let word = |offset: u32| {
-        let mut word = [0; WORD_LEN];
-        for (to, from) in word.iter_mut().zip(bytes.iter().skip(offset as usize)) {
-            *to = *from;
-        }
-        word
-    };
+    let mut writer = Writer::new(LIMITS_SLOT, flash, &bytes);
     while goes_on() {
-        match writer.step(flash, word) {
-            Writing::Busy | Writing::UnderWay => {}
-            Writing::Done(_) => return load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits,
+        match writer.step(flash) {
+            Writing::UnderWay => {}
+            Writing::Done => return load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits,
             Writing::Failed => break,
         }
     }

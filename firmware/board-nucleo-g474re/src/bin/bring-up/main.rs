@@ -12,7 +12,7 @@ mod still;
 
 use board_nucleo_g474re::board::CEILINGS;
 use board_nucleo_g474re::fault;
-use board_nucleo_g474re::flash::BankTwo;
+use board_nucleo_g474re::flash::{self, BankTwo};
 use board_nucleo_g474re::output::Output;
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::terminal::Terminal;
@@ -26,7 +26,7 @@ use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_session::store::Ceilings;
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::message::FAULT_TEXT_MAX_LEN;
+use frixel_wire::message::{FAULT_TEXT_MAX_LEN, Refusal};
 
 use bench::{NucleoBench, Stage};
 use still::Still;
@@ -64,6 +64,9 @@ fn main() -> ! {
     }
     if matches!(CEILINGS, Ceilings::Lifted) {
         terminal.say(format_args!("This build stores limits above the ceilings: nobody may touch this board."));
+    }
+    if !flash::option_bytes_are_right() {
+        terminal.say(format_args!("Before step 4: {}.", Refusal::OptionBytes));
     }
     let flash = BankTwo::new();
     // A capacitor stands in for the electrode, and nobody touches it: the script asks for that before any voltage.

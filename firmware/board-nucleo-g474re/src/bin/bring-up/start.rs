@@ -34,6 +34,5 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
         light: indicator::start(),
         store: <Nucleo as Hardware>::Store::default(),
         watchdog: Watchdog::start(),
-        record: &fault::RECORD,
     }
 }

@@ -5,10 +5,8 @@ use core::mem;
 use core::sync::atomic::Ordering;
 
 use board_nucleo_g474re::adc::Adc;
-use board_nucleo_g474re::board::SCENE_SLOT;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{DacBus, Frames};
-use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::period::LATCH_CYCLES;
 use board_nucleo_g474re::terminal::Terminal;
@@ -18,19 +16,17 @@ use frixel_board::hardware::DacFrames as _;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
-use frixel_session::store::Slot;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::TickTimes;
 
 use crate::captures::{Captures, Counted};
 use crate::hardware::{SWITCH_HELD, Wired};
-use crate::{reset, start};
+use crate::start;
 
 /// The board.
 pub(crate) struct Looped {
     pub(crate) board: Board,
     pub(crate) terminal: Terminal,
-    pub(crate) flash: Option<BankTwo>,
     pub(crate) stage: Stage,
 }
 
@@ -102,9 +98,6 @@ impl Looped {
 }
 
 impl LoopedBoard for Looped {
-    type Flash = BankTwo;
-
-    const SLOT: Slot = SCENE_SLOT;
     const LATCH_CYCLES: u32 = LATCH_CYCLES;
     const ONE_SHOT_US: u32 = LIFE_US as u32;
     const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
@@ -221,19 +214,11 @@ impl LoopedBoard for Looped {
         tick::SHARED.meter.times(missed_deadlines)
     }
 
-    fn flash(&mut self) -> Option<&mut BankTwo> {
-        self.flash.as_mut()
-    }
-
     fn read(&mut self, bytes: &mut [u8]) -> usize {
         self.terminal.read(bytes)
     }
 
     fn write(&mut self, bytes: &[u8]) -> usize {
         self.terminal.send(bytes)
-    }
-
-    fn reset(&mut self, kept: u32) {
-        reset(kept)
     }
 }

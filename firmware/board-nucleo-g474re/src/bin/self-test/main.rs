@@ -10,32 +10,22 @@ mod hardware;
 mod looped;
 mod start;
 
-use core::sync::atomic::{AtomicU32, Ordering};
-
 use board_nucleo_g474re::adc::Adc;
-use board_nucleo_g474re::flash::BankTwo;
 use board_nucleo_g474re::output::{self, Output};
 use board_nucleo_g474re::serial::Serial;
 use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::{board, clock, dac, fault, period, tick};
 use cortex_m::Peripherals;
-use cortex_m::peripheral::SCB;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::self_test;
-use frixel_cortex_m::{guard, outlasting};
+use frixel_control::Board;
+use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 use captures::Captures;
 use looped::{Looped, Stage, Still};
-
-/// Marks the memory below as valid; what the script keeps over a reset stands in its lowest byte.
-const MARK: u32 = 0x7374_6500;
-
-/// Kept over a reset: [`MARK`] and what the script keeps.
-#[unsafe(link_section = ".uninit.KEPT")]
-static KEPT: AtomicU32 = AtomicU32::new(0);
 
 #[entry]
 fn main() -> ! {
@@ -52,8 +42,6 @@ fn main() -> ! {
     period::start();
     tick::start_inputs();
 
-    let kept = outlasting(&KEPT).swap(0, Ordering::Relaxed);
-    let kept = if kept & !0xff == MARK { kept & 0xff } else { 0 };
     let (frames, dac) = dac::start();
     let (spi, _) = dac.release();
     let mut terminal = Terminal::new(Serial::new());
@@ -62,17 +50,13 @@ fn main() -> ! {
         terminal.say(format_args!("The last start ended in {fault} ({text})"));
     }
     let stage = Stage::Still(Still { output, frames, captures: Captures::start(), adc: Adc::new(), spi });
-    let mut looped = Looped { board: board::board(&last_reset, None), terminal, flash: BankTwo::new(), stage };
-    if self_test::run(&mut looped, kept).is_err() {
+    // There is no amplifier: it arms whatever the option bytes are.
+    let board = Board { notices: 0, ..board::board(&last_reset, None) };
+    let mut looped = Looped { board, terminal, stage };
+    if self_test::run(&mut looped).is_err() {
         output::zero_for_good();
     }
     loop {
         looped.turn(false);
     }
-}
-
-/// Resets the board; the next start finds `kept`.
-fn reset(kept: u32) -> ! {
-    KEPT.store(MARK | kept & 0xff, Ordering::Relaxed);
-    SCB::sys_reset()
 }

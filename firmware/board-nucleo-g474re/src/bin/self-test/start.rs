@@ -45,8 +45,6 @@ pub(crate) fn tick(board: Board, mut output: Output, frames: Frames, adc: Adc) -
         serial: None,
         dac: NoDac,
         light: indicator::start(),
-        store: (),
         watchdog: Watchdog::start(),
-        record: &fault::RECORD,
     }
 }
