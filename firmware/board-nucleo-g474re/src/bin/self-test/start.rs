@@ -27,7 +27,7 @@ pub(crate) fn tick(board: Board, mut output: Output, frames: Frames, adc: Adc) -
     let (ticker, session, session_ends, tick_ends) = memory.make(board);
     let status = ticker.status();
     output.zero();
-    TICK.start(Tick {
+    tick::start_interrupt(&TICK, Tick {
         shared: &tick::SHARED,
         ticker,
         queues: tick_ends,
