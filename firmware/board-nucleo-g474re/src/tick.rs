@@ -66,7 +66,7 @@ defmt::timestamp!("tick {=u32}", count());
 
 /// Starts the tick of a program with all parts of this board. The input pins are configured here.
 pub fn start(owner: &TickOwner<Nucleo>, ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
-    start_interrupt(owner, Tick {
+    let tick = Tick {
         shared: &SHARED,
         ticker,
         queues,
@@ -75,7 +75,8 @@ pub fn start(owner: &TickOwner<Nucleo>, ticker: Ticker<'static>, queues: TickEnd
         amplifier: Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_READY)),
         monitor: Adc::new(),
         arm_switch: ArmSwitch::new(Pin::input_pulled_down(GPIOB, ARM_SWITCH), Nucleo::TICK_HZ),
-    });
+    };
+    start_interrupt(owner, tick);
 }
 
 /// Configures both input pins before the tick runs, for bring-up.
