@@ -216,17 +216,22 @@ fn a_monitor_that_dies_and_a_gain_that_changes_fault_within_half_a_millisecond()
     }
 }
 
-/// The monitor tolerates a gain that is too high by a part. The current of that single fault is below its limit.
+/// The monitor tolerates a gain that is too high by a quarter. The current of that single fault is below its limit, and
+/// so is the one of the few milliseconds in which the gain may be as high as a single tick tolerates.
 #[test]
 fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_sees_it() {
     let bound = TouchBound::behind(Board::NUCLEO_G474RE.limits.series_resistance_ohm);
     for carrier_hz in [125.0, 250.0, 1_000.0] {
         let voltage_v_peak = bound.voltage_max_v_peak(carrier_hz);
-        // 4 % of the full scale of 200 V, and a quarter of the voltage.
-        let tolerated = 1.25 + 8.0 / f64::from(voltage_v_peak);
-        let tolerated_a_peak = tolerated * TOUCH_CURRENT_MAX_A_PEAK;
-        println!("{carrier_hz} Hz: {voltage_v_peak:.1} V peak, gain up to {tolerated:.2}: {tolerated_a_peak} A");
-        assert!(tolerated_a_peak < SINGLE_FAULT_CURRENT_MAX_A_PEAK);
+        // A quarter; and, for 20 ms at most, 4 % of the full scale of 200 V more.
+        let tolerated = 1.25;
+        let at_first = tolerated + 8.0 / f64::from(voltage_v_peak);
+        let [tolerated_a_peak, first_a_peak] = [tolerated, at_first].map(|gain| gain * TOUCH_CURRENT_MAX_A_PEAK);
+        println!(
+            "{carrier_hz} Hz: {voltage_v_peak:.1} V peak, gain up to {tolerated:.2}: {tolerated_a_peak} A; \
+             {at_first:.2} for 20 ms: {first_a_peak} A"
+        );
+        assert!(first_a_peak < SINGLE_FAULT_CURRENT_MAX_A_PEAK);
         for (gain, is_seen) in [(tolerated - 0.05, false), (tolerated + 0.05, true)] {
             play(AMPLIFIER, &header(voltage_v_peak, carrier_hz, Waveform::Square), |script| {
                 for tick in 0..6_000 {

@@ -81,7 +81,7 @@ fn run(
         queues: session_ends,
         session,
         status,
-        serial: Some(SerialLink::new(Uart::start(bytes, &mut peripherals.NVIC))),
+        serial: Uart::start(bytes, &mut peripherals.NVIC).map(SerialLink::new),
         dac: NoDac,
         light: StateLight::new(NoLight, Mps2::TICK_HZ),
         watchdog: NoWatchdog,

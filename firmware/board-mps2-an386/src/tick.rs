@@ -42,9 +42,9 @@ pub fn start(ticker: Ticker<'static>, queues: TickEnds, systick: SYST) {
         monitor: Monitor::new(),
         arm_switch: ArmSwitch::new(Switch, SWITCH_HZ),
     };
-    // SAFETY: SysTick is enabled below.
-    unsafe { INTERRUPT.give(Interrupt { tick, host_wait: HostWait::default() }) };
-    period::start(systick);
+    if INTERRUPT.give(Interrupt { tick, host_wait: HostWait::default() }).is_some() {
+        period::start(systick);
+    }
 }
 
 #[exception]

@@ -80,16 +80,13 @@ impl Queues {
 }
 
 impl Uart {
-    /// Enables the port. `SysTick` should run already: on an idle emulator without a timer the first byte takes a
+    /// Enables the port; `None` if it is enabled already. `SysTick` should run already: on an idle emulator without a timer the first byte takes a
     /// second.
-    pub fn start(queues: &'static mut Queues, nvic: &mut NVIC) -> Self {
+    pub fn start(queues: &'static mut Queues, nvic: &mut NVIC) -> Option<Self> {
         let (receiver, received) = queues.receive.split();
         let (to_transmit, transmitter) = queues.transmit.split();
-        // SAFETY: both interrupts are enabled below.
-        unsafe {
-            RECEIVER.give(receiver);
-            TRANSMITTER.give(transmitter);
-        }
+        RECEIVER.give(receiver)?;
+        TRANSMITTER.give(transmitter)?;
         write(BAUDDIV, DIVIDER);
         write(CTRL, CTRL_TX_ENABLE | CTRL_RX_ENABLE | CTRL_TX_INTERRUPT | CTRL_RX_INTERRUPT);
         for interrupt in [Interrupt::Receive, Interrupt::Transmit] {
@@ -99,7 +96,7 @@ impl Uart {
                 NVIC::unmask(interrupt);
             }
         }
-        Self { received, to_transmit }
+        Some(Self { received, to_transmit })
     }
 }
 

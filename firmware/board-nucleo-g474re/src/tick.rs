@@ -12,7 +12,7 @@ use cortex_m::peripheral::NVIC;
 use frixel_board::hardware::Hardware;
 use frixel_board::tick::{Tick, TickShared};
 use frixel_control::Ticker;
-use frixel_cortex_m::Owned;
+pub use frixel_cortex_m::TickOwner;
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_session::TickEnds;
@@ -29,44 +29,22 @@ use crate::{period, pins};
 const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 2;
 
-/// The tick of a program, which its interrupt owns: [`tick_interrupt`](crate::tick_interrupt) declares both.
-pub struct TickOwner<H: Hardware>(Owned<Tick<H>>);
-
-impl<H: Hardware> TickOwner<H>
+/// Gives the tick to its interrupt, and starts that. A second call changes nothing: the first tick goes on.
+#[inline]
+pub fn start_interrupt<H: Hardware>(owner: &TickOwner<H>, tick: Tick<H>)
 where
     Tick<H>: Send,
 {
-    /// No tick yet.
-    #[allow(clippy::new_without_default, reason = "it belongs in a static")]
-    pub const fn new() -> Self {
-        Self(Owned::new())
-    }
-
-    /// Starts the tick. Called once.
-    #[inline]
-    pub fn start(&self, tick: Tick<H>) {
-        // SAFETY: TIM3 is unmasked below.
-        unsafe { self.0.give(tick) };
+    if owner.give(tick).is_some() {
         period::start_interrupts();
         // SAFETY: no critical section depends on it being masked. Priority 0, the highest, is its priority from reset
         // on.
         unsafe { NVIC::unmask(Interrupt::TIM3) };
     }
-
-    /// Runs the tick; its deadline is 21.8 us into the period.
-    ///
-    /// # Safety
-    /// Only the handler of TIM3 calls this.
-    #[inline]
-    pub unsafe fn run(&self) {
-        // SAFETY: the handler owns the value, says the caller.
-        if let Some(tick) = unsafe { self.0.get() } {
-            tick.run();
-        }
-    }
 }
 
-/// Declares `TICK`, the tick of a program whose parts are those of `$hardware`, and its interrupt.
+/// Declares `TICK`, the tick of a program whose parts are those of `$hardware`, and its interrupt. The tick's deadline is
+/// 21.8 us into the period.
 #[macro_export]
 macro_rules! tick_interrupt {
     ($hardware:ty) => {
@@ -88,7 +66,7 @@ defmt::timestamp!("tick {=u32}", count());
 
 /// Starts the tick of a program with all parts of this board. The input pins are configured here.
 pub fn start(owner: &TickOwner<Nucleo>, ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
-    owner.start(Tick {
+    let tick = Tick {
         shared: &SHARED,
         ticker,
         queues,
@@ -97,7 +75,8 @@ pub fn start(owner: &TickOwner<Nucleo>, ticker: Ticker<'static>, queues: TickEnd
         amplifier: Amplifier::new(output, Pin::input_pulled_down(GPIOC, AMPLIFIER_READY)),
         monitor: Adc::new(),
         arm_switch: ArmSwitch::new(Pin::input_pulled_down(GPIOB, ARM_SWITCH), Nucleo::TICK_HZ),
-    });
+    };
+    start_interrupt(owner, tick);
 }
 
 /// Configures both input pins before the tick runs, for bring-up.

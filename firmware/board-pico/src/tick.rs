@@ -11,7 +11,7 @@ use cortex_m::peripheral::NVIC;
 use frixel_board::hardware::Hardware;
 use frixel_board::tick::{Tick, TickShared};
 use frixel_control::Ticker;
-use frixel_cortex_m::Owned;
+use frixel_cortex_m::TickOwner;
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_session::TickEnds;
@@ -30,14 +30,14 @@ const ARM_SWITCH: usize = 14;
 /// Every other interrupt has the priority below that of the tick, 0: the number is in the upper bits of eight.
 const BELOW_THE_TICK: u8 = 1 << 6;
 
-static TICK: Owned<Tick<Pico>> = Owned::new();
+static TICK: TickOwner<Pico> = TickOwner::new();
 /// What the tick shares with the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
 #[cfg(feature = "log")]
 defmt::timestamp!("tick {=u32}", SHARED.count());
 
-/// Starts the tick. The input pins are configured here.
+/// Starts the tick. Called once: a second call leaves the first tick as it is. The input pins are configured here.
 pub fn start(nvic: &mut NVIC, ticker: Ticker<'static>, queues: TickEnds, frames: Frames, output: Output) {
     let tick = Tick {
         shared: &SHARED,
@@ -49,8 +49,9 @@ pub fn start(nvic: &mut NVIC, ticker: Ticker<'static>, queues: TickEnds, frames:
         monitor: Adc::new(),
         arm_switch: ArmSwitch::new(Pin::input_pulled_down(ARM_SWITCH), Pico::TICK_HZ),
     };
-    // SAFETY: the interrupt is unmasked below.
-    unsafe { TICK.give(tick) };
+    if TICK.give(tick).is_none() {
+        return;
+    }
     period::start_interrupts();
     // SAFETY: no critical section depends on a priority, and none on the interrupt being masked.
     unsafe {
@@ -63,8 +64,6 @@ pub fn start(nvic: &mut NVIC, ticker: Ticker<'static>, queues: TickEnds, frames:
 /// The tick.
 #[interrupt]
 fn PIO0_IRQ_0() {
-    // SAFETY: this is the handler that owns the value.
-    if let Some(tick) = unsafe { TICK.get() } {
-        tick.run();
-    }
+    // SAFETY: this is the handler.
+    unsafe { TICK.run() }
 }

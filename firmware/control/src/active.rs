@@ -3,6 +3,7 @@
 use frixel_layers::{ActiveLayers, BitmapPool, Clicks, Inputs};
 use frixel_model::InverseTable;
 
+use crate::Ceilings;
 use crate::carrier::CarrierTiming;
 
 /// Coefficients of one scene. A board has two of them: the ticker plays one, while the session computes the next scene
@@ -53,6 +54,25 @@ impl Active {
         self.prediction = true;
     }
 
+    /// Lowers whatever is above a board's ceilings to them, and returns whether anything was. Then no tick has to look
+    /// at the ceilings: its code is at most the carrier's.
+    pub(crate) fn limit_to(&mut self, ceilings: &Ceilings) -> bool {
+        let carrier = self.carrier.within(ceilings);
+        let voltage_max_v_rms =
+            from_zero_to(ceilings.voltage_max_v_peak(carrier.half_period_ticks), self.voltage_max_v_rms);
+        let slew_step_v = from_zero_to(f32::INFINITY, self.slew_step_v);
+        let host_timeout_ticks = self.host_timeout_ticks.min(ceilings.host_timeout_max_ticks);
+        let is_lowered = carrier != self.carrier
+            || host_timeout_ticks != self.host_timeout_ticks
+            || is_other(voltage_max_v_rms, self.voltage_max_v_rms)
+            || is_other(slew_step_v, self.slew_step_v);
+        self.carrier = carrier;
+        self.voltage_max_v_rms = voltage_max_v_rms;
+        self.slew_step_v = slew_step_v;
+        self.host_timeout_ticks = host_timeout_ticks;
+        is_lowered
+    }
+
     /// The inverse table; `None` without a scene.
     #[inline]
     pub(crate) fn table(&self) -> Option<&InverseTable> {
@@ -77,4 +97,19 @@ impl Active {
     pub(crate) fn set_layer(&mut self, number: u8, on: bool, gain: f32, tick: u32) {
         self.layers.set(number, on, gain, tick);
     }
+}
+
+/// The nearest number from zero to a maximum; zero for not-a-number.
+fn from_zero_to(max: f32, number: f32) -> f32 {
+    if number > max {
+        max
+    } else if number > 0.0 {
+        number
+    } else {
+        0.0
+    }
+}
+
+fn is_other(one: f32, other: f32) -> bool {
+    one.to_bits() != other.to_bits()
 }

@@ -6,7 +6,7 @@ use frixel_wire::scene::RECORDS_MAX;
 
 use frixel_layers::{BITMAP_POOL_LEN, ticks};
 
-use crate::{AmplifierSpec, ReadyWhileDisabled, SwitchingTime};
+use crate::{AmplifierSpec, Ceilings, ReadyWhileDisabled, SwitchingTime};
 
 /// A board's identity, tick rate and limits. They do not change while the firmware runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,6 +180,11 @@ impl Board {
 
     /// The names that [`Self::named`] knows.
     pub const NAMES: [&'static str; 3] = ["nucleo-g474re", "pico-2", "pico"];
+
+    /// What this board may put out.
+    pub fn ceilings(&self) -> Ceilings {
+        Ceilings::new(self)
+    }
 
     /// Seconds between two ticks.
     pub fn tick_period_s(&self) -> f32 {

@@ -15,6 +15,8 @@ use fixed::types::{I1F15, I17F15};
 use frixel_layers::{Waveform, cosine};
 use frixel_wire::dac_code::DacCode;
 
+use crate::Ceilings;
+
 /// An integral beyond its limit falls with the envelope divided by two to this power. Below sixteen codes, 0.1 V at 200
 /// V full scale, a positive one is nothing then, and the output waits for a larger envelope.
 const FALL_SHIFT: u32 = 4;
@@ -26,7 +28,7 @@ pub struct CarrierTiming {
     pub(crate) half_period_ticks: u32,
     /// DAC codes per volt rms of the envelope, including the crest factor and the loss in the edges.
     pub(crate) codes_per_v_rms: f32,
-    /// Largest DAC code.
+    /// Largest DAC code; not negative.
     pub(crate) code_max: DacCode,
     /// Largest magnitude of the running integral, in ticks at full scale.
     integral_max: I17F15,
@@ -37,8 +39,9 @@ impl CarrierTiming {
     /// A carrier whose output is zero.
     pub const ZERO_OUTPUT: Self = Self::new(Waveform::Square, 20, 0.0, DacCode::ZERO);
 
-    /// A carrier whose integral stays within one half period at full voltage.
+    /// A carrier whose integral stays within one half period at full voltage. A negative `code_max` counts as zero.
     pub const fn new(waveform: Waveform, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
+        let code_max = if code_max.bits() < 0 { DacCode::ZERO } else { code_max };
         let mean = match waveform {
             Waveform::Square => 1.0,
             Waveform::Sine => core::f32::consts::FRAC_2_PI,
@@ -46,6 +49,13 @@ impl CarrierTiming {
         let integral_max = I17F15::from_bits((code_max.bits() as f32 * (half_period_ticks as f32 * mean)) as i32);
         let turns_per_tick = 0.5 / half_period_ticks as f32;
         Self { waveform, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
+    }
+
+    /// This carrier, with what is above a board's ceilings lowered to them.
+    pub(crate) fn within(&self, ceilings: &Ceilings) -> Self {
+        let half_period_ticks = ceilings.half_period_ticks(self.half_period_ticks);
+        let ceiling = ceilings.code(ceilings.voltage_max_v_peak(half_period_ticks));
+        Self::new(self.waveform, half_period_ticks, self.codes_per_v_rms, self.code_max.min(ceiling))
     }
 
     /// Ticks from the middle of a half period to its edge.
@@ -117,7 +127,7 @@ impl Carrier {
         } else {
             self.turn(timing);
         }
-        // This does not wrap: the magnitude is at most `code_max`.
+        // This does not wrap: the magnitude is at most `code_max`, which is not negative.
         DacCode(I1F15::wrapping_from_num(code))
     }
 
@@ -157,7 +167,10 @@ impl Carrier {
             }
             Waveform::Sine => 0.0,
         };
-        I17F15::from_bits((code + 0.5) as i32).min(timing.code_max.0.into())
+        // The last line: whatever envelope and coefficients are, the code is from zero to `code_max`. The conversion makes
+        // zero of a negative number and of not-a-number.
+        let code_max = i32::from(timing.code_max.bits()).cast_unsigned();
+        I17F15::from_bits(((code + 0.5) as u32).min(code_max).cast_signed())
     }
 }
 

@@ -12,8 +12,14 @@
 //!
 //! A wrong voltage after the enable has fallen is a fault at once, and so is one that is not near zero at the end of
 //! the turn-off time. Elsewhere wrong ticks are counted, so that a single disturbed reading does not stop the output.
+//!
+//! The tolerance of a single tick has room for an offset, which hides any gain at a low voltage. [`Gain`] sums the right
+//! ticks over whole periods of the carrier, where the offset cancels.
+
+mod gain;
 
 use crate::{Board, ReadyWhileDisabled};
+use gain::Gain;
 
 /// Tolerance of the monitor voltage, as a fraction of full scale; [`GAIN_TOLERANCE`] is added to it. For offsets of
 /// amplifier, level shifter and ADC (assumed; none has been measured).
@@ -30,6 +36,10 @@ const WRONG_S: f32 = 0.4e-3;
 /// square carrier: it is found after three times that time, or in the first half period that is longer. A healthy
 /// amplifier has no wrong tick.
 const RIGHT_PER_WRONG: u32 = 3;
+/// Two low samples of the ready line, or two high ones where it must be low, are a fault if they are at most this far
+/// apart, in s. A single one is a disturbance: of an opto-isolator or a level shifter at an edge of hundreds of volts
+/// (assumed). A line that stays wrong is found at the next tick.
+const READY_S: f32 = 1e-3;
 /// Ticks between an edge of the enable and the first reading that shows it for a whole tick, one more for an edge that
 /// falls anywhere within its tick.
 const EDGE_TICKS: u32 = 2;
@@ -60,12 +70,19 @@ pub(crate) struct MonitorCheck {
     turn_on_ticks: u32,
     turn_off_ticks: u32,
     ready_while_disabled: ReadyWhileDisabled,
+    ready_ticks: u32,
+    /// Ticks in which another wrong sample of the ready line is a fault.
+    ready_left_ticks: u32,
+    gain: Gain,
 }
 
 /// A reading of the monitor and what was expected.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Comparison {
-    difference_v: f32,
+    expected_v: f32,
+    /// The code that was driven, for most of the tick, one tick after that of the reading.
+    driven_code: i16,
+    deviation_v: f32,
     gain_tolerance_v: f32,
 }
 
@@ -73,7 +90,7 @@ impl Comparison {
     /// Whether the reading is within tolerance; `false` if it is not a number.
     #[inline]
     fn is_within(self, floor_v: f32) -> bool {
-        self.difference_v < floor_v + self.gain_tolerance_v
+        self.deviation_v.abs() < floor_v + self.gain_tolerance_v
     }
 }
 
@@ -97,6 +114,9 @@ impl MonitorCheck {
             turn_on_ticks: amplifier.turn_on.ticks(board.tick_hz) + EDGE_TICKS,
             turn_off_ticks: amplifier.turn_off.ticks(board.tick_hz) + EDGE_TICKS,
             ready_while_disabled: amplifier.ready_while_disabled,
+            ready_ticks: board.ticks(READY_S).max(1),
+            ready_left_ticks: 0,
+            gain: Gain::new(board, floor_v),
         };
         check.choose_ticks_to_count();
         check
@@ -110,8 +130,16 @@ impl MonitorCheck {
         }
     }
 
-    /// Whether the level of the ready line is a fault.
-    pub(crate) fn is_ready_wrong(&self, is_ready: bool) -> bool {
+    /// Takes a sample of the ready line, and returns whether it is a fault: the second wrong one in a short time.
+    pub(crate) fn is_ready_fault(&mut self, is_ready: bool) -> bool {
+        let is_wrong = self.is_ready_wrong(is_ready);
+        let is_fault = is_wrong && self.ready_left_ticks > 0;
+        self.ready_left_ticks = if is_wrong { self.ready_ticks } else { self.ready_left_ticks.saturating_sub(1) };
+        is_fault
+    }
+
+    /// Whether the level of the ready line is wrong.
+    fn is_ready_wrong(&self, is_ready: bool) -> bool {
         match self.ready_while_disabled {
             ReadyWhileDisabled::High => !is_ready,
             _ if self.switching_ticks > 0 => false,
@@ -129,16 +157,26 @@ impl MonitorCheck {
         self.expected_v = expected_v + self.step * (driven_v - expected_v);
         self.monitor_v = monitor_v;
         let comparison = Comparison {
-            difference_v: (monitor_v - expected_v).abs(),
+            expected_v,
+            driven_code,
+            deviation_v: monitor_v - expected_v,
             gain_tolerance_v: self.half_gain_tolerance * (expected_v.abs() + driven_v.abs()),
         };
         (comparison, !comparison.is_within(self.uncounted_below_v))
     }
 
+    /// Sums up a tick that [`Self::count`] does not look at, and returns whether the gain is a fault.
+    #[inline]
+    pub(crate) fn sum(&mut self, comparison: Comparison) -> bool {
+        self.gain.take(comparison)
+    }
+
     /// Counts a tick, and returns whether the monitor shows a fault.
     pub(crate) fn count(&mut self, comparison: Comparison) -> bool {
         if self.switching_ticks == 0 {
-            return self.count_one(comparison.is_within(self.floor_v));
+            let is_right = comparison.is_within(self.floor_v);
+            let is_gain_wrong = is_right && self.gain.take(comparison);
+            return self.count_one(is_right) || is_gain_wrong;
         }
         self.switching_ticks -= 1;
         let is_right =
@@ -219,7 +257,7 @@ impl MonitorCheck {
     fn choose_ticks_to_count(&mut self) {
         // A ready line that is wrong when it is high does not call for attention by itself.
         let watches_ready = self.ready_while_disabled == ReadyWhileDisabled::Low && !self.is_enabled;
-        let counts_all = self.wrong_count > 0 || self.switching_ticks > 0 || watches_ready;
+        let counts_all = self.wrong_count > 0 || self.switching_ticks > 0 || watches_ready || self.ready_left_ticks > 0;
         self.uncounted_below_v = if counts_all { f32::NEG_INFINITY } else { self.floor_v };
     }
 }

@@ -83,6 +83,8 @@ pub struct Status {
 /// Events that a ticker has counted since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
+    /// Scenes whose coefficients were above the board's ceilings.
+    pub clamped_loads: u32,
     /// Ticks at which the target friction was out of reach.
     pub saturated_ticks: u32,
     /// Ticks at which the envelope was at its slew limit.

@@ -101,6 +101,8 @@ impl Supervisor {
         let (comparison, must_count) = self.monitor.advance(driven_code.bits(), sense.monitor_v);
         if must_count || sense.amplifier_fault || !sense.arm_switch {
             self.latch_first_fault(sense, comparison);
+        } else if self.monitor.sum(comparison) {
+            self.raise(Fault::Monitor, monitor_detail(sense));
         }
     }
 
@@ -108,7 +110,7 @@ impl Supervisor {
     #[cold]
     #[inline(never)]
     fn latch_first_fault(&mut self, sense: &Sense, comparison: Comparison) {
-        let is_ready_wrong = self.monitor.is_ready_wrong(!sense.amplifier_fault);
+        let is_ready_fault = self.monitor.is_ready_fault(!sense.amplifier_fault);
         let monitor_wrong = self.monitor.count(comparison);
         if !sense.arm_switch {
             self.switch_was_released = true;
@@ -117,8 +119,8 @@ impl Supervisor {
             return;
         }
         if monitor_wrong {
-            self.raise(Fault::Monitor, sense.monitor_v as i32 as u32);
-        } else if is_ready_wrong {
+            self.raise(Fault::Monitor, monitor_detail(sense));
+        } else if is_ready_fault {
             self.raise(Fault::Amplifier, 0);
         } else if self.state != State::Disarmed && !sense.arm_switch {
             self.raise(Fault::ArmSwitch, 0);
@@ -140,6 +142,11 @@ impl Supervisor {
             self.host_silent = true;
         }
     }
+}
+
+/// Detail of a monitor fault: the reading in whole volts.
+fn monitor_detail(sense: &Sense) -> u32 {
+    sense.monitor_v as i32 as u32
 }
 
 /// Host timeout in ticks before a scene has set one.

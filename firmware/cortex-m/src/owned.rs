@@ -4,31 +4,39 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Holds a value that the main program gives to one interrupt handler before it enables the interrupt.
+use cortex_m::interrupt;
+
+/// Holds a value that the main program gives to one interrupt handler.
 pub struct Owned<T> {
-    given: AtomicBool,
+    is_given: AtomicBool,
     value: UnsafeCell<MaybeUninit<T>>,
 }
 
-// SAFETY: the value is given once, before the interrupt is enabled, and from then on only its handler accesses it; so
-// there is never more than one reference to it, and it changes context once, which `Send` allows.
+// SAFETY: the value is written once, before `get` returns it, and from then on only its handler accesses it; so there is
+// never more than one reference to it, and it changes context once, which `Send` allows.
 unsafe impl<T: Send> Sync for Owned<T> {}
 
 impl<T> Owned<T> {
     /// An empty place.
     #[allow(clippy::new_without_default, reason = "it belongs in a static")]
     pub const fn new() -> Self {
-        Self { given: AtomicBool::new(false), value: UnsafeCell::new(MaybeUninit::uninit()) }
+        Self { is_given: AtomicBool::new(false), value: UnsafeCell::new(MaybeUninit::uninit()) }
     }
 
-    /// Gives the value to the handler.
-    ///
-    /// # Safety
-    /// The handler's interrupt has not been enabled yet.
-    pub unsafe fn give(&self, value: T) {
-        // SAFETY: the caller guarantees that there is no other reference.
-        unsafe { (*self.value.get()).write(value) };
-        self.given.store(true, Ordering::Release);
+    /// Gives the value to the handler. `None`, and nothing is given, if the handler has one already: it may be using it.
+    #[must_use = "a handler that has a value keeps it"]
+    pub fn give(&self, value: T) -> Option<()> {
+        // Without interrupts, so that no other call comes between the test and the end: an ARMv6-M has no atomic
+        // exchange. The other core of a chip with two is never started.
+        interrupt::free(|_| {
+            if self.is_given.load(Ordering::Relaxed) {
+                return None;
+            }
+            // SAFETY: nothing was given, so `get` has returned no reference, and no other call gets here.
+            unsafe { (*self.value.get()).write(value) };
+            self.is_given.store(true, Ordering::Release);
+            Some(())
+        })
     }
 
     /// Returns the value to the handler; `None` before it was given.
@@ -37,7 +45,8 @@ impl<T> Owned<T> {
     /// Only the handler that owns the value calls this, once in each run.
     #[allow(clippy::mut_from_ref, reason = "the handler is the one owner, says the caller")]
     pub unsafe fn get(&self) -> Option<&mut T> {
-        // SAFETY: it was given, and a handler does not interrupt itself, so this is the only reference.
-        self.given.load(Ordering::Acquire).then(|| unsafe { (*self.value.get()).assume_init_mut() })
+        // SAFETY: it was given, and is not written again. A handler does not interrupt itself, so this is the only
+        // reference.
+        self.is_given.load(Ordering::Acquire).then(|| unsafe { (*self.value.get()).assume_init_mut() })
     }
 }

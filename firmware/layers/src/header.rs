@@ -20,7 +20,9 @@ pub const HEADER_LEN: usize = 56;
 pub const HALF_PERIOD_MIN_TICKS: u32 = 4;
 /// Lowest carrier frequency, Hz: charge leaks through skin below about 250 Hz (arXiv 2409.18725); at less than half of
 /// that, the drive has in effect no alternating carrier.
-const CARRIER_MIN_HZ: f32 = 125.0;
+pub const CARRIER_MIN_HZ: f32 = 125.0;
+/// Shortest and longest host timeout, s.
+pub const HOST_TIMEOUTS_S: [f32; 2] = [0.02, 1.0];
 
 /// Offsets of the header's fields; those of `f32` are in [`Header::numbers`].
 mod field {
@@ -294,6 +296,7 @@ impl Header {
                 ]
             }
         };
+        let [timeout_min_s, timeout_max_s] = HOST_TIMEOUTS_S;
         for (field, found, min, max) in [
             (ConfigField::ScreenWidth, self.screen_width_m, 1e-3, range::LENGTH_MAX_M as f32),
             (ConfigField::ScreenHeight, self.screen_height_m, 1e-3, range::LENGTH_MAX_M as f32),
@@ -306,7 +309,7 @@ impl Header {
             (ConfigField::VoltagePeak, self.voltage_max_v_peak, 1.0, voltage_max_v_peak),
             (ConfigField::Slew, self.slew_v_per_s, 1.0, 1e9),
             (ConfigField::CarrierFrequency, self.carrier_hz, CARRIER_MIN_HZ, carrier_max_hz),
-            (ConfigField::HostTimeout, self.host_timeout_s, 0.02, 1.0),
+            (ConfigField::HostTimeout, self.host_timeout_s, timeout_min_s, timeout_max_s),
             (ConfigField::ElectricFrictionMax, self.electric_friction_max_n.unwrap_or(0.0), 0.0, f32::MAX),
         ] {
             within(field, found, min, max, ConfigRefusal::WHOLE_SCENE)?;

@@ -21,7 +21,7 @@ fn a_layer_is_changed_only_while_it_plays() {
     board.command(Command::Play).unwrap();
     assert_eq!(board.command(HALF), Ok(Accepted::Done));
     board.sense.amplifier_fault = true;
-    board.tick();
+    board.ticks(2);
     assert_eq!(board.command(HALF), Err(Refusal::Faulted(Fault::Amplifier)));
 }
 

@@ -35,6 +35,7 @@ fn a_fault_puts_the_output_to_zero_in_its_own_tick() {
         let mut board = playing();
         assert_ne!(board.slide(ticks).last(), Some(&OFF));
         board.sense.amplifier_fault = true;
+        assert_ne!(board.tick(), OFF, "{ticks}: a single sample is no fault");
         assert_eq!(board.tick(), OFF, "{ticks}");
     }
 }
@@ -136,7 +137,7 @@ fn assert_faults(board: &mut TestBoard, fault: Fault, within_ticks: u32) {
 fn an_amplifier_fault_latches() {
     let mut board = playing();
     board.sense.amplifier_fault = true;
-    assert_faults(&mut board, Fault::Amplifier, 0);
+    assert_faults(&mut board, Fault::Amplifier, 1);
     board.command(Command::ClearFault).unwrap();
     board.tick();
     assert_eq!(board.status().telemetry.state, State::Faulted, "the cause is still there");
@@ -466,6 +467,6 @@ fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it
         board.sense.amplifier_fault = false;
         board.slide(100);
         board.sense.amplifier_fault = true;
-        assert_faults(&mut board, Fault::Amplifier, 0);
+        assert_faults(&mut board, Fault::Amplifier, 1);
     }
 }

@@ -345,7 +345,7 @@ fn a_board_that_stops_by_itself_refuses_the_requests_that_wait_for_a_commit() {
     let bytes = [request(901, Command::Commit { crc32: crc32(&scene) }), request(902, Command::Play)];
     board.session.receive(&bytes.concat(), &board.status());
     board.sense.amplifier_fault = true;
-    board.tick();
+    board.ticks(2);
     assert_eq!(board.status().telemetry.state, State::Faulted);
     assert_eq!(board.take_answer(902).unwrap().outcome, Err(Refusal::Busy));
     board.sense.amplifier_fault = false;
@@ -571,6 +571,7 @@ proptest! {
             for drive in board.slide(500) {
                 prop_assert!(i32::from(drive.dac_code.bits()).abs() <= code_max, "{drive:?}");
             }
+            prop_assert_eq!(board.status().counters.clamped_loads, 0, "a scene that is accepted is within the ceilings");
         }
     }
 }

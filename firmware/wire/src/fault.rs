@@ -187,6 +187,8 @@ impl Flags {
     pub const HOST_SILENT: Self = Self(1 << 6);
     /// The stream ran out of samples: its layers are fading out, or have faded out.
     pub const STREAM_DRY: Self = Self(1 << 7);
+    /// The scene's coefficients were above the board's ceilings, and were lowered to them.
+    pub const CLAMPED: Self = Self(1 << 8);
 
     /// The union of both sets of flags.
     #[must_use]
@@ -219,7 +221,7 @@ impl Flags {
 }
 
 /// Each flag with its name, for tables, and its sentence.
-const FLAGS: [(Flags, &str, &str); 8] = [
+const FLAGS: [(Flags, &str, &str); 9] = [
     (Flags::SATURATED, "saturated", "friction out of reach was clamped"),
     (Flags::SLEWED, "slewed", "the envelope is at its slew limit"),
     (Flags::STILL, "still", "the finger is still"),
@@ -228,6 +230,7 @@ const FLAGS: [(Flags, &str, &str); 8] = [
     (Flags::CARRIER_BALANCED, "carrier-balanced", "a carrier edge came early to keep direct current off the electrode"),
     (Flags::HOST_SILENT, "host-silent", "the host timed out, and the output was set to zero"),
     (Flags::STREAM_DRY, "stream-dry", "the stream has no samples to play"),
+    (Flags::CLAMPED, "clamped", "the scene was above the board's ceilings, and is played within them"),
 ];
 
 /// Writes the sentences of the flags that are set, separated by semicolons.

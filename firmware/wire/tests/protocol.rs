@@ -114,6 +114,7 @@ fn flags_have_the_bits_that_the_table_says() {
         (Flags::CARRIER_BALANCED, "CARRIER_BALANCED"),
         (Flags::HOST_SILENT, "HOST_SILENT"),
         (Flags::STREAM_DRY, "STREAM_DRY"),
+        (Flags::CLAMPED, "CLAMPED"),
     ];
     assert_eq!(page, code);
 }

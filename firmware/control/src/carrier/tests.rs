@@ -48,6 +48,25 @@ fn codes(carrier: &mut Carrier, timing: &CarrierTiming, envelope_v_rms: f32, tic
     (0..ticks).map(|tick| i32::from(carrier.next(envelope_v_rms, timing, tick).bits())).collect()
 }
 
+/// Numbers that no session computes, and an envelope that no table gives.
+#[test]
+fn no_envelope_and_no_conversion_give_a_code_beyond_the_limit() {
+    let numbers = [0.0, 1.0, -1.0, 1e3, -1e3, f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+    for (envelope_v_rms, codes_per_v_rms) in numbers.into_iter().flat_map(|one| numbers.map(|other| (one, other))) {
+        for (waveform, code_max) in [Waveform::Square, Waveform::Sine]
+            .into_iter()
+            .flat_map(|waveform| [-5, 0, 300].map(|code| (waveform, code)))
+        {
+            let timing = CarrierTiming::new(waveform, 20, codes_per_v_rms, DacCode::from_bits(code_max));
+            let mut carrier = Carrier::new(&timing);
+            for tick in 0..60 {
+                let code = carrier.next(envelope_v_rms, &timing, tick).bits();
+                assert!(code.abs() <= code_max.max(0), "{code}: {envelope_v_rms} V, {codes_per_v_rms} codes a volt");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_integral_may_reach_one_half_wave_at_full_voltage() {
     for half_period_ticks in [4, 5, 20, 80] {

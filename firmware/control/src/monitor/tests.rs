@@ -56,6 +56,8 @@ const DECAYS: [Decay; 3] = [
 #[derive(Clone, Copy, Debug)]
 struct Plant {
     gain: f32,
+    /// What the monitor shows at 0 V.
+    offset_v: f32,
     turn_on_steps: u32,
     turn_off_steps: u32,
     sample_step: u32,
@@ -76,6 +78,7 @@ impl Plant {
     fn new(decay: Decay) -> Self {
         Self {
             gain: 1.0,
+            offset_v: 0.0,
             turn_on_steps: 900 * STEPS_PER_US,
             turn_off_steps: 200 * STEPS_PER_US,
             sample_step: SAMPLE_STEPS[0],
@@ -138,9 +141,8 @@ impl Bench {
     fn tick(&mut self, code: Option<i16>) {
         self.run(0, SAMPLE_STEPS[0]);
         let (comparison, must_count) = self.check.advance(self.code, self.plant.sampled_v);
-        if must_count && self.check.count(comparison) {
-            self.faults += 1;
-        }
+        let is_fault = if must_count { self.check.count(comparison) } else { self.check.sum(comparison) };
+        self.faults += u32::from(is_fault);
         self.most_wrong = self.most_wrong.max(self.check.wrong_count);
         self.check.set_enabled(code.is_some(), self.code);
         self.code = code.unwrap_or(0);
@@ -164,7 +166,7 @@ impl Bench {
         for step in from_step..to_step {
             self.plant.step();
             if step + 1 == self.plant.sample_step {
-                self.plant.sampled_v = self.plant.output_v;
+                self.plant.sampled_v = self.plant.output_v + self.plant.offset_v;
             }
         }
     }
@@ -222,6 +224,67 @@ fn a_healthy_amplifier_has_no_wrong_tick_at_any_carrier_and_voltage() {
     }
 }
 
+/// Ticks after which a gain that changes while a carrier plays is a fault, if it changes at the tick `from_tick`.
+fn ticks_to_gain_fault(plant: Plant, gain: f32, driven: &dyn Fn(u32) -> i16, from_tick: u32) -> Option<u32> {
+    let mut bench = Bench::new(plant);
+    for tick in 0..from_tick + 4_000 {
+        if tick == from_tick {
+            assert_eq!(bench.faults, 0, "healthy until here");
+            bench.plant.gain = gain;
+        }
+        bench.tick(Some(driven(tick)));
+        if bench.faults > 0 {
+            return Some(tick + 1 - from_tick);
+        }
+    }
+    None
+}
+
+/// The longest time for a gain that changes at any time, of square and sine at every length of a half period: 800 ticks
+/// are 20 ms.
+#[test]
+fn a_gain_that_is_off_by_40_percent_is_found_within_20_ms_from_10_v_peak_on() {
+    let mut most = 0;
+    for half_period_ticks in [4, 5, 7, 20, 40, 80, 160] {
+        for (is_sine, voltage_v) in [(false, 10.0), (true, 10.0), (false, 25.0), (true, 50.0)] {
+            let driven = |tick: u32| {
+                let turns = f64::from(tick) / f64::from(2 * half_period_ticks);
+                let sine = (core::f64::consts::TAU * turns).sin() as f32;
+                let is_positive = (tick / half_period_ticks).is_multiple_of(2);
+                let square = if is_positive { 1.0 } else { -1.0 };
+                code_of(voltage_v * if is_sine { sine } else { square })
+            };
+            for (gain, from_tick) in [0.6, 1.4].into_iter().flat_map(|gain| (0..8).map(move |i| (gain, 900 + 57 * i))) {
+                let ticks = ticks_to_gain_fault(Plant::new(DECAYS[0]), gain, &driven, from_tick).unwrap_or(u32::MAX);
+                assert!(ticks <= 800, "gain {gain}, {voltage_v} V, {half_period_ticks} ticks, {is_sine}: {ticks}");
+                most = most.max(ticks);
+            }
+        }
+    }
+    println!("a gain off by 40 % from 10 V peak on: found after {:.1} ms at most", f64::from(most) / 40.0);
+}
+
+/// Offset and a gain within tolerance, together, at every carrier: the offset cancels or is allowed for.
+#[test]
+fn an_offset_within_tolerance_is_no_gain() {
+    for (offset_v, gain) in [(7.5, 1.0), (-7.5, 1.0), (4.0, 1.1), (-4.0, 0.9)] {
+        for voltage_v in [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0] {
+            for half_period_ticks in [4, 5, 7, 20, 40, 80, 160] {
+                let mut bench = Bench::new(Plant { gain, offset_v, ..Plant::new(DECAYS[0]) });
+                bench.square(4_000, code_of(voltage_v), half_period_ticks);
+                let context = format!("{offset_v} V, gain {gain}, {voltage_v} V, {half_period_ticks} ticks");
+                assert_eq!(bench.faults, 0, "{context}");
+                // Bursts with pauses, in which the carrier is not balanced.
+                for pause_ticks in [3, 50, 200] {
+                    bench.square(half_period_ticks / 2 + 60, code_of(voltage_v), half_period_ticks);
+                    (0..pause_ticks).for_each(|_| bench.tick(Some(0)));
+                }
+                assert_eq!(bench.faults, 0, "{context}, in bursts");
+            }
+        }
+    }
+}
+
 /// It is right until the half period ends, and in every other one: 1.5 ms from 500 Hz on, and 0.5 ms after the half
 /// period on a slower carrier.
 #[test]
@@ -239,7 +302,7 @@ fn a_dac_that_holds_its_last_code_is_found_within_1_5_ms_or_half_a_millisecond_a
                     // The amplifier has switched on before.
                     let monitor_v = if tick < from_tick { check.expected_v } else { held_v };
                     let (comparison, is_counted) = check.advance(driven(tick), monitor_v);
-                    is_counted && check.count(comparison)
+                    if is_counted { check.count(comparison) } else { check.sum(comparison) }
                 });
                 found.map_or(u32::MAX, |tick| tick + 1 - from_tick)
             };
@@ -274,7 +337,7 @@ fn an_amplifier_that_switches_as_its_board_says_never_faults() {
 fn ticks_to_fault(check: &mut MonitorCheck, driven_v: f32, monitor_v: f32) -> Option<u32> {
     (1..=1_000).find(|_| {
         let (comparison, must_count) = check.advance(code_of(driven_v), monitor_v);
-        must_count && check.count(comparison)
+        if must_count { check.count(comparison) } else { check.sum(comparison) }
     })
 }
 

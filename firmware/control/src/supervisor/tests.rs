@@ -157,11 +157,37 @@ fn the_arm_switch_counts_only_while_it_has_to_be_held() {
     }
 }
 
+/// A ready line that is low at these ticks.
+fn ready_low_at(supervisor: &mut Supervisor, ticks: u32, low_at: &[u32]) -> Option<u32> {
+    (0..ticks).find(|tick| {
+        supervisor.check(&Sense { amplifier_fault: low_at.contains(tick), ..reading(0.0) }, DacCode::ZERO);
+        supervisor.state() == State::Faulted
+    })
+}
+
+#[test]
+fn a_ready_line_is_a_fault_at_its_second_low_sample_within_a_millisecond() {
+    for (low_at, fault_at) in [
+        (&[5][..], None),
+        (&[5, 6], Some(6)),
+        (&[5, 45], Some(45)),
+        (&[5, 46], None),
+        (&[5, 46, 87, 88], Some(88)),
+        (&[5, 46, 86], Some(86)),
+    ] {
+        for state in [State::Disarmed, State::Armed, State::Active] {
+            assert_eq!(ready_low_at(&mut in_state(state), 2_000, low_at), fault_at, "{low_at:?}");
+        }
+    }
+}
+
 #[test]
 fn an_amplifiers_fault_counts_in_every_state() {
     let faulty = Sense { amplifier_fault: true, ..reading(0.0) };
     for state in [State::Disarmed, State::Armed, State::Active] {
         let mut supervisor = in_state(state);
+        supervisor.check(&faulty, DacCode::ZERO);
+        assert_eq!((supervisor.state(), supervisor.fault()), (state, None));
         supervisor.check(&faulty, DacCode::ZERO);
         assert_eq!(supervisor.fault(), Some((Fault::Amplifier, 0)), "{state:?}");
         assert_eq!(supervisor.state(), State::Faulted);

@@ -4,14 +4,21 @@
 //!
 //! The output is zero in every tick in which one of these holds:
 //!
-//! - The state is not Active. A fault leaves Active in the tick that detects it: the amplifier's ready line or the arm
-//!   switch ([`Sense`]) at once, the monitor voltage once wrong ticks exceed right ones by those of 0.4 ms (at once
-//!   after the enable has fallen), and a fault that the board detects by [`Ticker::raise`]. [`Order::Stop`],
-//!   [`Order::Disarm`] and the host timeout leave it too: an armed or active board needs a host.
+//! - The state is not Active. [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it: an armed or active board
+//!   needs a host. A fault leaves it in the tick that detects it: the arm switch ([`Sense`]) at once; the amplifier's
+//!   ready line at its second wrong sample within a millisecond; the monitor voltage once wrong ticks exceed right ones
+//!   by those of 0.4 ms (at once after the enable has fallen), or once the gain over some milliseconds is off by more
+//!   than a quarter; and a fault that the board detects by [`Ticker::raise`].
 //! - No finger has a valid track: after [`Order::Lift`], and when a track expires. A [`Track`] of another contact than
 //!   the previous one counts as a lift: zero in the tick that takes it.
 //! - There is no scene ([`Order::Unload`]). [`Order::Load`] of another scene lowers the envelope to the new voltage
 //!   limit at once.
+//!
+//! # What limits the output
+//!
+//! The coefficients of every scene are lowered to the board's [`Ceilings`] before the first tick that uses them, and no
+//! code is above that of the coefficients. So the ceilings hold whatever the session orders. No host timeout is above
+//! its ceiling, and no track lasts longer than the board's touch data.
 //!
 //! A stream that starts while the state is not Active is stopped at the next tick.
 
@@ -31,11 +38,14 @@ use crate::stream::Player;
 #[cfg(feature = "stream")]
 use crate::stream::StreamBuffer;
 use crate::supervisor::{self, Supervisor};
-use crate::{Active, Board, Drive, Sense, Track};
+use crate::{Active, Board, Ceilings, Drive, Sense, Track};
 
 /// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
 pub struct Ticker<'a> {
     timing: Timing,
+    ceilings: Ceilings,
+    /// The current scene's coefficients were above the ceilings.
+    is_clamped: bool,
     tick: u32,
     /// Can stop the output.
     supervisor: Supervisor,
@@ -75,6 +85,8 @@ impl<'a> Ticker<'a> {
     /// A ticker whose output is zero. It reads bitmaps from `pool` and starts with `active`, which need not hold a
     /// scene.
     pub fn new(board: &Board, pool: &'a BitmapPool, active: &'a mut Active) -> Self {
+        let ceilings = board.ceilings();
+        let is_clamped = active.limit_to(&ceilings);
         let carrier = Carrier::new(&active.carrier);
         let stale_after_ticks = stale_after_ticks(board);
         Self {
@@ -84,6 +96,8 @@ impl<'a> Ticker<'a> {
                 fall_per_tick: fall_per_tick(stale_after_ticks),
                 host_timeout_default_ticks: supervisor::host_timeout_default_ticks(board),
             },
+            ceilings,
+            is_clamped,
             tick: 0,
             supervisor: Supervisor::new(board),
             finger: Finger::Up,
@@ -99,7 +113,7 @@ impl<'a> Ticker<'a> {
             target_v_rms: 0.0,
             dac_code: DacCode::ZERO,
             arm_switch: false,
-            counters: Counters::default(),
+            counters: Counters { clamped_loads: is_clamped.into(), ..Counters::default() },
             orders_applied: 0,
         }
     }
@@ -154,7 +168,9 @@ impl<'a> Ticker<'a> {
         let gain = track.ramp.gain_at(self.tick) * track.gain_before_end(self.tick, self.timing.fall_per_tick);
         let friction_n = gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
         // Zero for a friction that is not a number.
-        let target_v_rms = table.voltage_v_rms(friction_n);
+        let table_v_rms = table.voltage_v_rms(friction_n);
+        let max_v_rms = self.active.voltage_max_v_rms;
+        let target_v_rms = if table_v_rms < max_v_rms { table_v_rms } else { max_v_rms };
         if is_out_of_reach(friction_n, table) {
             self.counters.saturated_ticks = self.counters.saturated_ticks.wrapping_add(1);
         }
@@ -200,3 +216,6 @@ impl<'a> Ticker<'a> {
 fn is_out_of_reach(electric_friction_n: f32, table: &InverseTable) -> bool {
     electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits() && electric_friction_n != 0.0
 }
+
+#[cfg(test)]
+mod tests;

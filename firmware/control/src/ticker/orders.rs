@@ -34,7 +34,10 @@ impl<'a> Ticker<'a> {
         let mut spare = None;
         match order {
             Order::Load(next) => spare = Some(self.load(next)),
-            Order::Unload => self.active.unload(),
+            Order::Unload => {
+                self.active.unload();
+                self.is_clamped = false;
+            }
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain, self.tick.wrapping_add(1));
                 // A layer that is enabled under the finger must not click: the finger did not slide into it.
@@ -53,9 +56,13 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// Swaps the scene, and returns the previous coefficients. The new scene's voltage limit applies at once.
+    /// Swaps the scene, within the board's ceilings, and returns the previous coefficients. The new scene's voltage limit applies at once.
     #[inline]
     fn load(&mut self, next: &'a mut Active) -> &'a mut Active {
+        self.is_clamped = next.limit_to(&self.ceilings);
+        if self.is_clamped {
+            self.counters.clamped_loads = self.counters.clamped_loads.wrapping_add(1);
+        }
         let spare = core::mem::replace(&mut self.active, next);
         self.carrier.retime(&self.active.carrier);
         self.envelope.limit(self.active.voltage_max_v_rms);

@@ -69,6 +69,7 @@ impl Ticker<'_> {
             (Flags::CARRIER_BALANCED, balanced),
             (Flags::HOST_SILENT, self.supervisor.host_silent()),
             (Flags::STREAM_DRY, self.stream.is_dry()),
+            (Flags::CLAMPED, self.is_clamped),
         ]
         .into_iter()
         .fold(Flags::default(), |flags, (flag, raised)| if raised { flags.with(flag) } else { flags })

@@ -5,9 +5,8 @@ use frixel_layers::cost::{LayerCosts, Worst};
 use frixel_layers::{FingerLaw, Grid, Header, Point, Scene, active_bytes, within};
 use frixel_model::{
     Carrier, EmpiricalLaw, EmpiricalTableFilling, Finger, InverseTable, InverseTableFilling, LawError, LawPoint,
-    TableError, TouchBound, Waveform,
+    TableError, Waveform,
 };
-use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use super::bitmap_directory::Directory;
@@ -159,8 +158,9 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 
     let drive_v_peak = voltage_max_v_rms * peak_per_rms;
     let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
+    let ceilings = board.ceilings();
     // The carrier bounds its volt-seconds by the peak of the header, not by what the scene drives.
-    let bound_v_peak = TouchBound::behind(limits.series_resistance_ohm).voltage_max_v_peak(carrier.carrier_hz());
+    let bound_v_peak = ceilings.voltage_max_v_peak(half_period_ticks);
     for (field, found, max) in [
         (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
         (ConfigField::CurrentPeak, current.a_peak, limits.current_max_a_peak),
@@ -170,8 +170,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     }
 
     let codes_per_v = f32::from(i16::MAX) / limits.full_scale_v_peak;
-    let code_max = (header.voltage_max_v_peak * codes_per_v) as i32;
-    let code_max = DacCode::from_bits(code_max.min(i32::from(i16::MAX)) as i16);
+    let code_max = ceilings.code(header.voltage_max_v_peak);
     let timing = CarrierTiming::new(header.waveform, half_period_ticks, peak_per_rms * codes_per_v, code_max);
     Ok((timing, voltage_max_v_rms))
 }

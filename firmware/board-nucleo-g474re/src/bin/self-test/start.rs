@@ -27,7 +27,7 @@ pub(crate) fn tick(board: Board, mut output: Output, frames: Frames, adc: Adc) -
     let (ticker, session, session_ends, tick_ends) = memory.make(board);
     let status = ticker.status();
     output.zero();
-    TICK.start(Tick {
+    let parts = Tick {
         shared: &tick::SHARED,
         ticker,
         queues: tick_ends,
@@ -36,7 +36,8 @@ pub(crate) fn tick(board: Board, mut output: Output, frames: Frames, adc: Adc) -
         amplifier: Amplifier::new(NoEnable, AlwaysHigh),
         monitor: adc,
         arm_switch: ArmSwitch::new(ScriptedSwitch, TICK_HZ),
-    });
+    };
+    tick::start_interrupt(&TICK, parts);
     MainLoop {
         shared: &tick::SHARED,
         queues: session_ends,

@@ -1,0 +1,101 @@
+//! The amplifier's gain, from the readings of some milliseconds.
+//!
+//! A healthy reading is the expected voltage `e`, an offset of at most [`FLOOR`](super::FLOOR), and an error that is
+//! proportional to `e`, of at most [`GAIN_TOLERANCE`](super::GAIN_TOLERANCE). So the sum of the deviations, weighted
+//! with `e`, has a magnitude of at most
+//!
+//! ```text
+//! GAIN_TOLERANCE * sum(e^2) + FLOOR * |sum(e)|
+//! ```
+//!
+//! The tolerance of a single tick is this bound for one tick. Over whole periods of the carrier `sum(e)` is zero, and
+//! only the gain is left. It need not be an exact number of periods: while `sum(e)` is large, the bound is wide.
+
+use super::{Comparison, GAIN_TOLERANCE};
+use crate::Board;
+
+/// Time between two judgements, in s: an eighth of the period of the slowest carrier, so that one of them falls near
+/// each zero of its integral.
+const JUDGED_EVERY_S: f32 = 1e-3;
+/// The sums begin anew after so many judgements. A gain that is off by 40 % is found within 20 ms then: right ticks
+/// before it hide it for at most five eighths of the 10 ms, and the slowest carrier is balanced twice in the 10 ms
+/// that follow.
+const JUDGEMENTS: u32 = 10;
+/// The sums are judged from the squares of the drive on that so many seconds at the offset's tolerance have. Below,
+/// noise and steps of the ADC are not small against a quarter of the drive. A quarter of the 10 ms, so that the mean
+/// drive must have half of the offset's tolerance: 4 V rms of 200 V.
+const JUDGED_FROM_S: f32 = 2.5e-3;
+/// Codes are divided by two to this power, so that the squares of 10 ms fit into 32 bits up to 100,000 ticks a second.
+const SHIFT: u32 = 4;
+
+/// Sums over the ticks that were right, since the last beginning.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gain {
+    /// Expected voltages times deviations, V^2.
+    deviation_v2: f32,
+    /// Codes, in units of 2^[`SHIFT`]. Integers, because a Cortex-M0+ adds no floating-point numbers.
+    drive: i32,
+    /// Squares of the same.
+    square: u32,
+    left_ticks: u32,
+    left_judgements: u32,
+    judged_every_ticks: u32,
+    /// [`JUDGED_FROM_S`] as a sum of squares.
+    judged_from: u32,
+    /// Tolerance of an offset, as a code in the same units.
+    offset: i32,
+    /// Squares of codes in the same units, in a square volt.
+    squares_per_v2: f32,
+}
+
+impl Gain {
+    pub(super) fn new(board: &Board, floor_v: f32) -> Self {
+        let codes_per_v = f32::from(i16::MAX >> SHIFT) / board.limits.full_scale_v_peak;
+        let offset = floor_v * codes_per_v;
+        let judged_every_ticks = board.ticks(JUDGED_EVERY_S).max(1);
+        Self {
+            deviation_v2: 0.0,
+            drive: 0,
+            square: 0,
+            left_ticks: judged_every_ticks,
+            left_judgements: JUDGEMENTS,
+            judged_every_ticks,
+            judged_from: (offset * offset) as u32 * board.ticks(JUDGED_FROM_S).max(1),
+            // Rounded up, so that rounding makes it no tighter than a single tick's tolerance.
+            offset: offset as i32 + 1,
+            squares_per_v2: codes_per_v * codes_per_v,
+        }
+    }
+
+    /// Sums up a tick, and returns whether the sums show a gain that is a fault.
+    #[inline]
+    pub(super) fn take(&mut self, comparison: Comparison) -> bool {
+        let Comparison { expected_v, driven_code, deviation_v, .. } = comparison;
+        let drive = i32::from(driven_code >> SHIFT);
+        self.deviation_v2 += expected_v * deviation_v;
+        self.drive = self.drive.wrapping_add(drive);
+        self.square = self.square.wrapping_add((drive * drive).cast_unsigned());
+        self.left_ticks -= 1;
+        self.left_ticks == 0 && self.judge()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn judge(&mut self) -> bool {
+        // A conversion that saturates.
+        let deviation = (self.deviation_v2.abs() * self.squares_per_v2) as u32;
+        let offset = self.drive.wrapping_mul(self.offset).unsigned_abs();
+        // A quarter.
+        let tolerance = (self.square >> 2).saturating_add(offset);
+        let is_wrong = self.square >= self.judged_from && deviation > tolerance;
+        self.left_ticks = self.judged_every_ticks;
+        self.left_judgements -= 1;
+        if is_wrong || self.left_judgements == 0 {
+            self.left_judgements = JUDGEMENTS;
+            (self.deviation_v2, self.drive, self.square) = (0.0, 0, 0);
+        }
+        is_wrong
+    }
+}
+
+const _: () = assert!(GAIN_TOLERANCE == 0.25);
