@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use frixel_wire::fault::State;
 use frixel_wire::hello::Mismatch;
 use frixel_wire::message::Refusal;
 use frixel_wire::payload::WriteError;
@@ -104,6 +105,22 @@ pub enum DeviceError {
         command: &'static str,
         /// The board's reason.
         refusal: Refusal,
+    },
+    /// The board accepted a command and is not in the state that the command leads to.
+    #[error(
+        "the board on {port} accepted {command} and then said that it is {found:?}, not {expected:?}: its firmware is faulty; \
+         {}flash its firmware anew",
+        if *found == State::Active { "its output may be driven: switch off its supply, then " } else { "" }
+    )]
+    WrongState {
+        /// Name of the link.
+        port: String,
+        /// The command.
+        command: &'static str,
+        /// The state in the board's answer.
+        found: State,
+        /// The state that the command leads to.
+        expected: State,
     },
     /// The cable was pulled, or the other end closed the line.
     #[error("{closed} during: {command}; the board's output goes to zero by itself; plug the cable in and start again")]

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use frixel_wire::fault::State;
 use frixel_wire::frame::Decoder;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Accepted, Answer, Command, Refusal};
@@ -239,7 +240,11 @@ impl<L: Link> Exchange<L> {
             if let Some(answer) = self.answer.take() {
                 self.repeated = self.awaited.first().is_some_and(|first| first.sequence != answer.sequence);
                 self.awaited.clear();
-                return Ok(self.outcome(command, &answer));
+                let outcome = self.outcome(command, &answer);
+                if outcome.is_ok() {
+                    self.check_state(&command, answer.state)?;
+                }
+                return Ok(outcome);
             }
         }
     }
@@ -273,6 +278,19 @@ impl<L: Link> Exchange<L> {
                 Ok(Accepted::Done)
             }
             outcome => outcome,
+        }
+    }
+
+    /// Compares the state in the answer to an accepted command with the one that the command leads to.
+    fn check_state(&self, command: &Command, found: State) -> Result<(), DeviceError> {
+        match state_after(command) {
+            Some(expected) if expected != found => Err(DeviceError::WrongState {
+                port: self.link.name().into(),
+                command: name_of(command),
+                found,
+                expected,
+            }),
+            _ => Ok(()),
         }
     }
 

@@ -35,6 +35,8 @@ pub(crate) struct FakeBoard {
     pub(crate) mute: bool,
     /// Commands that it refuses, and why.
     pub(crate) refuse: Option<Refuse>,
+    /// A state that every answer contains, whatever the state is.
+    pub(crate) claims: Option<State>,
     /// Sent in front of the first hello.
     pub(crate) garbage: Vec<u8>,
     /// Somebody presses the reset button at this time.
@@ -80,6 +82,7 @@ impl FakeBoard {
             chunks_per_progress: Some(CHUNKS_PER_PROGRESS),
             mute: false,
             refuse: None,
+            claims: None,
             garbage: Vec::new(),
             reset_at: None,
             falls_to: None,
@@ -181,7 +184,8 @@ impl FakeBoard {
             Some(refusal) => Err(refusal),
             None => self.obey(command, now),
         };
-        let answer = Answer { sequence, received_bytes: self.received_bytes, state: self.state, outcome };
+        let state = self.claims.unwrap_or(self.state);
+        let answer = Answer { sequence, received_bytes: self.received_bytes, state, outcome };
         send(out, &FromBoard::Answer(answer));
         match command {
             Command::StartStream { .. } => {

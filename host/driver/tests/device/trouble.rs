@@ -44,6 +44,46 @@ fn a_silent_port_gives_a_timeout() {
     assert!(error.to_string().starts_with("no frixel board answered on the virtual line within 750 ms; "), "{error}");
 }
 
+/// A board that accepts a command and says that it did something else.
+#[test]
+fn a_state_that_the_command_does_not_lead_to_is_an_error() {
+    let commands: [(&str, fn(&mut Device<_>) -> Result<(), DeviceError>, State); 5] = [
+        ("arm", Device::arm, State::Armed),
+        ("play", Device::play, State::Active),
+        ("stop", Device::stop, State::Armed),
+        ("disarm", Device::disarm, State::Disarmed),
+        ("clear the fault", Device::clear_fault, State::Disarmed),
+    ];
+    for (number, (name, call, right)) in commands.into_iter().enumerate() {
+        for claimed in [State::Disarmed, State::Armed, State::Active, State::Faulted] {
+            let mut device = connected(VirtualLine::new(FakeBoard::new()));
+            for (_, earlier, _) in commands.iter().take(number.min(4)) {
+                earlier(&mut device).unwrap();
+            }
+            let board = &mut line_of(&mut device).board;
+            if number == 4 {
+                board.state = State::Faulted;
+            }
+            board.claims = Some(claimed);
+            match call(&mut device) {
+                Ok(()) => assert_eq!(claimed, right, "{name}"),
+                Err(DeviceError::WrongState { command, found, expected, .. }) => {
+                    assert_eq!((command, found, expected), (name, claimed, right));
+                    assert_ne!(found, right);
+                }
+                Err(error) => panic!("{name}, {claimed:?}: {error}"),
+            }
+        }
+    }
+    let mut device = connected(VirtualLine::new(FakeBoard::new()));
+    line_of(&mut device).board.claims = Some(State::Active);
+    assert_eq!(
+        device.disarm().unwrap_err().to_string(),
+        "the board on the virtual line accepted disarm and then said that it is Active, not Disarmed: its firmware is \
+         faulty; its output may be driven: switch off its supply, then flash its firmware anew"
+    );
+}
+
 #[test]
 fn something_else_answers() {
     let mut line = VirtualLine::new(FakeBoard::new());
