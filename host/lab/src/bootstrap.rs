@@ -24,14 +24,6 @@ pub struct Estimate {
     pub high: f64,
 }
 
-impl Estimate {
-    /// Whether both ends lie within this share of the value.
-    pub(crate) fn is_within(&self, share: f64) -> bool {
-        let room = share * self.value.abs();
-        self.high - self.value <= room && self.value - self.low <= room
-    }
-}
-
 /// Standard deviations up to which some hundreds of draws show an interval: of 499, three lie beyond on either side.
 const Z_SHOWN: f64 = 2.5;
 /// Standard deviations from which an interval is stretched further: draws of few values end soon beyond.

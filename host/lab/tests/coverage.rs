@@ -1,119 +1,114 @@
-//! How often the stated intervals contain what they are about.
+//! How often the stated intervals contain what they are about. `cargo run -p frixel-lab --example fit_floors` has the
+//! floors over 200 people; these are a part of them.
 //!
 //! The quantity is what a drive of 150 V rms adds to the friction of a finger on its screen, in steady and full slip
-//! under
-//! the median load of the recording, without noise: the simulator measures it on each person, apart from the recording.
+//! under the median load of the recording, without noise: the simulator measures it on each person, apart from the
+//! recording.
 
 use frixel_hil_sim::Person;
-use frixel_lab::fit::{Estimate, Fit, FitError, fit};
+use frixel_lab::fit::{FitError, fit};
 
+use super::filters::Filter;
 use super::person::{self, Law, Protocol};
+use super::tally::{Tally, is_doubted};
 use super::{settings, simulated};
 
-/// People in the test of every change, and in the soak.
+/// People in the test of every change.
 const FEW: u64 = 24;
+/// Recordings of the slow tests.
 const MANY: u64 = 200;
 
-/// What became of the fits of many people.
-#[derive(Debug, Default)]
-struct Tally {
-    fitted: usize,
-    reasons: Vec<String>,
-    /// Number of intervals that contain the truth.
-    electric: usize,
-    coefficient: usize,
-    exponent: usize,
-    /// Errors of electric friction, relative to the truth.
-    errors: Vec<f64>,
-    /// Measured exponents of the voltage less those of the model.
-    exponents: Vec<f64>,
-    /// Half-widths of its intervals, relative to the truth.
-    widths: Vec<f64>,
-}
-
-fn contains(estimate: &Estimate, truth: f64) -> bool {
-    (estimate.low..=estimate.high).contains(&truth)
-}
-
-impl Tally {
-    fn add(&mut self, result: Result<Fit, FitError>, truth: impl Fn(f64) -> (f64, f64)) {
-        match result {
-            Ok(fit) => {
-                let (coefficient, electric_n) = truth(fit.normal_load_n);
-                self.fitted += 1;
-                self.electric += usize::from(contains(&fit.electric_friction_n, electric_n));
-                self.coefficient += usize::from(contains(&fit.friction_coefficient, coefficient));
-                self.exponent += usize::from(contains(&fit.voltage_exponent.measured, fit.voltage_exponent.model));
-                self.exponents.push(fit.voltage_exponent.measured.value - fit.voltage_exponent.model);
-                let Estimate { value, low, high } = fit.electric_friction_n;
-                self.errors.push(value / electric_n - 1.0);
-                self.widths.push((high - low) / (2.0 * electric_n));
-            }
-            Err(error) => self.reasons.push(error.to_string()),
-        }
-    }
-
-    fn share(&self, count: usize) -> f64 {
-        count as f64 / self.fitted as f64
-    }
-
-    fn print(&self, who: &str) {
-        let mean = |values: &[f64]| 100.0 * values.iter().sum::<f64>() / values.len() as f64;
-        println!(
-            "{who}: {} fitted, {} refused; of the 95 % intervals contain the truth: electric friction {:.3}, friction \
-             coefficient {:.3}; {:.3} of the exponents' contain the model's; the exponent is off by {:+.3}, electric \
-             friction by {:+.2} % on average; half-width {:.2} %",
-            self.fitted,
-            self.reasons.len(),
-            self.share(self.electric),
-            self.share(self.coefficient),
-            self.share(self.exponent),
-            1e-2 * mean(&self.exponents),
-            mean(&self.errors),
-            mean(&self.widths),
-        );
-        for reason in &self.reasons {
-            println!("  {reason}");
-        }
-    }
-}
-
-/// The people of the simulator's population with these seeds.
-fn people(seeds: std::ops::Range<u64>) -> Tally {
-    let mut tally = Tally::default();
-    for seed in seeds {
-        let person = Person::drawn(seed);
-        let rows = simulated::record(&person, &Protocol::default(), seed);
-        tally.add(fit(rows, &settings()), |load_n| simulated::truth(&person, load_n));
-    }
-    tally
-}
-
-#[test]
-#[ignore = "many minutes: cargo xtask soak people"]
-fn intervals_cover_over_200_people() {
-    let tally = people(0..MANY);
-    tally.print("200 people");
-    assert!((0.90..=0.98).contains(&tally.share(tally.electric)), "{}", tally.share(tally.electric));
-    // Wider than 95 %: it allows for a wander over minutes that this simulator does not have.
-    assert!(tally.share(tally.coefficient) >= 0.90, "{}", tally.share(tally.coefficient));
-    assert!(tally.reasons.len() as u64 <= MANY / 5, "{:#?}", tally.reasons);
-}
-
+/// People of the simulator, unfiltered and behind a causal filter of 200 Hz in turn.
 #[test]
 fn intervals_cover_and_are_not_too_wide() {
-    let tally = people(0..FEW);
-    tally.print("a few people");
-    assert!(tally.reasons.len() as u64 <= FEW / 5, "{:#?}", tally.reasons);
-    // Of the people who are fitted, all but four: of 24 intervals of 95 %, five or more miss the truth once in 170
-    // sets.
-    for (what, count) in [("electric friction", tally.electric), ("friction coefficient", tally.coefficient)] {
-        assert!(tally.fitted - count <= 4, "{what}: {count} of {}: {tally:#?}", tally.fitted);
+    let mut tally = Tally::default();
+    for seed in 0..FEW {
+        let person = Person::drawn(seed);
+        let rows = simulated::record(&person, &Protocol::default(), seed);
+        let filter = if seed % 2 == 0 { Filter::None } else { Filter::Butterworth(200.0) };
+        tally.add(fit(filter.apply(&rows), &settings()), |load_n| simulated::truth(&person, load_n));
     }
+    println!("{tally}");
+    // Of 24 people, more than two are refused once in 80 sets if 2 % are, and more than four are told that the model is
+    // in doubt once in 50 if 7 % are.
+    assert!(tally.reasons.len() <= 2, "{tally:#?}");
+    assert!(tally.doubt() * FEW as f64 <= 4.5, "{tally}");
+    // Of 24 intervals of 95 %, five or more miss the truth once in 170 sets.
+    let (electric, coefficient) = tally.missed();
+    assert!(electric <= 4 && coefficient <= 4, "{tally:#?}");
+    assert!(tally.half_width() <= 0.02 && tally.bias().abs() <= 0.005, "{tally}");
     // An interval that is always right because it is wide says nothing: half-widths are about twice the errors' rms.
-    let rms = (tally.errors.iter().map(|error| error * error).sum::<f64>() / tally.fitted as f64).sqrt();
-    let width = tally.widths.iter().sum::<f64>() / tally.fitted as f64;
-    assert!((1.3..3.5).contains(&(width / rms)), "{width} over {rms}");
+    assert!((1.3..3.5).contains(&(tally.half_width() / tally.error_rms())), "{tally}");
+}
+
+/// Filters that look ahead, and causal ones that are too slow, are refused or do not matter.
+#[test]
+fn smoothed_recordings_are_refused_or_right() {
+    for filter in [
+        Filter::OnePole(60.0),
+        Filter::Butterworth(120.0),
+        Filter::Filtfilt(80.0),
+        Filter::Filtfilt(20.0),
+        Filter::Mean(3),
+        Filter::Mean(11),
+        Filter::Mean(21),
+        Filter::Mean(51),
+        Filter::SavitzkyGolay(11),
+        Filter::SavitzkyGolay(21),
+    ] {
+        let mut tally = Tally::default();
+        for seed in 0..4 {
+            let person = person::Person::drawn(seed);
+            let rows = person.record(&Protocol { strokes: 24, ..Protocol::default() });
+            tally.add(fit(filter.apply(&rows), &settings()), |load_n| person.truth(load_n));
+        }
+        println!("{filter}: {tally} {:?}", tally.reasons.first());
+        assert!(tally.fitted == 0 || tally.bias().abs() <= 0.01, "{filter}: {tally}");
+        assert!(filter != Filter::Mean(3) || tally.fitted == 4, "{filter}: {:?}", tally.reasons);
+    }
+}
+
+/// Centred means move friction before its switch, with times and without.
+#[test]
+fn friction_before_its_switch_is_called_so() {
+    let rows = Filter::Mean(11).apply(&person::Person::example(1).record(&Protocol::default()));
+    let untimed = rows.iter().map(|row| frixel_lab::fit::Row { time_s: None, ..row.clone() }).collect();
+    for rows in [rows, untimed] {
+        let error = fit(rows, &settings()).unwrap_err();
+        assert!(matches!(error, FitError::NotSettled { side: "before", .. }), "{error}");
+        assert!(error.to_string().contains("friction changes before its switch"), "{error}");
+    }
+}
+
+/// Without times, the lag of friction is left out as a part of each phase.
+#[test]
+fn recordings_without_times_are_right() {
+    let mut tally = Tally::default();
+    for seed in 0..8 {
+        let person = person::Person::drawn(seed);
+        // Steady sliding only: starts and turns cannot be left out.
+        let rows = person.record(&Protocol { strokes: 24, ..Protocol::default() });
+        let rows = rows.chunks(1600).flat_map(|stroke| &stroke[300..1300]);
+        let rows = rows.map(|row| frixel_lab::fit::Row { time_s: None, speed_mm_s: None, stroke: None, ..row.clone() });
+        tally.add(fit(Filter::OnePole(150.0).apply(&rows.collect::<Vec<_>>()), &settings()), |load_n| {
+            person.truth(load_n)
+        });
+    }
+    println!("{tally}");
+    assert!(tally.reasons.is_empty() && tally.missed().0 <= 2, "{tally:#?}");
+    assert!(tally.half_width() <= 0.15 && tally.bias().abs() <= 0.01, "{tally}");
+}
+
+/// A square law differs from the model by 0.3 in the exponent where the drive adds half of natural friction.
+#[test]
+fn square_laws_of_50_percent_gain_are_found() {
+    let found = |seed: &u64| {
+        let law = Law::Power { voltage: 2.0, load: 0.5 };
+        let person = person::Person { law, ..person::Person::drawn(*seed) }.with_gain(0.5);
+        fit(person.record(&Protocol::default()), &settings()).map_or(true, |fit| is_doubted(&fit))
+    };
+    // Rules that find 95 % miss two or more of 6 once in 30 sets.
+    assert!((0..6).filter(found).count() >= 5);
 }
 
 /// Plants whose electric friction is a square of the voltage, with two exponents of the load.
@@ -126,8 +121,9 @@ fn caught(law: Law, count: u64) -> usize {
         let person = person::Person { law, ..person::Person::drawn(seed) };
         tally.add(fit(person.record(&Protocol::default()), &settings()), |load_n| person.truth(load_n));
     }
-    tally.print(&format!("{law:?}"));
-    tally.reasons.len() + tally.electric
+    println!("{law:?}: {tally}");
+    let (missed, _) = tally.missed();
+    count as usize - missed
 }
 
 /// 19 of these 20 are caught. If 95 % of all are, fewer than 18 of 20 are in one set of seeds in 13; rules that catch
@@ -163,7 +159,7 @@ fn intervals_of_few_strokes_cover() {
             let person = person::Person { drift: 0.0, ..person::Person::drawn(seed) };
             tally.add(fit(person.record(&protocol), &settings()), |load_n| person.truth(load_n));
         }
-        tally.print(&format!("{what} strokes"));
-        assert!(tally.share(tally.electric) >= 0.89, "{what}: {}", tally.share(tally.electric));
+        println!("{what} strokes: {tally}");
+        assert!(tally.electric() >= 0.89, "{what}: {tally}");
     }
 }

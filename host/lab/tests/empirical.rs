@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, VoltageLaw, data, fit, fit_empirical};
+use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, Summary, VoltageLaw, data, fit, fit_empirical};
 use frixel_scene::{Experiment, FingerProfile};
 
 use super::person::{Law, Person, Protocol};
@@ -64,6 +64,20 @@ fn a_profile_of_a_power_law_is_read_again() {
     let experiment = Experiment { date: "2026-11-23".into(), method: "load cell".into(), screen: "example".into() };
     let profile = fit.profile(experiment);
     assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml").as_ref(), Ok(&profile));
+}
+
+/// A program reads the keys of `--json` whatever the law is.
+#[test]
+fn the_keys_of_a_fit_are_there_for_every_law() {
+    let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    let rows = Person::example(1).record(&Protocol::default());
+    let summary = serde_json::to_value(Summary::from(&fit(rows.clone(), &settings()).unwrap())).unwrap();
+    for json in [empirical(rows).unwrap().json(), empirical(bent(1, [37.0, 111.0, 150.0]).1).unwrap().json()] {
+        let missing: Vec<_> = keys(&summary).into_iter().filter(|key| json.get(key).is_none()).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+        assert_eq!((&json["law"], &json["division"]), (&"empirical".into(), &"column".into()));
+        assert!(json["electric_friction_150_v_n"].is_f64() && json["rows"].as_u64() > Some(10_000), "{json}");
+    }
 }
 
 #[test]

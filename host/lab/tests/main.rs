@@ -4,12 +4,14 @@
 mod coverage;
 mod empirical;
 mod examples;
+mod filters;
 mod goodput;
 mod person;
 mod refusals;
 mod scenarios;
 mod simulated;
 mod slow_sensors;
+mod tally;
 
 use frixel_lab::fit::Settings;
 

@@ -111,6 +111,22 @@ impl Person {
         }
     }
 
+    /// The same person with a gap at which 150 V rms adds this share of natural friction.
+    pub(super) fn with_gain(mut self, gain: f64) -> Self {
+        let law = std::mem::replace(&mut self.law, Law::Contact);
+        // The attraction falls with the gap: each step halves what is left of 1 to 20 um.
+        let (mut thin_m, mut thick_m) = (1e-6, 20e-6);
+        for _ in 0..50 {
+            self.gap_m = 0.5 * (thin_m + thick_m);
+            if self.attraction_n(150.0, self.load_n) > gain * self.load_n {
+                thin_m = self.gap_m
+            } else {
+                thick_m = self.gap_m
+            }
+        }
+        Self { law, ..self }
+    }
+
     /// Attraction under a load, in newtons.
     pub(super) fn attraction_n(&self, voltage_v_rms: f64, load_n: f64) -> f64 {
         let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 1.0 };

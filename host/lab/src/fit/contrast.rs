@@ -6,7 +6,7 @@
 use super::least_squares::{Measured, Observation};
 use super::recording::{Recording, Stroke};
 use super::table::Row;
-use crate::statistics::mean;
+use crate::statistics::{mean, median};
 
 /// Voltages within this factor of the lowest one of a level are one level.
 pub(super) const LEVEL_WIDTH: f64 = 1.05;
@@ -14,16 +14,36 @@ pub(super) const LEVEL_WIDTH: f64 = 1.05;
 const OFF_SHARE: f64 = 0.02;
 /// A change of this share of a stroke's highest voltage is none of noise.
 const REST_SHARE: f64 = 0.2;
-/// Rows are dropped for this long after the voltage changed, in seconds: friction follows with a relaxation length of
-/// 11.5 um (arXiv 2505.11162), 0.6 ms at 20 mm/s, and clocks may differ by 1 ms.
-const SETTLING_S: f64 = 5e-3;
-/// Rows are dropped for this long before the voltage changes, in seconds: a row may be the mean of a time that ends
-/// after the change, and clocks may differ by 1 ms. Such a row has the friction of both voltages, and the voltage of
-/// one.
-const EDGE_S: f64 = 2e-3;
-/// Least number of rows that are left of a segment without its edges. Where most segments of a recording have fewer,
-/// the rows are too far apart to tell, and all are used.
+/// Least number of rows that are left of a phase without its edges.
 const SETTLED_ROWS_MIN: usize = 2;
+
+/// Rows beside each switch of the drive that are left out: their friction is on its way from one voltage to the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edges {
+    /// After a switch.
+    pub(super) after: Edge,
+    /// Before a switch.
+    pub(super) before: Edge,
+}
+
+/// How far an edge reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edge {
+    /// In seconds, where rows have times.
+    pub(super) duration_s: f64,
+    /// As a share of the usual phase, where rows have no times.
+    pub(super) share: f64,
+}
+
+impl Edges {
+    /// The edges that every fit leaves out.
+    ///
+    /// Friction follows the voltage with a relaxation length of 11.5 um (arXiv 2505.11162), 0.6 ms at 20 mm/s. Clocks
+    /// may differ by 1 ms. A row may be a mean over a time that ends after the switch, with the friction of both
+    /// voltages and the voltage of one.
+    pub(super) const USED: Self =
+        Self { after: Edge { duration_s: 5e-3, share: 0.25 }, before: Edge { duration_s: 2e-3, share: 0.1 } };
+}
 
 /// The voltages of a recording, as levels that differ by more than 5 %.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +127,7 @@ struct Segment {
     rows: f64,
 }
 
-/// Consecutive rows of a stroke at one level, with their places in it.
+/// A phase of the drive: consecutive rows of a stroke at one level, with their places in it.
 pub(super) struct Run<'r> {
     pub(super) level: Option<usize>,
     pub(super) rows: Vec<(usize, &'r Row)>,
@@ -127,13 +147,15 @@ impl<'r> Run<'r> {
         last_s.zip(self.starts_s()).map_or(0.0, |(last_s, first_s)| last_s - first_s)
     }
 
-    /// The rows without those near a change of the voltage; all of them without times.
-    fn settled(&self) -> Vec<(usize, &'r Row)> {
-        let start_s = self.starts_s();
+    /// The rows without edges, which reach over `rows` after and before a switch where rows have no times.
+    fn settled(&self, edges: &Edges, rows: (usize, usize)) -> Vec<(usize, &'r Row)> {
+        let Some(start_s) = self.starts_s() else {
+            return self.rows.iter().take(self.rows.len().saturating_sub(rows.1)).skip(rows.0).copied().collect();
+        };
         let has_settled = |row: &Row| {
             row.time_s.is_none_or(|time_s| {
-                start_s.is_none_or(|start_s| time_s >= start_s + SETTLING_S)
-                    && self.change_s.is_none_or(|change_s| time_s < change_s - EDGE_S)
+                time_s >= start_s + edges.after.duration_s
+                    && self.change_s.is_none_or(|change_s| time_s < change_s - edges.before.duration_s)
             })
         };
         // The voltage changes after the last row and before the next one, wherever that is.
@@ -142,13 +164,57 @@ impl<'r> Run<'r> {
     }
 }
 
-/// The means of each stroke.
-pub(super) fn stroke_means(recording: &Recording, levels: &Levels) -> Vec<StrokeMeans> {
-    let runs: Vec<Vec<Run>> = recording.strokes.iter().map(|stroke| runs(stroke, levels)).collect();
-    let settled = runs.iter().flatten().filter(|run| run.settled().len() >= SETTLED_ROWS_MIN).count();
-    let has_edges = 2 * settled > runs.iter().map(Vec::len).sum::<usize>();
-    let strokes = recording.strokes.iter().zip(&runs);
-    strokes.map(|(stroke, runs)| means_of(&stroke.name, &segments(runs, has_edges))).collect()
+/// The phases of the drive in each stroke of a recording.
+pub(super) struct Phases<'r> {
+    pub(super) strokes: Vec<(&'r Stroke, Vec<Run<'r>>)>,
+    /// Median number of rows from one switch to the next.
+    usual_rows: f64,
+}
+
+impl<'r> Phases<'r> {
+    pub(super) fn of(recording: &'r Recording, levels: &Levels) -> Self {
+        let strokes: Vec<_> = recording.strokes.iter().map(|stroke| (stroke, runs(stroke, levels))).collect();
+        let usual_rows = median(switched(&strokes).map(|run| run.rows.len() as f64));
+        Self { strokes, usual_rows }
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = &'r Row> + Clone {
+        self.strokes.iter().flat_map(|(stroke, _)| &stroke.rows)
+    }
+
+    /// Median number of rows from one switch to the next, if most phases are too short to leave their edges out.
+    pub(super) fn unresolved_rows(&self) -> Option<f64> {
+        let settled = switched(&self.strokes).map(|run| self.settled(run, &Edges::USED).len());
+        let (count, short) =
+            settled.fold((0, 0), |(count, short), rows| (count + 1, short + usize::from(rows < SETTLED_ROWS_MIN)));
+        (2 * short > count).then_some(self.usual_rows)
+    }
+
+    /// The means of each stroke, without edges.
+    pub(super) fn means(&self, edges: &Edges) -> Vec<StrokeMeans> {
+        let means = |(stroke, runs): &(&Stroke, Vec<Run<'r>>)| {
+            let is_switched = runs.len() > 1;
+            let used = runs.iter().map(|run| {
+                let rows = if is_switched { self.settled(run, edges) } else { run.rows.clone() };
+                (run.level, rows)
+            });
+            let least = if is_switched { SETTLED_ROWS_MIN } else { 1 };
+            let segments: Vec<_> =
+                used.filter(|(_, rows)| rows.len() >= least).map(|(level, rows)| segment(level, &rows)).collect();
+            means_of(&stroke.name, &segments)
+        };
+        self.strokes.iter().map(means).collect()
+    }
+
+    fn settled(&self, run: &Run<'r>, edges: &Edges) -> Vec<(usize, &'r Row)> {
+        let rows = |edge: Edge| (edge.share * self.usual_rows).ceil() as usize;
+        run.settled(edges, (rows(edges.after), rows(edges.before)))
+    }
+}
+
+/// The phases of strokes in which the drive is switched.
+fn switched<'s, 'r>(strokes: &'s [(&Stroke, Vec<Run<'r>>)]) -> impl Iterator<Item = &'s Run<'r>> {
+    strokes.iter().filter(|(_, runs)| runs.len() > 1).flat_map(|(_, runs)| runs)
 }
 
 fn means_of(name: &str, segments: &[Segment]) -> StrokeMeans {
@@ -172,7 +238,7 @@ fn means_of(name: &str, segments: &[Segment]) -> StrokeMeans {
 }
 
 /// Divides a stroke into runs of one level.
-pub(super) fn runs<'r>(stroke: &'r Stroke, levels: &Levels) -> Vec<Run<'r>> {
+fn runs<'r>(stroke: &'r Stroke, levels: &Levels) -> Vec<Run<'r>> {
     let mut runs: Vec<Run> = Vec::new();
     for (index, row) in stroke.rows.iter().enumerate() {
         let level = levels.level(row.voltage_v_rms);
@@ -187,13 +253,6 @@ pub(super) fn runs<'r>(stroke: &'r Stroke, levels: &Levels) -> Vec<Run<'r>> {
         }
     }
     runs
-}
-
-/// The means of runs, without their edges if there are rows enough; a run that is nothing but edges is left out.
-fn segments(runs: &[Run], has_edges: bool) -> Vec<Segment> {
-    let used = runs.iter().map(|run| (run.level, if has_edges { run.settled() } else { run.rows.clone() }));
-    let least = if has_edges { SETTLED_ROWS_MIN } else { 1 };
-    used.filter(|(_, rows)| rows.len() >= least).map(|(level, rows)| segment(level, &rows)).collect()
 }
 
 fn segment(level: Option<usize>, used: &[(usize, &Row)]) -> Segment {

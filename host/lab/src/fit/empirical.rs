@@ -9,6 +9,7 @@ use super::error::FitError;
 use super::least_squares::Solution;
 use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels, mean_and_error};
 use super::profile::rounded;
+use super::summary::NAMED_V_RMS;
 use super::{Data, Division, FittedData, HeldOut, Point, Settings, StrokeResult, results, verdict};
 use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
@@ -35,6 +36,14 @@ pub struct EmpiricalFit {
     pub strokes: usize,
     /// How rows were divided into strokes.
     pub division: Division,
+    /// Number of rows that were used.
+    pub rows: usize,
+    /// Lowest and highest voltage of the data with the drive on, in volts rms.
+    pub voltage_range_v_rms: (f64, f64),
+    /// Smallest and largest load of the strokes, in newtons.
+    pub load_range_n: (f64, f64),
+    /// As in [`Fit`](super::Fit::bandwidth_hz).
+    pub bandwidth_hz: Option<f64>,
 }
 
 /// How electric friction grows up to the highest voltage of the data.
@@ -67,9 +76,22 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         }
         fitted => fitted?,
     };
-    verdict::check_estimates(data.division, &strokes, &friction_coefficient, &highest.electric_friction_n)?;
-    let (normal_load_n, division) = (data.normal_load_n, data.division);
-    Ok(EmpiricalFit { friction_coefficient, law, highest, normal_load_n, held_out_n, strokes: strokes.len(), division })
+    let FittedData { normal_load_n, division, rows, voltage_range_v_rms, load_range_n, bandwidth_hz, .. } = data;
+    verdict::check_estimates(division, &strokes, &friction_coefficient, &highest.electric_friction_n, normal_load_n)?;
+    let strokes = strokes.len();
+    Ok(EmpiricalFit {
+        friction_coefficient,
+        law,
+        highest,
+        normal_load_n,
+        held_out_n,
+        strokes,
+        division,
+        rows,
+        voltage_range_v_rms,
+        load_range_n,
+        bandwidth_hz,
+    })
 }
 
 type Law = (VoltageLaw, MeasuredPoint, Option<(f64, f64)>);
@@ -213,30 +235,48 @@ impl EmpiricalFit {
         text
     }
 
-    /// The fit for programs.
+    /// The fit for programs: the keys of a [`Summary`](super::Summary), of which a law without a model leaves some
+    /// `null`, and those of the law.
     pub fn json(&self) -> serde_json::Value {
         let interval = |estimate: Estimate| [estimate.low, estimate.high];
         let exponent = match self.law {
             VoltageLaw::Power { exponent } => Some(exponent),
             VoltageLaw::Points { .. } => None,
         };
-        let electric_friction_n = self.highest.electric_friction_n;
+        let MeasuredPoint { voltage_v_rms, electric_friction_n } = self.highest;
+        let named = Some(electric_friction_n).filter(|_| (voltage_v_rms - NAMED_V_RMS).abs() < 1e-6);
         let points: Vec<_> = self.points().map(|one| [one.voltage_v_rms, one.electric_friction_n.value]).collect();
         let intervals_n: Vec<_> = self.points().map(|point| interval(point.electric_friction_n)).collect();
         serde_json::json!({
             "law": "empirical",
             "friction_coefficient": self.friction_coefficient.value,
             "friction_coefficient_interval": interval(self.friction_coefficient),
-            "voltage_exponent": exponent.map(|exponent| exponent.value),
-            "voltage_exponent_interval": exponent.map(interval),
-            "voltage_max_v_rms": self.highest.voltage_v_rms,
+            "electric_friction_150_v_n": named.map(|estimate| estimate.value),
+            "electric_friction_150_v_interval_n": named.map(interval),
+            "stated_voltage_v_rms": voltage_v_rms,
+            "normal_load_n": self.normal_load_n,
             "electric_friction_n": electric_friction_n.value,
             "electric_friction_interval_n": interval(electric_friction_n),
+            "voltage_exponent": exponent.map(|exponent| exponent.value),
+            "voltage_exponent_interval": exponent.map(interval),
+            "voltage_exponent_of_model": null,
+            "voltage_verdict": "none",
+            "load_exponent": null,
+            "load_exponent_interval": null,
+            "load_exponent_of_model": null,
+            "load_verdict": "none",
+            "coupling_sqrt_n_per_v2": null,
+            "coupling_interval_sqrt_n_per_v2": null,
+            "skin_gap_um": null,
+            "voltage_range_v_rms": self.voltage_range_v_rms,
+            "normal_load_range_n": self.load_range_n,
+            "strokes": self.strokes,
+            "rows": self.rows,
+            "division": self.division.key(),
+            "bandwidth_hz": self.bandwidth_hz,
+            "held_out_error_n": self.held_out_n.map(|(error_n, _)| error_n),
             "points": points,
             "intervals_n": intervals_n,
-            "normal_load_n": self.normal_load_n,
-            "held_out_error_n": self.held_out_n.map(|(error_n, _)| error_n),
-            "strokes": self.strokes,
         })
     }
 }

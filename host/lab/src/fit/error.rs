@@ -241,8 +241,8 @@ pub enum FitError {
     NoVoltage,
     /// The voltage makes no friction.
     #[error(
-        "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven and \
-         that voltage and friction belong to the same time"
+        "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven, \
+         that voltage and friction belong to the same time, and that friction was not smoothed over a switch of the drive"
     )]
     NoElectricFriction {
         /// Electric friction at the highest voltage.
@@ -274,7 +274,12 @@ pub enum FitError {
     },
     /// An interval is too wide.
     #[error(
-        "the 95 % interval of the {quantity} is {low:.4} to {high:.4} around {value:.4}, wider than +-20 %: {advice}"
+        "the 95 % interval of the {quantity} is {low:.4} to {high:.4} around {value:.4}, {}: {advice}",
+        if .high - .value < *.value && .value - .low < *.value {
+            format!("wider than +-20 % of the {natural:.4} without the drive")
+        } else {
+            "wider than the value itself".to_owned()
+        }
     )]
     TooUncertain {
         /// The quantity with its unit.
@@ -285,6 +290,8 @@ pub enum FitError {
         high: f64,
         /// Estimate.
         value: f64,
+        /// What the width is compared with.
+        natural: f64,
         /// What narrows it.
         advice: &'static str,
     },
@@ -299,6 +306,32 @@ pub enum FitError {
         rise_ms: f64,
         /// Bandwidth with this rise time, in Hz.
         bandwidth_hz: f64,
+    },
+    /// Electric friction depends on how many rows beside a switch of the drive are left out.
+    #[error(
+        "electric friction comes out {:.1} % {} if rows within {edge} {side} each switch of the drive are left \
+         out: {cause}",
+        .percent.abs(),
+        if *.percent < 0.0 { "smaller" } else { "larger" }
+    )]
+    NotSettled {
+        /// How far the rows reach that are left out.
+        edge: String,
+        /// The side of the switch.
+        side: &'static str,
+        /// Change of electric friction, in percent.
+        percent: f64,
+        /// What does that, and what to do.
+        cause: &'static str,
+    },
+    /// Rows are too far apart to tell friction at a voltage from friction on its way there.
+    #[error(
+        "the drive is switched every {rows:.0} rows, too few to leave out the rows beside a switch, where friction is on \
+         its way: record at least 250 rows a second and switch every 20 ms or later"
+    )]
+    RowsTooFarApart {
+        /// Median number of rows from one switch to the next.
+        rows: f64,
     },
     /// The finger changed during the recording.
     #[error(

@@ -42,7 +42,7 @@ mod table;
 mod verdict;
 
 pub use crate::bootstrap::Estimate;
-use contrast::{Levels, StrokeMeans, stroke_means};
+use contrast::{Edges, Levels, Phases, StrokeMeans};
 pub use empirical::{EmpiricalFit, VoltageLaw, fit_empirical};
 pub use error::FitError;
 use faults::Faults;
@@ -196,10 +196,14 @@ impl FittedData {
         let levels = Levels::of(&recording);
         let voltage_range_v_rms = rules::check_levels(&levels)?;
         rules::check_carrier(&recording, &levels)?;
-        let mut strokes = stroke_means(&recording, &levels);
+        let phases = Phases::of(&recording, &levels);
+        rules::check_phases(&phases)?;
+        let used = phases.means(&Edges::USED);
+        let mut strokes = used.clone();
         rules::check_natural(&mut strokes, faults)?;
         rules::check_forces(&recording)?;
-        let bandwidth_hz = sensor::check_bandwidth(&recording, &levels)?;
+        let bandwidth_hz = sensor::check_bandwidth(&phases)?;
+        sensor::check_settled(&phases, &used)?;
         rules::check_stated_load(settings, load_range_n)?;
         let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
 
@@ -277,7 +281,8 @@ fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
         held_out: data.held_out,
         strokes: results(&data.strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
-    verdict::check_estimates(fit.division, &fit.strokes, &fit.friction_coefficient, &fit.electric_friction_n)?;
+    let Fit { friction_coefficient, electric_friction_n, .. } = &fit;
+    verdict::check_estimates(fit.division, &fit.strokes, friction_coefficient, electric_friction_n, normal_load_n)?;
     verdict::check_gap(&fit, settings)?;
     Ok(fit)
 }

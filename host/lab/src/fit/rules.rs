@@ -1,7 +1,7 @@
 //! Rules that data must keep before they are fitted.
 
 use super::Settings;
-use super::contrast::{Levels, StrokeMeans};
+use super::contrast::{Levels, Phases, StrokeMeans};
 use super::error::FitError;
 use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
@@ -104,6 +104,11 @@ pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<()
     let (rest_rows, rest_s) = levels.rest(recording);
     let is_carrier = rest_s.map_or(rest_rows < REST_MIN_ROWS, |rest_s| rest_s < REST_MIN_S);
     if is_carrier { Err(FitError::RawCarrier { rest_rows }) } else { Ok(()) }
+}
+
+/// Whether rows are close enough together to leave out those beside each switch of the drive.
+pub(super) fn check_phases(phases: &Phases) -> Result<(), FitError> {
+    phases.unresolved_rows().map_or(Ok(()), |rows| Err(FitError::RowsTooFarApart { rows }))
 }
 
 /// Leaves out the strokes whose loads are not like those of the others; returns the median load, and the smallest and

@@ -1,13 +1,28 @@
-//! Whether the force sensor is fast enough: friction after each switch of the drive, averaged over all of them.
+//! Whether friction had settled in the rows that are compared: whether the force sensor and all filters behind it are
+//! fast enough, and whether friction was smoothed afterwards.
 //!
-//! A sensor that is slow has not arrived when the first half of a phase of the drive is over, so that electric friction
-//! comes out too small. Where the clocks of board and sensor were aligned by what the sensor saw, its delay cannot be
-//! told, but its rise can.
+//! A slow sensor has not arrived when the edge of a phase ends, and a filter that looks ahead, such as a centred mean,
+//! moves friction before its switch. Either mixes the friction of both voltages. Two things show it: the time that
+//! friction takes to rise, averaged over all switches; and electric friction that depends on how many rows beside a
+//! switch are left out.
 
-use super::contrast::{Levels, Run, runs};
+use super::contrast::{Edge, Edges, Phases, Run, StrokeMeans};
 use super::error::FitError;
-use super::recording::{Recording, usual_interval_s};
-use crate::statistics::mean;
+use super::least_squares::Measured;
+use super::recording::usual_interval_s;
+use crate::bootstrap::{GROUP_MIN, Z_999};
+use crate::statistics::{mean, student_quantile};
+
+/// Edges that leave out more than [`Edges::USED`] on one side of a switch. What comes after a slow or ringing sensor
+/// and what comes before a smoothed switch decays differently, so each side has two.
+const WIDER: [(Side, Edge); 4] = [
+    (Side::Before, Edge { duration_s: 5e-3, share: 0.2 }),
+    (Side::Before, Edge { duration_s: 8e-3, share: 0.35 }),
+    (Side::After, Edge { duration_s: 8e-3, share: 0.35 }),
+    (Side::After, Edge { duration_s: 12e-3, share: 0.5 }),
+];
+/// Change of electric friction under wider edges that is allowed, as a part of it, beside the 99.9 % interval of noise.
+const SETTLED_SHARE: f64 = 3e-3;
 
 /// What is looked at around a switch, in seconds: `frixel calibrate` switches after 20 to 30 ms.
 const BEFORE_S: f64 = 8e-3;
@@ -23,18 +38,98 @@ const NOISE_MAX: f64 = 0.04;
 pub(super) const BANDWIDTH_TIMES_RISE: f64 = 0.35;
 /// Rise from 10 to 90 % of what is a mean over an interval, as a part of the interval.
 const RISE_OF_MEAN: f64 = 0.8;
-/// Slowest response that is fitted, in Hz. It is that of sensor, finger and clocks together.
-const BANDWIDTH_MIN_HZ: f64 = 120.0;
+/// Slowest response that is fitted, in Hz. It is that of sensor, finger and clocks together: a sensor of one pole at
+/// 200 Hz is found as 171 Hz or more, and a Savitzky-Golay filter over 11 ms, which biases a fit by 1.4 %, as 131 Hz.
+const BANDWIDTH_MIN_HZ: f64 = 135.0;
 
 /// Bandwidth of the response to a switch of the drive, in Hz, that of the finger's friction included; `None` if the
 /// data cannot tell: without times, with few switches, or too noisy. Fails if it is too slow.
-pub(super) fn check_bandwidth(recording: &Recording, levels: &Levels) -> Result<Option<f64>, FitError> {
-    let Some(rise_s) = rise_s(recording, levels) else { return Ok(None) };
+pub(super) fn check_bandwidth(phases: &Phases) -> Result<Option<f64>, FitError> {
+    let Some(rise_s) = rise_s(phases) else { return Ok(None) };
     let bandwidth_hz = BANDWIDTH_TIMES_RISE / rise_s;
     if bandwidth_hz < BANDWIDTH_MIN_HZ {
         return Err(FitError::SlowSensor { rise_ms: 1e3 * rise_s, bandwidth_hz });
     }
     Ok(Some(bandwidth_hz))
+}
+
+/// A side of a switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Before,
+    After,
+}
+
+/// Fails if electric friction depends on how many rows beside a switch are left out; `used` are the means without
+/// [`Edges::USED`].
+pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<(), FitError> {
+    let shifts = WIDER.iter().filter_map(|(side, edge)| {
+        let edges = match side {
+            Side::Before => Edges { before: *edge, ..Edges::USED },
+            Side::After => Edges { after: *edge, ..Edges::USED },
+        };
+        Some((side, edge, shift(used, &phases.means(&edges))?))
+    });
+    let excess = |shift: &Shift| (shift.share.abs() - SETTLED_SHARE) / shift.error;
+    let largest = shifts.max_by(|(_, _, one), (_, _, other)| excess(one).total_cmp(&excess(other)));
+    let Some((side, edge, shift)) = largest else { return Ok(()) };
+    if excess(&shift) <= 1.0 {
+        return Ok(());
+    }
+    let edge = match usual_interval_s(phases.rows()) {
+        interval_s if interval_s.is_nan() => format!("{:.0} % of a phase", 1e2 * edge.share),
+        _ => format!("{:.0} ms", 1e3 * edge.duration_s),
+    };
+    let (side, cause) = match side {
+        Side::Before => ("before", FORESIGHT),
+        Side::After => ("after", SLOWNESS),
+    };
+    Err(FitError::NotSettled { edge, side, percent: 1e2 * shift.share, cause })
+}
+
+const FORESIGHT: &str = "friction changes before its switch, as behind a centred mean, filtfilt or a Savitzky-Golay \
+                         filter; fit what the sensor gave, and give its times in a column time_s";
+const SLOWNESS: &str = "the force sensor or a filter behind it is slower than 200 Hz, or friction was smoothed so that \
+                        it changes before its switch; fit what a faster sensor gave, and give its times in a column \
+                        time_s";
+
+/// A change of electric friction.
+struct Shift {
+    /// As a part of electric friction.
+    share: f64,
+    /// 99.9 % half-interval of the share.
+    error: f64,
+}
+
+/// What other edges change in electric friction, over strokes; `None` if too few strokes are left.
+fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
+    let pairs: Vec<(f64, f64)> = used
+        .iter()
+        .zip(wider)
+        .filter_map(|(used, wider)| weighted_attraction(used).zip(weighted_attraction(wider)))
+        .collect();
+    if pairs.len() < GROUP_MIN {
+        return None;
+    }
+    let total: f64 = pairs.iter().map(|(used, _)| used).sum();
+    let share = pairs.iter().map(|(used, wider)| wider - used).sum::<f64>() / total;
+    let square: f64 = pairs.iter().map(|(used, wider)| (wider - used - share * used).powi(2)).sum();
+    let count = pairs.len() as f64;
+    let deviation = (count / (count - 1.0) * square).sqrt() / total.abs();
+    let error = student_quantile(Z_999, count - 1.0) * deviation;
+    // Recordings without noise have none.
+    (share.is_finite() && error.is_finite()).then_some(Shift { share, error: error.max(f64::MIN_POSITIVE) })
+}
+
+/// Attractions of a stroke, weighted by the squares of their voltages, as least squares does for a square law; `None`
+/// without any.
+fn weighted_attraction(stroke: &StrokeMeans) -> Option<f64> {
+    let of = stroke.observations.iter().filter_map(|one| match one.measured {
+        Measured::Attraction(attraction_n) => Some(one.voltage_v_rms * one.voltage_v_rms * attraction_n),
+        Measured::Friction(_) => None,
+    });
+    let of: Vec<f64> = of.collect();
+    (!of.is_empty()).then(|| of.iter().sum())
 }
 
 /// Sum and number of friction over load in each interval around a switch.
@@ -48,11 +143,9 @@ impl Average {
 }
 
 /// Time from 10 to 90 % of the way between friction with the drive off and on.
-fn rise_s(recording: &Recording, levels: &Levels) -> Option<f64> {
-    if !recording.has_time {
-        return None;
-    }
-    let interval_s = usual_interval_s(recording.rows());
+fn rise_s(phases: &Phases) -> Option<f64> {
+    let interval_s = usual_interval_s(phases.rows());
+    // Not-a-number without times.
     if !(interval_s > 0.0) {
         return None;
     }
@@ -62,8 +155,7 @@ fn rise_s(recording: &Recording, levels: &Levels) -> Option<f64> {
     // friction does beside.
     let mut averages = [Average(vec![(0.0, 0.0); bins]), Average(vec![(0.0, 0.0); bins])];
     let mut switches = [0_usize; 2];
-    for stroke in &recording.strokes {
-        let runs = runs(stroke, levels);
+    for (_, runs) in &phases.strokes {
         // What changes in steps, because the voltage was seen in the middle of a change, is one switch.
         let steady: Vec<&Run> = runs.iter().filter(|run| run.lasts_s() >= BEFORE_S).collect();
         for (one, next) in steady.iter().zip(steady.iter().skip(1)) {

@@ -8,7 +8,7 @@ use super::sensor::BANDWIDTH_TIMES_RISE;
 use super::{Division, Estimate, Exponent, Fit, HeldOut, Verdict};
 
 /// Voltage of the keys that name it, in volts rms.
-const NAMED_V_RMS: f64 = 150.0;
+pub(super) const NAMED_V_RMS: f64 = 150.0;
 
 /// A fit; the field names are the keys of `--json`, and an unknown value is `null` there. Intervals are of 95 %.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -97,12 +97,7 @@ impl From<&Fit> for Summary {
             normal_load_range_n: [fit.load_range_n.0, fit.load_range_n.1],
             strokes: fit.strokes.len(),
             rows: fit.rows,
-            division: match fit.division {
-                Division::Column => "column",
-                Division::Motion => "motion",
-                Division::Blocks => "blocks",
-                Division::Means => "means",
-            },
+            division: fit.division.key(),
             bandwidth_hz: fit.bandwidth_hz,
             held_out_error_n: fit.held_out.map(|held_out| held_out.contact_error_n),
         }
@@ -111,6 +106,18 @@ impl From<&Fit> for Summary {
 
 fn interval(estimate: &Estimate) -> [f64; 2] {
     [estimate.low, estimate.high]
+}
+
+impl Division {
+    /// The word of `--json`.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::Column => "column",
+            Self::Motion => "motion",
+            Self::Blocks => "blocks",
+            Self::Means => "means",
+        }
+    }
 }
 
 fn verdict(exponent: &Exponent) -> &'static str {
@@ -209,12 +216,13 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
         );
     }
     if !fit.has_time {
-        notes.push("without a column time_s, starts, turns and the lag of friction could not be left out");
+        notes.push("without a column time_s, starts and turns could not be left out, and the first quarter and the last tenth of each phase \
+             of the drive stood in for the lag of friction");
     }
     if fit.bandwidth_hz.is_none() {
         notes.push(
-            "too few switches, too much noise or too few rows a second to tell whether the force sensor was fast enough: \
-             below 120 Hz of bandwidth electric friction comes out too small",
+            "too few switches, too much noise or too few rows a second to tell the bandwidth of the force sensor; electric \
+             friction did not depend on how many rows beside a switch were left out",
         );
     }
     if !fit.has_speed {

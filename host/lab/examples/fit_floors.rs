@@ -1,0 +1,161 @@
+//! How good fits of simulated people are: `cargo run -p frixel-lab --example fit_floors -- [PART [COUNT]]`.
+//!
+//! Parts are `people`, `filters`, `square` and `means`; without one, all of them run. COUNT is a number of people or of
+//! tables. Each line ends with the floor that it holds, and the program fails if one is missed.
+#![allow(clippy::unwrap_used, dead_code, reason = "modules of the tests, of which this uses a part")]
+
+#[path = "../tests/filters.rs"]
+mod filters;
+#[path = "../tests/person.rs"]
+mod person;
+#[path = "../tests/simulated.rs"]
+mod simulated;
+#[path = "../tests/tally.rs"]
+mod tally;
+
+use std::process::ExitCode;
+
+use filters::Filter;
+use frixel_hil_sim::Person;
+use frixel_lab::fit::{Data, MeanRow, Settings, fit, fit_data};
+use person::{Law, Protocol, Random};
+use rayon::prelude::*;
+use tally::Tally;
+
+/// Recordings of each person.
+const SEEDS: u64 = 3;
+
+fn settings() -> Settings {
+    Settings {
+        voltage_v_rms: 150.0,
+        normal_load_n: None,
+        coating_gap_m: simulated::COATING_GAP_M,
+        without: Vec::new(),
+        seed: 1,
+    }
+}
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let part = arguments.next();
+    let count = arguments.next().and_then(|count| count.parse().ok());
+    let parts: [(&str, fn(Option<u64>) -> bool); 4] =
+        [("people", people), ("filters", filters), ("square", square), ("means", means)];
+    let asked = parts.iter().filter(|(name, _)| part.as_deref().is_none_or(|part| part == *name));
+    // All parts run, whether one before it holds or not.
+    let held: Vec<bool> = asked.map(|(_, run)| run(count)).collect();
+    if !held.is_empty() && held.iter().all(|held| *held) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Fits of people behind filters, each recording once through each filter.
+fn fits(people: u64, seeds: u64, filters: &[Filter], strokes: usize) -> Vec<Tally> {
+    let protocol = Protocol { strokes, ..Protocol::default() };
+    let of = |index: u64| -> Vec<Tally> {
+        let (person, seed) = (Person::drawn(index / seeds), index % seeds * 1000 + index / seeds);
+        let rows = simulated::record(&person, &protocol, seed);
+        let fit_of = |filter: &Filter| {
+            let mut tally = Tally::default();
+            tally.add(fit(filter.apply(&rows), &settings()), |load_n| simulated::truth(&person, load_n));
+            tally
+        };
+        filters.iter().map(fit_of).collect()
+    };
+    let empty = || filters.iter().map(|_| Tally::default()).collect::<Vec<_>>();
+    let join =
+        |one: Vec<Tally>, other: Vec<Tally>| one.into_iter().zip(other).map(|(one, other)| one.and(other)).collect();
+    (0..people * seeds).into_par_iter().map(of).reduce(empty, join)
+}
+
+/// People who obey the model, unfiltered and behind causal filters of 200 Hz.
+fn people(count: Option<u64>) -> bool {
+    let filters = [Filter::None, Filter::OnePole(200.0), Filter::Butterworth(200.0)];
+    let tallies = fits(count.unwrap_or(200), SEEDS, &filters, 36);
+    println!(
+        "people who obey the model, {SEEDS} recordings each; floors: refused <= 2 %, doubt <= 7 %, bias <= 0.5 %,"
+    );
+    println!("cover 93 to 97 %, median half-width <= 2 %");
+    let mut holds = true;
+    for (filter, tally) in filters.iter().zip(&tallies) {
+        let held = tally.refused() <= 0.02
+            && tally.doubt() <= 0.07
+            && tally.bias().abs() <= 0.005
+            && (0.93..=0.97).contains(&tally.electric())
+            && tally.half_width() <= 0.02;
+        println!("  {:<28} {tally}{}", filter.to_string(), missed(held));
+        holds &= held;
+    }
+    holds
+}
+
+/// Causal and smoothing filters of 10 to 300 Hz: refused, or right.
+fn filters(count: Option<u64>) -> bool {
+    let tallies = fits(count.unwrap_or(24), 1, &Filter::SWEEP, 36);
+    println!("filters of 10 to 300 Hz and smoothing over 3 to 75 ms; floor: all refused, or bias <= 1 %");
+    let mut holds = true;
+    for (filter, tally) in Filter::SWEEP.iter().zip(&tallies) {
+        let held = tally.fitted == 0 || tally.bias().abs() <= 0.01;
+        println!("  {:<28} {tally}{}", filter.to_string(), missed(held));
+        holds &= held;
+    }
+    holds
+}
+
+/// A square law whose friction is half of natural friction at 150 V rms.
+fn square(count: Option<u64>) -> bool {
+    let count = count.unwrap_or(200);
+    println!("square laws of 50 % gain; floor: 95 % are refused or doubted");
+    let mut holds = true;
+    for load in [0.5, 1.0] {
+        let found = |seed: u64| {
+            let person =
+                person::Person { law: Law::Power { voltage: 2.0, load }, ..person::Person::drawn(seed) }.with_gain(0.5);
+            let fitted = fit(person.record(&Protocol::default()), &settings());
+            (fitted.is_err(), fitted.is_ok_and(|fit| tally::is_doubted(&fit)))
+        };
+        let found: Vec<(bool, bool)> = (0..count).into_par_iter().map(found).collect();
+        let refused = found.iter().filter(|(refused, _)| *refused).count();
+        let doubted = found.iter().filter(|(_, doubted)| *doubted).count();
+        let held = (refused + doubted) as f64 >= 0.95 * count as f64;
+        println!("  load to the power {load}: of {count}, {refused} refused, {doubted} in doubt{}", missed(held));
+        holds &= held;
+    }
+    holds
+}
+
+/// Tables of means of 10 values with a standard deviation of 8 %.
+fn means(count: Option<u64>) -> bool {
+    println!("tables of means of 10 values with a standard deviation of 8 %; floor: bias <= 1 %, refused <= 2 %");
+    let person = person::Person::example(1);
+    let truth_n = person.truth(person.load_n).1;
+    let table = |seed: u64| {
+        let mut random = Random::new(seed);
+        let row = |(index, voltage_v_rms): (usize, f64)| {
+            let electric_n =
+                if voltage_v_rms > 0.0 { 0.5 * person.attraction_n(voltage_v_rms, person.load_n) } else { 0.0 };
+            let truth_n = 0.5 * person.load_n + electric_n;
+            let values: Vec<f64> = (0..10).map(|_| truth_n * (1.0 + 0.08 * random.gaussian())).collect();
+            let mean_n = values.iter().sum::<f64>() / 10.0;
+            let square = values.iter().map(|value| (value - mean_n).powi(2)).sum::<f64>() / 9.0;
+            MeanRow {
+                number: index as u64 + 2,
+                voltage_v_rms,
+                normal_force_n: person.load_n,
+                friction_n: mean_n,
+                standard_error_n: (square / 10.0).sqrt(),
+                count: Some(10.0),
+            }
+        };
+        let rows = [0.0, 75.0, 106.0, 150.0].into_iter().enumerate().map(row).collect();
+        let mut tally = Tally::default();
+        tally.add(fit_data(Data::Means(rows), &settings()), |_| (0.5, truth_n));
+        tally
+    };
+    let tally = (0..count.unwrap_or(600)).into_par_iter().map(table).reduce(Tally::default, Tally::and);
+    let held = tally.bias().abs() <= 0.01 && tally.refused() <= 0.02;
+    println!("  {:<28} {tally}{}", "one load", missed(held));
+    held
+}
+
+fn missed(held: bool) -> &'static str {
+    if held { "" } else { "  MISSED" }
+}
