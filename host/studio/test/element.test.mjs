@@ -66,6 +66,120 @@ test("what stands below a scene stays in its place when the scene comes", async 
   await close();
 });
 
+/** Runs in the page before its scripts: counts what lives on outside of elements. */
+function countLiving() {
+  globalThis.living = { workers: new Set(), frames: new Set(), observers: new Set() };
+  const { terminate } = Worker.prototype;
+  const Counted = Worker;
+  globalThis.Worker = class extends Counted {
+    constructor(...given) {
+      super(...given);
+      living.workers.add(this);
+    }
+    terminate() {
+      living.workers.delete(this);
+      terminate.call(this);
+    }
+  };
+  const request = requestAnimationFrame;
+  globalThis.requestAnimationFrame = (act) => {
+    const frame = (ms) => {
+      living.frames.delete(frame);
+      act(ms);
+    };
+    living.frames.add(frame);
+    return request(frame);
+  };
+  for (const name of ["ResizeObserver", "IntersectionObserver"]) {
+    const Native = globalThis[name];
+    globalThis[name] = class extends Native {
+      observe(...given) {
+        living.observers.add(this);
+        super.observe(...given);
+      }
+      disconnect() {
+        living.observers.delete(this);
+        super.disconnect();
+      }
+    };
+  }
+  globalThis.countOf = () => Object.fromEntries(Object.entries(living).map(([name, all]) => [name, all.size]));
+  /** Replaces what stands in the document by a scene, and waits until it is shown. */
+  globalThis.replace = async () => {
+    const element = document.createElement("frixel-scene");
+    element.setAttribute("scene", "constant");
+    const ready = new Promise((resolve) => element.addEventListener("ready", resolve));
+    document.querySelector("#place").replaceChildren(element);
+    await ready;
+  };
+}
+
+test("sixty replacements leave the workers, frames and observers of one element, and the last one none", async () => {
+  const folder = documentOf('<div id="place"></div>');
+  const url = pathToFileURL(path.join(folder, "index.html")).href;
+  const { page, errors, close } = await openPage(url, { init: countLiving });
+  await page.evaluate(() => customElements.whenDefined("frixel-scene"));
+  await page.evaluate(() => replace());
+  const one = await page.evaluate(() => countOf());
+  assert.deepEqual(one, { workers: 3, frames: 3, observers: 2 });
+  const after = await page.evaluate(async () => {
+    for (let count = 0; count < 60; count += 1) await replace();
+    return countOf();
+  });
+  assert.deepEqual(after, one);
+  await page.evaluate(() => document.querySelector("#place").replaceChildren());
+  await page.waitForFunction(() => Object.values(countOf()).every((count) => count === 0));
+  await page.evaluate(() => replace());
+  // An element that is moved keeps the engine, and begins anew.
+  await page.evaluate(async () => {
+    const element = document.querySelector("frixel-scene");
+    const ready = new Promise((resolve) => element.addEventListener("ready", resolve));
+    document.body.append(element);
+    await ready;
+  });
+  assert.deepEqual(await page.evaluate(() => countOf()), one);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** A server of a folder, whose documents have a content security policy. Returns the address of `index.html`. */
+async function serve(folder, context, policy) {
+  const server = http.createServer((request, answer) => {
+    const file = path.join(folder, path.normalize(new URL(request.url, "http://a").pathname));
+    const type = file.endsWith(".js") ? "text/javascript" : "text/html";
+    const heads = { "content-type": type, ...(policy && { "content-security-policy": policy }) };
+    if (fs.existsSync(file)) answer.writeHead(200, heads).end(fs.readFileSync(file));
+    // Browsers ask for an icon by themselves.
+    else answer.writeHead(file.endsWith("favicon.ico") ? 204 : 404).end();
+  });
+  context.after(() => server.close());
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  return `http://127.0.0.1:${server.address().port}/index.html`;
+}
+
+test("under the content security policy of docs/studio.md a scene plays, and under less a sentence says what it needs", async (context) => {
+  const text = fs.readFileSync(new URL("../../../docs/studio.md", import.meta.url), "utf8");
+  const [policy] = text.match(/default-src .*/);
+  const folder = documentOf('<frixel-scene id="there" scene="constant"></frixel-scene>');
+  const { page, errors, close } = await openPage(await serve(folder, context, policy), { isSimulated: true });
+  assert.equal(await lineOf(page, "#there"), "constant.toml");
+  assertFelt(await slideOver(page, "#there"));
+  assert.deepEqual(errors, []);
+  await close();
+  const refusals = [
+    [" 'wasm-unsafe-eval'", ""],
+    ["worker-src blob:", "worker-src 'self'"],
+    ["script-src 'self' blob:", "script-src 'self'"],
+  ];
+  for (const [allowed, less] of refusals) {
+    assert.ok(policy.includes(allowed), allowed);
+    const { page, close } = await openPage(await serve(folder, context, policy.replace(allowed, less)));
+    const sentence = () => document.querySelector("#there").shadowRoot?.textContent;
+    await page.waitForFunction(`/must allow script-src blob: 'wasm-unsafe-eval'/.test((${sentence})())`);
+    await close();
+  }
+});
+
 test("from a server, `src` names a scene with its files", async (context) => {
   const part = 'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "wall.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n';
   const folder = documentOf('<frixel-scene id="there" src="scenes/mine.toml"></frixel-scene>', {
@@ -73,14 +187,7 @@ test("from a server, `src` names a scene with its files", async (context) => {
     "scenes/parts/wall.toml": part,
     "scenes/parts/wall.png": fs.readFileSync(new URL("../../../scenes/textures/leather.png", import.meta.url)),
   });
-  const server = http.createServer((request, answer) => {
-    const file = path.join(folder, path.normalize(new URL(request.url, "http://a").pathname));
-    if (fs.existsSync(file)) answer.writeHead(200, { "content-type": "text/html" }).end(fs.readFileSync(file));
-    else answer.writeHead(404).end();
-  });
-  context.after(() => server.close());
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  const { page, close } = await openPage(`http://127.0.0.1:${server.address().port}/index.html`, { isSimulated: true });
+  const { page, close } = await openPage(await serve(folder, context), { isSimulated: true });
   assert.equal(await lineOf(page, "#there"), "mine.toml");
   assertFelt(await slideOver(page, "#there"));
   await page.evaluate(() => document.querySelector("#there").setAttribute("src", "none.toml"));

@@ -7,6 +7,7 @@
 //
 //   await studio.bytes("engine.wasm")          Uint8Array; of a file that is not carried, from that folder
 //   await studio.text("scenes/brick.toml")     string
+//   studio.policy                              what a content security policy must allow, a sentence
 //   studio.names("scenes/")                    the names of carried files that begin so, sorted
 //
 // Modules import each other by relative paths; here they become blob URLs, because a page from a file has no others.
@@ -74,6 +75,22 @@ function boot(packed, entry, folder) {
     return new URL(path, `file:///${module}`).pathname.slice(1);
   }
 
-  globalThis.studio = { bytes, text, names, moduleUrl };
-  moduleUrl(entry).then((url) => import(url));
+  const policy =
+    "if this document has a content security policy, it must allow script-src blob: 'wasm-unsafe-eval' and " +
+    "worker-src blob: (docs/studio.md)";
+
+  globalThis.studio = { bytes, text, names, moduleUrl, policy };
+  moduleUrl(entry)
+    .then((url) => import(url))
+    .catch((error) => {
+      console.error(error);
+      if (!entry.startsWith("element/") || customElements.get("frixel-scene")) return;
+      const sentence = `<frixel-scene> cannot start (${error.message}): ${policy}`;
+      const Refused = class extends HTMLElement {
+        connectedCallback() {
+          if (!this.shadowRoot) this.attachShadow({ mode: "open" }).append(sentence);
+        }
+      };
+      customElements.define("frixel-scene", Refused);
+    });
 }

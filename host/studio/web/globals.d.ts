@@ -7,6 +7,8 @@ declare global {
     text: (name: string) => Promise<string>;
     names: (start?: string) => string[];
     moduleUrl: (name: string) => Promise<string>;
+    /** What a content security policy must allow, a sentence. */
+    policy: string;
   };
   /** The clock of a test, in place of the machine's. */
   var studioClock: import("./clock.js").Clock | undefined;

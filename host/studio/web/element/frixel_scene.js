@@ -5,7 +5,7 @@
 
 import { createEngine } from "../engine/engine.js";
 import { carriedFiles } from "../page/bundled.js";
-import { element, forgetColours, sentenceOf } from "../page/dom.js";
+import { adoptStyle, element, forgetColours, sentenceOf } from "../page/dom.js";
 import { Finger } from "../page/finger.js";
 import { FrictionMap, mapSizePx } from "../page/map.js";
 import { isPlayable } from "../page/player.js";
@@ -41,15 +41,33 @@ let shared;
  * @type {FrixelScene | undefined}
  */
 let playing;
+/**
+ * The elements in the document.
+ * @type {Set<FrixelScene>}
+ */
+const present = new Set();
 
 /** The engine of all elements, started for the first one. */
 function engineOfAll() {
-  shared ??= createEngine().then((engine) => {
-    engine.onFrames = (frame) => playing?.feel(frame);
-    engine.onFailure = ({ error }) => playing?.say(error);
-    return engine;
-  });
+  shared ??= createEngine().then(
+    (engine) => {
+      engine.onFrames = (frame) => playing?.feel(frame);
+      engine.onFailure = ({ error }) => playing?.say(error);
+      return engine;
+    },
+    (error) => {
+      shared = undefined;
+      throw new Error(`the simulated board cannot start (${sentenceOf(error)}): ${studio.policy}`);
+    },
+  );
   return shared;
+}
+
+/** Ends the engine when the last element has left the document. */
+function endUnused() {
+  if (present.size > 0) return;
+  shared?.then((engine) => engine.close(), () => {});
+  shared = undefined;
 }
 
 /**
@@ -100,7 +118,10 @@ class FrixelScene extends HTMLElement {
   #parts;
   /** @type {ShadowRoot | undefined} */
   #root;
-  #samples = new Samples();
+  /** Aborted when the element leaves the document. */
+  #left = new AbortController();
+  /** @type {Samples | undefined} */
+  #samples;
   #line = element("p", { className: "line fine", role: "status" });
   #hint = element("p", { className: "hint" }, "press and slide");
   /**
@@ -112,23 +133,32 @@ class FrixelScene extends HTMLElement {
   #check;
 
   connectedCallback() {
-    if (this.#root) return;
+    present.add(this);
+    this.#left = new AbortController();
+    const { signal } = this.#left;
     const places = this.#makeRoom();
     const nearby = new IntersectionObserver(
       ([{ isIntersecting }]) => {
         if (!isIntersecting) return;
         nearby.disconnect();
-        this.#start(places).catch((error) => this.say(sentenceOf(error)));
+        this.#start(places, signal).catch((error) => this.say(sentenceOf(error)));
       },
       { rootMargin: NEARBY },
     );
     nearby.observe(this);
+    signal.addEventListener("abort", () => nearby.disconnect());
   }
 
   disconnectedCallback() {
-    if (playing !== this) return;
-    playing = undefined;
-    this.#parts?.engine.stop();
+    present.delete(this);
+    this.#left.abort();
+    // An engine that ends meanwhile has stopped.
+    if (playing === this) this.#parts?.engine.stop().catch(() => {});
+    if (playing === this) playing = undefined;
+    this.#parts = this.#samples = this.#scene = this.#check = undefined;
+    this.#root?.replaceChildren();
+    // An element that takes the place of this one, or this one in another place, keeps the engine.
+    queueMicrotask(endUnused);
   }
 
   attributeChangedCallback() {
@@ -140,34 +170,48 @@ class FrixelScene extends HTMLElement {
    * @returns {Places}
    */
   #makeRoom() {
-    this.#root = this.attachShadow({ mode: "open" });
+    this.#root ??= this.attachShadow({ mode: "open" });
+    this.#root.adoptedStyleSheets = [];
+    this.#hint.hidden = false;
+    this.#line.textContent = "";
     const picture = element("canvas", { id: "map-picture" });
     const touched = element("canvas", { id: "map-finger", role: "application", "aria-label": LABEL });
     const map = element("div", { className: "map" }, picture, touched, this.#hint);
     const scope = element("div", { className: "scope" });
     const card = element("div", { className: "card" }, map, this.#line, scope);
-    this.#root.append(element("style", {}, ...STYLES), card);
+    this.#root.append(card);
+    adoptStyle(card, STYLES.join(""));
     return { map, picture, touched, scope };
   }
 
-  /** @param {Places} places */
-  async #start({ map, picture, touched, scope }) {
+  /**
+   * @param {Places} places
+   * @param {AbortSignal} signal
+   */
+  async #start({ map, picture, touched, scope }, signal) {
     // Until the document is read, a scene inside of the element may be incomplete.
-    if (document.readyState === "loading") await new Promise((done) => addEventListener("DOMContentLoaded", done));
+    if (document.readyState === "loading")
+      await new Promise((done) => addEventListener("DOMContentLoaded", done, { once: true, signal }));
     const engine = await engineOfAll();
+    if (signal.aborted) return;
     touched.tabIndex = 0;
     const shown = new FrictionMap(map, picture);
     const finger = new Finger(engine, shown, touched);
+    this.#samples = new Samples();
     const parts = { engine, map: shown, finger, scope: new Scope(this.#samples, scope) };
     this.#parts = parts;
+    signal.addEventListener("abort", () => {
+      for (const part of [parts.map, parts.finger, parts.scope]) part.close();
+    });
     finger.onDown = () => (this.#hint.hidden = true);
     for (const type of ["pointerenter", "pointerdown", "focus"])
       touched.addEventListener(type, () => this.#play(parts).catch((error) => this.say(sentenceOf(error))));
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    const restyle = () => {
       forgetColours();
       parts.map.draw();
       parts.scope.restyle();
-    });
+    };
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle, { signal });
     await this.#load(parts);
   }
 
@@ -188,10 +232,13 @@ class FrixelScene extends HTMLElement {
       const places = check.problems.map(({ file, line, message }) => `${file ?? entry}:${line ?? 1}: ${message}`);
       throw new Error(places.join("\n"));
     }
+    const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
+    const drawn = await engine.map(files, entry, profiles, { ...sizePx, speedMmPerS: 100 });
+    // It has left the document meanwhile.
+    if (this.#parts !== parts) return;
     this.#scene = [files, entry, profiles];
     this.#check = check;
-    const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
-    map.show(await engine.map(files, entry, profiles, { ...sizePx, speedMmPerS: 100 }), check);
+    map.show(drawn, check);
     this.#line.className = "line fine";
     this.#line.textContent = check.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;
     this.dispatchEvent(new CustomEvent("ready", { detail: check }));
@@ -254,7 +301,7 @@ class FrixelScene extends HTMLElement {
    * @param {Frame} frame
    */
   feel(frame) {
-    this.#samples.add(frame);
+    this.#samples?.add(frame);
     if (this.#check) this.#parts?.finger.feel(frame, this.#check);
     this.dispatchEvent(new CustomEvent("feel", { detail: frame }));
   }

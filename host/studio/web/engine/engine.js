@@ -15,7 +15,12 @@ import { WorkerClient } from "./worker_client.js";
 export async function createEngine({ seed = 1 } = {}) {
   const module = await WebAssembly.compile(await studio.bytes("engine.wasm"));
   const engine = new Engine(module, seed);
-  await engine.start();
+  try {
+    await engine.start();
+  } catch (error) {
+    engine.close();
+    throw error;
+  }
   return engine;
 }
 
@@ -47,6 +52,8 @@ export class Engine {
   #link = "simulator";
   /** @type {Omit<T.State, "link">} */
   #state = { state: "disarmed", fault: undefined, needsArm: false, driving: THIS_PAGE };
+  /** Aborted by `close`. */
+  #closed = new AbortController();
   /** The link and the state that the page knows of, as JSON. */
   #reported = "";
 
@@ -86,7 +93,7 @@ export class Engine {
     keepAlive((type) => {
       this.#board.send({ type });
       if (this.#line) this.#host.send({ type });
-    });
+    }, this.#closed.signal);
   }
 
   /** @returns {WorkerClient<T.FromBoard>} */
@@ -341,6 +348,7 @@ export class Engine {
 
   /** Ends the workers and closes the line to a board, which its host timeout disarms. */
   close() {
+    this.#closed.abort();
     this.#line?.close();
     for (const worker of [this.#board, this.#host, this.#checker]) worker.terminate();
   }
@@ -349,15 +357,17 @@ export class Engine {
 /**
  * Sends a sign of life from each animation frame of a visible page, and a farewell when it is hidden or left.
  * @param {(type: "alive" | "gone") => void} send
+ * @param {AbortSignal} signal Ends it.
  */
-function keepAlive(send) {
+function keepAlive(send, signal) {
   const frame = () => {
+    if (signal.aborted) return;
     if (document.visibilityState === "visible") send("alive");
     clock.nextFrame(frame);
   };
   clock.nextFrame(frame);
   document.addEventListener("visibilitychange", () => {
     if (document.visibilityState !== "visible") send("gone");
-  });
-  window.addEventListener("pagehide", () => send("gone"));
+  }, { signal });
+  window.addEventListener("pagehide", () => send("gone"), { signal });
 }

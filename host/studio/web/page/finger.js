@@ -54,6 +54,7 @@ export class Finger {
   isGuided = false;
   usesPressure = false;
   drags = true;
+  #isClosed = false;
   /** A stroke begins. */
   onDown = () => {};
 
@@ -93,6 +94,11 @@ export class Finger {
       width: `${width}px`,
       height: `${height}px`,
     });
+  }
+
+  /** Ends the drawing. */
+  close() {
+    this.#isClosed = true;
   }
 
   /** Draws once more: an overlay has changed. */
@@ -204,6 +210,7 @@ export class Finger {
 
   /** @param {number} ms */
   #frame(ms) {
+    if (this.#isClosed) return;
     if (this.#keys.size > 0) this.#moveByKeys(ms);
     const isDragging = this.drags && this.#isDown;
     const followMs = isDragging ? FOLLOW_MS + DRAG_MS * this.#trail.friction : 0;

@@ -38,6 +38,7 @@ const MAP_ALPHA = { map: 1, both: 0.45, mockup: 0 };
 
 export class FrictionMap {
   #canvas;
+  #resizes;
   /** The element that the map is in. */
   box;
   /** @type {FrictionField | undefined} */
@@ -84,7 +85,13 @@ export class FrictionMap {
   constructor(box, picture) {
     this.box = box;
     this.#canvas = picture;
-    new ResizeObserver(() => this.layout()).observe(this.box);
+    this.#resizes = new ResizeObserver(() => this.layout());
+    this.#resizes.observe(this.box);
+  }
+
+  /** Ends the fitting into the box. */
+  close() {
+    this.#resizes.disconnect();
   }
 
   /**

@@ -3,7 +3,7 @@
 
 import { clock } from "../clock.js";
 import { uPlot, uPlotStyle } from "../vendor/chart-vendor.js";
-import { colour, contextOf, download, element, volts } from "./dom.js";
+import { adoptStyle, colour, contextOf, download, element, volts } from "./dom.js";
 
 /** @import { Frame } from "../engine/types" */
 /** @import { Samples } from "./samples.js" */
@@ -33,6 +33,8 @@ export const MEANINGS = [
 export class Scope {
   #samples;
   #box;
+  #resizes;
+  #isClosed = false;
   /** @type {uPlot} */
   #plot;
   /** Time of the newest sample in the chart, s of board time. */
@@ -56,13 +58,15 @@ export class Scope {
   constructor(samples, box) {
     this.#samples = samples;
     this.#box = box;
-    box.before(element("style", {}, uPlotStyle));
+    adoptStyle(box, uPlotStyle);
     this.#plot = this.#made();
     this.#draw();
-    new ResizeObserver(() => this.#fit()).observe(this.#box);
+    this.#resizes = new ResizeObserver(() => this.#fit());
+    this.#resizes.observe(this.#box);
     let drawnMs = 0;
     /** @param {number} ms */
     const frame = (ms) => {
+      if (this.#isClosed) return;
       if (!this.isPaused && this.#shownS !== this.#newestS && ms - drawnMs >= FRAME_MS) {
         this.#draw();
         drawnMs = ms;
@@ -70,6 +74,13 @@ export class Scope {
       clock.nextFrame(frame);
     };
     clock.nextFrame(frame);
+  }
+
+  /** Ends the drawing, and takes the chart's listeners from the window. */
+  close() {
+    this.#isClosed = true;
+    this.#resizes.disconnect();
+    this.#plot.destroy();
   }
 
   /** Makes the chart anew, in the colours of the theme. */
