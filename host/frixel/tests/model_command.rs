@@ -328,8 +328,8 @@ fn contacts_beyond_the_finger_are_counted_once_on_standard_error() {
     assert_eq!(rows.iter().filter(|row| row["status"] == "ok").count(), 3);
     assert_eq!(
         String::from_utf8(output.stderr).unwrap(),
-        "frixel: 2 rows have a contact radius above the finger's radius, where the model is not valid: is a skin gap missing \
-         from the coating?\n\
+        "frixel: at 2 voltages the contact would be wider than the finger, where the model is not valid: is a skin gap \
+         missing from the coating?\n\
          frixel: 1 row has no answer; the column `status` says why\n"
     );
 }

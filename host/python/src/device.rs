@@ -207,7 +207,7 @@ impl Device {
             ticks_per_row: self.hello.tick_hz.checked_div(messages_per_s).unwrap_or(0),
             ..Metadata::new("board", Some(&self.hello), self.hello.board.is_simulated(), None)
         };
-        let made = Made { metadata, files: BTreeMap::new(), markers: Vec::new() };
+        let made = Made { metadata, files: BTreeMap::new(), later_scenes: Vec::new(), markers: Vec::new() };
         serde_json::to_string(&made).map_err(|error| raised(py, "PlayError", (error.to_string(),)))
     }
 

@@ -34,7 +34,7 @@ mod _frixel {
     #[pymodule_export]
     use super::profile::{bundled_profiles, check_profile};
     #[pymodule_export]
-    use super::recording::{play_fields, replay, write_parquet};
+    use super::recording::{play_fields, read_parquet, replay, write_parquet};
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]

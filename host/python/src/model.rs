@@ -1,5 +1,6 @@
 //! The contact model over arrays.
 
+use frixel_lab::model_csv::wider_than_finger;
 use frixel_model::{Contact, ContactModel, Finger, InverseError, ParameterError, SoftContact, SoftFinger, StateError};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -35,10 +36,16 @@ enum Checked {
 }
 
 impl AnyContact {
+    fn radius_m(&self) -> f64 {
+        let (Self::Springs { radius_m, .. } | Self::Soft { radius_m, .. }) = *self;
+        radius_m
+    }
+
     fn checked(&self) -> Result<Checked, ParameterError> {
         match *self {
             Self::Springs { radius_m, stiffness_pa_per_m, friction_coefficient, gap_m, outer_radius_m } => {
                 let contact = Contact::new(&Finger { radius_m, stiffness_pa_per_m, friction_coefficient }, gap_m)?;
+                outer_radius_m.map(|outer_radius_m| contact.within(outer_radius_m, 0.0).map(drop)).transpose()?;
                 Ok(Checked::Springs(contact, outer_radius_m))
             }
             Self::Soft { radius_m, modulus_pa, stress_exponent, shape_constant, friction_coefficient, gap_m } => {
@@ -65,14 +72,16 @@ impl Checked {
 /// Arrays of equal length: contact radius, stiffness, friction and electric friction.
 type States<'py> = [Bound<'py, PyArray1<f64>>; 4];
 
-/// The contact at each voltage under the load beside it; not a number where there is none.
+/// The contact at each voltage under the load beside it; not a number where there is none. Also the doubt in contacts
+/// that would be wider than the finger.
 #[pyfunction]
 pub(crate) fn eval_contact<'py>(
     py: Python<'py>,
     contact: AnyContact,
     voltage_v_rms: PyReadonlyArray1<'py, f64>,
     normal_load_n: PyReadonlyArray1<'py, f64>,
-) -> PyResult<States<'py>> {
+) -> PyResult<(States<'py>, Option<String>)> {
+    let radius_m = contact.radius_m();
     let (voltages, loads) = (voltage_v_rms.as_array().to_vec(), normal_load_n.as_array().to_vec());
     let columns = py.detach(|| {
         let contact = contact.checked()?;
@@ -91,7 +100,10 @@ pub(crate) fn eval_contact<'py>(
         }
         Ok(columns)
     });
-    Ok(columns.map_err(|error| parameter_error(py, error))?.map(|column| column.into_pyarray(py)))
+    let columns = columns.map_err(|error| parameter_error(py, error))?;
+    let doubt =
+        wider_than_finger(columns[0].iter().filter(|contact_radius_m| **contact_radius_m > radius_m).count() as u64);
+    Ok((columns.map(|column| column.into_pyarray(py)), doubt))
 }
 
 /// The rms voltage for each friction under the load beside it; not a number where there is none.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use frixel_felt::recorder::Marker;
 use frixel_lab::recording::{
-    Column, Field, Kind, Metadata, PlayOptions, Recording, SourceFile, Values, play_fields as fields,
+    Column, Field, Kind, LaterScene, Metadata, PlayOptions, Recording, SourceFile, Values, play_fields as fields,
 };
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -22,8 +22,9 @@ use super::signals::interruptible;
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Made {
     pub(crate) metadata: Metadata,
-    /// Texts of finger, screen, touch source and stroke.
-    pub(crate) files: BTreeMap<String, String>,
+    /// Finger, screen, touch source and stroke.
+    pub(crate) files: BTreeMap<String, SourceFile>,
+    pub(crate) later_scenes: Vec<LaterScene>,
     pub(crate) markers: Vec<Marker>,
 }
 
@@ -88,14 +89,60 @@ pub(crate) fn write_parquet(
         taken.push(Column { values: values(field.kind, &column)?, field });
     }
     let made: Made = serde_json::from_str(made).map_err(|error| failed(&error))?;
-    let own = made.files.iter().map(|(name, text)| (name.clone(), text.as_bytes()));
+    let Made { metadata, files: own, later_scenes, markers } = made;
+    let participant = participant.or(metadata.participant);
+    let (kept, hashed): (BTreeMap<_, _>, BTreeMap<_, _>) =
+        own.into_iter().partition(|(_, file)| file.bytes().is_some());
+    let own: BTreeMap<String, Vec<u8>> =
+        kept.iter().filter_map(|(name, file)| Some((name.clone(), file.bytes()?))).collect();
+    let own = own.iter().map(|(name, bytes)| (name.clone(), bytes.as_slice()));
     let of_scene = files.iter().map(|(name, bytes)| (format!("{}{name}", PlayOptions::OF_SCENE), bytes.as_slice()));
-    let files = SourceFile::all(own.chain(of_scene));
-    let metadata = Metadata { scene, files, markers: made.markers, participant, ..made.metadata };
+    let files = SourceFile::all(own.chain(of_scene)).into_iter().chain(hashed).collect();
+    let metadata = Metadata { scene, files, later_scenes, markers, participant, ..metadata };
     let recording = Recording { metadata, columns: taken, is_cut_off: false };
     let file = File::create(&path).map_err(|error| failed(&error))?;
     let written = py.detach(|| recording.write_parquet(BufWriter::new(file)));
     written.map_err(|error| failed(&error))
+}
+
+/// A finger or a screen in place of the scene's own: the text of its file, and its name.
+type Profile = Option<(Option<String>, String)>;
+/// What is read of a recording: columns, text of the scene, files that it names, finger and screen, and [`Made`].
+type Read<'py> = (Bound<'py, PyDict>, String, NamedFiles, [Profile; 2], String);
+
+/// Reads the recording of a play, the bytes of its file, which messages call `name`.
+#[pyfunction]
+pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str) -> PyResult<Read<'py>> {
+    let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (format!("{name}: {error}"),));
+    let Recording { metadata, columns: read, .. } =
+        py.detach(|| Recording::read_parquet(recording)).map_err(|error| failed(&error))?;
+    let (found, values): (Vec<Field>, Vec<Values>) =
+        read.into_iter().map(|Column { field, values }| (field, values)).unzip();
+    if found != fields() {
+        return Err(failed(&"this recording is not of a play: read the table by pandas.read_parquet"));
+    }
+    // A play on a board that the module has made has no options.
+    let options: Option<PlayOptions> = serde_json::from_value(metadata.play.clone()).ok();
+    let profile = |name: fn(PlayOptions) -> Option<String>, file: &str| -> Profile {
+        let text = metadata.files.get(file).and_then(SourceFile::bytes).and_then(|bytes| String::from_utf8(bytes).ok());
+        Some((text, options.clone().and_then(name)?))
+    };
+    let profiles = [
+        profile(|options| options.finger, PlayOptions::FINGER),
+        profile(|options| options.screen, PlayOptions::SCREEN),
+    ];
+    let mut files = metadata.files.clone();
+    let of_scene =
+        files.extract_if(PlayOptions::OF_SCENE.to_owned().., |name, _| name.starts_with(PlayOptions::OF_SCENE));
+    let named = |(name, file): (String, SourceFile)| {
+        Some((name.strip_prefix(PlayOptions::OF_SCENE)?.to_owned(), file.bytes()?))
+    };
+    let of_scene: NamedFiles = of_scene.filter_map(named).collect();
+    let (scene, later_scenes, markers) =
+        (metadata.scene.clone(), metadata.later_scenes.clone(), metadata.markers.clone());
+    let made = Made { metadata, files, later_scenes, markers };
+    let made = serde_json::to_string(&made).map_err(|error| failed(&error))?;
+    Ok((columns(py, &found, values)?, scene, of_scene, profiles, made))
 }
 
 /// Plays a recording, the bytes of its file, again, and compares it. Messages call the file `name`. Returns the number

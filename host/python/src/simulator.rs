@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
 use frixel_lab::recording::{
-    Metadata, PlayOptions, PreparedPlay, PreparedPlayError, StrokeOptions, play_fields, play_values,
+    Metadata, PlayOptions, PreparedPlay, PreparedPlayError, SourceFile, StrokeOptions, play_fields, play_values,
 };
 use frixel_lab::simulation::{Simulated, Simulation};
 use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
@@ -207,7 +207,8 @@ pub(crate) fn simulate<'py>(
         play: serde_json::to_value(&options).map_err(|error| failed(&error))?,
         ..Metadata::new("sim", Some(&board), true, None)
     };
-    let made = Made { metadata, files, markers: recorder.markers().to_vec() };
+    let files = SourceFile::all(files.iter().map(|(name, text)| (name.clone(), text.as_bytes())));
+    let made = Made { metadata, files, later_scenes: Vec::new(), markers: recorder.markers().to_vec() };
     let made = serde_json::to_string(&made).map_err(|error| failed(&error))?;
     Ok((columns(py, &play_fields(), play_values(recorder.rows()))?, made))
 }

@@ -5,9 +5,11 @@ import io
 import itertools
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
+from frixel import ParameterError
 from frixel.experiment import (
     SAME_DIFFERENT,
     TWO_ALTERNATIVES,
@@ -160,6 +162,59 @@ def test_an_observer_that_compares_frictions_is_right_as_often_as_one_that_compa
     assert right == pytest.approx(observer.correct_share(0.15, TWO_ALTERNATIVES), abs=0.026)
 
 
+def of_counts(rows: list[tuple[float, int, int]]) -> Answers:
+    """Answers of (level, correct, total)."""
+    return Answers((level, number < right) for level, right, total in rows for number in range(total))
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 20.0, 1e12])
+def test_thresholds_are_found_in_any_unit(unit: float) -> None:
+    clear = of_counts([(unit, 18, 30), *((factor * unit, 30, 30) for factor in (2, 3, 4, 5))])
+    found = estimate(clear, TWO_ALTERNATIVES).threshold
+    assert found is not None
+    assert 1.05 < found / unit < 1.55
+    levels, right = (0.5, 1, 2, 3, 4), (17, 18, 23, 27, 29)
+    rows = [(level * unit, count, 30) for level, count in zip(levels, right, strict=True)]
+    slow = estimate(of_counts(rows), TWO_ALTERNATIVES)
+    assert slow.threshold is not None
+    assert slow.interval is not None
+    assert 1.55 < slow.threshold / unit < 3
+    assert 1.5 < slow.interval[0] / unit < 2.2 < slow.interval[1] / unit < 3.1
+
+
+def test_every_method_takes_levels_of_any_unit() -> None:
+    for unit in (1e-9, 25.0, 1e12):
+        threshold = 2 * unit
+        all_methods: list[Method] = [
+            ConstantStimuli([unit, 2 * unit, 4 * unit], 10),
+            UpDown(8 * unit, trials=30),
+            QuestPlus([unit, 2 * unit, 4 * unit], TWO_ALTERNATIVES, trials=30),
+        ]
+        for method in all_methods:
+            levels = []
+            while (level := method.next_level()) is not None:
+                levels.append(level)
+                method.answer(level, level >= threshold)
+            assert len(levels) == 30
+            assert min(levels) < threshold < 2 * max(levels)
+
+
+@pytest.mark.parametrize("answer", ["False", "0", -1, 0, 1, 1.0, None])
+def test_an_answer_is_true_or_false(answer: Any) -> None:
+    with pytest.raises(ParameterError, match="correct is True or False, found"):
+        Answers([(0.2, answer)])
+    with pytest.raises(ParameterError, match="correct is True or False, found"):
+        UpDown(0.5, trials=3).answer(0.5, answer)
+    assert Answers([(0.2, np.bool_(True)), (0.2, np.False_)]).table == [(0.2, 1, 2)]
+
+
+def test_the_answer_of_an_observer_to_a_trial_is_the_same_after_a_resume() -> None:
+    whole, resumed = Observer(0.12, seed=3), Observer(0.12, seed=3)
+    answers = [whole.stronger(0.28, 0.29, trial=number) for number in range(40)]
+    assert [resumed.stronger(0.28, 0.29, trial=number) for number in range(20, 40)] == answers[20:]
+    assert len(set(answers)) == 2
+
+
 def test_a_guesser_is_told_so() -> None:
     observer = Observer(math.inf, lapse=0.0, seed=4)
     found = estimate(
@@ -175,7 +230,10 @@ def test_guessing_is_as_likely_as_the_average_of_all_answers_to_it() -> None:
     # Over every series of answers of one who guesses, the likelihood ratio has a mean of 1: so says Ville's inequality.
     levels = [0.05, 0.1, 0.2, 0.4]
     series = itertools.product([False, True], repeat=len(levels))
-    ratios = [estimate(Answers(zip(levels, answers, strict=True)), TWO_ALTERNATIVES).evidence for answers in series]
+    grid = Grid.around(levels)
+    ratios = [
+        estimate(Answers(zip(levels, answers, strict=True)), TWO_ALTERNATIVES, grid).evidence for answers in series
+    ]
     assert np.mean(ratios) == pytest.approx(1.0, abs=1e-9)
 
 
@@ -193,7 +251,7 @@ def test_the_threshold_of_an_observer_is_where_its_answers_say() -> None:
         share = observer.correct_share(observer.threshold(task), task)
         assert share == pytest.approx(guess + (1 - guess) * (1 - math.exp(-1)))
     assert math.isnan(observer.threshold(task)) is False
-    with pytest.raises(ValueError, match="noise above 0"):
+    with pytest.raises(ValueError, match="noise is a number above 0, or infinite, found 0"):
         Observer(0.0)
 
 

@@ -9,7 +9,7 @@ import threading
 
 import numpy as np
 import pytest
-from frixel import FrixelError, ParameterError, model
+from frixel import FrixelError, FrixelWarning, ParameterError, model
 
 FINGER = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=10e-6)
 SOFT = model.SoftContact(
@@ -87,6 +87,16 @@ def test_what_is_not_taken_is_said(call: object, sentence: str) -> None:
     assert str(caught.value) == sentence
     assert isinstance(caught.value, FrixelError)
     assert isinstance(caught.value, ValueError)
+
+
+def test_a_contact_that_would_be_wider_than_the_finger_is_told() -> None:
+    thin = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=1e-8)
+    with pytest.warns(FrixelWarning) as told:
+        model.eval(thin, [0.0, 100.0, 150.0])
+    assert str(told[0].message) == (
+        "at 2 voltages the contact would be wider than the finger, where the model is not valid: is a skin gap missing "
+        "from the coating?"
+    )
 
 
 def test_scales_are_those_of_the_paper() -> None:

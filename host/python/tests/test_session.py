@@ -102,7 +102,7 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
         ({"task": "2afc"}, "a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found '2afc'"),
     ]
     for changed, said in wrong:
-        with pytest.raises(ExperimentError, match=said):
+        with pytest.raises((ExperimentError, ParameterError), match=said):
             opened(tmp_path, **changed)
     values: list[tuple[dict[str, Any], str]] = [
         ({"seed": "7"}, "seed is a whole number from 0"),

@@ -20,7 +20,7 @@ import frixel
 import numpy as np
 import pyarrow.parquet as parquet
 import pytest
-from frixel import ParameterError, Scene, Simulator, Stroke
+from frixel import Finger, ParameterError, Recording, Scene, Simulator, Stroke
 
 FLAT = {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}
 DECIMALS = {"t_s": 6, "x_mm": 4, "y_mm": 4, "speed_mm_s": 3, "wanted_n": 9, "asked_n": 9, "felt_n": 9}
@@ -123,7 +123,7 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Simulator(FLAT, finger="me.toml"), "Finger.load reads a file"),
         (lambda: Simulator(FLAT, finger=3), "a finger is a Finger, a name, or a table, found 3"),  # type: ignore[arg-type]
         (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 10000, found 0"),
-        (lambda: Stroke.straight((1,), (2, 3)), "a place is x and y in mm"),  # type: ignore[arg-type]
+        (lambda: Stroke.straight((1,), (2, 3)), "from_mm is x and y in mm"),  # type: ignore[arg-type]
         (lambda: Stroke.human(-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
         (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is called `50`"),
     ],
@@ -194,6 +194,8 @@ FINGER = {
         ({"stroke": Stroke.from_arrays(T_S, 2 * X_MM, X_MM, np.where(T_S < 0.2, np.nan, 0.3 + T_S / 3))}, None),
     ],
 )
+# On the example screen the scene is a draft.
+@pytest.mark.filterwarnings("ignore::frixel.FrixelWarning")
 def test_the_command_plays_a_recording_again(
     tmp_path: Path, scenes: Path, arguments: dict[str, Any], seconds: float | None
 ) -> None:
@@ -244,3 +246,57 @@ def test_an_interrupt_ends_a_long_run() -> None:
     time.sleep(0.5)
     child.send_signal(signal.SIGINT)
     assert child.communicate()[0] == "interrupted\n"
+
+
+def test_a_recording_is_read_as_it_was_written(tmp_path: Path, scenes: Path) -> None:
+    scene = Scene.load(scenes / "brick.toml").with_finger(Finger.bundled("dry"))
+    stroke = Stroke.from_arrays([0, 1], [10, 60], [30, 30])
+    played = Simulator(scene, stroke=stroke, seed=3, person=2, touch=500).run(0.2)
+    played.to_parquet(tmp_path / "one.parquet", participant="p1")
+    read = Recording.load(tmp_path / "one.parquet")
+    assert read == played
+    assert read != Simulator(scene, stroke=stroke, seed=4, person=2, touch=500).run(0.2)
+    assert read != 3
+    assert {name: read.settings[name] for name in ("seed", "person", "touch", "rows_per_s", "seconds")} == {
+        "seed": 3,
+        "person": 2,
+        "touch": "500",
+        "rows_per_s": 1000,
+        "seconds": 0.2,
+    }
+    read.to_parquet(tmp_path / "two.parquet")
+    assert (tmp_path / "two.parquet").read_bytes() == (tmp_path / "one.parquet").read_bytes()
+    assert frixel.replay(tmp_path / "two.parquet") == 200
+
+
+def test_a_recording_of_a_board_is_read_as_it_was_written(tmp_path: Path) -> None:
+    with frixel.Device.open("sim") as device:
+        recorded = device.record(FLAT, 0.1)
+    recorded.to_parquet(tmp_path / "board.parquet")
+    read = Recording.load(tmp_path / "board.parquet")
+    assert read == recorded
+    assert read.settings["board"] == recorded.settings["board"]
+
+
+def test_what_is_no_recording_of_a_play_is_told(tmp_path: Path) -> None:
+    for name, content in {"empty": b"", "text": b"time,x"}.items():
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(frixel.PlayError, match=name):
+            Recording.load(tmp_path / name)
+
+
+def test_columns_are_read_only_and_complete() -> None:
+    recording = Simulator(FLAT).run(0.01)
+    for values in recording.values():
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = values[1]
+    with pytest.raises(KeyError, match="no column 'felt': did you mean 'felt_n'"):
+        recording["felt"]
+    assert "felt" not in recording
+    assert recording._ipython_key_completions_() == list(frixel.COLUMNS)
+
+
+def test_a_draft_is_told() -> None:
+    draft = Scene.parse('version = 2\n[[layer]]\nkind = "constant"\nfriction_n = 9')
+    with pytest.warns(frixel.FrixelWarning, match="played as a draft, clamped: .*9"):
+        Simulator(draft).run(0.01)

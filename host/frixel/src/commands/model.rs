@@ -105,12 +105,8 @@ fn open(path: Option<&Path>) -> Result<Box<dyn Read>, CommandError> {
 /// Notes what the contact cannot mean. Fails if a row has no answer.
 fn judge(summary: &Summary) -> Result<(), CommandError> {
     let rows = |count: u64| if count == 1 { "1 row has".to_owned() } else { format!("{count} rows have") };
-    if summary.beyond_finger_rows > 0 {
-        let rows = rows(summary.beyond_finger_rows);
-        note(format_args!(
-            "frixel: {rows} a contact radius above the finger's radius, where the model is not valid: is a skin gap missing \
-             from the coating?"
-        ));
+    if let Some(doubt) = model_csv::wider_than_finger(summary.beyond_finger_rows) {
+        note(format_args!("frixel: {doubt}"));
     }
     match summary.invalid_rows {
         0 => Ok(()),

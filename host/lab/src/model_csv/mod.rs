@@ -68,6 +68,19 @@ pub struct Summary {
     pub understood: Option<String>,
 }
 
+/// The doubt in contacts whose radius exceeds the finger's; `None` without any.
+pub fn wider_than_finger(contacts: u64) -> Option<String> {
+    let voltages = match contacts {
+        0 => return None,
+        1 => "1 voltage".to_owned(),
+        contacts => format!("{contacts} voltages"),
+    };
+    Some(format!(
+        "at {voltages} the contact would be wider than the finger, where the model is not valid: is a skin gap missing \
+         from the coating?"
+    ))
+}
+
 /// Evaluates the model row by row: voltage to friction.
 ///
 /// ```

@@ -7,7 +7,16 @@ simulated fingers, and `frixel.experiment` asks people; `docs/python.md` has the
 from . import errors, experiment, model, sweep
 from ._frixel import __version__
 from .device import Device, Telemetry
-from .errors import FitError, FrixelError, Mistake, ParameterError, PlayError, SceneError
+from .errors import (
+    ColumnError,
+    FitError,
+    FrixelError,
+    FrixelWarning,
+    Mistake,
+    ParameterError,
+    PlayError,
+    SceneError,
+)
 from .fitting import Fit, fit
 from .profiles import Finger, Screen, TouchSource
 from .recording import COLUMNS, Recording, replay
@@ -18,11 +27,13 @@ from .stroke import Stroke
 
 __all__ = [
     "COLUMNS",
+    "ColumnError",
     "Device",
     "Finger",
     "Fit",
     "FitError",
     "FrixelError",
+    "FrixelWarning",
     "Mistake",
     "ParameterError",
     "PlayError",

@@ -5,13 +5,19 @@ from __future__ import annotations
 from os import PathLike
 
 from . import _frixel
+from ._arguments import path as checked_path
 from .errors import FrixelError
+
+
+def name_of(path: str | PathLike[str]) -> str:
+    """What messages call a file: its path, as far as UTF-8 can hold it."""
+    return str(checked_path("path", path)).encode(errors="replace").decode()
 
 
 def read_bytes(path: str | PathLike[str], what: str, error: type[FrixelError]) -> bytes:
     """The bytes of a regular file of at most 512 MiB, which messages call `what`. Raises an `error` with a sentence."""
     try:
-        return _frixel.read_file(path)
+        return _frixel.read_file(checked_path("path", path))
     except OSError as reason:
         sentence = reason.strerror or reason
         raise error(f"{path}: {what} cannot be read ({sentence}): check the path") from reason

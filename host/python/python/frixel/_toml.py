@@ -7,7 +7,11 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from ._arguments import refusal
 from .errors import ParameterError
+
+NESTING_MAX = 64
+"""Most tables and lists inside of each other."""
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -39,7 +43,7 @@ def _plain(value: Any) -> Any:
 
 def _key(key: object) -> str:
     if not isinstance(key, str):
-        raise ParameterError(f"a field has a text as its name, found {key!r}")
+        raise refusal("the name of a field", "a text", key)
     return key if _BARE_KEY.fullmatch(key) else _text(key)
 
 
@@ -48,15 +52,21 @@ def _text(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _inline(value: Any) -> str:
+def _inline(value: Any, depth: int = 0) -> str:
+    if depth > NESTING_MAX:
+        raise ParameterError(f"tables and lists stand inside of each other {NESTING_MAX} times at most: give fewer")
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return _text(value)
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise refusal("a whole number", "one of 64 bits", value)
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_inline(_plain(item))}" for key, item in value.items()) + " }"
+        return (
+            "{ " + ", ".join(f"{_key(key)} = {_inline(_plain(item), depth + 1)}" for key, item in value.items()) + " }"
+        )
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_inline(_plain(item)) for item in value) + "]"
-    raise ParameterError(f"a scene has texts, numbers, lists and tables, found {value!r}")
+        return "[" + ", ".join(_inline(_plain(item), depth + 1) for item in value) + "]"
+    raise refusal("a field", "a text, a number, a list or a table", value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -13,7 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
-from .errors import FrixelError, ParameterError, number, whole
+from ._arguments import DAY_S, array, check_callable, flag, number, refusal, shown, whole
+from ._arguments import text as checked_text
+from .errors import FrixelError, ParameterError, PlayError
 from .recording import COLUMNS, Recording
 from .scene import Scene
 
@@ -24,6 +27,9 @@ GAIN_MAX = 100.0
 
 TELEMETRY_PER_S_MAX = 1000
 """Most messages a second that a board sends."""
+
+WAIT_MAX_S = 1e9
+"""Longest wait, s."""
 
 STEP_S = 0.05
 """Longest time between two looks at an interrupt."""
@@ -63,7 +69,9 @@ class Device:
     """
 
     def __init__(self, device: _frixel.Device, port: str) -> None:
-        self._device, self._port = device, port
+        if not isinstance(device, _frixel.Device):
+            raise refusal("device", "opened by Device.open", device)
+        self._opened, self._port, self._process = device, port, os.getpid()
         self._now_s, self._streaming, self._state = 0.0, False, "disarmed"
         self._take(device.look())
 
@@ -86,8 +94,18 @@ class Device:
             There is no such port, no board answers there, or it has an electrode and `arm` is not given.
         """
         if not isinstance(port, str):
-            raise ParameterError(f'a port is a path or "sim", found {port!r}')
-        return cls(_frixel.Device(port, bool(arm)), port)
+            raise refusal("a port", 'a path or "sim"', port)
+        return cls(_frixel.Device(checked_text("port", port), flag("arm", arm)), port)
+
+    @property
+    def _device(self) -> _frixel.Device:
+        """The open device, whose thread a forked child does not have."""
+        if os.getpid() != self._process:
+            raise PlayError(
+                f"the board at {self._port} belongs to the process that opened it, and this is a fork of that: open it "
+                'here, or begin processes by multiprocessing.get_context("spawn")'
+            )
+        return self._opened
 
     def __enter__(self) -> Device:
         return self
@@ -177,7 +195,7 @@ class Device:
             raise ParameterError("a layer is changed by `on`, by `gain` or by both: give one")
         if gain is not None:
             gain = number("gain", gain, -GAIN_MAX, GAIN_MAX)
-        return self._take(self._device.set_layer(_layer(layer), None if on is None else bool(on), gain))
+        return self._take(self._device.set_layer(_layer(layer), None if on is None else flag("on", on), gain))
 
     def trigger(self, layer: str | int, seconds: float | None = None) -> list[str]:
         """Switch a layer that is off on, and off again later, in a call of `wait` or `telemetry`.
@@ -222,7 +240,7 @@ class Device:
         PlayError
             No layer of the scene plays a stream, or the board has stopped, or is gone.
         """
-        taken = np.ascontiguousarray(samples, dtype=float)
+        taken = np.ascontiguousarray(array("samples", samples))
         if taken.ndim != 1 or taken.size == 0:
             raise ParameterError(f"samples are an array of shape (n,) with at least one, found shape {taken.shape}")
         wrong = np.flatnonzero(~((taken >= 0) & (taken <= 1)))
@@ -237,7 +255,7 @@ class Device:
         Parameters
         ----------
         seconds
-            How long; without it, until the stream is played.
+            How long, at most 1e9 s; without it, until the stream is played.
 
         Raises
         ------
@@ -246,7 +264,7 @@ class Device:
         KeyboardInterrupt
             Ctrl-C. The board is disarmed.
         """
-        until_s = math.inf if seconds is None else self._now_s + number("seconds", seconds, 0.0, math.inf)
+        until_s = math.inf if seconds is None else self._now_s + number("seconds", seconds, 0.0, WAIT_MAX_S)
         with self._disarming():
             while self._now_s < until_s and (seconds is not None or self._streaming):
                 self._take(self._device.listen(self._step_s(until_s)))
@@ -257,7 +275,7 @@ class Device:
         Parameters
         ----------
         seconds
-            How long; without it, without an end.
+            How long, at most 1e9 s; without it, without an end.
         messages_per_s
             Messages a second, at most 1000.
 
@@ -268,7 +286,7 @@ class Device:
         KeyboardInterrupt
             Ctrl-C. The board is disarmed.
         """
-        lasts_s = math.inf if seconds is None else number("seconds", seconds, 0.0, math.inf)
+        lasts_s = math.inf if seconds is None else number("seconds", seconds, 0.0, WAIT_MAX_S)
         return self._messages(lasts_s, whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX))
 
     def _messages(self, lasts_s: float, messages_per_s: int) -> Iterator[Telemetry]:
@@ -323,7 +341,9 @@ class Device:
             As `play` and `telemetry`. The board is disarmed.
         """
         scene = Scene.of(scene)
-        seconds = number("seconds", seconds, 1e-3, 86_400.0)
+        seconds = number("seconds", seconds, 1e-3, DAY_S)
+        if on_active is not None:
+            check_callable("on_active", on_active)
         messages_per_s = whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX)
         messages: list[Telemetry] = []
         try:
@@ -407,5 +427,5 @@ class Device:
 
 def _layer(layer: str | int) -> str:
     if isinstance(layer, bool) or not isinstance(layer, (str, int)):
-        raise ParameterError(f"a layer is its name or its number, found {layer!r}")
-    return str(layer)
+        raise refusal("a layer", "its name or its number", layer)
+    return checked_text("layer", layer) if isinstance(layer, str) else shown(layer)

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import index
 
-__all__ = ["FitError", "FrixelError", "Mistake", "ParameterError", "PlayError", "SceneError"]
+__all__ = [
+    "ColumnError",
+    "FitError",
+    "FrixelError",
+    "FrixelWarning",
+    "Mistake",
+    "ParameterError",
+    "PlayError",
+    "SceneError",
+]
 
 
 class FrixelError(Exception):
@@ -19,34 +25,15 @@ class ParameterError(FrixelError, ValueError):
     """A value that is not taken: the message says what was found, and what is expected."""
 
 
-def whole(name: str, value: object, least: int, most: int = 2**64 - 1) -> int:
-    """A whole number from `least` to `most`; `name` is what the message calls it."""
-    try:
-        number = index(value)  # type: ignore[arg-type]
-    except TypeError:
-        number = None
-    if number is None or not least <= number <= most:
-        raise ParameterError(f"{name} is a whole number from {least} to {most}, found {value!r}")
-    return number
+class ColumnError(ParameterError, KeyError):
+    """A recording has no column of this name; also a `KeyError`."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
-def number(name: str, value: object, least: float, most: float) -> float:
-    """A number from `least` to `most`; `name` is what the message calls it."""
-    try:
-        found = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        found = math.nan
-    if not least <= found <= most:
-        limits = f"from {least:g} to {most:g}" if math.isfinite(most) else f"of at least {least:g}"
-        raise ParameterError(f"{name} is a number {limits}, found {value!r}")
-    return found
-
-
-def participant_code(value: object) -> str:
-    """The code of a participant, by the rule of `frixel play --participant`."""
-    if not (isinstance(value, str) and re.fullmatch(r"[A-Za-z0-9_.-]{1,32}", value)):
-        raise ParameterError(f"participant {value!r}: give a code of 1 to 32 letters, digits, -, _ and ., and no name")
-    return value
+class FrixelWarning(UserWarning):
+    """A result to doubt: the message says why, and what to do."""
 
 
 class FitError(FrixelError, ValueError):

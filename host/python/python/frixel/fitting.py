@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _frixel
+from ._arguments import array, each, real, refusal, whole
+from ._arguments import text as checked_text
 from .errors import ParameterError
 from .profiles import Finger, Screen
 
@@ -20,14 +22,24 @@ __all__ = ["Fit", "fit"]
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted finger."""
+    """A fitted finger.
+
+    Attributes
+    ----------
+    finger
+        The finger, for `Scene.with_finger` and `Simulator`; `finger.text` is its file.
+    summary
+        The numbers of `frixel fit --json` (`docs/outputs.md`), each with its 95 % interval under its name with
+        `_interval`. The main ones are `friction_coefficient`, without a unit; `electric_friction_n`, N, at
+        `stated_voltage_v_rms`, V rms, under `normal_load_n`, N; `voltage_exponent`, without a unit; `skin_gap_um`, um;
+        `bandwidth_hz`, Hz.
+    words
+        The summary in words: the results, what they say about the model, and what the data cannot tell.
+    """
 
     finger: Finger
-    """The finger, for `Scene.with_finger` and `Simulator`; `finger.text` is its file."""
     summary: dict[str, Any]
-    """The numbers of `frixel fit --json`, with their intervals of 95 %."""
     words: str
-    """The summary in words: the results, what they say about the model, and what the data cannot tell."""
 
     def __str__(self) -> str:
         return self.words
@@ -98,7 +110,11 @@ def fit(
         The data do not give a finger.
     """
     if law not in ("contact", "empirical"):
-        raise ParameterError(f"the law is 'contact' or 'empirical', found {law!r}")
+        raise refusal("the law", "'contact' or 'empirical'", law)
+    if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
+        raise refusal("data", "a dictionary of columns or a DataFrame", data)
+    if not (date is None or isinstance(date, datetime.date)):
+        raise refusal("date", "a datetime.date", date)
     forces = [_column(data, name) for name in ("voltage_v_rms", "normal_force_n", "friction_n")]
     times, speeds = [_column(data, name) if name in data else None for name in ("time_s", "speed_mm_s")]
     strokes = [str(name) for name in np.asarray(data["stroke"]).reshape(-1)] if "stroke" in data else None
@@ -108,12 +124,12 @@ def fit(
     day = (date or datetime.datetime.now().astimezone().date()).isoformat()
     settings = _Settings(
         law == "empirical",
-        float(voltage_v_rms),
-        normal_load_n,
-        [str(name) for name in without],
-        seed,
+        real("voltage_v_rms", voltage_v_rms),
+        None if normal_load_n is None else real("normal_load_n", normal_load_n),
+        [str(name) for name in each("without", without)],
+        whole("seed", seed, 0),
         day,
-        method,
+        checked_text("method", method),
         Screen.of(screen),
     )
     rows = _Rows(forces[0], forces[1], forces[2], times, strokes, speeds)
@@ -124,5 +140,5 @@ def fit(
 def _column(data: Mapping[str, ArrayLike], name: str) -> list[float]:
     if name not in data:
         raise ParameterError(f"the data have no column {name} (they have {', '.join(map(str, data))})")
-    values: list[float] = np.asarray(data[name], dtype=np.float64).reshape(-1).tolist()
+    values: list[float] = array(name, data[name]).reshape(-1).tolist()
     return values

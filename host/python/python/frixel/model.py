@@ -16,35 +16,53 @@ Units are SI and part of the names. A voltage is the root mean square of the dri
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+import warnings
+from dataclasses import KW_ONLY, dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
+from ._arguments import array, flag, real, refusal
+from .errors import FrixelWarning, ParameterError
 
 __all__ = ["Contact", "SoftContact", "States", "eval", "invert"]
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A paraboloid finger on springs of one stiffness, Eqs. (1), (10), on a coating."""
+    """A paraboloid finger on springs of one stiffness, Eqs. (1), (10), on a coating.
+
+    Parameters
+    ----------
+    radius_m
+        Radius of curvature `R`, m: 8e-3 for a fingertip.
+    stiffness_pa_per_m
+        Winkler-Fuss stiffness `k`, Pa/m: 1.8e7 for a fingertip.
+    friction_coefficient
+        Coefficient of friction `mu`, without a unit.
+    gap_m
+        Effective gap of the coating and the skin, thickness over relative permittivity, m: some 5e-6. Layers in series
+        add theirs.
+    outer_radius_m
+        Radius `b` beyond which nothing attracts, Eq. (19), m; `None` for infinity.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is no finite number above zero.
+    """
 
     _: KW_ONLY
     radius_m: float
-    """Radius of curvature `R`, m."""
     stiffness_pa_per_m: float
-    """Winkler-Fuss stiffness `k`, Pa/m."""
     friction_coefficient: float
-    """Coefficient of friction `mu`."""
     gap_m: float
-    """Effective gap of the coating, thickness over relative permittivity, m; layers in series add theirs."""
     outer_radius_m: float | None = None
-    """Radius `b` beyond which nothing attracts, Eq. (19), m; `None` for infinity."""
 
     def __post_init__(self) -> None:
-        _frixel.contact_scales(self)
+        _check(self)
 
     @property
     def voltage_scale_v_rms(self) -> float:
@@ -69,24 +87,48 @@ class Contact:
 
 @dataclass(frozen=True)
 class SoftContact:
-    """A finger of a soft material, Eqs. (22) to (29), on a coating."""
+    """A finger of a soft material, Eqs. (22) to (29), on a coating.
+
+    Parameters
+    ----------
+    radius_m
+        Radius of curvature `R`, m.
+    modulus_pa
+        Modulus `E`, Pa.
+    stress_exponent
+        Stress exponent, above 0 and at most 1, without a unit. The paper calls it `n`.
+    shape_constant
+        Constant `B` of Eq. (24), without a unit.
+    friction_coefficient
+        Coefficient of friction `mu`, without a unit.
+    gap_m
+        Effective gap of the coating and the skin, thickness over relative permittivity, m.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is no finite number above zero, or `stress_exponent` is above 1.
+    """
 
     _: KW_ONLY
     radius_m: float
-    """Radius of curvature `R`, m."""
     modulus_pa: float
-    """Modulus `E`, Pa."""
     stress_exponent: float
-    """Stress exponent, above 0 and at most 1. The paper calls it `n`."""
     shape_constant: float
-    """Dimensionless constant `B` of Eq. (24)."""
     friction_coefficient: float
-    """Coefficient of friction `mu`."""
     gap_m: float
-    """Effective gap of the coating, thickness over relative permittivity, m."""
 
     def __post_init__(self) -> None:
-        _frixel.contact_scales(self)
+        _check(self)
+
+
+def _check(contact: Contact | SoftContact) -> None:
+    """Make floats of the fields, and refuse what the model does not take."""
+    for field in fields(contact):
+        value = getattr(contact, field.name)
+        if not (value is None and field.default is None):
+            object.__setattr__(contact, field.name, real(field.name, value))
+    _frixel.contact_scales(contact)
 
 
 class States(NamedTuple):
@@ -125,9 +167,16 @@ def eval(contact: Contact | SoftContact, voltage_v_rms: ArrayLike, normal_load_n
     ------
     ParameterError
         A voltage or load is not finite, or not taken.
+
+    Warns
+    -----
+    FrixelWarning
+        A contact would be wider than the finger, where the model is not valid.
     """
-    voltage, load = np.broadcast_arrays(_real(voltage_v_rms), _real(normal_load_n))
-    columns = _frixel.eval_contact(contact, _flat(voltage), _flat(load))
+    voltage, load = _broadcast(contact, {"voltage_v_rms": voltage_v_rms, "normal_load_n": normal_load_n})
+    columns, doubt = _frixel.eval_contact(contact, _flat(voltage), _flat(load))
+    if doubt is not None:
+        warnings.warn(doubt, FrixelWarning, stacklevel=2)
     return States(*(column.reshape(voltage.shape)[()] for column in columns))
 
 
@@ -163,13 +212,20 @@ def invert(
     ParameterError
         A friction or load is not finite, or not taken.
     """
-    friction, load = np.broadcast_arrays(_real(friction_n), _real(normal_load_n))
-    voltages = _frixel.invert_contact(contact, _flat(friction), _flat(load), electric)
+    friction, load = _broadcast(contact, {"friction_n": friction_n, "normal_load_n": normal_load_n})
+    voltages = _frixel.invert_contact(contact, _flat(friction), _flat(load), flag("electric", electric))
     return voltages.reshape(friction.shape)[()]
 
 
-def _real(values: ArrayLike) -> NDArray[np.float64]:
-    return np.asarray(values, dtype=np.float64)
+def _broadcast(contact: object, given: dict[str, ArrayLike]) -> tuple[NDArray[np.float64], ...]:
+    if not isinstance(contact, (Contact, SoftContact)):
+        raise refusal("contact", "a Contact or a SoftContact", contact)
+    arrays = {name: array(name, values) for name, values in given.items()}
+    try:
+        return tuple(np.broadcast_arrays(*arrays.values()))
+    except ValueError as error:
+        shapes = " and ".join(f"{name} has the shape {values.shape}" for name, values in arrays.items())
+        raise ParameterError(f"{shapes}, which do not broadcast: give one load, or as many as there are") from error
 
 
 def _flat(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,7 +8,9 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from . import _frixel, _toml
-from ._files import read_bytes
+from ._arguments import mapping, refusal, shown
+from ._arguments import text as checked_text
+from ._files import name_of, read_bytes
 from .errors import ParameterError, SceneError
 
 if TYPE_CHECKING:
@@ -27,6 +29,9 @@ class _Profile:
     kind: ClassVar[str]
 
     def __post_init__(self) -> None:
+        if self.text is not None:
+            checked_text("text", self.text)
+        checked_text("name", self.name)
         _frixel.check_profile(self.kind, self)
 
     @classmethod
@@ -54,7 +59,7 @@ class _Profile:
         SceneError
             The file cannot be read, or has mistakes.
         """
-        return cls(read_bytes(path, f"this {cls.kind}", SceneError).decode(errors="replace"), str(path))
+        return cls(read_bytes(path, f"this {cls.kind}", SceneError).decode(errors="replace"), name_of(path))
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -76,7 +81,7 @@ class _Profile:
         SceneError
             A field is missing, unknown, or out of range.
         """
-        return cls.parse(_toml.dumps(fields))
+        return cls.parse(_toml.dumps(mapping("fields", fields)))
 
     @classmethod
     def of(cls, profile: Self | str | Mapping[str, Any]) -> Self:
@@ -84,18 +89,31 @@ class _Profile:
         if isinstance(profile, str):
             if profile.endswith(".toml"):
                 raise ParameterError(
-                    f"{profile}: a text is the name of a bundled {cls.kind}: {cls.__name__}.load reads a file"
+                    f"{shown(profile)}: a text is the name of a bundled {cls.kind}: {cls.__name__}.load reads a file"
                 )
             return cls.bundled(profile)
         if isinstance(profile, Mapping):
             return cls.from_dict(profile)
         if not isinstance(profile, cls):
-            raise ParameterError(f"a {cls.kind} is a {cls.__name__}, a name, or a table, found {profile!r}")
+            raise refusal(f"a {cls.kind}", f"a {cls.__name__}, a name, or a table", profile)
         return profile
 
 
 class Finger(_Profile):
-    """A finger's numbers on a screen, and what they rest on (`docs/scene.md`, `[finger]`).
+    """A finger's numbers on a screen, and what they rest on. `docs/scene.md`, `[finger]`, has all fields.
+
+    ======================== ============================================== ====
+    field                    meaning                                        unit
+    ======================== ============================================== ====
+    `friction_coefficient`   friction coefficient on the bare screen
+    `normal_load_n`          how hard the finger presses                    N
+    `radius_mm`              radius of curvature at the contact             mm
+    `stiffness_pa_per_m`     Winkler-Fuss stiffness                         Pa/m
+    `skin_gap_um`            skin and air above the coating, as a gap:      um
+                             thickness over permittivity
+    `origin`                 `assumed`, `perceptual`, `measured` or
+                             `empirical`
+    ======================== ============================================== ====
 
     >>> Finger.from_dict({"friction_coefficient": 0.5, "normal_load_n": 0.5, "radius_mm": 8, "skin_gap_um": 4.74,
     ...                   "stiffness_pa_per_m": 1.8e7, "origin": "assumed"}).name
@@ -115,3 +133,9 @@ class TouchSource(_Profile):
     """How often, how late and how reliably a touchscreen reports the finger (`docs/touch.md`)."""
 
     kind = "touch source"
+
+    @classmethod
+    def of(cls, profile: Self | str | int | Mapping[str, Any]) -> Self:
+        """One as arguments name it: itself, the name of a bundled one ("500" or 500), or the fields of its file."""
+        is_number = isinstance(profile, int) and not isinstance(profile, bool)
+        return super().of(shown(profile) if is_number else profile)  # type: ignore[arg-type]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import difflib
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
+from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel
-from ._files import read_bytes
-from .errors import PlayError, participant_code
+from ._arguments import mapping, participant_code, refusal, shown
+from ._arguments import path as checked_path
+from ._arguments import text as checked_text
+from ._files import name_of, read_bytes
+from .errors import ColumnError, FrixelError, ParameterError, PlayError
+from .profiles import Finger, Screen
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -32,7 +39,9 @@ TICKS_PER_S = 40_000
 class Recording(Mapping[str, NDArray[Any]]):
     """Columns of equal length, by name: `recording["felt_n"]`.
 
-    `COLUMNS` has the unit and the meaning of each. A number that is unknown is not a number; `flags` are texts.
+    `COLUMNS` has the unit and the meaning of each. A number that is unknown is not a number; `flags` are texts. The
+    arrays are read-only: a change in place would be another play's. Two recordings are equal if they have the same
+    columns, bit for bit, of the same scene.
     """
 
     columns: dict[str, NDArray[Any]]
@@ -44,8 +53,74 @@ class Recording(Mapping[str, NDArray[Any]]):
     made: str = field(repr=False)
     """What `frixel replay` needs beside the scene, JSON."""
 
+    def __post_init__(self) -> None:
+        columns = {}
+        for name, values in mapping("columns", self.columns).items():
+            if not (isinstance(values, np.ndarray) and values.ndim == 1):
+                raise refusal(f"the column {shown(name)}", "an array of shape (rows,)", values)
+            column = columns[name] = values.view()
+            column.setflags(write=False)
+        lengths = {name: len(values) for name, values in columns.items()}
+        if "t_s" not in columns or len(set(lengths.values())) > 1:
+            raise ParameterError(f"columns have one length, and t_s is one of them, found {shown(lengths)}")
+        if not isinstance(self.scene, Scene):
+            raise refusal("scene", "a Scene", self.scene)
+        mapping("settings", self.settings)
+        checked_text("made", self.made)
+        object.__setattr__(self, "columns", columns)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Recording:
+        """Read a recording of a play: a file of `to_parquet`, or of `frixel play --record`.
+
+        Raises
+        ------
+        PlayError
+            The file cannot be read, or is no recording of a play.
+        SceneError
+            Its scene cannot be compiled: it is of another version, or a picture was too large for the file.
+        """
+        content = read_bytes(path, "this recording", PlayError)
+        columns, text, files, profiles, made = _frixel.read_parquet(content, name_of(path))
+        finger = None if profiles[0] is None else Finger(*profiles[0])
+        screen = None if profiles[1] is None else Screen(*profiles[1])
+        scene = Scene(text.encode(), name_of(path), files=files, finger=finger, screen=screen)
+        metadata = json.loads(made)["metadata"]
+        play = metadata["play"] or {}
+        settings = {
+            "frixel": metadata["frixel"],
+            "scene": scene.name,
+            "board": None if metadata["rig"] == "sim" else metadata["board"]["kind"],
+            "rows_per_s": metadata["tick_hz"] // metadata["ticks_per_row"] if metadata["ticks_per_row"] else None,
+            "seconds": play.get("seconds"),
+            "seed": play.get("seed"),
+            "person": play.get("finger_seed"),
+            "touch": play.get("touch"),
+            "ideal": play.get("ideal"),
+            "leakage": not play["no_leakage"] if "no_leakage" in play else None,
+        }
+        given = {name: value for name, value in settings.items() if value is not None}
+        return cls({name: np.asarray(values) for name, values in columns.items()}, given, scene, made)
+
     def __getitem__(self, name: str) -> NDArray[Any]:
-        return self.columns[name]
+        try:
+            return self.columns[name]
+        except (KeyError, TypeError) as error:
+            near = difflib.get_close_matches(name, self.columns, 1, 0.5) if isinstance(name, str) else []
+            advice = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(self.columns)}"
+            raise ColumnError(f"the recording has no column {shown(name)}: {advice}") from error
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.columns)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Recording):
+            return NotImplemented
+        scenes = [(recording.scene.text, recording.scene.compiled.files) for recording in (self, other)]
+        same = [name for name, values in self.items() if name in other and _is_same(values, other[name])]
+        return scenes[0] == scenes[1] and len(same) == len(self) == len(other)
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.columns)
@@ -60,20 +135,16 @@ class Recording(Mapping[str, NDArray[Any]]):
 
     def to_pandas(self) -> pd.DataFrame:
         """A `pandas.DataFrame` with a column each; `attrs` has what made the recording."""
-        import pandas as pd
-
-        frame = pd.DataFrame(self.columns)
+        frame: pd.DataFrame = _installed("pandas").DataFrame(dict(self.columns))
         frame.attrs.update(self.settings)
         return frame
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` over `t_s`, with the unit and the meaning of each variable."""
-        import xarray as xr
-
         described = {name: {"units": unit, "long_name": meaning} for name, (unit, meaning) in COLUMNS.items()}
         variables = {name: ("t_s", values, described[name]) for name, values in self.columns.items() if name != "t_s"}
         times = ("t_s", self.columns["t_s"], described["t_s"])
-        return xr.Dataset(variables, coords={"t_s": times}, attrs=dict(self.settings))
+        return _installed("xarray").Dataset(variables, coords={"t_s": times}, attrs=dict(self.settings))
 
     def to_parquet(self, path: str | PathLike[str], *, participant: str | None = None) -> None:
         """Write the columns as Parquet, in the format of `frixel play --record` (`docs/outputs.md`).
@@ -91,6 +162,7 @@ class Recording(Mapping[str, NDArray[Any]]):
         """
         participant = None if participant is None else participant_code(participant)
         columns = {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.items()}
+        path = checked_path("path", path)
         _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made, participant)
 
     def _repr_html_(self) -> str:
@@ -103,6 +175,17 @@ class Recording(Mapping[str, NDArray[Any]]):
         touched = np.isfinite(felt)
         range_n = f", felt {np.min(felt[touched]):.3f} to {np.max(felt[touched]):.3f} N" if touched.any() else ""
         return f"<frixel.Recording: {self.rows} rows, {end_s:.3f} s{range_n}>"
+
+
+def _is_same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    return bool(np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f"))
+
+
+def _installed(module: str) -> Any:
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        raise FrixelError(f"this needs {module}: install frixel[{module}], or {module} alone") from error
 
 
 def replay(path: str | PathLike[str]) -> int:
@@ -118,4 +201,4 @@ def replay(path: str | PathLike[str]) -> int:
     PlayError
         The bits differ, and where; or why it cannot be played again: it is of a board at a port, or of another version.
     """
-    return _frixel.replay(read_bytes(path, "this recording", PlayError), str(path))
+    return _frixel.replay(read_bytes(path, "this recording", PlayError), name_of(path))

@@ -13,14 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel, _toml
-from ._files import read_bytes
-from .errors import ParameterError, SceneError, whole
+from ._arguments import flag, mapping, number, refusal, whole
+from ._arguments import path as checked_path
+from ._arguments import text as checked_text
+from ._files import name_of, read_bytes
+from .errors import SceneError
 from .profiles import Finger, Screen, TouchSource
 
 __all__ = ["Scene"]
 
 MAP_MAX_PX = 10_000
 """Largest width and height of a map, pixels."""
+SPEED_MAX_MM_S = 10_000.0
+"""Fastest finger of a map, mm/s."""
 
 
 class Scene:
@@ -39,8 +44,14 @@ class Scene:
         finger: Finger | None = None,
         screen: Screen | None = None,
     ) -> None:
-        self._text, self.name, self._finger, self._screen = text, name, finger, screen
-        self.compiled = _frixel.Scene(text, name, folder, dict(files or {}), finger, screen)
+        if not isinstance(text, bytes):
+            raise refusal("text", "the bytes of a scene file (Scene.parse takes a text)", text)
+        for what, value, kind in (("finger", finger, Finger), ("screen", screen, Screen)):
+            if not (value is None or isinstance(value, kind)):
+                raise refusal(what, f"a {kind.__name__}", value)
+        folder = None if folder is None else str(checked_path("folder", folder))
+        self._text, self.name, self._finger, self._screen = text, checked_text("name", name), finger, screen
+        self.compiled = _frixel.Scene(text, name, folder, _named_files(files), finger, screen)
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Scene:
@@ -51,7 +62,8 @@ class Scene:
         SceneError
             The file cannot be read, or it has mistakes: all of them, each with line and column.
         """
-        return cls(read_bytes(path, "this scene file", SceneError), str(path), folder=str(Path(path).parent))
+        text = read_bytes(path, "this scene file", SceneError)
+        return cls(text, name_of(path), folder=str(Path(path).parent))
 
     @classmethod
     def parse(cls, text: str, *, files: Mapping[str, bytes] | None = None) -> Scene:
@@ -62,7 +74,7 @@ class Scene:
         SceneError
             The text has mistakes.
         """
-        return cls(text.encode(), "<scene>", files=files)
+        return cls(checked_text("text", text).encode(), "<scene>", files=files)
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, files: Mapping[str, bytes] | None = None) -> Scene:
@@ -78,14 +90,14 @@ class Scene:
     @staticmethod
     def dict_text(tables: Mapping[str, Any]) -> str:
         """The text of the scene file with these tables."""
-        return _toml.dumps({"version": 2, **tables})
+        return _toml.dumps({"version": 2, **mapping("tables", tables)})
 
     @classmethod
     def of(cls, scene: Scene | Mapping[str, Any]) -> Scene:
         """One as arguments name it: itself, or the tables of its file."""
         scene = cls.from_dict(scene) if isinstance(scene, Mapping) else scene
         if not isinstance(scene, Scene):
-            raise ParameterError(f"a scene is a Scene or its tables, and Scene.load reads a file, found {scene!r}")
+            raise refusal("a scene", "a Scene or its tables, and Scene.load reads a file", scene)
         return scene
 
     def with_finger(self, finger: Finger | str | Mapping[str, Any]) -> Scene:
@@ -134,7 +146,9 @@ class Scene:
         """Reasons to doubt the scene, and what was rounded or clamped, a sentence each."""
         return self.compiled.notes
 
-    def check(self, *, touch: TouchSource | str | Mapping[str, Any] = "100", board: bool = False) -> dict[str, Any]:
+    def check(
+        self, *, touch: TouchSource | str | int | Mapping[str, Any] = "100", board: bool = False
+    ) -> dict[str, Any]:
         """What the scene costs and what a finger will feel of it, as `frixel scene check --json` prints it.
 
         Parameters
@@ -149,7 +163,7 @@ class Scene:
         SceneError
             A board refuses the scene.
         """
-        report: dict[str, Any] = json.loads(self.compiled.check(TouchSource.of(touch), board))
+        report: dict[str, Any] = json.loads(self.compiled.check(TouchSource.of(touch), flag("board", board)))
         return report
 
     def map(self, width: int = 1000, height: int = 800, *, speed_mm_s: float = 100.0) -> NDArray[np.float64]:
@@ -169,7 +183,9 @@ class Scene:
             and streams are at their largest.
         """
         return self.compiled.map(
-            whole("width", width, 1, MAP_MAX_PX), whole("height", height, 1, MAP_MAX_PX), 1e-3 * speed_mm_s
+            whole("width", width, 1, MAP_MAX_PX),
+            whole("height", height, 1, MAP_MAX_PX),
+            1e-3 * number("speed_mm_s", speed_mm_s, 0.0, SPEED_MAX_MM_S),
         )[0]
 
     def __repr__(self) -> str:
@@ -196,6 +212,14 @@ class Scene:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, self._state()
+
+
+def _named_files(files: Mapping[str, bytes] | None) -> dict[str, bytes]:
+    named = dict(mapping("files", {} if files is None else files))
+    for name, content in named.items():
+        if not isinstance(content, (bytes, bytearray)):
+            raise refusal(f"the file {name!r}", "bytes", content)
+    return named
 
 
 def _restored(text: bytes, name: str, files: dict[str, bytes], finger: Finger | None, screen: Screen | None) -> Scene:

@@ -9,7 +9,8 @@ from html import escape
 from typing import Any
 
 from . import _frixel, _tables
-from .errors import ParameterError, number, whole
+from ._arguments import DAY_S, flag, number, refusal, whole
+from .errors import ParameterError
 from .profiles import Finger, Screen, TouchSource
 from .scene import Scene
 from .stroke import Stroke
@@ -94,7 +95,7 @@ def score(
     seeds: int = 2,
     seconds: float = 3.0,
     median_speed_mm_per_s: float | None = None,
-    touch: TouchSource | str | Mapping[str, Any] | None = None,
+    touch: TouchSource | str | int | Mapping[str, Any] | None = None,
     ideal: bool = False,
     jobs: int | None = None,
 ) -> Score:
@@ -145,18 +146,18 @@ def score(
         scene = scene.with_screen(screen)
     if finger is not None:
         scene = scene.with_finger(finger)
-    if not isinstance(stroke, (Stroke, str)):
-        raise ParameterError(f'a stroke is "human", "human-rough", "sweep" or a Stroke, found {stroke!r}')
+    if not (isinstance(stroke, Stroke) or stroke in ("human", "human-rough", "sweep")):
+        raise refusal("a stroke", '"human", "human-rough", "sweep" or a Stroke', stroke)
     speed = median_speed_mm_per_s
     settings = _Settings(
         stroke,
         None if people is None else whole("people", people, 1, COUNT_MAX),
         whole("strokes", strokes, 1, COUNT_MAX),
         whole("seeds", seeds, 1, COUNT_MAX),
-        number("seconds", seconds, 1e-3, 86_400.0),
+        number("seconds", seconds, 1e-3, DAY_S),
         None if speed is None else number("median_speed_mm_per_s", speed, 1.0, 1000.0),
         None if touch is None else TouchSource.of(touch),
-        bool(ideal),
+        flag("ideal", ideal),
         0 if jobs is None else whole("jobs", jobs, 1, COUNT_MAX),
     )
     _check_size(settings)

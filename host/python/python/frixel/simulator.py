@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from . import _frixel
-from .errors import ParameterError, whole
+from ._arguments import flag, mapping, real, refusal, whole
+from .errors import FrixelWarning, ParameterError
 from .profiles import Finger, Screen, TouchSource
 from .recording import TICKS_PER_S, Recording
 from .scene import Scene
@@ -59,13 +62,13 @@ class Simulator:
         stroke: Stroke | None = None,
         seed: int = 1,
         person: int | None = None,
-        touch: TouchSource | str | Mapping[str, Any] | None = None,
+        touch: TouchSource | str | int | Mapping[str, Any] | None = None,
         ideal: bool = False,
         leakage: bool = True,
         rows_per_s: int = 1000,
     ) -> None:
         if not (stroke is None or isinstance(stroke, Stroke)):
-            raise ParameterError(f"a stroke is made by Stroke.straight, human or from_arrays, found {stroke!r}")
+            raise refusal("a stroke", "made by Stroke.straight, human or from_arrays", stroke)
         scene = Scene.of(scene)
         if screen is not None:
             scene = scene.with_screen(screen)
@@ -76,7 +79,7 @@ class Simulator:
         self.seed = whole("seed", seed, 0)
         self.person = None if person is None else whole("person", person, 0)
         self.touch = None if touch is None else TouchSource.of(touch)
-        self.ideal, self.leakage = bool(ideal), bool(leakage)
+        self.ideal, self.leakage = flag("ideal", ideal), flag("leakage", leakage)
         self.rows_per_s = whole("rows_per_s", rows_per_s, 1, TICKS_PER_S)
 
     def run(self, seconds: float | None = None) -> Recording:
@@ -100,8 +103,18 @@ class Simulator:
             The simulated board does not take the scene, or stopped.
         KeyboardInterrupt
             Ctrl-C, at once.
+
+        Warns
+        -----
+        FrixelWarning
+            A board refuses the scene, which is played as a draft, clamped.
         """
+        seconds = None if seconds is None else real("seconds", seconds)
         columns, made = _frixel.simulate(self.scene.compiled, self, seconds)
+        refusals = self.scene.refusals
+        if refusals:
+            message = f"a board refuses {self.scene.name}, which is played as a draft, clamped: {'; '.join(refusals)}"
+            warnings.warn(message, FrixelWarning, stacklevel=2)
         settings = {
             "frixel": _frixel.__version__,
             "scene": self.scene.name,
@@ -127,6 +140,13 @@ def run(cell: Mapping[str, Any]) -> Recording:
     >>> run({"scene": {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}, "seconds": 0.01}).rows
     10
     """
-    arguments = dict(cell)
+    arguments = dict(mapping("cell", cell))
     seconds = arguments.pop("seconds", None)
+    if "scene" not in arguments or not arguments.keys() <= _ARGUMENTS:
+        raise ParameterError(
+            f"a cell has `scene` and `seconds`, and of Simulator's arguments some, found {[*arguments]}"
+        )
     return Simulator(**arguments).run(seconds)
+
+
+_ARGUMENTS = inspect.signature(Simulator).parameters.keys()

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ParameterError, whole
+from ._arguments import array, flag, real, refusal, whole
+from .errors import ParameterError
 
 __all__ = ["Stroke"]
 
@@ -40,7 +41,8 @@ class Stroke:
         minimum_jerk
             Start and end at rest, as a hand does, rather than at constant speed.
         """
-        return _Straight(_place(from_mm), _place(to_mm), float(speed_mm_s), bool(minimum_jerk))
+        speed = real("speed_mm_s", speed_mm_s)
+        return _Straight(_place("from_mm", from_mm), _place("to_mm", to_mm), speed, flag("minimum_jerk", minimum_jerk))
 
     @staticmethod
     def human(seed: int, *, seconds: float | None = None, rough: bool = False) -> Stroke:
@@ -55,7 +57,8 @@ class Stroke:
         rough
             With the accelerations of recorded strokes before smoothing, 2 to 5 times as much.
         """
-        return _Human(whole("seed", seed, 0), seconds, bool(rough))
+        lasts_s = None if seconds is None else real("seconds", seconds)
+        return _Human(whole("seed", seed, 0), lasts_s, flag("rough", rough))
 
     @staticmethod
     def from_arrays(t_s: ArrayLike, x_mm: ArrayLike, y_mm: ArrayLike, load_n: ArrayLike | None = None) -> Stroke:
@@ -75,8 +78,8 @@ class Stroke:
         ParameterError
             The arrays are not of one length, times do not rise, or a load is none of a finger.
         """
-        columns = [np.array(values, dtype=np.float64) for values in (t_s, x_mm, y_mm)]
-        load = None if load_n is None else np.array(load_n, dtype=np.float64)
+        columns = [array(name, values) for name, values in {"t_s": t_s, "x_mm": x_mm, "y_mm": y_mm}.items()]
+        load = None if load_n is None else array("load_n", load_n)
         shapes = {column.shape for column in [*columns, *([] if load is None else [load])]}
         if len(shapes) > 1 or columns[0].ndim != 1 or columns[0].size < 2:
             raise ParameterError(f"a stroke has arrays of one length, at least 2, found shapes {sorted(shapes)}")
@@ -91,10 +94,11 @@ class Stroke:
         return _Rows(columns[0], columns[1], columns[2], load)
 
 
-def _place(place: tuple[float, float]) -> tuple[float, float]:
-    if len(place) != 2:
-        raise ParameterError(f"a place is x and y in mm, found {place!r}")
-    return float(place[0]), float(place[1])
+def _place(name: str, place: tuple[float, float]) -> tuple[float, float]:
+    x_and_y = array(name, place)
+    if x_and_y.shape != (2,):
+        raise refusal(name, "x and y in mm", place)
+    return float(x_and_y[0]), float(x_and_y[1])
 
 
 @dataclass(frozen=True)

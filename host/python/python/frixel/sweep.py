@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from . import _frixel, _tables, _toml
-from ._files import read_bytes
+from ._arguments import each, flag, mapping, refusal
+from ._arguments import path as checked_path
+from ._arguments import text as checked_text
+from ._files import name_of, read_bytes
 from .errors import FrixelError, ParameterError
 from .scene import Scene
 
@@ -48,10 +50,10 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
     if isinstance(plan, Mapping):
         scenes = plan.get("scenes", [])
         if not isinstance(scenes, (Mapping, list, tuple)):
-            raise ParameterError(
-                f"`scenes` is a list of files, or a dictionary of scenes by their names, found {scenes!r}"
-            )
-        named = {name: Scene.of(scene) for name, scene in scenes.items()} if isinstance(scenes, Mapping) else {}
+            raise refusal("`scenes`", "a list of files, or a dictionary of scenes by their names", scenes)
+        mapping("plan", plan)
+        own = mapping("scenes", scenes) if isinstance(scenes, Mapping) else {}
+        named = {name: Scene.of(scene) for name, scene in own.items()}
         text = _toml.dumps({**plan, "scenes": list(scenes)})
         for name, scene in named.items():
             if scene.is_for_another:
@@ -61,12 +63,12 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
                 )
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
         return _frixel.sweep_cells(text, "<plan>", "", sources)
-    path = Path(plan)
+    path = checked_path("plan", plan)
     try:
         text = read_bytes(path, "this plan", ParameterError).decode()
     except UnicodeDecodeError as error:
         raise ParameterError(f"{path}: this plan cannot be read ({error}): give a text in UTF-8") from error
-    return _frixel.sweep_cells(text, str(path), str(path.parent), {})
+    return _frixel.sweep_cells(text, name_of(path), str(path.parent), {})
 
 
 def play(cell: str) -> str:
@@ -78,8 +80,8 @@ def play(cell: str) -> str:
         It is no cell, or one of another version.
     """
     if not isinstance(cell, str):
-        raise ParameterError(f"a cell is a text that `sweep.cells` has made, found {cell!r}")
-    return _frixel.play_cell(cell)
+        raise refusal("a cell", "a text that `sweep.cells` has made", cell)
+    return _frixel.play_cell(checked_text("a cell", cell))
 
 
 class Study:
@@ -95,7 +97,7 @@ class Study:
     """
 
     def __init__(self, results: Iterable[str]) -> None:
-        texts = list(results)
+        texts = list(each("results", results))
         if not texts or not all(isinstance(text, str) for text in texts):
             raise ParameterError("a study is of one result or more, texts that `sweep.play` has made")
         lines, self.files = _frixel.study_files(texts)
@@ -136,7 +138,7 @@ class Study:
         FrixelError
             A file cannot be written, and those of before are as they were; or the folder has another study.
         """
-        folder = Path(folder)
+        folder, overwrite = checked_path("folder", folder), flag("overwrite", overwrite)
         partials = {folder / name: folder / f".{name}.partial" for name in self.files}
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -64,7 +64,7 @@ class SceneWidget(AnyWidget):
     touch = _Argument(TouchSource.of).tag(sync=True, to_json=lambda touch, _: _sent_profile(touch))
 
     def __init__(
-        self, scene: Scene | Mapping[str, Any], *, touch: TouchSource | str | Mapping[str, Any] = "100"
+        self, scene: Scene | Mapping[str, Any], *, touch: TouchSource | str | int | Mapping[str, Any] = "100"
     ) -> None:
         super().__init__(_esm=_script(), scene=scene, touch=touch)
 

@@ -6,7 +6,8 @@ one psychometric function to the answers, by whatever method they were gathered,
 somebody who guesses. :class:`Session` presents the trials, records what it plays, and keeps every answer on the disk
 before the next one.
 
-A level is a relative difference of friction: 0.2 is 20 % more than the standard.
+A level is a number from 0 in any one unit, such as volts; of :class:`Observer` it is a relative difference of friction,
+so that 0.2 is 20 % more than the standard.
 """
 
 from ._estimate import Answers, Estimate, magnitude_exponent

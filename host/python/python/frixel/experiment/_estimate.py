@@ -11,11 +11,16 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._psychometric import Array, Grid, Task
+from .._arguments import array, each, flag, refusal, whole
+from ..errors import ParameterError
+from ._psychometric import STEP, Array, Grid, Task, checked_grid, checked_level, checked_task
 
 EVIDENCE_MIN = 1000.0
 """Least likelihood ratio to guessing: at most one in 1,000 who guess has more, whatever the method, and however often
 one looks (Ville's inequality)."""
+RANGE_MAX = 1e6
+"""Thresholds of a grid that the levels choose have the weight that they have among those of six decades: so Ville's
+inequality holds, too, where answers choose the levels, and with them the grid."""
 
 
 class Answers:
@@ -23,15 +28,18 @@ class Answers:
 
     def __init__(self, trials: Iterable[tuple[float, bool]] = ()) -> None:
         self._counts: dict[float, tuple[int, int]] = {}
-        for level, correct in trials:
+        for trial in each("trials", trials):
+            try:
+                level, correct = trial
+            except (TypeError, ValueError) as error:
+                raise refusal("a trial", "a level and an answer", trial) from error
             self.add(level, correct)
 
     def add(self, level: float, correct: bool) -> None:
-        """Adds a trial at a level, from 0."""
-        if not (np.isfinite(level) and level >= 0.0):
-            raise ValueError(f"a level is a number from 0, and this one is {level}")
-        right, total = self._counts.get(level, (0, 0))
-        self._counts[level] = (right + bool(correct), total + 1)
+        """Adds a trial at a level, from 0; ``correct`` is ``True`` or ``False``."""
+        taken, is_correct = checked_level(level), flag("correct", correct)
+        right, total = self._counts.get(taken, (0, 0))
+        self._counts[taken] = (right + is_correct, total + 1)
 
     def __len__(self) -> int:
         return sum(total for _, total in self._counts.values())
@@ -48,13 +56,15 @@ class Answers:
 
     def write_csv(self, file: TextIO) -> None:
         """Writes :attr:`table` with the header ``level,correct,total``."""
+        if not hasattr(file, "write"):
+            raise refusal("file", "open for writing", file)
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("level", "correct", "total"))
         writer.writerows(self.table)
 
     def log_likelihood(self, task: Task, grid: Grid) -> Array:
         """Logarithm of the likelihood for each combination of the grid's parameters, as :meth:`Grid.correct`."""
-        total = np.zeros_like(grid.correct(0.0, task))
+        total = np.zeros_like(checked_grid(grid).correct(0.0, task))
         for level, right, count in self.table:
             # Where a share is 0 or 1, an answer that it excludes has no likelihood.
             share = np.clip(grid.correct(level, task), 1e-12, 1.0 - 1e-12)
@@ -65,7 +75,7 @@ class Answers:
         """Logarithm of the largest likelihood of one and the same guess rate at every level."""
         rows = self.table
         right, total = sum(row[1] for row in rows), len(self)
-        rates = np.asarray(task.guess_rates)
+        rates = np.asarray(checked_task(task).guess_rates)
         if not task.is_guess_rate_known:
             # Of one who says "different" whatever was presented, any share can come.
             rates = np.array([right / total]) if total else rates
@@ -102,7 +112,10 @@ class Estimate:
 
 
 def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate:
-    """The threshold that answers show.
+    """The threshold that answers show, in the unit of their levels.
+
+    The thresholds that are considered go from a tenth of the smallest level to ten times the largest one, or are those
+    of ``grid``.
 
     >>> from frixel.experiment import TWO_ALTERNATIVES, Answers, estimate
     >>> trials = [(0.4, True)] * 30 + [(0.1, True)] * 24 + [(0.1, False)] * 6
@@ -111,12 +124,18 @@ def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate
     >>> 0.05 < found.interval[0] < found.threshold < found.interval[1] < 0.3
     True
     >>> print(estimate(Answers([(0.4, True)] * 15 + [(0.4, False)] * 15), TWO_ALTERNATIVES))
-    no better than guessing: 30 trials are 0.14 times as likely of somebody who notices, and 1000 times is needed
+    no better than guessing: 30 trials are 0.097 times as likely of somebody who notices, and 1000 times is needed
     """
-    grid = grid or Grid()
+    if not isinstance(answers, Answers):
+        raise refusal("answers", "an Answers", answers)
+    checked_task(task)
+    weight = 1.0
+    if grid is None:
+        grid = Grid.around(answers.levels)
+        weight = min(1.0, grid.thresholds.size * STEP / math.log(RANGE_MAX))
     log_likelihood = answers.log_likelihood(task, grid)
     most = float(log_likelihood.max())
-    log_average = most + math.log(float(np.exp(log_likelihood - most).mean()))
+    log_average = most + math.log(weight * float(np.exp(log_likelihood - most).mean()))
     # A number beyond this is no plainer.
     evidence = math.exp(min(log_average - answers.log_likelihood_of_guessing(task), 700.0))
     if evidence < EVIDENCE_MIN:
@@ -142,18 +161,18 @@ def magnitude_exponent(levels: ArrayLike, ratings: ArrayLike, *, seed: int = 0) 
     ``levels`` and ``ratings`` are above zero and of one length; the interval is the bootstrap's over trials, 2,000
     draws by ``seed`` (Stevens 1957, doi:10.1037/h0046162).
     """
-    x, y = np.asarray(levels, dtype=np.float64), np.asarray(ratings, dtype=np.float64)
+    x, y = array("levels", levels), array("ratings", ratings)
     if x.shape != y.shape or x.ndim != 1 or not (np.isfinite([x, y]).all() and (np.stack([x, y]) > 0.0).all()):
-        raise ValueError("levels and ratings are two lists of one length of numbers above zero")
+        raise ParameterError("levels and ratings are two lists of one length of numbers above zero")
     x, y = np.log(x), np.log(y)
     if np.unique(x).size < 3:
-        raise ValueError(f"an exponent needs three levels or more, and here are {np.unique(x).size}")
+        raise ParameterError(f"an exponent needs three levels or more, and here are {np.unique(x).size}")
 
     def slope(index: np.ndarray) -> float:
         centred = x[index] - x[index].mean()
         return float(centred @ y[index] / (centred @ centred)) if centred.any() else float("nan")
 
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(whole("seed", seed, 0))
     drawn = [slope(rng.integers(x.size, size=x.size)) for _ in range(2000)]
     low, high = np.nanquantile(drawn, (0.025, 0.975))
     return slope(np.arange(x.size)), (float(low), float(high))

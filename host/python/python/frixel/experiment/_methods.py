@@ -7,7 +7,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._psychometric import Array, Grid, Task
+from .._arguments import array, flag, number, refusal, whole
+from ._psychometric import LEVEL_MAX, LEVEL_MIN, Array, Grid, Task, checked_grid, checked_level, checked_task
+
+TRIALS_MAX = 1_000_000
+"""Most trials of a method."""
+LEVELS_MAX = 1000
+"""Most levels of a method."""
 
 
 class Method(Protocol):
@@ -24,10 +30,9 @@ class ConstantStimuli:
     """Each of some levels equally often, in an order by seed that has every level once in each round."""
 
     def __init__(self, levels: ArrayLike, repetitions: int, *, seed: int = 0) -> None:
-        one_round = np.ravel(np.asarray(levels, dtype=np.float64))
-        if not one_round.size or repetitions < 1:
-            raise ValueError("constant stimuli need one level or more, and one repetition or more")
-        rng = np.random.default_rng(seed)
+        one_round = _levels(levels)
+        whole("repetitions", repetitions, 1, TRIALS_MAX // len(one_round))
+        rng = np.random.default_rng(whole("seed", seed, 0))
         self._levels = [float(level) for _ in range(repetitions) for level in rng.permutation(one_round)]
         self._next = 0
 
@@ -37,6 +42,7 @@ class ConstantStimuli:
 
     def answer(self, level: float, correct: bool) -> None:
         """Takes the answer to a trial at a level."""
+        checked_level(level), flag("correct", correct)
         self._next += 1
 
 
@@ -44,7 +50,8 @@ class UpDown:
     """A transformed staircase: one wrong answer makes the next level larger, ``down`` right ones in a row smaller.
 
     With ``down=2`` levels gather at 70.7 % correct, with 3 at 79.4 % (Levitt 1971, doi:10.1121/1.1912375). ``step`` is
-    the factor from level to level; it is squared until the first reversal. The staircase ends after ``trials``.
+    the factor from level to level; it is squared until the first reversal. The staircase ends after ``trials``, and
+    stays between ``least``, a 400th of ``start`` unless it is given, and ``largest``, four times ``start``.
     """
 
     def __init__(
@@ -54,13 +61,14 @@ class UpDown:
         trials: int,
         down: int = 3,
         step: float = 1.25,
-        least: float = 0.002,
-        largest: float = 3.0,
+        least: float | None = None,
+        largest: float | None = None,
     ) -> None:
-        if not (least <= start <= largest and step > 1.0 and down >= 1 and trials >= 1):
-            raise ValueError("a staircase starts between its least and largest level, with a step above 1")
-        self._level, self._least, self._largest = start, least, largest
-        self._left, self._down, self._step = trials, down, step
+        self._level = number("start", start, LEVEL_MIN, LEVEL_MAX)
+        self._least = number("least", self._level / 400 if least is None else least, 0.0, self._level)
+        self._largest = number("largest", 4 * self._level if largest is None else largest, self._level)
+        self._left, self._down = whole("trials", trials, 1, TRIALS_MAX), whole("down", down, 1, TRIALS_MAX)
+        self._step = number("step", step, 1.001, 1000.0)
         self._right_in_a_row = 0
         self._last_move = 0
         self._has_reversed = False
@@ -71,6 +79,7 @@ class UpDown:
 
     def answer(self, level: float, correct: bool) -> None:
         """Takes the answer to a trial at a level."""
+        checked_level(level), flag("correct", correct)
         self._left -= 1
         self._right_in_a_row = self._right_in_a_row + 1 if correct else 0
         if not correct:
@@ -89,14 +98,14 @@ class UpDown:
 class QuestPlus:
     """The level of which the answer is expected to leave the least entropy (Watson 2017, doi:10.1167/17.3.10).
 
-    ``levels`` are those that can be presented, at most some tens. Ties are broken by the order of ``levels``.
+    ``levels`` are those that can be presented, at most some tens. Ties are broken by the order of ``levels``. Without
+    ``grid``, thresholds are sought from a tenth of the smallest level to ten times the largest one.
     """
 
     def __init__(self, levels: ArrayLike, task: Task, *, trials: int, grid: Grid | None = None) -> None:
-        self._levels = [float(level) for level in np.ravel(np.asarray(levels, dtype=np.float64))]
-        if not self._levels or trials < 1:
-            raise ValueError("QUEST+ needs one level or more, and one trial or more")
-        self._task, self._grid, self._left = task, grid or Grid(), trials
+        self._levels = _levels(levels)
+        self._task, self._grid = checked_task(task), Grid.around(self._levels) if grid is None else checked_grid(grid)
+        self._left = whole("trials", trials, 1, TRIALS_MAX)
         self._correct = np.stack([self._grid.correct(level, task).ravel() for level in self._levels])
         self._wrong = 1.0 - self._correct
         # What the entropy of an answer takes, which is the same for every trial.
@@ -111,7 +120,7 @@ class QuestPlus:
 
     def next_level(self) -> float | None:
         """The level of the next trial; ``None`` after the last one."""
-        if self._left == 0:
+        if self._left <= 0:
             return None
         return self._levels[int(np.argmax(self.expected_information()))]
 
@@ -127,10 +136,19 @@ class QuestPlus:
 
     def answer(self, level: float, correct: bool) -> None:
         """Takes the answer to a trial at one of the levels."""
-        index = self._levels.index(level)
-        self._posterior = self._posterior * (self._correct if correct else self._wrong)[index]
+        if level not in self._levels:
+            raise refusal("level", "one of those that the method was given", level)
+        given = self._correct if flag("correct", correct) else self._wrong
+        self._posterior = self._posterior * given[self._levels.index(level)]
         self._posterior /= self._posterior.sum()
         self._left -= 1
+
+
+def _levels(levels: ArrayLike) -> list[float]:
+    found = [checked_level(float(level)) for level in np.ravel(array("levels", levels))]
+    if not 1 <= len(found) <= LEVELS_MAX:
+        raise refusal("levels", f"1 to {LEVELS_MAX} numbers", levels)
+    return found
 
 
 def _times_log(share: Array) -> Array:

@@ -7,7 +7,8 @@ from statistics import NormalDist
 
 import numpy as np
 
-from ._psychometric import SAME_DIFFERENT, Task
+from .._arguments import number, real, refusal, whole
+from ._psychometric import SAME_DIFFERENT, Task, checked_level, checked_task
 
 
 class Observer:
@@ -16,30 +17,47 @@ class Observer:
     ``noise`` is the standard deviation of one felt ln(friction), ``lapse`` the share of trials that are answered
     without attention, ``criterion`` the difference of ln(friction), in units of its noise, from which the observer says
     "different". An observer of infinite noise guesses.
+
+    The noise of each answer follows the one before. Of a session that may be resumed, give the number of the ``trial``:
+    its noise is then the same, whatever was answered before.
     """
 
     def __init__(self, noise: float, *, lapse: float = 0.02, criterion: float = 1.5, seed: int = 0) -> None:
-        if not (noise > 0.0 and 0.0 <= lapse < 1.0 and criterion >= 0.0):
-            raise ValueError("an observer has noise above 0, a lapse rate from 0 to 1, and a criterion from 0")
-        self._noise, self._lapse, self._criterion = noise, lapse, criterion
-        self._rng = np.random.default_rng(seed)
+        self._noise = real("noise", noise, "a number above 0, or infinite")
+        if not self._noise > 0.0:
+            raise refusal("noise", "a number above 0, or infinite", noise)
+        self._lapse = number("lapse", lapse, 0.0, 0.99)
+        self._criterion = number("criterion", criterion, 0.0, 100.0)
+        self._seed = whole("seed", seed, 0)
+        self._rng = np.random.default_rng(self._seed)
 
-    def stronger(self, first_n: float, second_n: float) -> int:
+    def stronger(self, first_n: float, second_n: float, *, trial: int | None = None) -> int:
         """Which of two felt frictions, in any one unit, the observer calls the stronger one: 0 or 1."""
-        if self._rng.random() < self._lapse:
-            return int(self._rng.integers(2))
-        felt = np.log([first_n, second_n]) + self._rng.normal(0.0, self._noise, 2)
+        frictions = [number(name, value, 1e-300) for name, value in (("first_n", first_n), ("second_n", second_n))]
+        rng = self._noise_of(trial)
+        if rng.random() < self._lapse:
+            return int(rng.integers(2))
+        felt = np.log(frictions) + rng.normal(0.0, self._noise, 2)
         return int(felt[1] > felt[0])
 
-    def answers(self, level: float, task: Task) -> bool:
+    def answers(self, level: float, task: Task, *, trial: int | None = None) -> bool:
         """Whether the answer to a trial at a level counts as correct."""
-        if self._rng.random() < self._lapse:
-            return bool(self._rng.random() < 0.5)
-        return bool(self._rng.random() < self.correct_share(level, task))
+        rng = self._noise_of(trial)
+        if rng.random() < self._lapse:
+            return bool(rng.random() < 0.5)
+        return bool(rng.random() < self.correct_share(level, task))
+
+    def _noise_of(self, trial: int | None) -> np.random.Generator:
+        return self._rng if trial is None else np.random.default_rng([self._seed, whole("trial", trial, 0)])
 
     def correct_share(self, level: float, task: Task) -> float:
         """Share of correct answers at a level, without lapses."""
+        level = checked_level(level)
         signal = math.log1p(level) / (math.sqrt(2.0) * self._noise) if math.isfinite(self._noise) else 0.0
+        return self._share(signal, checked_task(task))
+
+    def _share(self, signal: float, task: Task) -> float:
+        """Share of correct answers for a difference of ln(friction), in units of its noise."""
         normal = NormalDist()
         if task == SAME_DIFFERENT:
             return normal.cdf(signal - self._criterion) + normal.cdf(-signal - self._criterion)
@@ -47,10 +65,12 @@ class Observer:
 
     def threshold(self, task: Task) -> float:
         """The level that is 1 - 1/e of the way from guessing to always right: what an estimate should find."""
-        guess = self.correct_share(0.0, task)
+        guess = self._share(0.0, checked_task(task))
         wanted = guess + (1.0 - guess) * -math.expm1(-1.0)
-        low, high = 1e-6, 1e6
+        low, high = 0.0, 200.0
         for _ in range(200):
-            middle = math.sqrt(low * high)
-            low, high = (middle, high) if self.correct_share(middle, task) < wanted else (low, middle)
-        return middle
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self._share(middle, task) < wanted else (low, middle)
+        difference = middle * math.sqrt(2.0) * self._noise
+        # Beyond this, the level is no number any more.
+        return math.expm1(difference) if difference < 700.0 else math.inf

@@ -13,15 +13,17 @@ from typing import Any
 import numpy as np
 
 from .. import _frixel
+from .._arguments import check_callable, each, mapping, participant_code, refusal, text, whole
+from .._arguments import path as checked_path
 from ..device import Device
-from ..errors import ParameterError, participant_code, whole
+from ..errors import ParameterError
 from ..recording import Recording
 from ..scene import Scene
 from ..simulator import Simulator
 from ._estimate import Answers, Estimate, estimate
 from ._folder import ExperimentError, Folder, sha256
 from ._methods import Method
-from ._psychometric import Task
+from ._psychometric import Task, checked_level, checked_task
 
 FORMAT = 2
 KEPT_MAX_BYTES = 256 << 20
@@ -107,20 +109,24 @@ class Session:
         played: Mapping[str, str | bytes] | None = None,
         on_marker: Callable[[str, Trial], object] | None = None,
     ) -> None:
-        if not isinstance(task, Task):
-            raise ExperimentError(f"a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found {task!r}")
+        checked_task(task)
         whole("seed", seed, 0)
+        if on_marker is not None:
+            check_callable("on_marker", on_marker)
         self._participant = participant_code(participant)
         self._task, self._seed, self._on_marker = task, seed, on_marker
-        contents = sorted((played or {}).items())
+        contents = sorted(mapping("played", {} if played is None else played).items())
+        for name, content in contents:
+            if not isinstance(content, bytes):
+                text(f"the text {name!r} of `played`", content)
         manifest = {
             "format": FORMAT,
             "participant": participant,
             "task": task.name,
             "seed": seed,
-            "played": {name: sha256(text.encode() if isinstance(text, str) else text) for name, text in contents},
+            "played": {name: sha256(read if isinstance(read, bytes) else read.encode()) for name, read in contents},
         }
-        self._folder = Folder(Path(folder), manifest)
+        self._folder = Folder(checked_path("folder", folder), manifest)
         # Times of different runs are on different clocks.
         self._run = 1 + max((row["run"] for row in self._folder.rows), default=-1)
         self._begin_s = time.monotonic()
@@ -170,7 +176,7 @@ class Session:
         """
         self._folder.check_open()
         if not (on is None or isinstance(on, Device)):
-            raise ParameterError(f"`on` is a board, of Device.open, found {on!r}; without it the simulator plays")
+            raise refusal("`on`", "a board, of Device.open", on)
         if on is not None and (settings or seconds is None):
             raise ParameterError("a play on a board takes `seconds`, and no settings of the simulator")
         if self._trial_now is None:
@@ -230,12 +236,25 @@ class Session:
         every ``break_every``; an exception in it or in ``play`` and ``answer`` ends the run, and the same program goes
         on there when it opens the session again.
         """
+        for name, act in {
+            "play": play,
+            "answer": answer,
+            **({} if on_break is None else {"on_break": on_break}),
+        }.items():
+            check_callable(name, act)
+        for name, every in {"catch_every": catch_every, "break_every": break_every}.items():
+            if every is not None:
+                whole(name, every, 1)
+        practised_levels = [checked_level(level) for level in each("practice", practice)]
+        text("block", block)
+        if not (hasattr(method, "next_level") and hasattr(method, "answer")):
+            raise refusal("method", "a Method, such as QuestPlus", method)
         if self._is_cut_off:
             raise ExperimentError("the run before this one was cut off: open the session again, and it goes on there")
         self._is_cut_off = True
         answers = Answers()
-        for practised in practice:
-            self._trial(play, answer, block, float(practised), is_practice=True)
+        for practised in practised_levels:
+            self._trial(play, answer, block, practised, is_practice=True)
         count = 0
         while (level := method.next_level()) is not None:
             correct = self._trial(play, answer, block, level)
@@ -346,10 +365,8 @@ class Session:
             seconds,
         )
         if key not in self._kept:
+            # The next trial with the same play gets its read-only columns as they are.
             recording = simulator.run(seconds)
-            for values in recording.values():
-                # The next trial with the same play gets them as they are.
-                values.setflags(write=False)
             kept = self._kept[key] = _Kept(recording)
             size = sum(kept.size for kept in self._kept.values())
             while size > KEPT_MAX_BYTES:
