@@ -12,11 +12,11 @@ use crate::adc::Adc;
 use crate::chip::{BOARD, TICK_HZ};
 use crate::dac::{Dac, Frames};
 use crate::flash::StoreFlash;
-use crate::unique_number::unique_number;
 use crate::output::Output;
 use crate::period::Period;
 use crate::pins::Pin;
 use crate::serial::Serial;
+use crate::unique_number::unique_number;
 use crate::watchdog::Watchdog;
 
 /// The parts of this board.

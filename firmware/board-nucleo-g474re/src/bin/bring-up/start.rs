@@ -7,7 +7,6 @@ use board_nucleo_g474re::tick;
 use board_nucleo_g474re::tick_interrupt;
 use board_nucleo_g474re::watchdog::Watchdog;
 use cortex_m::singleton;
-use frixel_board::hardware::Hardware;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::memory::Memory;
 use frixel_control::Board;
@@ -32,7 +31,6 @@ pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
         serial: None,
         dac,
         light: indicator::start(),
-        store: <Nucleo as Hardware>::Store::default(),
         watchdog: Watchdog::start(),
     }
 }

@@ -31,7 +31,6 @@ impl Hardware for Wired {
     type Switch = ScriptedSwitch;
     type Light = <Nucleo as Hardware>::Light;
     type Serial = <Nucleo as Hardware>::Serial;
-    type Store = ();
     type Watchdog = Watchdog;
 }
 
