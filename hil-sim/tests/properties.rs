@@ -257,7 +257,8 @@ fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
 
 fn check_time_to_off(found_by: FoundBy, ticks: u64, seed: u64) {
     let expected = match found_by {
-        FoundBy::Pin => 1..=1,
+        // The second low sample of the ready line is the fault.
+        FoundBy::Pin => 2..=2,
         FoundBy::Monitor => 16..=20,
         FoundBy::HalfOfTicks => 40..=60,
     };
@@ -276,7 +277,7 @@ fn the_output_is_off_within_0_5_ms_of_a_hard_fault_and_1_5_ms_of_a_dac_that_hold
 /// Tests of their own, so that they run side by side.
 #[test]
 #[ignore = "minutes: cargo xtask soak faults"]
-fn the_output_is_off_within_a_tick_of_many_faults_at_a_pin() {
+fn the_output_is_off_within_two_ticks_of_many_faults_at_a_pin() {
     check_time_to_off(FoundBy::Pin, SOAK_TICKS, 6);
 }
 

@@ -95,13 +95,13 @@ impl Supervisor {
     }
 
     /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `driven_code` is the code of the
-    /// previous tick.
+    /// previous tick. The gain is left out in a tick that has taken an order, the longest of all ticks.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode) {
+    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode, has_taken_order: bool) {
         let (comparison, must_count) = self.monitor.advance(driven_code.bits(), sense.monitor_v);
         if must_count || sense.amplifier_fault || !sense.arm_switch {
             self.latch_first_fault(sense, comparison);
-        } else if self.monitor.sum(comparison) {
+        } else if !has_taken_order && self.monitor.sum(comparison) {
             self.raise(Fault::Monitor, monitor_detail(sense));
         }
     }

@@ -89,7 +89,7 @@ fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
     let refusal = compile(&scene(&noise), &limits, board.tick_hz).unwrap_err().to_string();
     let found = cycles(&noise, &board);
     assert!(refusal.contains("noise") && refusal.contains(&format!("estimated at {found} cycles")), "{refusal}");
-    assert!(refusal.contains("layer 1 (noise) takes too long") && refusal.contains("has time for 13100"), "{refusal}");
+    assert!(refusal.contains("layer 1 (noise) takes too long") && refusal.contains("has time for 13450"), "{refusal}");
 }
 
 /// Nothing stores limits on a Pico: what its kind would take, it refuses.

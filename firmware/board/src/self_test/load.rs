@@ -11,10 +11,10 @@ use crate::local_host::{LocalHost, Progress};
 use crate::local_scene::{header, scene, scene_len};
 
 /// Peak voltage of the scene, V. The wires show the monitor of an amplifier at 0 V, up to 4 V beside that: the
-/// supervisor takes what is within 8 V and 25 % of the driven voltage for right.
-const PEAK_V: f32 = 5.0;
+/// supervisor takes what is within 8 V and 25 % of the driven voltage for right, and judges no gain below 4 V rms.
+const PEAK_V: f32 = 3.0;
 /// Largest electric friction of a layer, N: of the size that [`PEAK_V`] reaches, so that the tick looks up voltages.
-const HIGH_N: f32 = 2.5e-5;
+const HIGH_N: f32 = 9e-6;
 /// Longest time that the scene plays in one piece, s.
 const PIECE_S: f32 = 60.0;
 /// Time for which the switch is let go between two pieces, s.

@@ -67,7 +67,7 @@ impl Gain {
         }
     }
 
-    /// Sums up a tick, and returns whether the sums show a gain that is a fault.
+    /// Sums up a tick, and returns whether the sums show a gain that is a fault. Ticks may be left out.
     #[inline]
     pub(super) fn take(&mut self, comparison: Comparison) -> bool {
         let Comparison { expected_v, driven_code, deviation_v, .. } = comparison;

@@ -52,6 +52,8 @@ pub struct Ticker<'a> {
     finger: Finger,
     /// The finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
+    /// An order was applied since the last tick.
+    has_taken_order: bool,
     /// Coefficients of the current scene.
     active: &'a mut Active,
     pool: &'a BitmapPool,
@@ -102,6 +104,7 @@ impl<'a> Ticker<'a> {
             supervisor: Supervisor::new(board),
             finger: Finger::Up,
             was_lifted: false,
+            has_taken_order: false,
             active,
             pool,
             clicks: Clicks::NONE,
@@ -150,7 +153,8 @@ impl<'a> Ticker<'a> {
         // come first, so that what they find at this tick stops the output at this tick; and a lift is taken in any
         // state, so that none is left for a later play.
         let driven_code = self.dac_code;
-        self.supervisor.check(sense, driven_code);
+        let has_taken_order = core::mem::take(&mut self.has_taken_order);
+        self.supervisor.check(sense, driven_code, has_taken_order);
         self.supervisor.expire(self.tick);
         self.finger.expire(self.tick);
         self.stream.advance(&mut self.inputs.stream);
