@@ -108,8 +108,8 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     };
     if let Some(digits) = bytes.get_mut(at..at + 64) {
         digits.fill(b'0');
-        let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-        bytes.splice(at..at + 64, hash.into_bytes());
+        let digits: Vec<String> = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        bytes.splice(at..at + 64, digits.concat().into_bytes());
     }
     bytes
 }

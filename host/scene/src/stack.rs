@@ -90,7 +90,12 @@ impl<'i> LayerTables<'i> {
 }
 
 fn too_many(found: usize) -> FileMistake {
-    FileMistake::too_much("layers in this scene", found, LAYERS_MAX, "a board takes 255; draw a pattern as a picture")
+    FileMistake::too_much(
+        "layers in this scene",
+        found,
+        LAYERS_MAX,
+        "no board takes more than 255; draw a pattern as a picture",
+    )
 }
 
 fn part<'i>(fields: &mut Fields<'i>, version: Version, misspelt: &mut Vec<String>, log: &mut Log) -> Part<'i> {
@@ -128,7 +133,7 @@ fn settle(layer: &mut Layer, version: Version, log: &Log) {
     }
 }
 
-/// Most layers of a scene, copies included; a board takes 255.
+/// Most layers of a scene, copies included; no board takes more than 255.
 const LAYERS_MAX: usize = 4_096;
 
 /// Refuses layers of the same name in two files.
