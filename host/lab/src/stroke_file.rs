@@ -115,7 +115,9 @@ impl StrokeFile {
             rows.push(read);
         }
         if let Some(start_s) = rows.first().map(|row| row.t_s).filter(|start_s| *start_s > START_MAX_S) {
-            rows.iter_mut().for_each(|row| row.t_s -= start_s);
+            for row in &mut rows {
+                row.t_s -= start_s;
+            }
             let note = format!("times count from the first row, {start_s} s");
             understood = Some(understood.map_or(note.clone(), |words| format!("{words}; {note}")));
         }
