@@ -13,13 +13,16 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, PollingLink, Upload};
-use frixel_felt::recorder::Recorder;
+use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::recording::{Metadata, Recording};
 use frixel_lab::simulation::{SimStream, board_costs};
+use frixel_lab::sweep::{Plan, PlanError, Source};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
-use frixel_scene::{FileUnavailable, Files, Scene, compile};
+use frixel_scene::{FileUnavailable, Files, Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
+use sha2::{Digest, Sha256};
 
 /// The files of the scenes that a fuzzer starts from: those of the gallery, and one whose finger is an empirical law.
 pub fn scene_files() -> Vec<PathBuf> {
@@ -68,6 +71,70 @@ pub fn scene_text(text: &str) {
     );
     if let Err(error) = board_costs(&program, &rig) {
         panic!("it compiles, and the board does not take it: {error}");
+    }
+}
+
+/// Text of a plan to start from.
+pub const PLAN: &str = "scenes = [\"flat.toml\"]\npeople = 2\ntouch = [\"100\", \"500\"]\n[parameters]\n\
+    \"layer.1.friction_fraction\" = { from = 0.1, to = 0.3, count = 3 }\n\"drive.voltage_max_v_rms\" = [100, 150]\n";
+/// Most people and parameters of a plan whose cells are made.
+const COMBINED_MAX: usize = 3;
+
+/// A recording to start from, the bytes of its file.
+pub fn recording_file() -> Vec<u8> {
+    let row =
+        |number: u32| FeltRow { t_s: f64::from(number), x_mm: (number % 3 > 0).then_some(2.5), ..FeltRow::default() };
+    let recording = Recording::of_rows(Metadata::default(), &(0..50).map(row).collect::<Vec<_>>());
+    let mut bytes = Vec::new();
+    recording.write_parquet(&mut bytes).expect("a recording");
+    bytes
+}
+
+/// Reads arbitrary bytes as a recording's file, with the hash that they have so that damage is read at all. They are
+/// rejected, or what was read is written and read again.
+pub fn parquet(bytes: &[u8]) {
+    let Ok(recording) = Recording::read_parquet(sealed(bytes.to_vec())) else { return };
+    let mut written = Vec::new();
+    recording.write_parquet(&mut written).expect("what was read can be written");
+    let again = Recording::read_parquet(written).expect("what was written can be read");
+    assert_eq!(recording.first_difference(&again), None);
+}
+
+/// The bytes with their SHA-256 where the hash of a recording stands.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let head = b"frixel.sha256\x18\x40";
+    let Some(at) = bytes.windows(head.len()).rposition(|part| part == head).map(|at| at + head.len()) else {
+        return bytes;
+    };
+    if let Some(digits) = bytes.get_mut(at..at + 64) {
+        digits.fill(b'0');
+        let digits: Vec<String> = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        bytes.splice(at..at + 64, digits.concat().into_bytes());
+    }
+    bytes
+}
+
+/// Reads arbitrary text as a scenario. It is rejected, or it has no more than is read.
+pub fn scenario(text: &str) {
+    let Ok(scenario) = Scenario::parse(text, "fuzz.toml") else { return };
+    assert!(scenario.commands.len() + scenario.faults.len() <= 1_000);
+    assert!(scenario.scenes().count() >= 1);
+}
+
+/// Reads arbitrary text as the plan of a sweep, and makes the cells of one with few combinations.
+pub fn plan(text: &str) {
+    let Ok(plan) = Plan::parse(text, "fuzz.toml") else { return };
+    let lists = plan.parameters.len().max(plan.scenes.len()).max(plan.screens.len()).max(plan.touch.len());
+    let values = plan.parameters.values().map(|values| values.values().len()).max().unwrap_or(0);
+    if plan.people > COMBINED_MAX as u64 || lists > COMBINED_MAX || values > 2 * COMBINED_MAX {
+        return;
+    }
+    let scene = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
+    let source = |name: &str| {
+        Ok::<_, PlanError>(Source { name: name.to_owned(), text: scene.to_owned(), files: BTreeMap::new() })
+    };
+    for cell in plan.cells(source, |_, _| Ok(String::new())).unwrap_or_default() {
+        assert_eq!(cell.key().len(), 32);
     }
 }
 

@@ -3,9 +3,13 @@
 
 use std::fs;
 
-use frixel_fuzz::{compiled_scenes, scene_bytes, scene_files, scene_load, scene_text};
+use frixel_fuzz::{
+    PLAN, compiled_scenes, parquet, plan, recording_file, scenario, scene_bytes, scene_files, scene_load, scene_text,
+};
 use frixel_testkit::Random;
 
+const SCENARIO: &str = "scenario = 1\nscene = \"brick.toml\"\nseconds = 1\n[[command]]\nat_ms = 0\ndo = \"play\"\n\
+    [[fault]]\nname = \"cut\"\nat_ms = 300\ncause = \"cable-cut\"\n[[expect]]\nafter = \"cut\"\noutput = \"off\"\n";
 /// Changed copies of each scene.
 const COPIES: u64 = 200;
 
@@ -27,6 +31,17 @@ fn changed_texts_are_refused_or_become_programs_that_a_board_accepts() {
         for seed in 0..COPIES {
             scene_text(&String::from_utf8_lossy(&changed(&text, &mut Random::new(seed))));
         }
+    }
+}
+
+#[test]
+fn changed_recordings_scenarios_and_plans_are_refused_or_read() {
+    let recording = recording_file();
+    parquet(&recording);
+    for seed in 0..20 * COPIES {
+        parquet(&changed(&recording, &mut Random::new(seed)));
+        plan(&String::from_utf8_lossy(&changed(PLAN.as_bytes(), &mut Random::new(seed))));
+        scenario(&String::from_utf8_lossy(&changed(SCENARIO.as_bytes(), &mut Random::new(seed))));
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::command::{cargo_in, root, run, target_folder, text_of};
 
-const TARGETS: [&str; 3] = ["scene_text", "scene_bytes", "scene_load"];
+const TARGETS: [&str; 6] = ["scene_text", "scene_bytes", "scene_load", "parquet", "scenario", "plan"];
 /// Longest time of one input: beyond it, the target hangs.
 const INPUT_MAX: Duration = Duration::from_secs(30);
 /// Coverage as libFuzzer reads it. The compiler's own option for it is unstable; these are not.
@@ -54,11 +54,13 @@ impl Fuzzer {
         fs::create_dir_all(&corpus).map_err(|error| explain(&corpus, error))?;
         let mut command = Command::new(programs.join(name));
         command.arg(&corpus);
-        if name == "scene_text" {
-            command.arg(root().join("scenes"));
-        } else {
-            let seeds = target_folder().join("debug/seeds");
-            run(&format!("seeds of {name}"), Command::new(seeds).arg(&corpus))?;
+        match name {
+            "scene_text" => drop(command.arg(root().join("scenes"))),
+            "scenario" => drop(command.arg(root().join("hil-sim/scenarios"))),
+            _ => {
+                let seeds = target_folder().join("debug/seeds");
+                run(&format!("seeds of {name}"), Command::new(seeds).arg(name).arg(&corpus))?;
+            }
         }
         let found = folder.join("found");
         fs::create_dir_all(&found).map_err(|error| explain(&found, error))?;

@@ -26,7 +26,12 @@ pub enum DeviceError {
         "no frixel board answered on {port} within {} ms{}; check that it is the right port and that frixel firmware runs on \
          the board, then reset the board and try again",
         .waited.as_millis(),
-        if *.heard_bytes > 0 { ", though something else talks there" } else { "" }
+        if *.heard_bytes > 0 {
+            ", though something else talks there: another program that opened the port first (a serial monitor, a second frixel) takes a part \
+             of the answers, so close it"
+        } else {
+            ""
+        }
     )]
     NoHello {
         /// Name of the link.

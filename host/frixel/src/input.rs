@@ -4,55 +4,17 @@
 //! sentences of those who read.
 
 use std::fs::{File, FileType, OpenOptions};
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use thiserror::Error;
+use frixel_lab::input::InputError;
+pub(crate) use frixel_lab::input::{Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES};
+pub(crate) use frixel_scene::TEXT_MAX_BYTES as TOML_MAX_BYTES;
 
-/// Largest scene, finger or screen, and included file: some 20,000 layers, of which a board takes 255 at most.
-pub(crate) const TOML_MAX_BYTES: u64 = 4 << 20;
-/// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
-pub(crate) const PICTURE_MAX_BYTES: u64 = 64 << 20;
-/// Largest table: an hour of felt.csv, 3.6 million rows, is 250 MB.
-pub(crate) const CSV_MAX_BYTES: u64 = 512 << 20;
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
 pub(crate) const WAV_MAX_BYTES: u64 = 128 << 20;
 /// Longest line of a person on standard input, in bytes; what is beyond it is dropped.
 pub(crate) const LINE_MAX_BYTES: usize = 4096;
-
-/// Why something is not read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum InputError {
-    /// The file has too many bytes.
-    #[error("it has {found} bytes, and at most {max} are read")]
-    TooLarge {
-        /// Its bytes.
-        found: u64,
-        /// Most bytes that are read.
-        max: u64,
-    },
-    /// More bytes came than the file said that it has, or than are read of standard input.
-    #[error("it goes on after {max} bytes, the most that are read")]
-    TooLong {
-        /// Most bytes that are read.
-        max: u64,
-    },
-    /// It is not a regular file.
-    #[error("it is a {what}, and a regular file is expected")]
-    NotAFile {
-        /// What it is.
-        what: &'static str,
-    },
-    /// The operating system has nothing to read at this time.
-    #[error("it has no end that could be read, and a regular file is expected")]
-    Endless,
-}
-
-impl From<InputError> for io::Error {
-    fn from(error: InputError) -> Self {
-        Self::other(error)
-    }
-}
 
 /// Opens a regular file of at most `max_bytes` bytes. Reading beyond them is an error.
 pub(crate) fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
@@ -70,10 +32,7 @@ pub(crate) fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
     if let Some(what) = irregular(metadata.file_type()) {
         return Err(InputError::NotAFile { what }.into());
     }
-    if metadata.len() > max_bytes {
-        return Err(InputError::TooLarge { found: metadata.len(), max: max_bytes }.into());
-    }
-    Ok(Bounded::new(file, max_bytes))
+    Ok(Bounded::of_file(file, metadata.len(), max_bytes)?)
 }
 
 /// Reads a regular file of at most `max_bytes` bytes.
@@ -88,6 +47,23 @@ pub(crate) fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
     let mut text = String::new();
     open(path, max_bytes)?.read_to_string(&mut text)?;
     Ok(text)
+}
+
+/// Reads the first bytes of a regular file of any size, at most `max_bytes` of them.
+pub(crate) fn read_head(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    open(path, u64::MAX)?.take(max_bytes).read_to_end(&mut head)?;
+    Ok(head)
+}
+
+/// Reads the last bytes of a regular file of any size, at most `max_bytes` of them.
+pub(crate) fn read_tail(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
+    let mut file = open(path, u64::MAX)?.into_inner();
+    let len = file.metadata()?.len();
+    file.seek(SeekFrom::Start(len.saturating_sub(max_bytes)))?;
+    let mut tail = Vec::new();
+    file.take(max_bytes).read_to_end(&mut tail)?;
+    Ok(tail)
 }
 
 /// What a file is that is not a regular one. Reading a folder is an error already.
@@ -106,46 +82,6 @@ fn irregular(kind: FileType) -> Option<&'static str> {
         }
     }
     Some("device")
-}
-
-/// A reader that fails after a number of bytes.
-#[derive(Debug)]
-pub(crate) struct Bounded<R> {
-    input: R,
-    left: u64,
-    max: u64,
-}
-
-impl<R: Read> Bounded<R> {
-    /// Creates a reader of at most `max_bytes` bytes.
-    pub(crate) fn new(input: R, max_bytes: u64) -> Self {
-        Self { input, left: max_bytes, max: max_bytes }
-    }
-}
-
-impl<R: Read> Read for Bounded<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let too_long = || InputError::TooLong { max: self.max }.into();
-        let outcome = if self.left == 0 && !buffer.is_empty() {
-            // Only a reader that has more is too long.
-            match self.input.read(&mut [0]) {
-                Ok(0) => Ok(0),
-                Ok(_) => Err(too_long()),
-                Err(error) => Err(error),
-            }
-        } else {
-            let len = buffer.len().min(usize::try_from(self.left).unwrap_or(usize::MAX));
-            self.input.read(buffer.get_mut(..len).unwrap_or_default())
-        };
-        match outcome {
-            Ok(count) => {
-                self.left -= count as u64;
-                Ok(count)
-            }
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Err(InputError::Endless.into()),
-            Err(error) => Err(error),
-        }
-    }
 }
 
 /// The next line, without its end; `None` at the end of the input or when it breaks. Bytes beyond [`LINE_MAX_BYTES`]
@@ -196,16 +132,6 @@ mod tests {
         fs::write(&path, b"four").unwrap();
         assert_eq!(read(&path, 4).unwrap(), b"four");
         assert!(read(&path, 3).is_err());
-    }
-
-    #[test]
-    fn an_input_without_end_ends_at_its_limit() {
-        let mut bytes = Vec::new();
-        let error = Bounded::new(repeat(7), 10_000).read_to_end(&mut bytes).unwrap_err();
-        assert_eq!(error.to_string(), "it goes on after 10000 bytes, the most that are read");
-        assert_eq!(bytes.len(), 10_000);
-        let mut bytes = Vec::new();
-        Bounded::new(repeat(7).take(10_000), 10_000).read_to_end(&mut bytes).unwrap();
     }
 
     #[cfg(unix)]

@@ -88,7 +88,8 @@ fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
     let mut device = Device::connect(PollingLink::new(SimStream::new(rig, recorder))).unwrap();
     frixel_play::start(&mut device, &program, &mut |_| ControlFlow::Continue(())).unwrap();
     device.wait(Duration::from_millis(100), &mut |_| {}).unwrap();
-    let mut feed = stream::wav(&wav, config.board.tick_hz).unwrap();
+    let (mut feed, notes) = stream::wav(&wav, config.board.tick_hz).unwrap();
+    assert!(notes.is_empty());
     feed.start(&mut device).unwrap();
     for step in 0..330 {
         device.wait(Duration::from_millis(5), &mut |_| {}).unwrap();

@@ -8,6 +8,7 @@
 //! - [`scenario`]: what happens to a board while a scene plays, on any rig, and what has to be seen of it.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
+//! - [`input`]: how much is read of a file, by the command, the page and Python.
 //! - [`model_csv`]: the contact model over rows of CSV.
 //! - [`recording`]: what a play or an experiment recorded, as Parquet.
 //! - [`stroke_file`]: a finger's motion from a file.
@@ -20,6 +21,8 @@ mod bootstrap;
 pub mod calibration;
 pub mod default_stroke;
 pub mod fit;
+mod hash;
+pub mod input;
 pub mod model_csv;
 pub mod recording;
 pub mod scenario;

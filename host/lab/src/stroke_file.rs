@@ -24,6 +24,8 @@ const OF_A_PLAY: [&str; 9] = [
     "dac_code",
     "flags",
 ];
+/// First time above which times are those of another clock than the stroke's: uptime, or Unix time.
+const START_MAX_S: f64 = 10.0;
 /// A load above it is one in another unit.
 const LOAD_MAX_N: f64 = 50.0;
 const MM_PER_M: f64 = 1e3;
@@ -87,9 +89,10 @@ pub struct StrokeFile {
 impl StrokeFile {
     /// Reads a stroke from CSV with the columns `t_s,x_mm,y_mm`, in any order, and `force_n` if the normal load is
     /// known, in N and above 0; an empty cell is an unknown load. The finger is off the screen in a row whose cells
-    /// `x_mm` and `y_mm` are empty, as in `felt.csv`.
+    /// `x_mm` and `y_mm` are empty, as in `felt.csv`, or `nan`.
     ///
-    /// Time is from the start of the stroke and rises from row to row; the finger touches at the first row and leaves
+    /// Time is from the start of the stroke and rises from row to row. Times that begin above 10 s are those of another
+    /// clock, and count from the first row. The finger touches at the first row and leaves
     /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
     /// be as close as the motion needs: every 10 ms or less for a hand.
     pub fn read(input: impl Read) -> Result<Self, StrokeFileError> {
@@ -98,7 +101,7 @@ impl StrokeFile {
         let load = table.find(LOAD)?;
         let mut ignored_columns = table.ignored();
         ignored_columns.retain(|name| !OF_A_PLAY.contains(&name.as_str()));
-        let understood = table.understood();
+        let mut understood = table.understood();
         let mut rows: Vec<StrokeRow> = Vec::new();
         while let Some(row) = table.next_row()? {
             let read = stroke_row(&row, places, load)?;
@@ -110,6 +113,13 @@ impl StrokeFile {
                 return Err(StrokeFileError::NotRising { row, found_s, previous_s });
             }
             rows.push(read);
+        }
+        if let Some(start_s) = rows.first().map(|row| row.t_s).filter(|start_s| *start_s > START_MAX_S) {
+            for row in &mut rows {
+                row.t_s -= start_s;
+            }
+            let note = format!("times count from the first row, {start_s} s");
+            understood = Some(understood.map_or(note.clone(), |words| format!("{words}; {note}")));
         }
         if rows.len() < 2 {
             return Err(StrokeFileError::TooFewRows { found: rows.len() });
@@ -130,10 +140,16 @@ pub fn to_csv(rows: impl IntoIterator<Item = [f64; 4]>) -> String {
     text
 }
 
+/// Whether a cell is empty or not a number, as programs write what they do not know.
+fn is_unknown(row: &Row, place: Place) -> bool {
+    let text = row.text(place);
+    text.is_empty() || text.eq_ignore_ascii_case("nan")
+}
+
 fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<StrokeRow, StrokeFileError> {
     row.check_length()?;
     let t_s = row.real(t)?;
-    if (row.real_if_filled(x)?, row.real_if_filled(y)?) == (None, None) {
+    if is_unknown(row, x) && is_unknown(row, y) {
         return Ok(StrokeRow { t_s, place: None, normal_load_n: None });
     }
     let place = Point { x_m: row.real(x)? / MM_PER_M, y_m: row.real(y)? / MM_PER_M };
@@ -193,6 +209,28 @@ mod tests {
         assert!((stroke.normal_load_n(1.25).unwrap() - 0.7).abs() < 1e-12);
         assert!((stroke.at(1.25).unwrap().x_m - 0.035).abs() < 1e-12);
         assert!(stroke.at(0.5).is_none() && stroke.at(1.75).is_none());
+    }
+
+    #[test]
+    fn a_stroke_on_another_clock_begins_at_its_first_row() {
+        for start in ["36355", "1610457271.0"] {
+            let end: f64 = start.parse::<f64>().unwrap() + 1.0;
+            let text = format!("t_s,x_mm,y_mm\n{start},20,40\n{end},80,40\n");
+            let read = StrokeFile::read(text.as_bytes()).unwrap();
+            assert!((read.stroke.at(0.5).unwrap().x_m - 0.05).abs() < 1e-12);
+            assert!(read.stroke.at(1.1).is_none(), "it lasts a second");
+            assert!(read.understood.unwrap().starts_with("times count from the first row, "));
+        }
+        let waits = StrokeFile::read("t_s,x_mm,y_mm\n9,20,40\n10,80,40\n".as_bytes()).unwrap();
+        assert!(waits.understood.is_none() && waits.stroke.at(0.5).is_none() && waits.stroke.at(9.5).is_some());
+    }
+
+    #[test]
+    fn not_a_number_is_a_lifted_finger() {
+        let text = "t_s,x_mm,y_mm\n0,nan,NaN\n1,10,30\n1.5,60,30\n2,nan,nan\n";
+        let stroke = StrokeFile::read(text.as_bytes()).unwrap().stroke;
+        assert!(stroke.at(0.5).is_none() && stroke.at(1.25).is_some() && stroke.at(1.75).is_none());
+        assert!(StrokeFile::read("t_s,x_mm,y_mm\n0,nan,1\n1,1,1\n".as_bytes()).is_err());
     }
 
     #[test]

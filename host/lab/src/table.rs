@@ -23,6 +23,7 @@ use std::io::{self, Chain, Cursor, Read};
 
 use csv::{ByteRecord, Reader, ReaderBuilder};
 
+use crate::input::{ROWS_MAX, at_most, check_header};
 use crate::recording::{MAGIC, Recording};
 
 pub(crate) use dialect::Dialect;
@@ -100,6 +101,8 @@ pub struct Table<R> {
     asked: Vec<bool>,
     /// The columns whose header states a unit otherwise than by the name that the caller gave.
     stated: Vec<String>,
+    /// Rows that were read.
+    rows: u64,
     cells: ByteRecord,
 }
 
@@ -120,9 +123,10 @@ impl<R: Read> Table<R> {
         let builder = &mut ReaderBuilder::new();
         let mut reader = builder.flexible(true).comment(Some(b'#')).delimiter(dialect.separator()).from_reader(input);
         let header = reader.byte_headers().map_err(TableError::read)?;
+        check_header(header.iter()).map_err(|error| TableError::Read(error.into()))?;
         let names: Vec<String> = header.iter().map(name).collect();
         let asked = vec![false; names.len()];
-        Ok(Self { reader, dialect, asked, names, stated: Vec::new(), cells: ByteRecord::new() })
+        Ok(Self { reader, dialect, asked, names, stated: Vec::new(), rows: 0, cells: ByteRecord::new() })
     }
 
     /// How the table is written.
@@ -242,6 +246,8 @@ impl<R: Read> Table<R> {
                 break;
             }
         }
+        self.rows += 1;
+        at_most("rows or more", self.rows, ROWS_MAX).map_err(|error| TableError::Read(error.into()))?;
         let number = self.number();
         Ok(Some(Row { number, names: &self.names, dialect: self.dialect, cells: &self.cells }))
     }

@@ -2,14 +2,18 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use frixel_felt::check::SceneCheck;
 use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_lab::input::PICTURE_MAX_BYTES;
 use frixel_lab::simulation::board_costs;
-use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
+use frixel_scene::{
+    CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft, is_same_name,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -187,12 +191,16 @@ impl Files for ReadFiles {
 
 fn read_in(folder: &Path, name: &str) -> Result<Vec<u8>, FileUnavailable> {
     let path = folder.join(name);
-    if path.exists() {
-        return input::read(&path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
-    }
     let searched = path.parent().unwrap_or(folder);
     let entries = fs::read_dir(searched).into_iter().flatten();
     let mut files: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    let own = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+    let same = files.iter().find(|other| is_same_name(other, own)).map(|same| searched.join(same));
+    let there = if path.exists() { Some(&path) } else { same.as_ref() };
+    if let Some(path) = there {
+        return input::read_at_most(path, PICTURE_MAX_BYTES)
+            .map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
+    }
     files.sort();
     Err(FileUnavailable::Missing { place: searched.display().to_string(), files })
 }

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_lab::sweep::{Cell, CellError, CellResult, Plan, PlanError, Source, Study, json};
+use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, json};
 use frixel_scene::Scene as ParsedScene;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -91,7 +91,7 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|error| raised(py, "PlayError", (format!("no thread could be started: {error}"),)))?;
     let played = interruptible(py, |goes_on| pool.install(|| cell.play_while(goes_on)))?;
-    played.map(|result| json(&result)).map_err(|error| exception(py, &cell, error))
+    played.map(|result| result.to_json()).map_err(|error| exception(py, &cell, error))
 }
 
 /// Puts results together, without a look at signals. Returns lines for a person, and the files that `frixel sweep`
@@ -99,11 +99,11 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec<String>, NamedBytes<'_>)> {
     let study = py.detach(|| {
-        let results = results.iter().map(|result| serde_json::from_str::<CellResult>(result));
+        let results = results.iter().map(|result| CellResult::from_json(result, None));
         let study = Study::new(results.collect::<Result<Vec<_>, _>>()?);
         Ok((study.summary(), study.files()))
     });
-    let no_result = |error: serde_json::Error| {
+    let no_result = |error: CellResultError| {
         parameter_error(py, format!("a result is a text that `sweep.play` has made, and this one is not: {error}"))
     };
     let (summary, files) = study.map_err(no_result)?;

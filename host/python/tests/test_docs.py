@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import doctest
 import importlib
+import json
 import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import frixel
 import matplotlib as mpl
 import nbformat
 import numpy as np
+import pandas as pd
+import pyarrow.parquet as parquet
 import pytest
 from frixel.experiment import TWO_ALTERNATIVES, Observer
 from nbclient import NotebookClient
@@ -39,6 +43,32 @@ def test_the_blocks_of_the_document_run_one_after_the_other(
     assert "3 8 " in printed, "the place of the mistake"
     assert (tmp_path / "play.parquet").stat().st_size > 0
     np.testing.assert_allclose(names["recordings"][2]["t_s"][-1], 0.5)
+
+
+def test_other_programs_see_and_keep_what_a_recording_says(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scenes: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    recording = frixel.Simulator(frixel.Scene.load(scenes / "brick.toml")).run(0.05)
+    recording.to_parquet("P07.parquet", participant="P07")
+    text = (REPOSITORY / "docs/outputs.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(compile(block, "docs/outputs.md", "exec"), names)
+    assert (names["unit"], names["participant"]) == (b"mm", "P07")
+    assert "scene_began" in json.dumps(names["markers"])
+    assert (names["made"]["participant"], names["scene"]) == ("P07", recording.scene.text)
+    # pyarrow and pandas write what they have read.
+    parquet.write_table(names["table"], "kept.parquet")
+    pd.read_parquet("P07.parquet").to_parquet("kept-too.parquet")
+    for kept in ("kept.parquet", "kept-too.parquet"):
+        assert pd.read_parquet(kept).attrs["frixel.recording"]["participant"] == "P07"
+    schema = parquet.read_schema("kept.parquet")
+    assert schema.metadata[b"frixel.scene"].decode() == recording.scene.text
+    assert schema.field("x_mm").metadata[b"unit"] == b"mm"
+    # What another program wrote is no recording any more.
+    with pytest.raises(frixel.PlayError, match="another hash than it says"):
+        frixel.replay("kept.parquet")
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 //! The scene file as a person writes it, in the file's own units, each number within its range.
 
-use std::collections::BTreeMap;
+use std::collections::btree_map::{BTreeMap, Entry};
 
 use frixel_layers::{Leader, Waveform};
 use toml::de::DeTable;
@@ -8,7 +8,7 @@ use toml::de::DeTable;
 use super::compile_error::CompileError;
 use super::diagnostic::Diagnostic;
 use super::fields::{Fields, PixelSize, parsed};
-use super::files::Files;
+use super::files::{FileUnavailable, Files};
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
 use super::include::{self, Gathered};
@@ -80,6 +80,9 @@ pub(super) struct Touch {
     pub(super) prediction: bool,
     pub(super) leader: Leader,
 }
+
+/// Most bytes of all pictures of a scene.
+const PICTURES_MAX_BYTES: usize = 128 << 20;
 
 /// Ratio of a pixel's sides from which on a design counts as stretched.
 const STRETCH_MAX: f64 = 1.01;
@@ -264,7 +267,7 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     let head_is_valid = log.mistakes() == 0;
     let example = Screen::example();
     let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
-    let pictures = layer_tables.pictures(log).into_iter().map(|name| (name.clone(), named.bytes(&name))).collect();
+    let pictures = pictures(layer_tables.pictures(log), named);
     let layers = layer_tables.read(version, design.map(|design| design.pixel_on(screen)), log);
     let profiles = profiles.filter(|_| head_is_valid)?;
     Some(Scene {
@@ -280,6 +283,26 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
         design,
         layers,
     })
+}
+
+/// The bytes of the pictures of these names. Those that would exceed [`PICTURES_MAX_BYTES`] are not kept.
+fn pictures(names: Vec<String>, files: &dyn Files) -> PictureBytes {
+    let mut pictures = PictureBytes::new();
+    let mut left = PICTURES_MAX_BYTES;
+    for name in names {
+        let Entry::Vacant(entry) = pictures.entry(name) else { continue };
+        let bytes = files.bytes(entry.key()).and_then(|bytes| match left.checked_sub(bytes.len()) {
+            Some(rest) => {
+                left = rest;
+                Ok(bytes)
+            }
+            None => Err(FileUnavailable::Unreadable {
+                reason: format!("the pictures of a scene have at most {PICTURES_MAX_BYTES} bytes together"),
+            }),
+        });
+        entry.insert(bytes);
+    }
+    pictures
 }
 
 /// Reports the fields of a scene of version 1 that came with version 2.

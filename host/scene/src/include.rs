@@ -1,12 +1,13 @@
 //! `include`: the other scene files that a scene consists of.
 
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::files::{FileUnavailable, Files, file_name};
 use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::source::{Source, joined};
 use super::tables;
+use super::toml_text::toml;
 
 /// Largest number of files of a scene.
 const FILES_MAX: usize = 64;
@@ -94,12 +95,12 @@ fn scenes(files: Vec<String>) -> Vec<String> {
 
 /// The names in `include` of a text, each with its offset.
 fn included_names(text: &str) -> Vec<(usize, String)> {
-    let Ok(table) = DeTable::parse(text) else { return Vec::new() };
-    let version = table.get_ref().get(tables::scene::VERSION.name).and_then(|value| value.get_ref().as_integer());
+    let Ok(table) = toml(text) else { return Vec::new() };
+    let version = table.get(tables::scene::VERSION.name).and_then(|value| value.get_ref().as_integer());
     if version.is_some_and(|version| version.as_str() == "1") {
         return Vec::new();
     }
-    let names = table.get_ref().get(tables::scene::INCLUDE.name).and_then(|value| value.get_ref().as_array());
+    let names = table.get(tables::scene::INCLUDE.name).and_then(|value| value.get_ref().as_array());
     let name = |value: &toml::Spanned<DeValue>| Some((value.span().start, value.get_ref().as_str()?.to_owned()));
     names.into_iter().flatten().filter_map(name).collect()
 }

@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::file::Scene;
 use super::layer::{Layer, Rectangle, Region};
 use super::source::SourceFile;
 use super::tables::{layer, scene};
+use super::toml_text::toml;
 
 /// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,8 +82,8 @@ struct Written {
 
 /// The layer tables of a file, at their offsets in the scene's source.
 fn written(file: &SourceFile) -> Vec<Written> {
-    let Ok(values) = DeTable::parse(&file.text) else { return Vec::new() };
-    let tables = values.get_ref().get(scene::LAYER.name).and_then(|layers| layers.get_ref().as_array());
+    let Ok(values) = toml(&file.text) else { return Vec::new() };
+    let tables = values.get(scene::LAYER.name).and_then(|layers| layers.get_ref().as_array());
     let written = |value: &Spanned<DeValue>| {
         let name = value.get_ref().get(layer::NAME.name).and_then(|name| name.get_ref().as_str());
         Written { places: file.start + value.span().start..file.start + end(value), name: name.map(str::to_owned) }

@@ -11,7 +11,7 @@ use super::log::Log;
 use super::mistake::FileMistake;
 use super::nearest::Nearest;
 use super::optimisation::Optimisation;
-use super::picture::Picture;
+use super::picture::{PIXELS_MAX, Picture};
 use super::printable::printable;
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
@@ -29,7 +29,7 @@ pub(super) struct Pool {
 }
 
 /// The pictures of a scene, each decoded once, or the reason why one cannot be used.
-type Decoded = BTreeMap<String, Result<Picture, FileMistake>>;
+pub(super) type Decoded = BTreeMap<String, Result<Picture, FileMistake>>;
 
 /// The reason why a picture has no place in the pool.
 pub(super) enum Unplaced {
@@ -232,27 +232,32 @@ fn levelled<'p>(bitmap: &BitmapLayer, picture: &'p Picture, across: Axis, down: 
     Cow::Owned(picture.into_owned().stretched(samples))
 }
 
-/// Decodes the pictures of a scene, each one once.
-fn decoded(scene: &Scene) -> Decoded {
+/// Decodes the pictures of a scene, each one once, of at most so many pixels together.
+pub(super) fn decoded(scene: &Scene, pixels_max: usize) -> Decoded {
     let mut decoded = Decoded::new();
+    let mut pixels_left = pixels_max;
     for layer in &scene.layers {
         if let Kind::Bitmap(bitmap) = &layer.kind {
             // `Scene::parse` has read every picture that a layer names.
             let unread = Err(FileUnavailable::Unreadable { reason: "the scene was read without it".to_owned() });
             let bytes = scene.pictures.get(&bitmap.picture).unwrap_or(&unread);
-            decoded.entry(bitmap.picture.clone()).or_insert_with(|| picture(&bitmap.picture, bytes));
+            decoded.entry(bitmap.picture.clone()).or_insert_with(|| {
+                let picture = picture(&bitmap.picture, bytes, pixels_left);
+                pixels_left -= picture.as_ref().map_or(0, |picture| picture.width * picture.height);
+                picture
+            });
         }
     }
     decoded
 }
 
-fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Picture, FileMistake> {
+fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>, pixels_max: usize) -> Result<Picture, FileMistake> {
     if name.is_empty() {
         return Err(FileMistake::NoFileName { field: "picture" });
     }
     let unusable = |reason: String| FileMistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
     match bytes {
-        Ok(bytes) => Picture::decode(bytes).map_err(|error| unusable(error.to_string())),
+        Ok(bytes) => Picture::decode(bytes, pixels_max).map_err(|error| unusable(error.to_string())),
         Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
         Err(FileUnavailable::Missing { place, files }) => Err(FileMistake::FileMissing {
             what: "picture",
@@ -266,7 +271,7 @@ fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>) -> Result<Pictu
 impl Pool {
     /// Decodes the pictures of a scene, for a pool of this size.
     pub(super) fn new(scene: &Scene, size_bytes: u32) -> Self {
-        let pictures = decoded(scene);
+        let pictures = decoded(scene, PIXELS_MAX);
         let shared_pitch_mm = shared_pitch_mm(scene, &pictures, size_bytes);
         Self { pictures, size_bytes, shared_pitch_mm, bitmaps: Vec::new() }
     }

@@ -53,8 +53,8 @@ fn escaped(text: &str, is_kept: impl Fn(char) -> bool) -> String {
     escaped
 }
 
-/// A name in a sentence: as it was written, but cut after as many characters as a name may have.
-pub(crate) fn brief(name: &str) -> Cow<'_, str> {
+/// A text of a file in a sentence: as it was written, but cut after as many characters as a name may have.
+pub fn brief(name: &str) -> Cow<'_, str> {
     match name.char_indices().nth(NAME_MAX_CHARS) {
         Some((end, _)) => format!("{}\u{2026}", name.get(..end).unwrap_or_default()).into(),
         None => name.into(),

@@ -21,6 +21,8 @@ pub(super) struct SourceFile {
     pub(super) start: usize,
     /// Numbers of the files that it includes.
     pub(super) includes: Vec<usize>,
+    /// Offsets in the text of its lines but the first.
+    line_starts: Vec<usize>,
 }
 
 impl Source {
@@ -34,7 +36,8 @@ impl Source {
     pub(super) fn add(&mut self, name: String, path: String, text: String) -> usize {
         // One more than the text, so that the end of a file is a place of its own.
         let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
-        self.files.push(SourceFile { name, path, text, start, includes: Vec::new() });
+        let line_starts = text.match_indices('\n').map(|(newline, _)| newline + 1).collect();
+        self.files.push(SourceFile { name, path, text, start, includes: Vec::new(), line_starts });
         self.files.len() - 1
     }
 
@@ -86,12 +89,12 @@ impl Source {
 
     /// Line and column of a byte offset in its file, both from one. The column counts characters.
     pub(super) fn line_and_column(&self, offset: usize) -> (usize, usize) {
-        let (text, offset) = self.text_at(offset);
-        let before = text.get(..offset).unwrap_or(text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let line = before.matches('\n').count() + 1;
-        let column = before.get(line_start..).map_or(0, |start| start.chars().count()) + 1;
-        (line, column)
+        let Some(file) = self.files.get(self.number_at(offset)) else { return (1, 1) };
+        let offset = offset - file.start;
+        let line = file.line_starts.partition_point(|start| *start <= offset);
+        let line_start = line.checked_sub(1).and_then(|last| file.line_starts.get(last)).copied().unwrap_or(0);
+        let column = file.text.get(line_start..offset).map_or(0, |start| start.chars().count());
+        (line + 1, column + 1)
     }
 
     /// The key, value or table header at a byte offset; only its first line if it has several.

@@ -1,5 +1,6 @@
 //! The layers of a scene: those of the files that it includes below its own, each with the defaults that it shares.
 
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use toml::de::DeTable;
@@ -59,13 +60,22 @@ impl<'i> LayerTables<'i> {
     /// Reads the layers, from bottom to top, without those that have mistakes. `pixel_mm` is the size of a pixel of the
     /// scene's design, if it has one.
     pub(super) fn read(self, version: Version, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
+        if let Some(first) = self.layers.first().filter(|_| self.layers.len() > LAYERS_MAX) {
+            log.add(first.table_place(), too_many(self.layers.len()));
+            return Vec::new();
+        }
         // Read every layer, so that the mistakes of all are reported.
         let mut layers = Vec::new();
         for (number, table) in (1..).zip(self.layers) {
             let mistakes = log.mistakes();
             log.set_layer(Some(number));
             let copies = Layer::read(table.with_pixels(pixel_mm), number, log);
-            layers.extend(copies.filter(|_| log.mistakes() == mistakes).into_iter().flatten());
+            let copies = copies.filter(|_| log.mistakes() == mistakes).unwrap_or_default();
+            if layers.len() + copies.len() > LAYERS_MAX {
+                log.add(copies.first().map_or(0, |layer| layer.places.table()), too_many(layers.len() + copies.len()));
+                break;
+            }
+            layers.extend(copies);
         }
         log.set_layer(None);
         for layer in &mut layers {
@@ -77,6 +87,15 @@ impl<'i> LayerTables<'i> {
         }
         layers
     }
+}
+
+fn too_many(found: usize) -> FileMistake {
+    FileMistake::too_much(
+        "layers in this scene",
+        found,
+        LAYERS_MAX,
+        "no board takes more than 255; draw a pattern as a picture",
+    )
 }
 
 fn part<'i>(fields: &mut Fields<'i>, version: Version, misspelt: &mut Vec<String>, log: &mut Log) -> Part<'i> {
@@ -114,15 +133,26 @@ fn settle(layer: &mut Layer, version: Version, log: &Log) {
     }
 }
 
+/// Most layers of a scene, copies included; no board takes more than 255.
+const LAYERS_MAX: usize = 4_096;
+
 /// Refuses layers of the same name in two files.
 fn check_names(layers: &[Layer], log: &mut Log) {
     let source = log.source();
     let place = |layer: &Layer| layer.places.field("name");
-    for (number, layer) in layers.iter().enumerate().filter(|(_, layer)| layer.name.is_some()) {
+    // The first layer of each name, and the first one in another file.
+    let mut first: HashMap<&str, (&Layer, Option<&Layer>)> = HashMap::new();
+    for layer in layers {
+        let Some(name) = layer.name.as_deref() else { continue };
         let here = source.number_at(place(layer));
-        let below = layers.iter().take(number);
-        let twin = below.filter(|other| other.name == layer.name).find(|other| source.number_at(place(other)) != here);
-        if let (Some(other), Some(name)) = (twin, layer.name.clone()) {
+        let is_here = |other: &Layer| source.number_at(place(other)) == here;
+        let (one, other) = first.entry(name).or_insert((layer, None));
+        if other.is_none() && !is_here(one) {
+            *other = Some(layer);
+        }
+        let twin = if is_here(one) { *other } else { Some(*one) };
+        if let Some(other) = twin.filter(|other| !is_here(other)) {
+            let name = name.to_owned();
             let file = source.name_at(place(layer)).to_owned();
             log.add(
                 place(layer),

@@ -114,6 +114,11 @@ test("a small zip that unpacks to more than 32 MB is refused with its size", asy
   await assertSays(page, /unpacks to 7 files of together 42\.0 MB; .* at most 100 files of together 32 MB/);
   await give(page, ["many.zip", await zipOfZeros(page, Array(150).fill(1))]);
   await assertSays(page, /unpacks to 151 files/);
+  const shared = await zipOfZeros(page, [1000, 1000]);
+  // The first entry of the list at the end says that its file has more packed bytes than the zip.
+  shared.writeUInt32LE(shared.length, shared.indexOf(Buffer.from("PK\x01\x02", "latin1")) + 20);
+  await give(page, ["shared.zip", shared]);
+  await assertSays(page, /The files of this zip lie over one another/);
   assert.match(await page.evaluate(() => studioPage.editor.text), /brick/, "the scene before stays");
   assert.deepEqual(errors, []);
   await close();

@@ -1,6 +1,7 @@
 //! `frixel sweep`: studies of many simulated fingers.
 
-use std::fs::{self, create_dir_all};
+use std::fmt::Display;
+use std::fs::create_dir_all;
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -94,7 +95,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
     args.jobs.run(|| {
         left.par_iter().try_for_each(|(number, cell)| {
             let result = cell.play().map_err(|source| CommandError::Cell { cell: cell.title(), source })?;
-            write_shared(&OutputFile::new(&path(*number), "-o", &inputs)?, &json(&result))?;
+            write_shared(&OutputFile::new(&path(*number), "-o", &inputs)?, &result.to_json())?;
             if let Some(bar) = &bar {
                 bar.inc(1);
             }
@@ -113,7 +114,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
 fn write_shared(file: &OutputFile, text: &str) -> Result<(), CommandError> {
     let begin = Instant::now();
     loop {
-        if fs::read(file.path()).is_ok_and(|there| there == text.as_bytes()) {
+        if input::read(file.path(), text.len() as u64).is_ok_and(|there| there == text.as_bytes()) {
             return Ok(());
         }
         match file.write(text.as_bytes()) {
@@ -142,7 +143,12 @@ fn merge(out: &Path, inputs: &Inputs) -> Result<(), CommandError> {
     if there.len() < keys.cells.len() {
         return Err(CommandError::CellsMissing { folder: out.to_owned(), found: there.len(), of: keys.cells.len() });
     }
-    let results: Vec<CellResult> = there.iter().map(|path| read(path, "result of a cell")).collect::<Result<_, _>>()?;
+    let result = |(key, path): (&String, &PathBuf)| {
+        let what = "result of a cell";
+        let text = String::from_utf8_lossy(&read_bytes(path, what)?).into_owned();
+        CellResult::from_json(&text, Some(key)).map_err(|error| no_sweep_file(path, what, &error))
+    };
+    let results: Vec<CellResult> = keys.cells.iter().zip(&there).map(result).collect::<Result<_, _>>()?;
     let study = Study::new(results);
     let _folder = OutputFolder::open(out)?;
     let files = study.files()?;
@@ -160,12 +166,15 @@ fn merge(out: &Path, inputs: &Inputs) -> Result<(), CommandError> {
 }
 
 fn read<T: for<'de> Deserialize<'de>>(path: &Path, what: &'static str) -> Result<T, CommandError> {
+    serde_json::from_slice(&read_bytes(path, what)?).map_err(|error| no_sweep_file(path, what, &error))
+}
+
+fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>, CommandError> {
     let advice = "give the folder of a sweep, which `frixel sweep PLAN.toml -o OUT` makes";
     let reading = |source| CommandError::SweepInput { path: path.to_owned(), what, source, advice };
-    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading)?;
-    serde_json::from_slice(&bytes).map_err(|error| CommandError::NoSweepFile {
-        path: path.to_owned(),
-        what,
-        reason: error.to_string(),
-    })
+    input::read(path, input::CSV_MAX_BYTES).map_err(reading)
+}
+
+fn no_sweep_file(path: &Path, what: &'static str, error: &dyn Display) -> CommandError {
+    CommandError::NoSweepFile { path: path.to_owned(), what, reason: error.to_string() }
 }

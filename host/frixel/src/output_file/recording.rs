@@ -1,12 +1,12 @@
 //! Recordings of people, which take a person's time and cannot be computed again.
 
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::writer::PARQUET;
 use super::{FileWriter, Inputs, OutputFile, OutputFileError, partial_beside};
+use crate::input;
 
 /// Bytes of the beginning of a file that say what it is.
 const HEAD: u64 = 4096;
@@ -61,7 +61,8 @@ impl Recording {
     /// Whether a recording that was cut off has left rows.
     pub(crate) fn is_cut_off(&self) -> bool {
         let Some(file) = self.output.file() else { return false };
-        std::fs::read(partial_beside(file)).is_ok_and(|bytes| has_rows(&String::from_utf8_lossy(&bytes)))
+        input::read(&partial_beside(file), input::CSV_MAX_BYTES)
+            .is_ok_and(|bytes| has_rows(&String::from_utf8_lossy(&bytes)))
     }
 
     /// Removes the rows of a recording that is whole.
@@ -111,18 +112,17 @@ impl Recording {
 
 /// Whether the play in a folder is of a person's finger on a board that is not a simulator, by its `summary.json`.
 pub(crate) fn is_play_of_person(folder: &Path) -> bool {
-    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
+    let summary = input::read(&folder.join("summary.json"), input::TOML_MAX_BYTES).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
     summary.get("simulated") == Some(&serde_json::Value::Bool(false))
 }
 
 /// Whether a file is nothing that a recording leaves without a row: nothing at all, or the names of columns.
 fn is_of_another_program(partial: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = File::open(partial).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    let Ok(head) = input::read_head(partial, HEAD) else { return false };
     let is_of_name = |byte: &u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"_,".contains(byte);
     let names = head.strip_suffix(b"\n").unwrap_or(&head);
-    read.is_ok() && !has_rows(&String::from_utf8_lossy(&head)) && !names.iter().all(is_of_name)
+    !has_rows(&String::from_utf8_lossy(&head)) && !names.iter().all(is_of_name)
 }
 
 /// Whether there is a row below the header. A Parquet file that was begun has one: it is written in whole row groups.
@@ -133,11 +133,7 @@ fn has_rows(text: &str) -> bool {
 /// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit`
 /// reads it, or a profile of `frixel threshold`; or by its metadata, if it is a Parquet file.
 pub(crate) fn is_recording(path: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    if read.is_err() {
-        return false;
-    }
+    let Ok(head) = input::read_head(path, HEAD) else { return false };
     if head.starts_with(PARQUET) {
         return footer(path).is_ok_and(|footer| frixel_lab::recording::is_of_person(&footer));
     }
@@ -154,21 +150,36 @@ pub(crate) fn is_recording(path: &Path) -> bool {
 
 /// The footer of a Parquet file, its length and last bytes included.
 fn footer(path: &Path) -> io::Result<Vec<u8>> {
-    let mut file = File::open(path)?;
-    let mut end = [0; 8];
-    file.seek(SeekFrom::End(-8))?;
-    file.read_exact(&mut end)?;
-    let [a, b, c, d, ..] = end;
-    let len = 8 + i64::from(u32::from_le_bytes([a, b, c, d]));
-    file.seek(SeekFrom::End(-len))?;
-    let mut footer = Vec::new();
-    file.take(FOOTER_MAX_BYTES).read_to_end(&mut footer)?;
-    Ok(footer)
+    let end = input::read_tail(path, 8)?;
+    let [a, b, c, d, ..] = end[..] else { return Ok(end) };
+    let len = 8 + u64::from(u32::from_le_bytes([a, b, c, d]));
+    input::read_tail(path, len.min(FOOTER_MAX_BYTES))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A summary that was a link to a device without end took all memory.
+    #[cfg(unix)]
+    #[test]
+    fn a_device_in_place_of_a_file_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let link = |name: &str| std::os::unix::fs::symlink("/dev/zero", path(name)).unwrap();
+        link("summary.json");
+        assert!(!is_play_of_person(folder.path()));
+        link("felt.csv");
+        assert!(!is_recording(&path("felt.csv")));
+        link("rows.csv.partial");
+        let recording = Recording::new(&path("rows.csv"), "-o", &Inputs::default(), false, "").unwrap();
+        assert!(!recording.is_cut_off());
+        assert!(recording.start().is_err() && recording.resume().is_err());
+        std::fs::remove_file(path("rows.csv.partial")).unwrap();
+        std::fs::File::create(path("rows.csv.partial")).unwrap().set_len(8 << 30).unwrap();
+        let error = recording.resume().unwrap_err().to_string();
+        assert!(error.contains("it has 8589934592 bytes, and at most 536870912 are read"), "{error}");
+    }
 
     #[test]
     fn a_file_of_another_program_is_not_taken_for_an_empty_recording() {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::identity::is_file_at;
 use super::{OutputFile, OutputFileError};
+use crate::input::{Bounded, CSV_MAX_BYTES};
 
 /// Bytes that are collected before they are written, in whole lines.
 const CHUNK: usize = 64 * 1024;
@@ -97,7 +98,9 @@ impl FileWriter {
         let failed = |source| OutputFileError::write(written, source);
         let mut file = open_locked(path, written)?;
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(failed)?;
+        let len = file.metadata().map_err(failed)?.len();
+        let bounded = Bounded::of_file(&mut file, len, CSV_MAX_BYTES).map_err(io::Error::from);
+        bounded.and_then(|mut file| file.read_to_end(&mut bytes)).map_err(failed)?;
         let mut writer = Self::new(path, destination, written, file, Unfinished::KeepsRows);
         if !bytes.starts_with(PARQUET) {
             // A process that was killed may have left a part of a row.

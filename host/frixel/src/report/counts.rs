@@ -1,12 +1,12 @@
 //! Instruction counts on emulated boards, as written by `cargo xtask bench`.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use serde_json::{Error, Value, from_str, from_value};
 
 use super::error::ReportError;
+use crate::input;
 
 /// The counts of this version, which `FRIXEL_BLESS=1 cargo xtask bench` writes.
 const COMMITTED: &str = include_str!("bench.json");
@@ -23,8 +23,8 @@ pub(super) struct Counts {
 impl Counts {
     /// Reads a file of counts.
     pub(super) fn read(path: &Path) -> Result<Self, ReportError> {
-        let text =
-            fs::read_to_string(path).map_err(|source| ReportError::ReadBench { path: path.to_owned(), source })?;
+        let text = input::read_text(path, input::TOML_MAX_BYTES)
+            .map_err(|source| ReportError::ReadBench { path: path.to_owned(), source })?;
         Self::parse(&text).map_err(|source| ReportError::Bench { path: path.to_owned(), source })
     }
 

@@ -5,6 +5,7 @@ mod saved_file;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,8 @@ use std::path::{Path, PathBuf};
 use frixel_hil_sim::TouchConfig;
 use frixel_lab::sweep::Source;
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, parse_touch_source,
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, is_same_name,
+    parse_touch_source,
 };
 use thiserror::Error;
 
@@ -238,7 +240,7 @@ pub struct SceneFolder(pub PathBuf);
 
 impl Files for SceneFolder {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        let path = self.0.join(name);
+        let path = existing(self.0.join(name));
         if path.is_dir() {
             return Err(FileUnavailable::Unreadable { reason: "it is a folder".to_owned() });
         }
@@ -258,6 +260,18 @@ impl Files for SceneFolder {
 
 fn is_toml(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
+/// The path of a file or folder that is there: itself, or one whose parts are written in other characters for the same
+/// text.
+fn existing(path: PathBuf) -> PathBuf {
+    let (Some(name), Some(folder), false) = (path.file_name().and_then(OsStr::to_str), path.parent(), path.exists())
+    else {
+        return path;
+    };
+    let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { existing(folder.to_owned()) };
+    let same = files_in(&folder).into_iter().find(|other| is_same_name(other, name));
+    same.map_or(path.clone(), |same| folder.join(same))
 }
 
 /// The sorted names of the entries of a folder; empty when the folder cannot be read.
@@ -332,6 +346,18 @@ mod tests {
             assert!(!files.is_saved());
             sleep(Duration::from_millis(10));
         }
+    }
+
+    #[test]
+    fn a_picture_is_found_by_its_name_in_other_characters() {
+        let folder = tempfile::tempdir().unwrap();
+        // One character each in the scene, and two in the names of the files.
+        let textures = folder.path().join("gru\u{308}n");
+        fs::create_dir(&textures).unwrap();
+        fs::write(textures.join("cafe\u{301}.png"), b"bytes").unwrap();
+        let files = SceneFolder(folder.path().to_owned());
+        assert_eq!(files.bytes("gr\u{fc}n/caf\u{e9}.png"), Ok(b"bytes".to_vec()));
+        assert!(matches!(files.bytes("gr\u{fc}n/cafe.png"), Err(FileUnavailable::Missing { .. })));
     }
 
     #[test]

@@ -61,9 +61,11 @@ pub enum StreamError {
 ///
 /// If the file has more samples per second than the board has ticks, two or more samples are averaged into one;
 /// [`Feed::settings`] returns the resulting rate.
-pub fn wav(path: &Path, tick_hz: u32) -> Result<Feed, StreamError> {
-    let (sample_hz, samples) = wav::read(path, tick_hz)?;
-    Ok(Feed::of(samples, sample_hz))
+///
+/// Returns what a person should know of the file as well, a sentence each.
+pub fn wav(path: &Path, tick_hz: u32) -> Result<(Feed, Vec<String>), StreamError> {
+    let wav::Wav { sample_hz, samples, notes } = wav::read(path, tick_hz)?;
+    Ok((Feed::of(samples, sample_hz), notes))
 }
 
 /// Reads raw samples, two bytes each, little-endian, from a pipe in a separate thread.

@@ -21,7 +21,48 @@ fn write<S: hound::Sample + Copy>(path: &Path, spec: WavSpec, samples: &[S]) {
 }
 
 fn read(path: &Path) -> (u32, Vec<u16>) {
-    wav::read(path, TICK_HZ).unwrap()
+    let wav = wav::read(path, TICK_HZ).unwrap();
+    (wav.sample_hz, wav.samples)
+}
+
+fn notes(path: &Path) -> Vec<String> {
+    wav::read(path, TICK_HZ).unwrap().notes
+}
+
+/// As programs that write to a pipe leave it, which cannot go back to the header.
+#[test]
+fn a_file_whose_length_is_not_known_plays_to_its_end() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("pipe.wav");
+    let samples: Vec<i32> = (0..8_000).collect();
+    write(&path, spec(2, 8_000, 16, SampleFormat::Int), &samples);
+    let whole = std::fs::read(&path).unwrap();
+    let data = whole.windows(4).position(|name| name == b"data").unwrap();
+    let expected = read(&path);
+    assert!(notes(&path).is_empty());
+    for length in [0xffff_ffff_u32, 0, 0x7fff_f000, 20_000] {
+        let mut changed = whole.clone();
+        changed[data + 4..data + 8].copy_from_slice(&length.to_le_bytes());
+        // Half a frame at the end is left out.
+        changed.extend([1, 2, 3]);
+        std::fs::write(&path, changed).unwrap();
+        assert_eq!(read(&path), expected, "{length}");
+        assert!(notes(&path)[0].contains("the 16000 that are there are played"), "{:?}", notes(&path));
+    }
+    // A file without samples stays one, whatever else it has.
+    let mut empty = whole[..data + 8].to_vec();
+    empty[data + 4..].fill(0);
+    empty.extend(b"LIST\x03\0\0\0abc\0");
+    std::fs::write(&path, empty).unwrap();
+    assert!(matches!(wav::read(&path, TICK_HZ), Err(StreamError::Empty { .. })));
+}
+
+#[test]
+fn floats_beyond_full_scale_are_told() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("loud.wav");
+    write(&path, spec(1, 1_000, 32, SampleFormat::Float), &[-1.0_f32, 1.0, 7.0, -1.5]);
+    assert_eq!(notes(&path), ["2 of 4 samples are beyond -1 to 1, and play as -1 or 1: export it less loud"]);
 }
 
 #[test]

@@ -1,56 +1,164 @@
 //! Reading of WAV files.
 
-use std::io::BufReader;
+use std::io::Cursor;
 use std::path::Path;
 
+use frixel_lab::input::InputError;
 use hound::{SampleFormat, WavReader};
 
 use super::StreamError;
 use crate::input;
 
-/// The sample rate, reduced to at most `max_hz`, and the samples of the first channel.
-pub(super) fn read(path: &Path, max_hz: u32) -> Result<(u32, Vec<u16>), StreamError> {
+/// Most samples of a channel: 25 minutes of 44.1 kHz.
+const FRAMES_MAX: u64 = 64 << 20;
+/// Bytes of a chunk's name and length, and of the names of file and form before the first chunk.
+const CHUNK_HEAD: usize = 8;
+const FORM_HEAD: usize = 12;
+
+/// What a WAV file has for a stream.
+pub(super) struct Wav {
+    /// The sample rate, reduced to at most that of the board's ticks.
+    pub(super) sample_hz: u32,
+    /// The samples of the first channel.
+    pub(super) samples: Vec<u16>,
+    /// What a person should know of them, a sentence each.
+    pub(super) notes: Vec<String>,
+}
+
+/// Reads a WAV file, at `max_hz` samples a second at most.
+pub(super) fn read(path: &Path, max_hz: u32) -> Result<Wav, StreamError> {
     let failed = |source| StreamError::Wav { path: path.to_owned(), source };
-    let file = input::open(path, input::WAV_MAX_BYTES).map_err(|error| failed(error.into()))?;
-    let mut reader = WavReader::new(BufReader::new(file)).map_err(failed)?;
-    let spec = reader.spec();
+    let mut bytes = input::read(path, input::WAV_MAX_BYTES).map_err(|error| failed(error.into()))?;
+    let mut notes = Vec::from_iter(state_length(&mut bytes));
+    let mut reader = WavReader::new(Cursor::new(bytes)).map_err(failed)?;
+    let (spec, frames) = (reader.spec(), u64::from(reader.duration()));
+    if frames > FRAMES_MAX {
+        let too_many = InputError::TooMany { what: "samples in a channel", found: frames, max: FRAMES_MAX };
+        return Err(failed(hound::Error::IoError(too_many.into())));
+    }
+    let together = samples_together(spec.sample_rate, max_hz);
     let channels = usize::from(spec.channels.max(1));
-    let samples: Vec<f64> = match spec.sample_format {
+    let mut means = Means { together, ..Means::default() };
+    match spec.sample_format {
         SampleFormat::Float => {
-            let samples: Result<Vec<f32>, _> = reader.samples().step_by(channels).collect();
-            samples.map_err(failed)?.into_iter().map(|sample| 0.5 + 0.5 * f64::from(sample)).collect()
+            for (index, sample) in reader.samples::<f32>().step_by(channels).enumerate() {
+                let sample = f64::from(sample.map_err(failed)?);
+                if !sample.is_finite() {
+                    return Err(StreamError::NotANumber { path: path.to_owned(), index });
+                }
+                means.push(0.5 + 0.5 * sample);
+            }
         }
         SampleFormat::Int => {
             let steps = (1_u64 << spec.bits_per_sample) - 1;
             let lowest = -(1_i64 << (spec.bits_per_sample - 1));
-            let samples: Result<Vec<i32>, _> = reader.samples().step_by(channels).collect();
-            let part = |sample| (i64::from(sample) - lowest) as f64 / steps as f64;
-            samples.map_err(failed)?.into_iter().map(part).collect()
+            for sample in reader.samples::<i32>().step_by(channels) {
+                means.push((i64::from(sample.map_err(failed)?) - lowest) as f64 / steps as f64);
+            }
         }
-    };
-    if let Some(index) = samples.iter().position(|sample| !sample.is_finite()) {
-        return Err(StreamError::NotANumber { path: path.to_owned(), index });
     }
+    let beyond = means.beyond;
+    let samples = means.finish();
     if samples.is_empty() || spec.sample_rate == 0 {
         return Err(StreamError::Empty { path: path.to_owned() });
     }
-    let together = samples_together(spec.sample_rate, max_hz);
-    Ok((spec.sample_rate / together, means(&samples, together as usize)))
+    if beyond > 0 {
+        notes
+            .push(format!("{beyond} of {frames} samples are beyond -1 to 1, and play as -1 or 1: export it less loud"));
+    }
+    Ok(Wav { sample_hz: spec.sample_rate / together, samples, notes })
+}
+
+/// States the length of the samples in the header of a file that does not know it: a program that writes to a pipe
+/// leaves 0 or a number beyond the end of the file. Returns what was done.
+fn state_length(wav: &mut [u8]) -> Option<String> {
+    let mut at = FORM_HEAD;
+    let mut frame_bytes = 1;
+    let (start, stated) = loop {
+        let (name, len) = chunk(wav, at)?;
+        let start = at + CHUNK_HEAD;
+        match &name {
+            b"data" => break (start, len),
+            b"fmt " => {
+                let align = wav.get(start + 12..start + 14)?.try_into().ok()?;
+                frame_bytes = usize::from(u16::from_le_bytes(align)).max(1);
+            }
+            _ => {}
+        }
+        at = after(start, len)?;
+    };
+    let there = wav.len() - start;
+    if stated > there || (stated == 0 && there > 0 && !are_chunks(wav, start)) {
+        let whole = there - there % frame_bytes;
+        let len = u32::try_from(whole).ok()?.to_le_bytes();
+        wav.get_mut(start - 4..start)?.copy_from_slice(&len);
+        return Some(format!(
+            "its header says that it has {stated} bytes of samples, as one that was written to a pipe; the {whole} that are there \
+             are played"
+        ));
+    }
+    None
+}
+
+/// Name and length of the chunk that begins here.
+fn chunk(wav: &[u8], at: usize) -> Option<([u8; 4], usize)> {
+    let head = wav.get(at..at + CHUNK_HEAD)?;
+    let (name, len) = head.split_first_chunk::<4>()?;
+    Some((*name, usize::try_from(u32::from_le_bytes(len.try_into().ok()?)).ok()?))
+}
+
+/// Where the next chunk begins: at an even offset.
+fn after(start: usize, len: usize) -> Option<usize> {
+    start.checked_add(len)?.checked_next_multiple_of(2)
+}
+
+/// Whether the rest of the file is whole chunks.
+fn are_chunks(wav: &[u8], mut at: usize) -> bool {
+    while let Some((_, len)) = chunk(wav, at) {
+        let Some(next) = after(at + CHUNK_HEAD, len) else { return false };
+        at = next;
+    }
+    at >= wav.len() && at <= wav.len() + 1
 }
 
 /// The least number of samples to average into one such that the rate is at most `max_hz` and an integer.
 fn samples_together(sample_hz: u32, max_hz: u32) -> u32 {
     let least = sample_hz.div_ceil(max_hz.max(1)).max(1);
-    (least..=sample_hz).find(|together| sample_hz.is_multiple_of(*together)).unwrap_or(sample_hz)
+    (least..=sample_hz).find(|together| sample_hz.is_multiple_of(*together)).unwrap_or(sample_hz.max(1))
 }
 
 /// Means of `together` samples each, where 1 becomes 65,535.
-fn means(samples: &[f64], together: usize) -> Vec<u16> {
-    samples
-        .chunks(together)
-        .map(|few| {
-            let mean = few.iter().sum::<f64>() / few.len() as f64;
-            (65_535.0 * mean.clamp(0.0, 1.0)).round() as u16
-        })
-        .collect()
+#[derive(Default)]
+struct Means {
+    together: u32,
+    sum: f64,
+    count: u32,
+    means: Vec<u16>,
+    /// Samples that are not from 0 to 1.
+    beyond: u64,
+}
+
+impl Means {
+    fn push(&mut self, sample: f64) {
+        self.beyond += u64::from(!(0.0..=1.0).contains(&sample));
+        self.sum += sample;
+        self.count += 1;
+        if self.count == self.together {
+            self.end();
+        }
+    }
+
+    fn end(&mut self) {
+        let mean = self.sum / f64::from(self.count);
+        self.means.push((65_535.0 * mean.clamp(0.0, 1.0)).round() as u16);
+        (self.sum, self.count) = (0.0, 0);
+    }
+
+    /// The means, the last one of fewer samples.
+    fn finish(mut self) -> Vec<u16> {
+        if self.count > 0 {
+            self.end();
+        }
+        self.means
+    }
 }

@@ -6,7 +6,9 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use flatbuffers::{FlatBufferBuilder, TableFinishedWIPOffset, UnionWIPOffset, VOffsetT, WIPOffset};
+use flatbuffers::{
+    FlatBufferBuilder, ForwardsUOffset, TableFinishedWIPOffset, UnionWIPOffset, VOffsetT, Vector, WIPOffset,
+};
 
 use super::{Field, Kind};
 
@@ -28,13 +30,15 @@ const CONTINUATION: [u8; 4] = [0xff; 4];
 
 type Table = WIPOffset<TableFinishedWIPOffset>;
 
-/// The schema of these columns, in base64.
-pub(super) fn encoded(fields: &[Field]) -> String {
+/// The schema of these columns with this metadata, in base64.
+pub(super) fn encoded(fields: &[Field], metadata: &[(&str, &str)]) -> String {
     let mut builder = FlatBufferBuilder::new();
+    let metadata = pairs(&mut builder, metadata);
     let fields: Vec<Table> = fields.iter().map(|column| field(&mut builder, column)).collect();
     let fields = builder.create_vector(&fields);
     let table = builder.start_table();
     builder.push_slot_always(slot(1), fields);
+    builder.push_slot_always(slot(2), metadata);
     let schema = builder.end_table(table);
     let table = builder.start_table();
     builder.push_slot_always(slot(0), VERSION);
@@ -52,19 +56,9 @@ pub(super) fn encoded(fields: &[Field]) -> String {
 /// A `Field` with its unit and meaning as metadata.
 fn field(builder: &mut FlatBufferBuilder<'_>, column: &Field) -> Table {
     let name = builder.create_string(&column.name);
-    let texts = [("unit", &column.unit), ("meaning", &column.meaning)];
-    let pairs: Vec<Table> = texts
-        .into_iter()
-        .filter(|(_, value)| !value.is_empty())
-        .map(|(key, value)| {
-            let (key, value) = (builder.create_string(key), builder.create_string(value));
-            let table = builder.start_table();
-            builder.push_slot_always(slot(0), key);
-            builder.push_slot_always(slot(1), value);
-            builder.end_table(table)
-        })
-        .collect();
-    let pairs = builder.create_vector(&pairs);
+    let texts = [("unit", column.unit.as_str()), ("meaning", column.meaning.as_str())];
+    let known: Vec<(&str, &str)> = texts.into_iter().filter(|(_, value)| !value.is_empty()).collect();
+    let pairs = pairs(builder, &known);
     let children = builder.create_vector::<Table>(&[]);
     let (number, of_type) = of_kind(builder, column.kind);
     let table = builder.start_table();
@@ -75,6 +69,22 @@ fn field(builder: &mut FlatBufferBuilder<'_>, column: &Field) -> Table {
     builder.push_slot_always(slot(5), children);
     builder.push_slot_always(slot(6), pairs);
     builder.end_table(table)
+}
+
+/// A list of `KeyValue`.
+fn pairs<'b>(
+    builder: &mut FlatBufferBuilder<'b>,
+    texts: &[(&str, &str)],
+) -> WIPOffset<Vector<'b, ForwardsUOffset<TableFinishedWIPOffset>>> {
+    let pair = |(key, value): &(&str, &str)| {
+        let (key, value) = (builder.create_string(key), builder.create_string(value));
+        let table = builder.start_table();
+        builder.push_slot_always(slot(0), key);
+        builder.push_slot_always(slot(1), value);
+        builder.end_table(table)
+    };
+    let pairs: Vec<Table> = texts.iter().map(pair).collect();
+    builder.create_vector(&pairs)
 }
 
 /// The number of a type, and its table.

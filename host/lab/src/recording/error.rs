@@ -1,7 +1,10 @@
 //! Why a recording cannot be read or written.
 
+use frixel_scene::brief;
 use parquet::errors::ParquetError;
 use thiserror::Error;
+
+use crate::input::InputError;
 
 /// Why a recording cannot be read or written.
 #[derive(Debug, Error)]
@@ -20,11 +23,24 @@ pub enum RecordingError {
     /// Parquet that is damaged, or of a kind that is not read.
     #[error("its Parquet cannot be read ({0}): take another copy, or record anew")]
     Damaged(ParquetError),
+    /// Content that is not what was written.
+    #[error(
+        "its content has another hash than it says: it is damaged, or another program has written it anew; take another copy, or record anew"
+    )]
+    Changed,
+    /// More than is read, by what the file says of itself.
+    #[error("{0}: give a recording that `frixel play --record` has written")]
+    TooMuch(#[from] InputError),
+    /// Columns in columns, or structs in structs of the metadata.
+    #[error(
+        "its columns have columns in them, and those of a recording are flat: give one that `frixel play --record` has written"
+    )]
+    Nested,
     /// Parquet of another program.
     #[error("it is a Parquet file without frixel's metadata: give one that `frixel play --record` has written")]
     Foreign,
     /// A format of the future.
-    #[error("it has format {found}, and this frixel reads format {known}: update frixel")]
+    #[error("it has format {}, and this frixel reads format {known}: update frixel", brief(.found))]
     Newer {
         /// Its format.
         found: String,

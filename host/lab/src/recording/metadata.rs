@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+use crate::hash::{hex, sha256};
+
 /// Bytes of all files of a recording that are kept as they are; of further ones, only the hash is.
 pub(super) const EMBEDDED_MAX_BYTES: usize = 4 << 20;
 
@@ -165,7 +167,7 @@ impl SourceFile {
                 left = rest;
                 std::str::from_utf8(bytes).map_or_else(|_| Self::Hex(hex(bytes)), |text| Self::Text(text.to_owned()))
             }
-            None => Self::Hash { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() },
+            None => Self::Hash { sha256: sha256(bytes), bytes: bytes.len() },
         };
         files.into_iter().map(|(name, bytes)| (name, file(bytes))).collect()
     }
@@ -215,12 +217,6 @@ impl GrowingFile {
             SourceFile::Hash { sha256: hex(&self.hash.finalize()), bytes: self.bytes }
         }
     }
-}
-
-/// Bytes in hexadecimal digits.
-fn hex(bytes: &[u8]) -> String {
-    let digit = |nibble: u8| char::from_digit(nibble.into(), 16).unwrap_or_default();
-    bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()
 }
 
 fn from_hex(digits: &str) -> Option<Vec<u8>> {

@@ -6,6 +6,7 @@
 //! simulated one again.
 
 mod arrow_schema;
+mod claims;
 mod error;
 mod fields;
 mod metadata;
@@ -15,6 +16,7 @@ mod play_options;
 mod prepared_play;
 mod replay;
 mod replayed_changes;
+mod seal;
 
 use std::fmt::{self, Display};
 

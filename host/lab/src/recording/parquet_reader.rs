@@ -7,17 +7,24 @@ use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result as ParquetResult};
-use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::metadata::{FooterTail, ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use serde::de::DeserializeOwned;
 
 use super::parquet_writer::{
     FORMAT, KEY_COLUMNS, KEY_FILES, KEY_FORMAT, KEY_LATER_SCENES, KEY_MARKERS, KEY_RECORDING, KEY_SCENE,
 };
-use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values};
+use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values, claims, seal};
 
 /// First and last bytes of a Parquet file.
 pub(crate) const MAGIC: &[u8; 4] = b"PAR1";
+/// Bytes of a footer's length and of the last bytes behind it.
+const TAIL_BYTES: usize = 8;
+/// Most ends of a footer, from the last on, that are tried where the end is missing. In one that was cut off the first of
+/// them is whole, unless a value has the same bytes.
+const FOOTERS_MAX: u32 = 16;
+/// Most bytes of all texts: the flags of a play take some 10 a row.
+const TEXTS_MAX_BYTES: u64 = 256 << 20;
 
 impl Recording {
     /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. Of a file whose writer was
@@ -38,12 +45,17 @@ fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
     if !bytes.starts_with(MAGIC) {
         return Err(RecordingError::NoParquet);
     }
-    let whole = whole_part(bytes)?;
+    let (whole, footer) = whole_part(bytes)?;
     let is_cut_off = whole.len() < bytes.len();
-    let file = SerializedFileReader::new(whole).map_err(RecordingError::Damaged)?;
+    let file = SerializedFileReader::new(whole.clone()).map_err(RecordingError::Damaged)?;
     let (metadata, fields) = metadata_of(file.metadata())?;
+    if !seal::is_whole(&whole, footer) {
+        return Err(RecordingError::Changed);
+    }
+    claims::check_pages(&whole, file.metadata())?;
+    let mut text_bytes = 0;
     let columns = fields.into_iter().enumerate().map(|(index, field)| {
-        let values = values(&file, index, &field)?;
+        let values = values(&file, index, &field, &mut text_bytes)?;
         Ok(Column { field, values })
     });
     let columns = columns.collect::<Result<Vec<_>, RecordingError>>()?;
@@ -57,34 +69,51 @@ fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
 /// little-endian number in the first four of the last eight.
 pub fn is_of_person(end: &[u8]) -> bool {
     let metadata = || {
-        let (before, [a, b, c, d, ..]) = end.split_last_chunk::<8>()?;
-        let len = usize::try_from(u32::from_le_bytes([*a, *b, *c, *d])).ok()?;
-        let encoded = before.get(before.len().checked_sub(len)?..)?;
+        let encoded = end.get(footer_start(end).ok()?..end.len().checked_sub(TAIL_BYTES)?)?;
+        claims::check_footer(encoded).ok()?;
         metadata_of(&ParquetMetaDataReader::decode_metadata(encoded).ok()?).ok()
     };
-    metadata().is_some_and(|(metadata, _)| !metadata.is_simulated)
+    let metadata = catch_unwind(metadata).unwrap_or_default();
+    metadata.is_some_and(|(metadata, _)| !metadata.is_simulated)
 }
 
-/// The file up to its last whole footer: all of it, unless its writer was killed.
-fn whole_part(bytes: &Bytes) -> Result<Bytes, RecordingError> {
+/// Where the footer begins whose last bytes these are.
+pub(super) fn footer_start(bytes: &[u8]) -> ParquetResult<usize> {
+    let tail = bytes.last_chunk().ok_or_else(|| ParquetError::EOF("it has no footer".to_owned()))?;
+    let len = FooterTail::try_new(tail)?.metadata_length();
+    let start = bytes.len().checked_sub(TAIL_BYTES).and_then(|end| end.checked_sub(len));
+    start.ok_or_else(|| ParquetError::EOF("its footer is longer than it".to_owned()))
+}
+
+/// The file up to its last whole footer, which is all of it unless its writer was killed, and where the footer begins.
+fn whole_part(bytes: &Bytes) -> Result<(Bytes, usize), RecordingError> {
     let read = |end: usize| {
         let part = bytes.slice(..end);
-        ParquetMetaDataReader::new().parse_and_finish(&part).map(|_| part)
+        let start = footer_start(&part).map_err(RecordingError::Damaged)?;
+        claims::check_footer(part.get(start..end - TAIL_BYTES).unwrap_or_default())?;
+        let parsed = ParquetMetaDataReader::new().parse_and_finish(&part);
+        parsed.map(|_| (part, start)).map_err(RecordingError::Damaged)
     };
     let error = match read(bytes.len()) {
-        Ok(whole) => return Ok(whole),
-        Err(error) => error,
+        Err(RecordingError::Damaged(error)) => error,
+        other => return other,
     };
     let mut end = bytes.len();
+    let mut tried = 0;
     // A file shorter than this has no footer.
     while let Some(at) = bytes.get(MAGIC.len()..end).and_then(|part| part.windows(4).rposition(|four| four == MAGIC)) {
         end = at + 2 * MAGIC.len();
-        if let Ok(whole) = read(end) {
-            return Ok(whole);
+        match read(end) {
+            Err(RecordingError::Damaged(_)) => {}
+            other => return other,
         }
         end -= 1;
+        tried += 1;
+        if tried == FOOTERS_MAX {
+            return Err(RecordingError::Damaged(error));
+        }
     }
-    if bytes.ends_with(MAGIC) && bytes.len() > 12 {
+    if bytes.ends_with(MAGIC) && bytes.len() > MAGIC.len() + TAIL_BYTES {
         Err(RecordingError::Damaged(error))
     } else {
         Err(RecordingError::Truncated)
@@ -116,7 +145,12 @@ fn json<T: DeserializeOwned>(key: &'static str, text: Option<&str>) -> Result<T,
 }
 
 /// The values of a column over all row groups.
-fn values(file: &SerializedFileReader<Bytes>, index: usize, field: &Field) -> Result<Values, RecordingError> {
+fn values(
+    file: &SerializedFileReader<Bytes>,
+    index: usize,
+    field: &Field,
+    text_bytes: &mut u64,
+) -> Result<Values, RecordingError> {
     let described = file.metadata().file_metadata().schema_descr().columns().get(index).cloned();
     let physical = match field.kind {
         Kind::Number => Physical::DOUBLE,
@@ -131,7 +165,7 @@ fn values(file: &SerializedFileReader<Bytes>, index: usize, field: &Field) -> Re
     }
     let mut values = Values::none(field.kind);
     for group in 0..file.num_row_groups() {
-        read_group(file, group, index, &mut values).map_err(RecordingError::Damaged)?;
+        read_group(file, group, index, &mut values, text_bytes).map_err(RecordingError::Damaged)?;
     }
     Ok(values)
 }
@@ -141,6 +175,7 @@ fn read_group(
     group: usize,
     index: usize,
     values: &mut Values,
+    text_bytes: &mut u64,
 ) -> ParquetResult<()> {
     let group = file.get_row_group(group)?;
     let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
@@ -152,7 +187,13 @@ fn read_group(
             values.extend(read_column(column, rows)?);
         }
         (ColumnReader::ByteArrayColumnReader(column), Values::Texts(values)) => {
-            for bytes in read_column(column, rows)? {
+            let texts = read_column(column, rows)?;
+            // The values of a dictionary share their bytes, and texts do not.
+            *text_bytes += texts.iter().flatten().map(|text| text.len() as u64).sum::<u64>();
+            if *text_bytes > TEXTS_MAX_BYTES {
+                return Err(ParquetError::General(format!("its texts have more than {TEXTS_MAX_BYTES} bytes")));
+            }
+            for bytes in texts {
                 let text = bytes.map(|bytes| bytes.as_utf8().map(str::to_owned)).transpose()?;
                 values.push(text);
             }

@@ -10,7 +10,9 @@ use parquet::file::metadata::{FileMetaData, KeyValue, ParquetMetaData, ParquetMe
 use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterVersion};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{SchemaDescriptor, Type};
+use serde::Serialize;
 
+use super::seal::{self, Hashed};
 use super::{Column, Field, Kind, Metadata, ROWS_PER_GROUP, Recording, RecordingError, Values, arrow_schema};
 
 /// Number of the format, in the metadata `frixel.format`.
@@ -23,6 +25,8 @@ pub(super) const KEY_FILES: &str = "frixel.files";
 pub(super) const KEY_LATER_SCENES: &str = "frixel.later_scenes";
 pub(super) const KEY_MARKERS: &str = "frixel.markers";
 pub(super) const KEY_COLUMNS: &str = "frixel.columns";
+/// Key of what pandas has as `DataFrame.attrs`, a JSON object.
+const KEY_PANDAS: &str = "PANDAS_ATTRS";
 
 impl Recording {
     /// Writes the recording as a Parquet file.
@@ -38,7 +42,7 @@ impl Recording {
 /// metadata of its fields.
 pub fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingError> {
     let fields: Vec<Field> = columns.iter().map(|column| column.field.clone()).collect();
-    let pairs = vec![KeyValue::new(key_name(arrow_schema::KEY), arrow_schema::encoded(&fields))];
+    let pairs = vec![KeyValue::new(key_name(arrow_schema::KEY), arrow_schema::encoded(&fields, &[]))];
     let mut bytes = Vec::new();
     let mut writer = ParquetWriter::new(&mut bytes, fields)?;
     writer.write_all(columns)?;
@@ -52,7 +56,7 @@ pub fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingError> {
 /// After each [`Self::end`], what was written is a whole Parquet file. More row groups may follow: a footer that others
 /// follow is skipped by readers. So a file that grows is lost only from the last `end` on.
 pub struct ParquetWriter<W: Write + Send> {
-    writer: SerializedFileWriter<W>,
+    writer: SerializedFileWriter<Hashed<W>>,
     fields: Vec<Field>,
     rows: i64,
 }
@@ -67,7 +71,7 @@ impl<W: Write + Send> ParquetWriter<W> {
             .set_offset_index_disabled(true)
             .build();
         let schema = schema(&fields).map_err(RecordingError::Write)?;
-        let writer = SerializedFileWriter::new(to, Arc::new(schema), Arc::new(properties));
+        let writer = SerializedFileWriter::new(Hashed::new(to), Arc::new(schema), Arc::new(properties));
         Ok(Self { writer: writer.map_err(RecordingError::Write)?, fields, rows: 0 })
     }
 
@@ -93,13 +97,16 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     fn end_with(&mut self, pairs: Vec<KeyValue>, version: &str) -> Result<(), RecordingError> {
-        let end = |writer: &mut SerializedFileWriter<W>| -> ParquetResult<()> {
+        let end = |writer: &mut SerializedFileWriter<Hashed<W>>| -> ParquetResult<()> {
             let schema = Arc::new(SchemaDescriptor::new(writer.schema_descr().root_schema_ptr()));
             let created_by = format!("frixel version {version}");
             let file = FileMetaData::new(1, self.rows, Some(created_by), Some(pairs), schema, None);
             let whole = ParquetMetaData::new(file, writer.flushed_row_groups().to_vec());
             let mut footer = Vec::new();
             ParquetMetaDataWriter::new(&mut footer, &whole).finish()?;
+            // What is still in a buffer is hashed, too.
+            writer.flush()?;
+            writer.inner().seal(&mut footer);
             writer.write_all(&footer)?;
             Ok(writer.flush()?)
         };
@@ -108,26 +115,40 @@ impl<W: Write + Send> ParquetWriter<W> {
 
     /// Where the file goes. What is written there by others makes the file unreadable; a buffer may be emptied.
     pub fn get_mut(&mut self) -> &mut W {
-        self.writer.inner_mut()
+        &mut self.writer.inner_mut().to
     }
 }
 
-/// The metadata as pairs of keys and values.
+/// The metadata as pairs of keys and values: those that readers of Parquet see, and the same in the Arrow schema, where
+/// pyarrow and pandas look for them. The hash is last.
 fn pairs(metadata: &Metadata, fields: &[Field]) -> Result<Vec<KeyValue>, RecordingError> {
-    let json = |key, value: Result<String, serde_json::Error>| match value {
-        Ok(text) => Ok(KeyValue::new(key_name(key), text)),
-        Err(source) => Err(RecordingError::Metadata { key, source }),
+    let mut pairs = vec![
+        (KEY_FORMAT, FORMAT.to_string()),
+        (KEY_SCENE, metadata.scene.clone()),
+        (KEY_RECORDING, json(KEY_RECORDING, metadata)?),
+        (KEY_MARKERS, json(KEY_MARKERS, &metadata.markers)?),
+        (KEY_COLUMNS, json(KEY_COLUMNS, fields)?),
+    ];
+    // The first two are texts.
+    let member = |(number, (key, text)): (usize, &(&'static str, String))| {
+        let value = if number < 2 { json(key, text)? } else { text.clone() };
+        Ok(format!("{key:?}:{value}"))
     };
-    Ok(vec![
-        KeyValue::new(key_name(KEY_FORMAT), FORMAT.to_string()),
-        json(KEY_RECORDING, serde_json::to_string(metadata))?,
-        KeyValue::new(key_name(KEY_SCENE), metadata.scene.clone()),
-        json(KEY_FILES, serde_json::to_string(&metadata.files))?,
-        json(KEY_LATER_SCENES, serde_json::to_string(&metadata.later_scenes))?,
-        json(KEY_MARKERS, serde_json::to_string(&metadata.markers))?,
-        json(KEY_COLUMNS, serde_json::to_string(fields))?,
-        KeyValue::new(key_name(arrow_schema::KEY), arrow_schema::encoded(fields)),
-    ])
+    let members = pairs.iter().enumerate().map(member).collect::<Result<Vec<_>, RecordingError>>()?;
+    let attributes = format!("{{{}}}", members.join(","));
+    pairs.extend([
+        (KEY_FILES, json(KEY_FILES, &metadata.files)?),
+        (KEY_LATER_SCENES, json(KEY_LATER_SCENES, &metadata.later_scenes)?),
+    ]);
+    let pandas = (KEY_PANDAS, attributes.as_str());
+    let in_arrow: Vec<(&str, &str)> = pairs.iter().map(|(key, text)| (*key, text.as_str())).chain([pandas]).collect();
+    let schema = arrow_schema::encoded(fields, &in_arrow);
+    pairs.extend([(arrow_schema::KEY, schema), (seal::KEY, seal::UNKNOWN.to_owned())]);
+    Ok(pairs.into_iter().map(|(key, text)| KeyValue::new(key_name(key), text)).collect())
+}
+
+fn json<T: Serialize + ?Sized>(key: &'static str, value: &T) -> Result<String, RecordingError> {
+    serde_json::to_string(value).map_err(|source| RecordingError::Metadata { key, source })
 }
 
 fn key_name(key: &str) -> String {

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use frixel_felt::recorder::MarkedEvent;
 use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
 use frixel_play::Feed;
-use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile_draft, parse_touch_source};
+use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, brief, compile_draft, parse_touch_source};
 use thiserror::Error;
 
 use super::prepared_play::{PreparedPlay, PreparedPlayError};
@@ -34,7 +34,7 @@ pub enum ReplayError {
     #[error("it is of a board at a port, under a person's finger")]
     Board,
     /// Another version made it, and this one may play otherwise.
-    #[error("frixel {found} recorded it, and this is {}: use that version", Metadata::VERSION)]
+    #[error("frixel {} recorded it, and this is {}: use that version", brief(.found), Metadata::VERSION)]
     OtherVersion {
         /// The version.
         found: String,
@@ -49,19 +49,19 @@ pub enum ReplayError {
     #[error("samples were streamed into it (--stream), which the recording does not have")]
     Streamed,
     /// A file of it was too large to be kept.
-    #[error("it has only the hash of the file {name}, which is large")]
+    #[error("it has only the hash of the file {}, which is large", brief(.name))]
     OnlyHash {
         /// What the file is.
         name: String,
     },
     /// A file of it is not there, or damaged.
-    #[error("it has not the file {name} that it was played with, or a damaged one: take the recording from a copy")]
+    #[error("it has not the file {} that it was played with, or a damaged one: take the recording from a copy", brief(.name))]
     MissingFile {
         /// What the file is.
         name: String,
     },
     /// A profile of another frixel.
-    #[error("this frixel has no {what} called {name}: use the one that recorded it")]
+    #[error("this frixel has no {what} called {}: use the one that recorded it", brief(.name))]
     NotBundled {
         /// What it is.
         what: &'static str,

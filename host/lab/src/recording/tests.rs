@@ -192,7 +192,11 @@ fn what_is_no_recording_is_refused_with_what_to_do() {
     let value = format + 13 + 2;
     assert_eq!(own[value], b'1');
     let newer = [&own[..value], b"2", &own[value + 1..]].concat();
-    let cases: [(Vec<u8>, &str); 8] = [
+    let sealed = |bytes: Vec<u8>| {
+        let footer = parquet_reader::footer_start(&bytes).unwrap();
+        seal::sealed(bytes, footer)
+    };
+    let cases: [(Vec<u8>, &str); 9] = [
         (Vec::new(), "it is empty"),
         (b"t_s,x_mm\n".to_vec(), "no Parquet file"),
         (own[..own.len() - 1].to_vec(), "its end is missing"),
@@ -200,7 +204,8 @@ fn what_is_no_recording_is_refused_with_what_to_do() {
         (foreign, "without frixel's metadata"),
         (newer, "format 2, and this frixel reads format 1"),
         (replaced("\"is_simulated\":true", "\"is_simulated\":1234"), "`frixel.recording` cannot be read"),
-        (replaced("\"name\":\"felt_n\"", "\"name\":\"melt_n\""), "not those that its metadata names"),
+        (sealed(replaced("\"name\":\"felt_n\"", "\"name\":\"melt_n\"")), "not those that its metadata names"),
+        (replaced("\"participant\":\"P07\"", "\"participant\":\"P08\""), "its content has another hash than it says"),
     ];
     for (bytes, says) in cases {
         let error = Recording::read_parquet(bytes).unwrap_err().to_string();
@@ -208,14 +213,31 @@ fn what_is_no_recording_is_refused_with_what_to_do() {
     }
 }
 
-/// Bytes that are wrong anywhere are an error or a recording, and no panic.
+/// Bytes that are wrong anywhere are an error, also where the hash is that of the wrong bytes, and no panic.
 #[test]
-fn a_damaged_file_is_no_panic() {
-    let own = bytes(&recording(200));
-    for at in (0..own.len()).step_by(own.len() / 400) {
+fn a_damaged_file_is_refused() {
+    let own = bytes(&recording(20));
+    let footer = parquet_reader::footer_start(&own).unwrap();
+    for at in 0..own.len() {
         let mut damaged = own.clone();
-        damaged[at] ^= 0x5a;
-        let _ = Recording::read_parquet(damaged);
-        let _ = Recording::read_parquet(own[..at].to_vec());
+        damaged[at] ^= 1 << (at % 8);
+        assert!(Recording::read_parquet(damaged.clone()).is_err(), "byte {at} of {}", own.len());
+        assert!(Recording::read_parquet(own[..at].to_vec()).is_err());
+        if at < footer {
+            let _ = Recording::read_parquet(seal::sealed(damaged, footer));
+        }
+    }
+}
+
+/// A file that grows has a whole footer among its last ends, and one with thousands is no such file.
+#[test]
+fn few_ends_of_a_file_are_tried() {
+    let own = bytes(&recording(20));
+    let end = [&[0x15; 40][..], &40_u32.to_le_bytes(), parquet_reader::MAGIC].concat();
+    let with = |ends: usize| Recording::read_parquet([own.clone(), end.repeat(ends)].concat());
+    assert!(with(15).unwrap().is_cut_off);
+    for ends in [16, 20_000] {
+        let error = with(ends).unwrap_err().to_string();
+        assert!(error.contains("its Parquet cannot be read"), "{error}");
     }
 }

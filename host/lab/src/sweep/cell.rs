@@ -8,15 +8,15 @@ use frixel_hil_sim::{Person, RigConfig, StrokeError, TouchConfig};
 use frixel_model::ParameterError as ContactError;
 use frixel_scene::{CompileError, Program, Scene, Screen, compile, parse_touch_source};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use super::parameter::Value;
+use crate::hash::sha256;
 use crate::score::{Score, TrialFinger, TrialPlan, Verdicts, Way};
 use crate::simulation::SimulationError;
 
-/// Bytes of a hash that make a key.
-const KEY_BYTES: usize = 16;
+/// Digits of a hash that make a key.
+const KEY_DIGITS: usize = 32;
 
 /// What the strokes of simulated people are made after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,6 +90,8 @@ pub struct LayerResult {
 /// What one finger noticed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellResult {
+    /// Key of the cell.
+    pub cell: String,
     /// Name of the scene.
     pub scene: String,
     /// The values that the plan set.
@@ -152,9 +154,9 @@ impl Cell {
     pub fn key(&self) -> String {
         // Numbers, strings and maps with names always serialise.
         let content = serde_json::to_vec(self).unwrap_or_default();
-        let hash = Sha256::digest(content);
-        let digits = hash.iter().take(KEY_BYTES).flat_map(|byte| [byte >> 4, byte & 15]);
-        digits.filter_map(|digit| char::from_digit(digit.into(), 16)).collect()
+        let mut digits = sha256(&content);
+        digits.truncate(KEY_DIGITS);
+        digits
     }
 
     /// What the cell is called in messages: its scene, and the values that the plan sets.
@@ -240,6 +242,7 @@ impl Cell {
             contrast_weber_steps: layer.contrast_weber_steps,
         };
         CellResult {
+            cell: self.key(),
             scene: self.scene.clone(),
             parameters: self.parameters.clone(),
             screen: self.screen.as_ref().map(|screen| screen.name.clone()),

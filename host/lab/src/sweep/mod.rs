@@ -10,6 +10,7 @@ mod parameter;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
 mod plan;
+mod result_file;
 mod study;
 #[cfg(not(target_arch = "wasm32"))]
 mod tables;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 pub use cell::{Cell, CellError, CellResult, Hand, LayerResult, Profile};
 pub use parameter::{ParameterError, Value};
 pub use plan::{Plan, PlanError, Range, Source, Values};
+pub use result_file::CellResultError;
 pub use study::{Group, LayerShare, Study};
 #[cfg(not(target_arch = "wasm32"))]
 pub use tables::StudyError;

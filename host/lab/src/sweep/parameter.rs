@@ -1,5 +1,6 @@
 //! A field of a scene by its path, and the values that a sweep gives it.
 
+use frixel_scene::brief;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, TableLike};
@@ -66,7 +67,7 @@ pub enum ParameterError {
         reason: String,
     },
     /// There is no layer of this number.
-    #[error("parameter \"{path}\": {scene} has no layer {found}: it has {layers}")]
+    #[error("parameter \"{}\": {scene} has no layer {}: it has {layers}", brief(.path), brief(.found))]
     NoLayer {
         /// Path of the field.
         path: String,
@@ -79,8 +80,8 @@ pub enum ParameterError {
     },
     /// The path leads through a field that has no fields, or to one that has.
     #[error(
-        "parameter \"{path}\": \"{part}\" is no place for a value in {scene}; a path is that of one field, such as \
-         \"drive.voltage_max_v_rms\" or \"layer.2.high_n\""
+        "parameter \"{}\": \"{}\" is no place for a value in {scene}; a path is that of one field, such as \
+         \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"", brief(.path), brief(.part)
     )]
     NoField {
         /// Path of the field.

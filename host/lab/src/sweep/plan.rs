@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::Screen;
+use frixel_scene::{Screen, brief, check_toml};
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -12,6 +12,9 @@ use super::parameter::{ParameterError, Value, with_field};
 
 /// Most cells of a plan.
 const CELLS_MAX: usize = 1_000_000;
+
+/// Most parts of a parameter's path.
+const PATH_PARTS_MAX: usize = 64;
 
 /// Which cells there are: every combination of what the lists have.
 ///
@@ -129,7 +132,7 @@ pub enum PlanError {
         reason: String,
     },
     /// A value is out of its range.
-    #[error("{name}: {field} is {found}: give {expected}")]
+    #[error("{name}: {} is {}: give {expected}", brief(.field), brief(.found))]
     OutOfRange {
         /// Name of the file.
         name: String,
@@ -156,11 +159,12 @@ pub enum PlanError {
 impl Plan {
     /// Reads the text of a plan. Messages call the file `name`.
     pub fn parse(text: &str, name: &str) -> Result<Self, PlanError> {
-        let not_a_plan = |error: toml::de::Error| PlanError::NotAPlan {
-            name: name.to_owned(),
-            reason: error.to_string().trim_end().to_owned(),
+        let not_a_plan = |reason: String| {
+            let lines: Vec<_> = reason.trim_end().lines().map(brief).collect();
+            PlanError::NotAPlan { name: name.to_owned(), reason: lines.join("\n") }
         };
-        let plan: Self = toml::from_str(text).map_err(not_a_plan)?;
+        check_toml(text).map_err(|(_, mistake)| not_a_plan(mistake.to_string()))?;
+        let plan: Self = toml::from_str(text).map_err(|error: toml::de::Error| not_a_plan(error.to_string()))?;
         plan.check(name)?;
         Ok(plan)
     }
@@ -187,6 +191,10 @@ impl Plan {
             return refuse("median_speed_mm_per_s", speed.to_string(), "a speed from 1 to 1000");
         }
         for (path, values) in &self.parameters {
+            let parts = path.split('.').count();
+            if parts > PATH_PARTS_MAX {
+                return refuse(path, format!("a path of {parts} parts"), "the path of a field, of at most 64 parts");
+            }
             match values {
                 Values::List(values) if values.is_empty() => {
                     return refuse(path, "empty".to_owned(), "a list of values, or { from, to, count }");
@@ -287,4 +295,27 @@ pub struct Source {
     pub text: String,
     /// The bytes of the files that the scene names, by these names.
     pub files: BTreeMap<String, Vec<u8>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A path of 5,000 parts, and tables as deep, ended the process.
+    #[test]
+    fn a_plan_without_end_is_one_short_sentence() {
+        let plan = |rest: &str| Plan::parse(&format!("scenes = [\"a.toml\"]\npeople = 1\n{rest}"), "plan.toml");
+        let path = |parts: usize| vec!["a"; parts].join(".");
+        assert!(plan(&format!("[parameters]\n\"{}\" = [1]\n", path(64))).is_ok());
+        for (rest, says) in [
+            (format!("[parameters]\n\"{}\" = [1]\n", path(5_000)), "is a path of 5000 parts: give the path of a field"),
+            (format!("[parameters]\n{} = [1]\n", path(1_000_000)), "in one another, and at most 64 are read"),
+            (format!("[parameters]\na = {}\n", "[".repeat(100_000)), "in one another, and at most 64 are read"),
+            (format!("#{}\n", "#".repeat(5 << 20)), "bytes in this text, and at most 4194304 are read"),
+            (format!("{} = 1\n", "a".repeat(100_000)), "unknown field"),
+        ] {
+            let error = plan(&rest).unwrap_err().to_string();
+            assert!(error.contains(says) && error.len() < 1_000, "{says}: {error}");
+        }
+    }
 }

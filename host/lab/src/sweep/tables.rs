@@ -243,6 +243,7 @@ mod tests {
             BTreeMap::from(pairs.map(|(path, value)| (path.to_owned(), value)))
         };
         let result = |person, parameters, verdict| CellResult {
+            cell: String::new(),
             scene: "a \"b\".toml".to_owned(),
             parameters,
             screen: None,

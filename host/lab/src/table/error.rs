@@ -4,6 +4,8 @@ use std::error::Error;
 use std::fmt::{self, Display, Formatter};
 use std::io;
 
+use frixel_scene::brief;
+
 /// Why a table, or a row of it, cannot be read.
 ///
 /// [`Display`] says what was found and what to do; [`Self::found`] says the former alone, for a caller that has better
@@ -97,27 +99,29 @@ impl TableError {
                 )
             }
             Self::UnitDoubtful { header, readings, .. } => {
-                format!("the column `{header}` can be read in {readings}")
+                format!("the column `{}` can be read in {readings}", brief(header))
             }
             Self::ColumnMissing { column, nearest, .. } => {
-                let nearest = nearest.as_ref().map(|name| format!(" (it has {name})"));
+                let nearest = nearest.as_ref().map(|name| format!(" (it has {})", brief(name)));
                 format!("the header has no column {column}{}", nearest.unwrap_or_default())
             }
             Self::ColumnTwice { names } => match &names[..] {
-                [one, other, ..] if one != other => format!("the header has one quantity twice, {one} and {other}"),
-                _ => format!("the header has the column {} twice", names.first().map_or("", String::as_str)),
+                [one, other, ..] if one != other => {
+                    format!("the header has one quantity twice, {} and {}", brief(one), brief(other))
+                }
+                _ => format!("the header has the column {} twice", brief(names.first().map_or("", String::as_str))),
             },
             Self::Length { row, expected, found } => {
                 format!("row {row}: expected {expected} cells as in the header, found {found}")
             }
             Self::CellEmpty { row, column } => {
-                format!("row {row}, column {column}: expected a number, found an empty cell")
+                format!("row {row}, column {}: expected a number, found an empty cell", brief(column))
             }
             Self::NotANumber { row, column, found } => {
-                format!("row {row}, column {column}: expected a number, found {found:?}")
+                format!("row {row}, column {}: expected a number, found {found:?}", brief(column))
             }
             Self::CellDoubtful { row, column, found, readings } => {
-                format!("row {row}, column {column}: {found:?} can be read as {readings}")
+                format!("row {row}, column {}: {found:?} can be read as {readings}", brief(column))
             }
         }
     }

@@ -190,7 +190,8 @@ class Scene:
 
     def __repr__(self) -> str:
         width, height = self.screen_mm
-        return f"<frixel.Scene {self.name}: {len(self.layers)} layers on {width:g} mm x {height:g} mm>"
+        layers = "1 layer" if len(self.layers) == 1 else f"{len(self.layers)} layers"
+        return f"<frixel.Scene {self.name}: {layers} on {width:g} mm x {height:g} mm>"
 
     def _repr_html_(self) -> str:
         natural, most = self.reach_n

@@ -143,7 +143,7 @@ class Study:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             for path in [] if overwrite else partials:
-                if path.exists() and path.read_bytes() != self.files[path.name]:
+                if path.exists() and read_bytes(path, "this study", FrixelError) != self.files[path.name]:
                     raise FrixelError(
                         f"{path} is of another study: give another folder, or `overwrite=True` to replace that study"
                     )

@@ -5,7 +5,8 @@ use std::sync::LazyLock;
 use crate::digits::digits;
 use crate::file::describe;
 use crate::log::Log;
-use crate::mistake::FieldMistake;
+use crate::mistake::{FieldMistake, SLASH_ADVICE};
+use crate::printable::brief;
 use crate::stack::LAYER_FIELDS;
 
 /// A field that its table does not have.
@@ -95,7 +96,7 @@ pub(super) fn report(
         here.sort_by_key(|field| field.offset);
         let written = |field: &&Unknown| {
             let name = name_in(home, &field.name).unwrap_or(&field.name);
-            format!("{name} = {}", log.source().word_at(field.value_offset))
+            format!("{name} = {}", brief(log.source().word_at(field.value_offset)))
         };
         let written: Vec<String> = here.iter().map(written).collect();
         let fields: Vec<String> = here.iter().map(|field| field.name.clone()).collect();
@@ -130,6 +131,10 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
         "; quotation marks are straight: \"".to_owned()
     } else if let Some(percent) = value.and_then(percent) {
         format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
+    } else if value.is_some_and(|value| value.contains('\\'))
+        && text.get(line_start..offset + 1).is_some_and(|part| part.contains('\\'))
+    {
+        format!("; {SLASH_ADVICE}")
     } else if value == Some("") {
         "; the value after the `=` is missing".to_owned()
     } else {

@@ -10,6 +10,7 @@ use crate::compile_error::CompileError;
 use crate::log::Log;
 use crate::mistake::FileMistake;
 use crate::source::{Source, SourceFile};
+use crate::toml_text::toml;
 
 /// Reads the text of a file: `read` gets its fields, and messages call the whole text `table` and the file `name`.
 pub(crate) fn read_text<T>(
@@ -27,12 +28,16 @@ pub(crate) fn read_text<T>(
 
 /// The fields of a file, at their offsets in the source; `None` after a mistake, which has been logged.
 pub(crate) fn parsed<'i>(file: &'i SourceFile, log: &mut Log) -> Option<DeTable<'i>> {
-    match DeTable::parse(&file.text) {
-        Ok(values) => Some(moved_table(values.into_inner(), file.start)),
-        Err(error) => {
-            let offset = error.span().map_or(0, |span| span.start);
-            let hint = misplaced::syntax_hint(&file.text, offset);
-            log.add(file.start + offset, FileMistake::Syntax(format!("{}{hint}", error.message())));
+    match toml(&file.text) {
+        Ok(values) => Some(moved_table(values, file.start)),
+        Err((offset, mistake)) => {
+            let mistake = match mistake {
+                FileMistake::Syntax(reason) => {
+                    FileMistake::Syntax(reason + &misplaced::syntax_hint(&file.text, offset))
+                }
+                other => other,
+            };
+            log.add(file.start + offset, mistake);
             None
         }
     }

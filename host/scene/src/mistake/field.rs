@@ -169,7 +169,7 @@ pub enum FieldMistake {
         reason: String,
     },
     /// A date is not `YYYY-MM-DD`.
-    #[error("`date = \"{found}\"` is not a day: write it as \"YYYY-MM-DD\"")]
+    #[error("`date = \"{}\"` is not a day: write it as \"YYYY-MM-DD\"", brief(.found))]
     Date {
         /// The date, as written.
         found: String,

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::TILDE_ADVICE;
+use super::{SLASH_ADVICE, TILDE_ADVICE};
 use crate::nearest::Nearest;
 use crate::printable::{Shown, brief};
 
@@ -70,6 +70,18 @@ pub enum FileMistake {
         included: String,
         /// Its version, as written.
         found: f64,
+    },
+    /// There is more of something than is read.
+    #[error("there are {found} {what}, and at most {max} are read: {advice}")]
+    TooMuch {
+        /// What is counted, and where.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// Most that are read.
+        max: usize,
+        /// What to do.
+        advice: &'static str,
     },
     /// Files include one another.
     #[error("{}: take {} out", in_circle(.circle), if .circle.len() == 1 { "it" } else { "one of them" })]
@@ -146,7 +158,7 @@ pub enum FileMistake {
         brief(.file),
         brief(.folder),
         which_has(.nearest.as_deref()),
-        if .file.starts_with('~') { TILDE_ADVICE } else { "paths start from the folder of the file that names it" }
+        missing_advice(.file)
     )]
     FileMissing {
         /// `picture`, `finger` or `screen`.
@@ -174,6 +186,23 @@ pub enum FileMistake {
         /// The reason, and what to do.
         reason: String,
     },
+}
+
+impl FileMistake {
+    pub(crate) fn too_much(what: &'static str, found: usize, max: usize, advice: &'static str) -> Self {
+        Self::TooMuch { what, found, max, advice }
+    }
+}
+
+/// What to do about a file that is not there.
+fn missing_advice(file: &str) -> &'static str {
+    if file.starts_with('~') {
+        TILDE_ADVICE
+    } else if file.contains(|character: char| character == '\\' || character.is_control()) {
+        SLASH_ADVICE
+    } else {
+        "paths start from the folder of the file that names it"
+    }
 }
 
 fn version_advice(found: f64, file: &str) -> String {

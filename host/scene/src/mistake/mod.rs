@@ -15,6 +15,9 @@ pub use fit::FitMistake;
 /// What to do about a path that starts with a tilde.
 pub const TILDE_ADVICE: &str = "only a shell replaces `~` by your folder, so write that folder's path in full";
 
+/// What to do about a path with backslashes, which begin escapes such as `\t` in a TOML string.
+pub(crate) const SLASH_ADVICE: &str = "write / instead of \\ between the parts of a path";
+
 /// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]

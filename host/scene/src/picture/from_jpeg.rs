@@ -12,7 +12,7 @@ use super::{COLOUR, PIXELS_MAX, Picture, PictureError, STEP, luma, refuse_too_la
 pub(super) const SIGNATURE: &[u8] = &[0xff, 0xd8, 0xff];
 
 /// Decodes the bytes of a JPEG file.
-pub(super) fn decode(jpeg: &[u8]) -> Result<Picture, PictureError> {
+pub(super) fn decode(jpeg: &[u8], pixels_max: usize) -> Result<Picture, PictureError> {
     let damaged = |error: zune_jpeg::errors::DecodeErrors| {
         let words = format!("{error:?}");
         PictureError::Damaged(words.split_whitespace().collect::<Vec<_>>().join(" "))
@@ -23,7 +23,7 @@ pub(super) fn decode(jpeg: &[u8]) -> Result<Picture, PictureError> {
     decoder.decode_headers().map_err(damaged)?;
     let size = decoder.info().ok_or_else(|| PictureError::Damaged("it has no size".to_owned()))?;
     let (width, height) = (usize::from(size.width), usize::from(size.height));
-    refuse_too_large(width, height)?;
+    refuse_too_large(width, height, pixels_max)?;
     let colour = match decoder.input_colorspace() {
         Some(ColorSpace::Luma) => ColorSpace::Luma,
         Some(ColorSpace::CMYK | ColorSpace::YCCK) => return Err(PictureError::Inks),

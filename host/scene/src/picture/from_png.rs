@@ -4,21 +4,25 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, Limits, OutputInfo, Transformations};
 
+use super::orientation::Orientation;
 use super::{COLOUR, PIXELS_MAX, Picture, PictureError, STEP, WHITE, luma, refuse_too_large};
 
 /// The first eight bytes of every PNG file (W3C PNG specification, section 5.2).
 pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// Decodes the bytes of a PNG file.
-pub(super) fn decode(png: &[u8]) -> Result<Picture, PictureError> {
+pub(super) fn decode(png: &[u8], pixels_max: usize) -> Result<Picture, PictureError> {
     let damaged = |error: png::DecodingError| PictureError::Damaged(error.to_string());
     let mut reader = decoder(png).read_info().map_err(damaged)?;
     let (width, height) = reader.info().size();
-    refuse_too_large(width as usize, height as usize)?;
+    refuse_too_large(width as usize, height as usize, pixels_max)?;
     let size = reader.output_buffer_size().ok_or_else(|| PictureError::Damaged("it has no size".to_owned()))?;
     let mut bytes = vec![0; size];
     let frame = reader.next_frame(&mut bytes).map_err(damaged)?;
-    Ok(grey(&bytes, &frame))
+    // The orientation may stand behind the pixels. What is damaged there does not matter to them.
+    let _ = reader.finish();
+    let orientation = Orientation::of(reader.info().exif_metadata.as_deref());
+    Ok(orientation.upright(grey(&bytes, &frame)))
 }
 
 /// A decoder that leaves out what is not used: a colour profile or a text can unpack to a thousand times its size.
@@ -92,6 +96,6 @@ mod tests {
         writer.finish().unwrap();
         assert!(png.windows(4).any(|name| name == b"iCCP"));
         assert_eq!(decoder(&png).read_info().unwrap().info().icc_profile, None);
-        assert!(decode(&png).is_ok());
+        assert!(decode(&png, PIXELS_MAX).is_ok());
     }
 }

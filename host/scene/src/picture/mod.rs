@@ -8,8 +8,8 @@ mod tests;
 
 use thiserror::Error;
 
-/// Largest number of pixels of a picture: 64 million, so that its grey values take at most 256 MiB.
-const PIXELS_MAX: usize = SQUARE_MAX * SQUARE_MAX;
+/// Largest number of pixels of a picture, and of all pictures of a scene: 64 million, so that its grey values take at most 256 MiB.
+pub(super) const PIXELS_MAX: usize = SQUARE_MAX * SQUARE_MAX;
 /// Sides of a square picture with as many pixels.
 const SQUARE_MAX: usize = 1 << 13;
 /// Weights of red, green and blue in grey (luma of ITU-R BT.709).
@@ -55,6 +55,10 @@ pub(super) enum PictureError {
     Inks,
     #[error("it has {width} x {height} pixels, more than {SQUARE_MAX} x {SQUARE_MAX}: make it smaller")]
     TooLarge { width: usize, height: usize },
+    #[error(
+        "it has {width} x {height} pixels, and the pictures of a scene have at most {PIXELS_MAX} together: make them smaller"
+    )]
+    TooLargeTogether { width: usize, height: usize },
 }
 
 /// Checks the bytes of a picture before a scene names it, and returns its width and height, in pixels, as it is played:
@@ -64,16 +68,16 @@ pub(super) enum PictureError {
 ///
 /// They cannot be played: a sentence without a subject says why, and what to do.
 pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
-    Picture::decode(bytes).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
+    Picture::decode(bytes, PIXELS_MAX).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
 
 impl Picture {
-    /// Decodes the bytes of a PNG or JPEG file.
-    pub(super) fn decode(bytes: &[u8]) -> Result<Self, PictureError> {
+    /// Decodes the bytes of a PNG or JPEG file of at most `pixels_max` pixels.
+    pub(super) fn decode(bytes: &[u8], pixels_max: usize) -> Result<Self, PictureError> {
         if bytes.starts_with(from_png::SIGNATURE) {
-            from_png::decode(bytes)
+            from_png::decode(bytes, pixels_max)
         } else if bytes.starts_with(from_jpeg::SIGNATURE) {
-            from_jpeg::decode(bytes)
+            from_jpeg::decode(bytes, pixels_max)
         } else {
             Err(PictureError::UnknownFormat)
         }
@@ -123,9 +127,12 @@ impl Picture {
     }
 }
 
-fn refuse_too_large(width: usize, height: usize) -> Result<(), PictureError> {
-    let fits = width.checked_mul(height).is_some_and(|pixels| pixels <= PIXELS_MAX);
-    if fits { Ok(()) } else { Err(PictureError::TooLarge { width, height }) }
+fn refuse_too_large(width: usize, height: usize, pixels_max: usize) -> Result<(), PictureError> {
+    match width.saturating_mul(height) {
+        pixels if pixels > PIXELS_MAX => Err(PictureError::TooLarge { width, height }),
+        pixels if pixels > pixels_max => Err(PictureError::TooLargeTogether { width, height }),
+        _ => Ok(()),
+    }
 }
 
 /// The luma of a colour. Grey keeps its exact value.

@@ -50,11 +50,15 @@ impl Orientation {
             let (column, row) = if self.swapped { (y, x) } else { (x, y) };
             let column = if self.from_right { file_width - 1 - column } else { column };
             let row = if self.from_bottom { file_height - 1 - row } else { row };
-            picture.grey.get(row * file_width + column).copied().unwrap_or_default()
+            row * file_width + column
         };
-        let grey = (0..width * height).map(pixel).collect();
+        let upright = |values: &[f32]| -> Vec<f32> {
+            // An opaque picture has no values of what shows through it.
+            let count = if values.is_empty() { 0 } else { width * height };
+            (0..count).map(|place| values.get(pixel(place)).copied().unwrap_or_default()).collect()
+        };
+        let (grey, white_below) = (upright(&picture.grey), upright(&picture.white_below));
         let conversions = picture.conversions.iter().cloned().chain([UPRIGHT.to_owned()]).collect();
-        // A photograph is opaque.
-        Picture { width, height, grey, white_below: Vec::new(), conversions }
+        Picture { width, height, grey, white_below, conversions }
     }
 }

@@ -5,7 +5,7 @@ use super::*;
 const COLOURS: &[u8] = include_bytes!("testdata/colours.jpg");
 
 fn decoded(jpeg: &[u8]) -> Picture {
-    Picture::decode(jpeg).expect("it is a JPEG file")
+    Picture::decode(jpeg, PIXELS_MAX).expect("it is a JPEG file")
 }
 
 /// The grey in the middle of a patch.
@@ -28,6 +28,42 @@ fn colours_of_a_jpeg_are_turned_to_grey_by_luminance() {
     }
 }
 
+/// A PNG file of two pixels, black and half transparent white, with its orientation before or behind the pixels.
+fn png_with_orientation(number: u8, is_behind: bool) -> Vec<u8> {
+    let exif = [&b"II\x2a\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0"[..], &[number], &[0; 7]].concat();
+    let mut info = png::Info::with_size(2, 1);
+    (info.color_type, info.bit_depth) = (png::ColorType::GrayscaleAlpha, png::BitDepth::Eight);
+    let mut bytes = Vec::new();
+    let mut writer = png::Encoder::with_info(&mut bytes, info).unwrap().write_header().unwrap();
+    let chunk = png::chunk::ChunkType(*b"eXIf");
+    if !is_behind {
+        writer.write_chunk(chunk, &exif).unwrap();
+    }
+    writer.write_image_data(&[0, 255, 255, 128]).unwrap();
+    if is_behind {
+        writer.write_chunk(chunk, &exif).unwrap();
+    }
+    writer.finish().unwrap();
+    bytes
+}
+
+#[test]
+fn a_png_is_turned_upright_with_what_shows_through_it() {
+    for is_behind in [false, true] {
+        let decoded = |number| decoded(&png_with_orientation(number, is_behind));
+        let plain = decoded(1);
+        assert!(plain.white_below[1] > 100.0 && plain.conversions.is_empty());
+        for (number, size, is_reversed) in [(2, (2, 1), true), (6, (1, 2), false), (8, (1, 2), true)] {
+            let turned = decoded(number);
+            let in_order = |values: &[f32]| if is_reversed { vec![values[1], values[0]] } else { values.to_vec() };
+            assert_eq!((turned.width, turned.height), size, "orientation {number}");
+            assert_eq!(turned.grey, in_order(&plain.grey), "orientation {number}");
+            assert_eq!(turned.white_below, in_order(&plain.white_below), "orientation {number}");
+            assert!(turned.conversions[0].contains("turned upright"));
+        }
+    }
+}
+
 #[test]
 fn grey_of_a_jpeg_stays() {
     let picture = decoded(include_bytes!("testdata/grey.jpg"));
@@ -39,19 +75,19 @@ fn grey_of_a_jpeg_stays() {
 
 #[test]
 fn what_is_no_picture_is_refused_and_never_panics() {
-    let refused = |bytes: &[u8]| Picture::decode(bytes).expect_err("it is refused").to_string();
+    let refused = |bytes: &[u8]| Picture::decode(bytes, PIXELS_MAX).expect_err("it is refused").to_string();
     assert_eq!(refused(include_bytes!("testdata/inks.jpg")), "its colours are inks (CMYK): save it as RGB or grey");
     assert_eq!(refused(b"GIF89a"), "it is neither a PNG nor a JPEG file: save it as PNG");
     assert!(refused(&COLOURS[..20]).contains("it is damaged"));
     // A file that ends early is refused, unless all of its pixels are there.
-    let whole = Picture::decode(COLOURS).unwrap();
+    let whole = Picture::decode(COLOURS, PIXELS_MAX).unwrap();
     for end in 0..COLOURS.len() {
-        assert!(Picture::decode(&COLOURS[..end]).map_or(true, |cut| cut == whole), "cut to {end} bytes");
+        assert!(Picture::decode(&COLOURS[..end], PIXELS_MAX).map_or(true, |cut| cut == whole), "cut to {end} bytes");
     }
     for place in 0..COLOURS.len() {
         let mut damaged = COLOURS.to_vec();
         damaged[place] ^= 0x55;
-        let _ = Picture::decode(&damaged);
+        let _ = Picture::decode(&damaged, PIXELS_MAX);
     }
 }
 

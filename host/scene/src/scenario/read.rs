@@ -1,5 +1,7 @@
 //! Reads a scenario's file.
 
+use std::collections::{HashMap, HashSet};
+
 use frixel_hil_sim::{NoiseConfig, RigFault, WorldFault};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
@@ -11,8 +13,11 @@ use super::{
 use crate::fields::Fields;
 use crate::grammar::FieldSpec;
 use crate::log::Log;
-use crate::mistake::{FieldMistake, Mistake};
+use crate::mistake::{FieldMistake, FileMistake, Mistake};
 use crate::nearest::Nearest;
+
+/// Most commands, faults and expectations of a scenario.
+const ENTRIES_MAX: usize = 1_000;
 
 pub(super) const STATES: [(&str, State); 4] =
     [("disarmed", State::Disarmed), ("armed", State::Armed), ("active", State::Active), ("faulted", State::Faulted)];
@@ -40,9 +45,16 @@ pub(super) fn scenario(mut fields: Fields, name: &str, log: &mut Log) -> Option<
     let before = log.mistakes();
     let commands = fields.tables(log, &file::COMMAND).unwrap_or_default();
     let faults = fields.tables(log, &file::FAULT).unwrap_or_default();
-    let mut names = Names { given: Vec::new(), are_known: log.mistakes() == before };
+    let mut names = Names { given: Vec::new(), known: HashSet::new(), are_known: log.mistakes() == before };
     let expectations = fields.tables(log, &file::EXPECT).unwrap_or_default();
+    let place = fields.table_place();
     fields.close(log);
+    let entries = commands.len() + faults.len() + expectations.len();
+    if entries > ENTRIES_MAX {
+        let advice = "make several scenarios of it";
+        log.add(place, FileMistake::too_much("commands, faults and expectations", entries, ENTRIES_MAX, advice));
+        return None;
+    }
     let commands: Vec<_> =
         commands.into_iter().filter_map(|table| scenario_command(table, seconds, &mut names, log)).collect();
     let faults: Vec<_> =
@@ -80,6 +92,8 @@ fn place(fields: &mut Fields, log: &mut Log, field: &FieldSpec) -> Option<[f64; 
 struct Names {
     /// Each name with its place in the file.
     given: Vec<(usize, String)>,
+    /// The same names.
+    known: HashSet<String>,
     /// Whether no name is hidden by a mistake.
     are_known: bool,
 }
@@ -91,16 +105,18 @@ impl Names {
         let name = fields.text(log, &when::NAME);
         self.are_known &= log.mistakes() == before;
         self.given.extend(name.iter().map(|name| (place, name.clone())));
+        self.known.extend(name.clone());
         name
     }
 
     /// Reports each name that stands in the file before.
     fn check(&mut self, log: &mut Log) {
         self.given.sort_by_key(|(place, _)| *place);
-        for (number, (place, name)) in self.given.iter().enumerate() {
-            let earlier = self.given.iter().take(number).find(|(_, earlier)| earlier == name);
-            if let Some((first, _)) = earlier {
-                let (line, _) = log.source().line_and_column(*first);
+        let mut first: HashMap<&str, usize> = HashMap::new();
+        for (place, name) in &self.given {
+            let first = *first.entry(name).or_insert(*place);
+            if first != *place {
+                let (line, _) = log.source().line_and_column(first);
                 log.add(*place, Mistake::NameTwice { name: name.clone(), line });
             }
         }
@@ -108,11 +124,11 @@ impl Names {
 
     /// Reports an `after` that is no name.
     fn check_after(&self, found: &str, place: usize, log: &mut Log) {
-        let mut names = self.given.iter().map(|(_, name)| name.as_str());
-        if !self.are_known || names.clone().any(|name| name == found) {
+        if !self.are_known || self.known.contains(found) {
             return;
         }
-        let (nearest, found) = (Nearest::new(found, &mut names), found.to_owned());
+        let names = self.given.iter().map(|(_, name)| name.as_str());
+        let (nearest, found) = (Nearest::new(found, names), found.to_owned());
         if nearest.suggestion.is_some() {
             log.add(place, FieldMistake::UnknownChoice { field: expect::AFTER.name, found, nearest });
         } else {

@@ -83,6 +83,16 @@ fn a_mistake_is_a_sentence_with_line_and_column() {
     }
 }
 
+/// 50,000 commands took half a minute.
+#[test]
+fn a_scenario_has_as_many_entries_as_are_read() {
+    let command = |number: u32| format!("[[command]]\nname = \"c{number}\"\nat_ms = 1\ndo = \"stop\"\n");
+    let commands = |count: u32| (0..count).map(command).collect::<Vec<_>>().concat();
+    assert!(parsed(&commands(1_000)).is_ok());
+    let error = parsed(&commands(50_000)).unwrap_err();
+    assert!(error.contains("there are 50000 commands, faults and expectations, and at most 1000 are read"), "{error}");
+}
+
 /// A mistake in a command or a fault does not hide its name from an expectation.
 #[test]
 fn one_mistake_is_one_sentence() {

@@ -77,7 +77,7 @@ variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Autonomous Misp
     OutOfRange TooLong UnknownChoice NoDefault NoDesign LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
     Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
 variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version VersionOneProfile NothingToMigrate
-    UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooManyFiles IncludedTwice IncludedMissing
+    UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooMuch TooManyFiles IncludedTwice IncludedMissing
     IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
 variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong
     PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger BeyondLaw Model);

@@ -32,6 +32,24 @@ fn included_layers_lie_below_and_play_as_if_they_stood_here() {
     assert_eq!(titles, ["layer 1 \"back\"", "layer 2 \"flat\""]);
 }
 
+/// 30,000 layers of one name took half a minute.
+#[test]
+fn a_scene_of_too_many_layers_is_one_mistake() {
+    let flat = "[[layer]]\nname = \"a\"\nkind = \"constant\"\nfriction_fraction = 0.1\n";
+    let copies = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n\
+        region = { x_mm = 1, y_mm = 1, width_mm = 9, height_mm = 9 }\n\
+        repeat = { columns = 64, rows = 64, dx_mm = 0.1, dy_mm = 0.1 }\n";
+    for (layers, found) in [(flat.repeat(30_000), 30_000), (copies.repeat(2), 8_192)] {
+        let error = Scene::parse(&format!("version = 2\n{layers}"), "scene.toml", &BTreeMap::new());
+        let mistakes = error.map_or_else(|error| error.diagnostics, |scene| scene.mistakes().to_vec());
+        let [mistake] = &mistakes[..] else { panic!("{}", mistakes.len()) };
+        let says = format!("there are {found} layers in this scene, and at most 4096 are read: no board takes ");
+        assert!(mistake.message.to_string().starts_with(&says), "{mistake}");
+    }
+    let scene = Scene::parse(&format!("version = 2\n{}", flat.repeat(4_096)), "scene.toml", &BTreeMap::new());
+    assert!(scene.expect("it reads").mistakes().is_empty());
+}
+
 #[test]
 fn names_of_100_000_characters_are_not_echoed_whole() {
     let long = "\u{e9}".repeat(100_000);

@@ -2,7 +2,7 @@
 
 use frixel_layers::{Constant, Grating, Layer, Leader, Region, Scene as WireScene, Waveform};
 
-use super::super::picture::{Ground, Picture};
+use super::super::picture::{Ground, PIXELS_MAX, Picture};
 use super::super::resample;
 use super::*;
 use crate::reference::Reference;
@@ -286,7 +286,7 @@ fn one_picture_twice_is_sent_once() {
 }
 
 fn read_png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Picture {
-    Picture::decode(&png_of(2, colour, depth, data)).expect("a picture")
+    Picture::decode(&png_of(2, colour, depth, data), PIXELS_MAX).expect("a picture")
 }
 
 #[test]
@@ -348,7 +348,7 @@ fn a_ramp_stays_a_ramp() {
 
 #[test]
 fn shrinking_keeps_the_mean() {
-    let picture = Picture::decode(&PICTURES["textures/brick.png"]).expect("the picture");
+    let picture = Picture::decode(&PICTURES["textures/brick.png"], PIXELS_MAX).expect("the picture");
     let axis = resample::Axis::covering(100.0, 0.4, picture.width);
     assert_eq!(axis.samples, 250);
     let samples = resample::resample(&picture.grey, picture.width, axis, axis);

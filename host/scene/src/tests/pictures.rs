@@ -1,6 +1,7 @@
 //! The pitch that a scene leaves open, and the levels of pictures.
 
 use super::*;
+use crate::pool;
 
 const SHORT: &str = "version = 2\n";
 
@@ -23,6 +24,29 @@ fn sizes(program: &Program) -> Vec<(u16, u16)> {
 #[track_caller]
 fn check_note(program: &Program, part: &str) {
     assert!(program.notes().any(|note| note.contains(part)), "{part}: {:?}", program.diagnostics);
+}
+
+/// Names of one picture count once, and of two pictures the first is read.
+#[test]
+fn the_pictures_of_a_scene_have_so_many_pixels_together() {
+    let layers = [layer("brick.png", 0, 40, ""), layer("leather.png", 0, 40, ""), layer("brick.png", 0, 40, "")];
+    let scene = Scene::parse(&format!("{SHORT}{}", layers.concat()), "scene.toml", &*PICTURES).expect("it reads");
+    let pixels = 512 * 512 + 200 * 200;
+    assert!(pool::decoded(&scene, pixels).values().all(Result::is_ok));
+    let decoded = pool::decoded(&scene, pixels - 1);
+    assert!(decoded["textures/brick.png"].is_ok());
+    let error = decoded["textures/leather.png"].as_ref().expect_err("it is refused").to_string();
+    let says = "it has 200 x 200 pixels, and the pictures of a scene have at most 67108864 together: make them smaller";
+    assert!(error.ends_with(says), "{error}");
+}
+
+/// As a computer from another maker names a file.
+#[test]
+fn a_picture_is_found_by_its_name_in_other_characters() {
+    let files = BTreeMap::from([("textures/cafe\u{301}.png".to_owned(), PICTURES["textures/brick.png"].clone())]);
+    let text = format!("{SHORT}{}", layer("caf\u{e9}.png", 0, 40, ""));
+    let scene = Scene::parse(&text, "scene.toml", &files).expect("it reads");
+    assert!(compile(&scene, &LIMITS, TICK_HZ).is_ok());
 }
 
 #[test]

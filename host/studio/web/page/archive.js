@@ -57,13 +57,16 @@ export function projectOf(bytes, { isOwn = false } = {}) {
  * @returns {Record<string, Uint8Array<ArrayBuffer>>}
  */
 function unpacked(bytes, isOwn) {
-  let [files, size] = [0, 0];
+  let [files, size, packed] = [0, 0, 0];
+  // Files that share their packed bytes would be unpacked from them again and again.
+  const isApart = () => isOwn || packed <= bytes.length;
   const hasRoom = () => isOwn || (files <= FILES_MAX && size <= UNPACKED_MAX_BYTES);
   // The sizes are those that the zip states; a file is unpacked into no more than its stated size.
-  const filter = (/** @type {UnzipFileInfo} */ { name, originalSize }) => {
+  const filter = (/** @type {UnzipFileInfo} */ { name, size: packedSize, originalSize }) => {
     files += 1;
     size += originalSize;
-    return hasRoom() && !name.endsWith("/");
+    packed += packedSize;
+    return isApart() && hasRoom() && !name.endsWith("/");
   };
   /** @type {ReturnType<typeof unzipSync>} */
   let entries;
@@ -71,6 +74,9 @@ function unpacked(bytes, isOwn) {
     entries = unzipSync(bytes, { filter });
   } catch {
     throw new Error("This zip cannot be read: save it anew from the studio.");
+  }
+  if (!isApart()) {
+    throw new Error("The files of this zip lie over one another: save it anew from the studio.");
   }
   if (!hasRoom()) {
     const limits = `at most ${FILES_MAX} files of together ${UNPACKED_MAX_BYTES / 1e6} MB`;

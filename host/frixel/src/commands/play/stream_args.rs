@@ -8,6 +8,7 @@ use frixel_play::Feed;
 
 use crate::stream;
 
+use super::super::terminal::note;
 use super::CommandError;
 use super::target::Target;
 
@@ -50,7 +51,13 @@ impl StreamArgs {
             }
             (Some(_), None) if self.is_standard_input() => Err(CommandError::StreamRateMissing),
             (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.clone() }),
-            (Some(path), None) => Ok(Some(stream::wav(path, tick_hz)?)),
+            (Some(path), None) => {
+                let (feed, notes) = stream::wav(path, tick_hz)?;
+                for sentence in notes {
+                    note(format_args!("{}: {sentence}", path.display()));
+                }
+                Ok(Some(feed))
+            }
         }
     }
 }

@@ -1,0 +1,106 @@
+//! The result of a cell as files and messages have it: JSON that begins with the hash of the rest.
+
+use frixel_scene::brief;
+use thiserror::Error;
+
+use super::{CellResult, json};
+use crate::hash::sha256;
+
+/// What stands before and behind the digits of the hash.
+const HEAD: &str = "{\"sha256\":\"";
+const BEHIND: &str = "\",";
+const DIGITS: usize = 64;
+
+/// Why a text is no result of a cell.
+#[derive(Debug, Error)]
+pub enum CellResultError {
+    /// The text is not JSON of a result.
+    #[error(transparent)]
+    NoResult(#[from] serde_json::Error),
+    /// It has no hash, or another one than its content.
+    #[error("its content has another hash than it says, or none: it was changed or damaged")]
+    Changed,
+    /// It is the result of another cell.
+    #[error("it is that of the cell {}", brief(.found))]
+    OtherCell {
+        /// Key of that cell.
+        found: String,
+    },
+}
+
+impl CellResult {
+    /// The text of a result's file.
+    pub fn to_json(&self) -> String {
+        let content = json(self);
+        let hash = sha256(content.as_bytes());
+        format!("{HEAD}{hash}{BEHIND}{}", content.get(1..).unwrap_or_default())
+    }
+
+    /// Reads the text of a result's file, that of the cell with this key if one is given.
+    pub fn from_json(text: &str, key: Option<&str>) -> Result<Self, CellResultError> {
+        let hashed = || {
+            let (hash, rest) = text.strip_prefix(HEAD)?.split_at_checked(DIGITS)?;
+            Some((hash, format!("{{{}", rest.strip_prefix(BEHIND)?)))
+        };
+        let Some((hash, content)) = hashed() else {
+            // A text that is no JSON at all has a better sentence.
+            let _: Self = serde_json::from_str(text)?;
+            return Err(CellResultError::Changed);
+        };
+        if sha256(content.as_bytes()) != hash {
+            return Err(CellResultError::Changed);
+        }
+        let result: Self = serde_json::from_str(&content)?;
+        match key {
+            Some(key) if key != result.cell => Err(CellResultError::OtherCell { found: result.cell }),
+            _ => Ok(result),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    fn result(cell: &str) -> CellResult {
+        CellResult {
+            cell: cell.to_owned(),
+            scene: "a.toml".to_owned(),
+            parameters: BTreeMap::new(),
+            screen: None,
+            touch: "100".to_owned(),
+            person: 3,
+            moisture: 0.25,
+            voltage_v_rms: 150.0,
+            layers: Vec::new(),
+            means: BTreeMap::from([("nrmse".to_owned(), 0.1 + 0.2)]),
+        }
+    }
+
+    #[test]
+    fn a_result_is_read_as_it_was_written() {
+        let text = result("a1").to_json();
+        assert_eq!(CellResult::from_json(&text, Some("a1")).unwrap(), result("a1"));
+        assert_eq!(CellResult::from_json(&text, None).unwrap(), result("a1"));
+        assert!(serde_json::from_str::<CellResult>(&text).is_ok(), "it is JSON for other programs");
+    }
+
+    #[test]
+    fn the_result_of_another_cell_is_refused() {
+        let error = CellResult::from_json(&result("b2").to_json(), Some("a1")).unwrap_err().to_string();
+        assert_eq!(error, "it is that of the cell b2");
+    }
+
+    #[test]
+    fn one_flipped_bit_is_refused() {
+        let text = result("a1").to_json();
+        for bit in 0..8 * text.len() {
+            let mut bytes = text.clone().into_bytes();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            let refused = str::from_utf8(&bytes).map_or(true, |text| CellResult::from_json(text, Some("a1")).is_err());
+            assert!(refused, "bit {bit}");
+        }
+    }
+}
