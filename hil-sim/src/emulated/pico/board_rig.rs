@@ -92,7 +92,7 @@ impl BoardRig for PicoBoardRig {
             }
             RigFault::Reset => self.rig.pull_run_pin().map_err(|error| ended(&error)),
             RigFault::LateTick | RigFault::WrapSoon { .. } => {
-                let reason = "an unmodified image has no input for it";
+                let reason = "an unmodified image has no input for its ticks";
                 Err(RigError::FaultUnavailable { rig: NAME, reason })
             }
         }
