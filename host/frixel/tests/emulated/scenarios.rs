@@ -12,7 +12,7 @@ use crate::example::{page, run, text};
 const NOT_ON_QEMU: [(&str, &str); 1] = [("counters-wrap", "it has no input for its tick count")];
 const NOT_ON_PICO: [(&str, &str); 3] = [
     ("counters-wrap", "an unmodified image has no input for its ticks"),
-    ("dac-holds-its-code", "carrier frequency"),
+    ("dac-holds-its-code", "too fast for 8000 ticks a second"),
     ("late-tick", "an unmodified image has no input for its ticks"),
 ];
 
