@@ -194,6 +194,20 @@ mod tests {
         assert!((carrier(Waveform::Sine, 0.0).peak_per_rms() - core::f32::consts::SQRT_2).abs() < 1e-7);
     }
 
+    /// The table of `PROTOCOL.md`.
+    #[test]
+    fn a_peak_of_60_v_leaves_the_rms_voltages_of_the_protocol() {
+        for (waveform, carrier_hz, expected_v_rms) in
+            [(Waveform::Square, 1e3, 57.55), (Waveform::Square, 5e3, 46.68), (Waveform::Sine, 5e3, 35.04)]
+        {
+            let half_period_s = 0.5 / carrier_hz;
+            let half_period_ticks = libm::roundf(40e3 * half_period_s) as u32;
+            let carrier = Carrier { waveform, half_period_s, half_period_ticks, edge_time_constant_s: 20e-6 };
+            let found_v_rms = 60.0 / carrier.peak_per_rms();
+            assert!((found_v_rms - expected_v_rms).abs() < 0.005, "{waveform:?} {carrier_hz}: {found_v_rms}");
+        }
+    }
+
     /// Current through a capacitance whose voltage follows a wave of ticks with a lag, stepped through: rms and peak.
     fn stepped_current(wave: impl Fn(i32) -> f64, capacitance_f: f64, tau_s: f64) -> (f64, f64) {
         const STEPS_PER_TICK: i32 = 1000;

@@ -4,6 +4,7 @@ use core::hint::black_box;
 use core::mem::MaybeUninit;
 
 use cortex_m::interrupt;
+use cortex_m::peripheral::SCB;
 use frixel_exchange::layout;
 
 use crate::shared;
@@ -33,6 +34,12 @@ pub fn in_main() {
             shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
             // Without interrupts, whose entry would fault where this function does not.
             interrupt::free(|_| overflow());
+        }
+        layout::INJECT_RESET => {
+            shared::set(layout::INJECTED_FAULT, layout::INJECT_NOTHING);
+            interrupt::disable();
+            shared::output_off();
+            SCB::sys_reset();
         }
         _ => {}
     }

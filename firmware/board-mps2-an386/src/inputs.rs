@@ -1,4 +1,4 @@
-//! The inputs of the tick: the amplifier's ready line, its monitor, and the arm switch.
+//! The inputs of the tick: the amplifier's ready line, its monitor, and the arm switch. The simulator may break each.
 
 use core::convert::Infallible;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -7,6 +7,7 @@ use embedded_hal::digital::{ErrorType, InputPin};
 use frixel_board::hardware;
 use frixel_exchange::{BOARD, layout};
 use frixel_testkit::IdealMonitor;
+use frixel_wire::dac_code::DacCode;
 
 use crate::{fault_injection, output, shared};
 
@@ -27,7 +28,11 @@ impl ErrorType for Switch {
 
 impl InputPin for Switch {
     fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(SWITCH_IS_HELD.load(Ordering::Relaxed))
+        Ok(match shared::get(layout::ARM_SWITCH) {
+            layout::SWITCH_OPEN => false,
+            layout::SWITCH_WELDED => true,
+            _ => SWITCH_IS_HELD.load(Ordering::Relaxed),
+        })
     }
 
     fn is_low(&mut self) -> Result<bool, Infallible> {
@@ -53,20 +58,30 @@ impl InputPin for Ready {
 }
 
 /// There is no amplifier: its monitor follows the driven voltage as the board's amplifier is specified to.
-pub struct Monitor(IdealMonitor);
+pub struct Monitor {
+    ideal: IdealMonitor,
+    /// Ticks since the amplifier was disabled.
+    disabled_ticks: u32,
+}
 
 impl Monitor {
     /// The monitor of an output that is zero.
     pub fn new() -> Self {
         let time_constant_ticks = BOARD.amplifier.time_constant_s / BOARD.tick_period_s();
-        Self(IdealMonitor::new(BOARD.limits.full_scale_v_peak, time_constant_ticks))
+        Self { ideal: IdealMonitor::new(BOARD.limits.full_scale_v_peak, time_constant_ticks), disabled_ticks: 0 }
     }
 }
 
 impl hardware::Monitor for Monitor {
     fn monitor_v(&mut self) -> f32 {
         fault_injection::in_tick();
-        self.0.follow(output::drive().dac_code);
-        self.0.voltage_v()
+        let drive = output::drive();
+        self.disabled_ticks = if drive.amplifier_enable { 0 } else { self.disabled_ticks.saturating_add(1) };
+        if drive.amplifier_enable || self.disabled_ticks > shared::get(layout::OFF_DELAY_TICKS) {
+            let held = shared::get(layout::DAC_HELD);
+            let is_held = drive.amplifier_enable && held & layout::DAC_STUCK != 0;
+            self.ideal.follow(if is_held { DacCode::from_bits(held as i16) } else { drive.dac_code });
+        }
+        self.ideal.voltage_v() * (1.0 - f32::from_bits(shared::get(layout::MONITOR_LOSS)))
     }
 }

@@ -29,9 +29,25 @@ pub const INJECT_HARD_FAULT: u32 = 2;
 pub const INJECT_OVERRUN: u32 = 3;
 /// A function's frame is larger than the stack.
 pub const INJECT_STACK_OVERFLOW: u32 = 4;
+/// The board is reset, as by its reset pin.
+pub const INJECT_RESET: u32 = 5;
 
 /// The amplifier's fault line: raised when non-zero.
 pub const AMPLIFIER_FAULT: usize = 3;
+/// The arm switch: held by a person who lets go of it when the board waits for that, or one of the values below.
+pub const ARM_SWITCH: usize = 20;
+/// The switch is open.
+pub const SWITCH_OPEN: u32 = 1;
+/// The switch is closed, whatever the person does.
+pub const SWITCH_WELDED: u32 = 2;
+/// The code that the DAC holds, an `i16`, plus [`DAC_STUCK`]; zero while the DAC takes codes.
+pub const DAC_HELD: usize = 21;
+/// Marks a code in [`DAC_HELD`].
+pub const DAC_STUCK: u32 = 1 << 16;
+/// Part of the driven voltage that the monitor does not show, an `f32`: 1 if it is dead.
+pub const MONITOR_LOSS: usize = 22;
+/// Ticks for which a disabled amplifier holds its output; `u32::MAX` for ever.
+pub const OFF_DELAY_TICKS: usize = 23;
 /// The board's current output, encoded by [`crate::word_of`].
 pub const OUTPUT: usize = 4;
 /// Ticks since the board was last reset.

@@ -13,7 +13,7 @@ use frixel_exchange::{drive_of, layout};
 
 use super::machine::Machine;
 use super::{EmulatorError, Image};
-use crate::{Felt, World, WorldFault};
+use crate::{Felt, OutOfRange, World, WorldFault};
 use follower::{ControlFlags, Follower};
 use serial::Serial;
 
@@ -37,6 +37,8 @@ pub enum InjectedFault {
     Overrun,
     /// The stack overflows.
     StackOverflow,
+    /// The board is reset.
+    Reset,
 }
 
 /// Result of one tick.
@@ -97,17 +99,11 @@ impl LinkBoard {
         self.flags.stroke.store(true, Ordering::Release);
     }
 
-    /// Causes a fault of touch source or finger within some milliseconds, for so many ticks. Returns whether this rig
-    /// can: its amplifier's monitor is simulated on the board, so that no fault of the amplifier reaches it.
-    pub fn cause(&self, fault: WorldFault, ticks: u64) -> bool {
-        let reaches_board = matches!(
-            fault,
-            WorldFault::TouchSilent | WorldFault::TouchStuck | WorldFault::TouchJumps { .. } | WorldFault::FingerLifted
-        );
-        if reaches_board {
-            self.flags.cause(fault, ticks);
-        }
-        reaches_board
+    /// Causes a fault within some milliseconds, for so many ticks.
+    pub fn cause(&self, fault: WorldFault, ticks: u64) -> Result<(), OutOfRange> {
+        fault.check()?;
+        self.flags.cause(fault, ticks);
+        Ok(())
     }
 
     /// Returns the board's current output.
@@ -158,11 +154,6 @@ impl LinkBoard {
         self.machine.memory.get(layout::STARTS)
     }
 
-    /// Raises or lowers the amplifier's fault line.
-    pub fn set_amplifier_fault(&self, raised: bool) -> Result<(), EmulatorError> {
-        self.machine.memory.set(layout::AMPLIFIER_FAULT, u32::from(raised))
-    }
-
     /// Injects a fault into the firmware.
     pub fn inject(&self, fault: InjectedFault) -> Result<(), EmulatorError> {
         let number = match fault {
@@ -170,6 +161,7 @@ impl LinkBoard {
             InjectedFault::HardFault => layout::INJECT_HARD_FAULT,
             InjectedFault::Overrun => layout::INJECT_OVERRUN,
             InjectedFault::StackOverflow => layout::INJECT_STACK_OVERFLOW,
+            InjectedFault::Reset => layout::INJECT_RESET,
         };
         self.machine.memory.set(layout::INJECTED_FAULT, number)
     }

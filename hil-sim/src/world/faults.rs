@@ -46,6 +46,11 @@ pub enum WorldFault {
 }
 
 impl WorldFault {
+    /// Checks the numbers of a fault of the amplifier.
+    pub(crate) fn check(self) -> Result<(), OutOfRange> {
+        self.of_amplifier(AmplifierConfig::IDEAL).check()
+    }
+
     /// The amplifier with this fault.
     fn of_amplifier(self, amplifier: AmplifierConfig) -> AmplifierConfig {
         match self {

@@ -104,7 +104,7 @@ pub use profiles::ProfileSource;
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use scenario::{
-    Action, At, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke,
+    Action, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke,
 };
 pub use schema::json_schema;
 pub use screen::{Screen, Slab};

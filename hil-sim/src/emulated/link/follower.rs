@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use frixel_control::Drive;
-use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
+use frixel_exchange::{BOARD, STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
 
 use super::serial::Serial;
 use super::{LinkRecord, POLL_PERIOD};
@@ -42,12 +42,14 @@ pub(super) struct Follower<W> {
     seen: u32,
     /// Number of touch reports that have been written.
     reports: u32,
+    /// Inputs of the board that are broken, each with its word and the tick of the world until which it is.
+    broken: Vec<(u64, usize)>,
     flags: Arc<ControlFlags>,
 }
 
 impl<W: FnMut(&LinkRecord)> Follower<W> {
     pub(super) fn new(memory: Memory, serial: Serial, world: World, watch: W, flags: Arc<ControlFlags>) -> Self {
-        Self { memory, serial, world, watch, seen: 0, reports: 0, flags }
+        Self { memory, serial, world, watch, seen: 0, reports: 0, broken: Vec::new(), flags }
     }
 
     /// Follows the board until the owner requests the end.
@@ -56,14 +58,34 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
             if self.flags.stroke.swap(false, Ordering::AcqRel) {
                 self.world.start_stroke();
             }
-            for (fault, ticks) in self.flags.take_faults() {
-                let now = self.world.tick();
-                // `LinkBoard::cause` has checked the fault.
-                let _ = self.world.schedule_fault(now..now.saturating_add(ticks), fault);
-            }
+            self.begin_faults()?;
             self.follow()?;
+            self.end_faults()?;
             self.serial.let_the_next_host_in()?;
             thread::sleep(POLL_PERIOD);
+        }
+        Ok(())
+    }
+
+    /// Causes the faults that were asked for: in the world, and at the inputs that are simulated on the board.
+    fn begin_faults(&mut self) -> Result<(), EmulatorError> {
+        for (fault, ticks) in self.flags.take_faults() {
+            let now = self.world.tick();
+            let end = now.saturating_add(ticks);
+            // `LinkBoard::cause` has checked the fault.
+            let _ = self.world.schedule_fault(now..end, fault);
+            if let Some((word, value)) = broken_input(fault) {
+                self.memory.set(word, value)?;
+                self.broken.push((end, word));
+            }
+        }
+        Ok(())
+    }
+
+    fn end_faults(&mut self) -> Result<(), EmulatorError> {
+        let now = self.world.tick();
+        for (_, word) in self.broken.extract_if(.., |(end, _)| *end <= now) {
+            self.memory.set(word, 0)?;
         }
         Ok(())
     }
@@ -109,5 +131,27 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
         self.memory.set_all(place, &words)?;
         self.reports = self.reports.wrapping_add(1);
         self.memory.set(layout::TOUCHES_WRITTEN, self.reports)
+    }
+}
+
+/// The word of the board's input that a fault breaks, and its value; `None` for a fault of touch source or finger.
+fn broken_input(fault: WorldFault) -> Option<(usize, u32)> {
+    match fault {
+        WorldFault::AmplifierNotReady => Some((layout::AMPLIFIER_FAULT, 1)),
+        WorldFault::AmplifierStuckOn => Some((layout::OFF_DELAY_TICKS, u32::MAX)),
+        WorldFault::AmplifierSlowOff { delay_s } => {
+            Some((layout::OFF_DELAY_TICKS, (delay_s * f64::from(BOARD.tick_hz)).round() as u32))
+        }
+        WorldFault::AmplifierGain(gain) | WorldFault::MonitorGain(gain) => {
+            Some((layout::MONITOR_LOSS, (1.0 - gain as f32).to_bits()))
+        }
+        WorldFault::DacStuck(code) => {
+            Some((layout::DAC_HELD, layout::DAC_STUCK | u32::from(code.bits().cast_unsigned())))
+        }
+        WorldFault::SwitchOpen => Some((layout::ARM_SWITCH, layout::SWITCH_OPEN)),
+        WorldFault::SwitchWelded => Some((layout::ARM_SWITCH, layout::SWITCH_WELDED)),
+        WorldFault::TouchSilent | WorldFault::TouchStuck | WorldFault::TouchJumps { .. } | WorldFault::FingerLifted => {
+            None
+        }
     }
 }

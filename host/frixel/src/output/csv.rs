@@ -70,12 +70,6 @@ impl<R: CsvRow> CsvFile<R> {
         self.writer.flush().map_err(|source| self.writer.error(source))
     }
 
-    /// Writes the header row again in place of everything.
-    pub(crate) fn restart(&mut self) -> Result<(), OutputFileError> {
-        self.writer.clear()?;
-        self.write_line(R::HEADER)
-    }
-
     /// The file, which the caller commits.
     pub(crate) fn into_writer(self) -> FileWriter {
         self.writer

@@ -1,12 +1,15 @@
 //! The log of a virtual board: what its finger felt, by the board's own time.
 
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use frixel_felt::recorder::FeltRow;
 use frixel_lab::table::{Column, Table, TableError, whole_rows};
 use thiserror::Error;
 
-use crate::input;
+use crate::input::{self, Bounded};
 
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
@@ -16,9 +19,20 @@ pub(crate) struct FeltLogError {
     reason: String,
 }
 
-/// The rows of a `felt.csv`, in order of time.
-#[derive(Clone, Debug)]
-pub(crate) struct FeltLog(Vec<LogRow>);
+/// Bytes of a log that are read at once.
+const PIECE_LEN: usize = 1 << 20;
+
+/// The latest rows of a `felt.csv` that grows, in order of time.
+#[derive(Debug)]
+pub(crate) struct FeltLog {
+    path: PathBuf,
+    /// The file, from the first reading on.
+    input: Option<Bounded<File>>,
+    header: Vec<u8>,
+    /// The end of the file, which is no whole row yet.
+    rest: Vec<u8>,
+    rows: VecDeque<LogRow>,
+}
 
 /// The columns that are joined.
 #[derive(Clone, Copy, Debug)]
@@ -31,24 +45,58 @@ struct LogRow {
 }
 
 impl FeltLog {
-    /// Reads the file that `frixel sim` writes. A last row that is not complete is left out.
-    pub(crate) fn read(path: &Path) -> Result<Self, FeltLogError> {
-        let error = |reason: String| FeltLogError { path: path.to_owned(), reason };
-        let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(|source| error(source.to_string()))?;
-        Ok(Self(rows(whole_rows(&bytes)).map_err(|source| error(source.found()))?))
+    /// The file that `frixel sim` writes. Nothing is read yet.
+    pub(crate) fn new(path: &Path) -> Self {
+        let (header, rest, rows) = (Vec::new(), Vec::new(), VecDeque::new());
+        Self { path: path.to_owned(), input: None, header, rest, rows }
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Reads what was written since the last call, and forgets rows before a time since the power-on of the board, s.
+    /// A last row that is not complete waits for the next call.
+    pub(crate) fn read_on(&mut self, from_s: f64) -> Result<(), FeltLogError> {
+        let error = |reason: String| FeltLogError { path: self.path.clone(), reason };
+        let read = |source: io::Error| error(source.to_string());
+        let input = match &mut self.input {
+            Some(input) => input,
+            none => none.insert(input::open(&self.path, input::CSV_MAX_BYTES).map_err(read)?),
+        };
+        let mut piece = vec![0; PIECE_LEN];
+        loop {
+            let count = input.read(&mut piece).map_err(read)?;
+            if count == 0 {
+                return Ok(());
+            }
+            self.rest.extend(piece.iter().take(count));
+            if self.header.is_empty()
+                && let Some(end) = self.rest.iter().position(|byte| *byte == b'\n')
+            {
+                self.header = self.rest.drain(..=end).collect();
+            }
+            let mut table = self.header.clone();
+            table.extend(self.rest.drain(..whole_rows(&self.rest).len()));
+            self.rows.extend(rows(&table).map_err(|source| error(source.found()))?);
+            // The last row stays: it has the time of the end.
+            let earlier = self.rows.partition_point(|row| row.t_s < from_s - APART_MAX_S);
+            self.rows.drain(..earlier.min(self.rows.len().saturating_sub(1)));
+        }
     }
 
     /// Time of the last row since the power-on of the board, s.
     pub(crate) fn end_s(&self) -> f64 {
-        self.0.last().map_or(0.0, |row| row.t_s)
+        self.rows.back().map_or(0.0, |row| row.t_s)
     }
 
     /// Adds to a row of a client what the log has at the same time: the felt friction, and the true place and speed of
     /// the finger. `start_s` is the time between the power-on of the board and the client's time zero.
     pub(crate) fn join(&self, row: &FeltRow, start_s: f64) -> FeltRow {
         let t_s = start_s + row.t_s;
-        let after = self.0.partition_point(|logged| logged.t_s < t_s);
-        let nearest = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|index| self.0.get(index));
+        let after = self.rows.partition_point(|logged| logged.t_s < t_s);
+        let nearest =
+            [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|index| self.rows.get(index));
         let nearest = nearest.min_by(|one, other| (one.t_s - t_s).abs().total_cmp(&(other.t_s - t_s).abs()));
         match nearest.filter(|logged| (logged.t_s - t_s).abs() <= APART_MAX_S) {
             Some(logged) => FeltRow {

@@ -213,8 +213,6 @@ impl OutputFile {
     pub(crate) fn filled(&self, bytes: &[u8]) -> Result<FileWriter, OutputFileError> {
         let mut writer = self.create()?;
         match writer.write_all(bytes) {
-            // Ignore a closed standard output.
-            Err(error) if self.is_standard_output() && error.kind() == ErrorKind::BrokenPipe => Ok(writer),
             Err(source) => Err(writer.error(source)),
             Ok(()) => Ok(writer),
         }

@@ -2,11 +2,12 @@
 
 use std::cell::Cell;
 use std::sync::mpsc::Receiver;
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use frixel_driver::{ByteStream, DEFAULT_BAUD, Link as _, LinkClosed, PortError, SerialLink};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::emulated::{BOARD, EmulatorError, LinkBoard, LinkRecord};
+use frixel_hil_sim::emulated::{BOARD, EmulatorError, InjectedFault, LinkBoard, LinkRecord};
 use frixel_play::Recorded;
 use frixel_wire::message::Telemetry;
 
@@ -88,6 +89,15 @@ impl<'b> EmulatedStream<'b> {
         Ok(())
     }
 
+    /// Resets the board, and returns when it has started again. Nothing is on its way to the board meanwhile: the
+    /// emulator would lose it, and the clock would wait for it.
+    pub(super) fn reset_board(&self) -> Result<(), EmulatorError> {
+        let starts = self.board.starts()?;
+        wait_for("all bytes", || self.follow())?;
+        self.board.inject(InjectedFault::Reset)?;
+        wait_for("a start", || Ok(self.board.starts()? != starts))
+    }
+
     /// Records all ticks so far except the last `held`.
     fn record_ticks(&mut self, held: usize) {
         self.held.hold(self.records.try_iter());
@@ -157,6 +167,18 @@ impl Drop for EmulatedStream<'_> {
         // If the emulator has exited, there is no clock to start.
         let _ = self.board.set_host_open(false);
     }
+}
+
+/// Waits for the board to do something.
+fn wait_for(what: &'static str, is_done: impl Fn() -> Result<bool, EmulatorError>) -> Result<(), EmulatorError> {
+    let begun = Instant::now();
+    while !is_done()? {
+        if begun.elapsed() > PATIENCE {
+            return Err(EmulatorError::Silent { what, seconds: PATIENCE.as_secs() });
+        }
+        sleep(POLL_PERIOD);
+    }
+    Ok(())
 }
 
 fn closed(board: &LinkBoard, error: &EmulatorError) -> LinkClosed {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use frixel_driver::{ByteStream as _, LinkClosed, PortError};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, InjectedFault, LinkBoard, LinkRecord};
-use frixel_hil_sim::{Board, BoardRig, RigError, RigFault, RigTick, WorldFault};
+use frixel_hil_sim::{Board, BoardRig, RigError, RigFault, RigTick};
 
 use super::EmulatedStream;
 
@@ -24,8 +24,6 @@ pub(crate) struct EmulatedRig<'b> {
     records: Receiver<(u32, LinkRecord)>,
     /// Ticks since power-on, of which the board tells the lowest 32 bits.
     tick: u64,
-    /// The end of the amplifier's fault, if there is one.
-    amplifier_fault_until: Option<u64>,
 }
 
 impl<'b> EmulatedRig<'b> {
@@ -34,7 +32,7 @@ impl<'b> EmulatedRig<'b> {
         // The stream's own record stays empty.
         let (_, unrecorded) = mpsc::channel();
         let stream = EmulatedStream::open(board, unrecorded)?;
-        let mut rig = Self { board, stream, records, tick: 0, amplifier_fault_until: None };
+        let mut rig = Self { board, stream, records, tick: 0 };
         // Ticks before the host connected are none of the scenario's.
         rig.follow().map_err(|error| PortError::NotOpened {
             port: board.serial_path().to_owned(),
@@ -57,14 +55,6 @@ impl<'b> EmulatedRig<'b> {
             let ago = (self.tick as u32).wrapping_sub(tick) as i32;
             watch(&RigTick { tick: self.tick.saturating_add_signed(-i64::from(ago)), drive, felt });
         }
-    }
-
-    fn end_amplifier_fault(&mut self) -> Result<(), RigError> {
-        if self.amplifier_fault_until.is_some_and(|until| until <= self.tick) {
-            self.amplifier_fault_until = None;
-            self.board.set_amplifier_fault(false).map_err(|error| ended(&error))?;
-        }
-        Ok(())
     }
 }
 
@@ -98,7 +88,6 @@ impl BoardRig for EmulatedRig<'_> {
         loop {
             self.follow()?;
             self.watch(watch);
-            self.end_amplifier_fault()?;
             let left = until_tick.saturating_sub(self.tick);
             if left == 0 || !received.is_empty() {
                 return Ok(());
@@ -109,17 +98,15 @@ impl BoardRig for EmulatedRig<'_> {
     }
 
     fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
-        let reason = match fault {
-            RigFault::World(WorldFault::AmplifierNotReady) => {
-                self.amplifier_fault_until = Some(self.tick.saturating_add(ticks));
-                return self.board.set_amplifier_fault(true).map_err(|error| ended(&error));
+        let injected = match fault {
+            RigFault::World(fault) => return Ok(self.board.cause(fault, ticks)?),
+            RigFault::LateTick => InjectedFault::Overrun,
+            RigFault::Reset => return self.stream.reset_board().map_err(|error| ended(&error)),
+            RigFault::OptionBytes | RigFault::WrapSoon { .. } => {
+                return Err(RigError::FaultUnavailable { rig: NAME, reason: "its emulator has no input for it" });
             }
-            RigFault::LateTick => return self.board.inject(InjectedFault::Overrun).map_err(|error| ended(&error)),
-            RigFault::World(fault) if self.board.cause(fault, ticks) => return Ok(()),
-            RigFault::World(_) => "amplifier, monitor, DAC and arm switch are simulated on the board itself",
-            RigFault::Reset | RigFault::OptionBytes | RigFault::WrapSoon { .. } => "its emulator has no input for it",
         };
-        Err(RigError::FaultUnavailable { rig: NAME, reason })
+        self.board.inject(injected).map_err(|error| ended(&error))
     }
 
     fn start_stroke(&mut self) {

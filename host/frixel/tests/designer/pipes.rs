@@ -1,4 +1,4 @@
-//! A reader that goes away, such as `head`, ends a command quietly.
+//! A reader that goes away, such as `head`, ends a command quietly, unless a result is lost by that.
 
 use std::process::{Output, Stdio};
 
@@ -38,5 +38,17 @@ fn a_closed_pipe_ends_a_command_quietly() {
     }
     for arguments in [&["play", "nowhere.toml"][..], &["scene", "check", "nowhere.toml", "--json"]] {
         assert_eq!(unread(arguments, true).status.code(), Some(1), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_result_that_is_not_read_is_an_error() {
+    for arguments in
+        [&["calibrate", "--strokes", "9", "-o", "-"][..], &["scene", "preview", &scene("brick.toml"), "-o", "-"]]
+    {
+        let output = unread(arguments, false);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(said.contains("standard output") && said.contains("Broken pipe"), "{arguments:?}: {said}");
     }
 }

@@ -3,12 +3,12 @@
 use std::fmt::Display;
 
 use frixel_hil_sim::RigTick;
-use frixel_scene::{At, Expectation, Scenario, Seen};
+use frixel_scene::{Expectation, Program, Reach, Scenario, Seen};
 use frixel_wire::fault::{Fault, State};
 
-use super::Unmet;
 use super::host::Failure;
 use super::told::Told;
+use super::{Unmet, ticks_of};
 
 /// Longest time without a code other than zero of an output that is driven, s.
 const DRIVEN_WITHIN_S: f64 = 10e-3;
@@ -17,6 +17,9 @@ const DRIVEN_WITHIN_S: f64 = 10e-3;
 pub(super) struct Checks {
     checks: Vec<Check>,
     clock: Clock,
+    /// How long the scenario runs.
+    ticks: u64,
+    scale: Scale,
     /// Name of the scenario's file.
     file: String,
 }
@@ -31,12 +34,27 @@ struct Clock {
 }
 
 impl Clock {
+    /// Time since time zero, negative before it.
     fn ms(self, tick: u64) -> f64 {
-        1e3 * tick.saturating_sub(self.first_tick) as f64 / f64::from(self.tick_hz)
+        1e3 * (tick as f64 - self.first_tick as f64) / f64::from(self.tick_hz)
     }
 
     fn ticks(self, ms: f64) -> u64 {
-        At::Ms(ms).tick(self.tick_hz)
+        ticks_of(ms, self.tick_hz)
+    }
+}
+
+/// What the board reaches with the scene, of which an expectation states fractions.
+#[derive(Clone, Copy)]
+struct Scale {
+    reach: Reach,
+    voltage_max_v_peak: f64,
+}
+
+impl Scale {
+    /// A friction in total, N, as a fraction of the largest electric friction.
+    fn friction_fraction(self, friction_n: f64) -> f64 {
+        (friction_n - self.reach.natural_friction_n) / self.reach.electric_friction_max_n
     }
 }
 
@@ -61,16 +79,28 @@ struct Found {
 }
 
 impl Checks {
-    pub(super) fn new(scenario: &Scenario, tick_hz: u32, first_tick: u64, end_tick: u64, lateness_ticks: u64) -> Self {
-        let clock = Clock { tick_hz, first_tick, end_tick, lateness_ticks };
+    pub(super) fn new(scenario: &Scenario, program: &Program, tick_hz: u32, lateness_ticks: u64) -> Self {
+        let clock = Clock { tick_hz, first_tick: 0, end_tick: u64::MAX, lateness_ticks };
+        let voltage_max_v_peak = f64::from(program.header.voltage_max_v_peak);
+        let scale = Scale { reach: program.reach, voltage_max_v_peak };
         let checks = scenario.expectations.iter().map(|expectation| Check {
             expectation: expectation.clone(),
             span: None,
             found: Found::default(),
         });
-        let mut checks = Self { checks: checks.collect(), clock, file: scenario.file.clone() };
-        checks.begin_all(None, first_tick);
-        checks
+        let ticks = ticks_of(1e3 * scenario.seconds, tick_hz);
+        Self { checks: checks.collect(), clock, ticks, scale, file: scenario.file.clone() }
+    }
+
+    /// Makes this tick time zero.
+    pub(super) fn begin_time(&mut self, tick: u64) {
+        (self.clock.first_tick, self.clock.end_tick) = (tick, tick + self.ticks);
+        self.begin_all(None, tick);
+    }
+
+    /// Time of a tick, ms.
+    pub(super) fn ms(&self, tick: u64) -> f64 {
+        self.clock.ms(tick)
     }
 
     /// The command or the fault of this name has ended, or begun.
@@ -98,17 +128,17 @@ impl Checks {
             let Some([start, end]) = check.span else { continue };
             // A tick begins where the one before ends.
             if tick.tick > start && tick.tick <= end {
-                check.see(tick, start, driven_within);
+                check.see(tick, start, driven_within, self.scale);
             }
         }
     }
 
     /// Each expectation that was not met, and each command that failed unexpectedly, by line.
     pub(super) fn unmet(&self, told: &Told, mut failures: Vec<Failure>) -> Vec<Unmet> {
-        let Self { checks, clock, file } = self;
+        let Self { checks, clock, scale, file, .. } = self;
         let mut unmet = Vec::new();
         for (number, check) in checks.iter().enumerate() {
-            if let Some(sentence) = check.unmet(*clock, told, &mut failures) {
+            if let Some(sentence) = check.unmet(*clock, *scale, told, &mut failures) {
                 let line = check.expectation.line;
                 unmet.push(Unmet { file: file.clone(), line, expectation: Some(number), sentence });
             }
@@ -136,7 +166,7 @@ impl Check {
         });
     }
 
-    fn see(&mut self, tick: &RigTick, start: u64, driven_within: u64) {
+    fn see(&mut self, tick: &RigTick, start: u64, driven_within: u64, scale: Scale) {
         let (code, enable) = (tick.drive.dac_code.bits(), tick.drive.amplifier_enable);
         let found = &mut self.found;
         found.ticks += 1;
@@ -149,7 +179,7 @@ impl Check {
                 }
                 tick.tick - found.last_driven_tick.unwrap_or(start) > driven_within
             }
-            Seen::ElectrodeBelow(limit_v) => tick.felt.electrode_v.abs() >= limit_v,
+            Seen::ElectrodeBelow(limit) => tick.felt.electrode_v.abs() >= limit * scale.voltage_max_v_peak,
             Seen::Friction(_) => {
                 if tick.felt.finger.is_some() {
                     found.friction_sum_n += tick.felt.friction_n;
@@ -165,7 +195,7 @@ impl Check {
     }
 
     /// The sentence, if the expectation was not met. Marks failures that were expected.
-    fn unmet(&self, clock: Clock, told: &Told, failures: &mut [Failure]) -> Option<String> {
+    fn unmet(&self, clock: Clock, scale: Scale, told: &Told, failures: &mut [Failure]) -> Option<String> {
         let Some([start, end]) = self.span else {
             let after = self.expectation.after.as_deref().unwrap_or_default();
             return Some(format!("expected {}, and `{after}` never happened", self.expected()));
@@ -178,14 +208,14 @@ impl Check {
             return Some(self.no_tick(clock, [start, end]));
         }
         match &self.expectation.seen {
-            Seen::Friction([least_n, largest_n]) => {
-                let mean_n = friction_sum_n / friction_ticks as f64;
+            Seen::Friction([least, largest]) => {
+                let mean = scale.friction_fraction(friction_sum_n / friction_ticks as f64);
                 if friction_ticks == 0 {
                     Some(format!("{expected}; found no finger on the screen"))
-                } else if (*least_n..=*largest_n).contains(&mean_n) {
+                } else if (*least..=*largest).contains(&mean) {
                     None
                 } else {
-                    Some(format!("{expected}; found {mean_n:.4} N"))
+                    Some(format!("{expected}; found {mean:.3}"))
                 }
             }
             Seen::State(state) => {
@@ -250,8 +280,10 @@ impl Check {
             Seen::OutputZero => "an output of zero".to_owned(),
             Seen::OutputOff => "an output that is off".to_owned(),
             Seen::OutputDriven => "a driven output".to_owned(),
-            Seen::ElectrodeBelow(limit_v) => format!("an electrode below {limit_v} V"),
-            Seen::Friction([least_n, largest_n]) => format!("a friction of {least_n} to {largest_n} N"),
+            Seen::ElectrodeBelow(limit) => format!("an electrode below {limit} of the scene's largest voltage"),
+            Seen::Friction([least, largest]) => {
+                format!("an electric friction of {least} to {largest} of the largest")
+            }
             Seen::State(state) => format!("the state \"{}\" to be said", brief(state)),
             Seen::Fault(fault) => format!("\"{}\" to be said", brief(fault)),
             Seen::Error(words) => format!("a failure with the words \"{words}\""),

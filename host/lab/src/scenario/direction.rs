@@ -3,7 +3,9 @@
 use std::collections::VecDeque;
 
 use frixel_hil_sim::{LineNoise, NoiseConfig};
-use frixel_scene::{At, LineDamage};
+use frixel_scene::LineDamage;
+
+use super::ticks_of;
 
 /// One direction of the line.
 pub(super) struct Direction {
@@ -41,7 +43,7 @@ impl Direction {
         for damage in damages {
             match damage {
                 LineDamage::Cut => self.is_cut = true,
-                LineDamage::Late { ms } => self.late_ticks += At::Ms(*ms).tick(tick_hz),
+                LineDamage::Late { ms } => self.late_ticks += ticks_of(*ms, tick_hz),
                 LineDamage::Noise(more) => {
                     noise.bit_error_rate = noise.bit_error_rate.max(more.bit_error_rate);
                     noise.lost_share = noise.lost_share.max(more.lost_share);

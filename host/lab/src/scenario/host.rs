@@ -5,12 +5,13 @@ use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_play::{PlayError, Player, load};
-use frixel_scene::{Action, At, Program, Scenario, ScenarioCommand};
+use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::payload::hello_request_frame;
 
 use super::Programs;
 use super::line::ScenarioLine;
+use super::ticks_of;
 
 /// A command that failed, or a connection that was lost.
 pub(super) struct Failure {
@@ -58,31 +59,36 @@ impl<'s, 'r> Host<'s, 'r> {
         Self { scenario, programs, line, player: None, failures: Vec::new(), last_line: 1 }
     }
 
-    /// Does what the scenario says, to its end.
+    /// Plays the scene, then does what the scenario says, to its end.
     pub(super) fn run(&mut self) {
         let tick_hz = self.line.tick_hz();
-        let end = (self.scenario.seconds * f64::from(tick_hz)).round() as u64;
-        if let Err(failure) = self.connect() {
-            self.failed("the connection", failure);
+        match self.connect() {
+            Ok(()) => self.act(&Action::Play),
+            Err(failure) => self.failed("the connection", failure),
         }
+        self.line.begin_time();
         let mut commands: Vec<&ScenarioCommand> = self.scenario.commands.iter().collect();
-        commands.sort_by_key(|command| command.at.tick(tick_hz));
+        commands.sort_by_key(|command| ticks_of(command.at_ms, tick_hz));
         for command in commands {
-            let at = command.at.tick(tick_hz);
-            if at > end || self.line.has_ended() {
+            self.wait_until(ticks_of(command.at_ms, tick_hz));
+            if self.line.has_ended() {
                 break;
             }
-            self.wait_until(at);
             self.last_line = command.line;
-            let verb = verb(&command.action);
-            self.line.note(verb);
-            match self.perform(&command.action) {
-                Ok(()) => self.line.note(format!("{verb}: done")),
-                Err(failure) => self.failed(&format!("`{verb}`"), failure),
-            }
+            self.act(&command.action);
             self.line.named_event(command.name.as_deref());
         }
-        self.wait_until(end);
+        self.wait_until(ticks_of(1e3 * self.scenario.seconds, tick_hz));
+    }
+
+    /// Does something, and writes its outcome into the timeline.
+    fn act(&mut self, action: &Action) {
+        let verb = verb(action);
+        self.line.note(verb);
+        match self.perform(action) {
+            Ok(()) => self.line.note(format!("{verb}: done")),
+            Err(failure) => self.failed(&format!("`{verb}`"), failure),
+        }
     }
 
     /// The failures, in the order of time.
@@ -118,7 +124,7 @@ impl<'s, 'r> Host<'s, 'r> {
                 return self.connect();
             }
             Action::Hang { ms } => {
-                self.line.pass_to(self.line.ticks() + At::Ms(*ms).tick(self.line.tick_hz()));
+                self.line.pass_to(self.line.ticks() + ticks_of(*ms, self.line.tick_hz()));
                 return Ok(());
             }
             Action::Die => {

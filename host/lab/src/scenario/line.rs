@@ -7,15 +7,16 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_hil_sim::{BoardRig, RigError};
+use frixel_hil_sim::{Board, BoardRig, RigError, RigFault, WorldFault};
 use frixel_play::Recorded;
-use frixel_scene::{At, Cause, Scenario};
+use frixel_scene::{Cause, Program, Scenario};
+use frixel_wire::dac_code::DacCode;
 
 use super::checks::Checks;
 use super::direction::Direction;
 use super::host::Failure;
 use super::told::Told;
-use super::{ScenarioError, ScenarioOutcome, TimelineEntry};
+use super::{ScenarioError, ScenarioOutcome, TimelineEntry, ticks_of};
 
 /// The line to a rig. Clones are the same line: a host that connects again has another one.
 pub(super) struct ScenarioLine<'r>(Rc<RefCell<Inner<'r>>>, ());
@@ -29,10 +30,13 @@ impl Clone for ScenarioLine<'_> {
 struct Inner<'r> {
     rig: &'r mut dyn BoardRig,
     tick_hz: u32,
-    /// The tick at which the scenario starts.
-    first_tick: u64,
+    /// Time zero, once the host has played the scene.
+    first_tick: Option<u64>,
+    /// The largest voltage that the scene may drive, V peak.
+    voltage_max_v_peak: f32,
     to_board: Direction,
     to_host: Direction,
+    /// Faults to come. Their ticks count from time zero.
     faults: VecDeque<PlannedFault>,
     /// Faults of the line that are there.
     present: Vec<PlannedFault>,
@@ -42,7 +46,8 @@ struct Inner<'r> {
     is_dead: bool,
     checks: Checks,
     told: Told,
-    timeline: Vec<TimelineEntry>,
+    /// What happened, with its tick on the rig's clock.
+    timeline: Vec<(u64, String)>,
     /// Why the rig has ended, with the line of the fault that it could not cause.
     error: Option<(Option<usize>, RigError)>,
 }
@@ -57,25 +62,25 @@ struct PlannedFault {
 }
 
 impl<'r> ScenarioLine<'r> {
-    pub(super) fn new(scenario: &Scenario, rig: &'r mut dyn BoardRig) -> Self {
-        let (tick_hz, first_tick) = (rig.board().tick_hz, rig.tick());
-        let ticks = |ms: f64| At::Ms(ms).tick(tick_hz);
+    pub(super) fn new(scenario: &Scenario, program: &Program, rig: &'r mut dyn BoardRig) -> Self {
+        let tick_hz = rig.board().tick_hz;
+        let ticks = |ms: f64| ticks_of(ms, tick_hz);
         let mut faults: Vec<_> = scenario
             .faults
             .iter()
             .map(|fault| {
-                let start = first_tick + fault.at.tick(tick_hz);
-                let end = fault.for_ms.map_or(u64::MAX, |ms| start + ticks(ms));
+                let start = ticks(fault.at_ms);
+                let end = fault.for_ms.map_or(u64::MAX, |ms| start.saturating_add(ticks(ms)));
                 PlannedFault { start, end, line: fault.line, name: fault.name.clone(), cause: fault.cause }
             })
             .collect();
         faults.sort_by_key(|fault| fault.start);
-        let end_tick = first_tick + ticks(1e3 * scenario.seconds);
-        let checks = Checks::new(scenario, tick_hz, first_tick, end_tick, rig.lateness_ticks());
+        let checks = Checks::new(scenario, program, tick_hz, rig.lateness_ticks());
         let inner = Inner {
             rig,
             tick_hz,
-            first_tick,
+            first_tick: None,
+            voltage_max_v_peak: program.header.voltage_max_v_peak,
             to_board: Direction::new(scenario.seed),
             to_host: Direction::new(!scenario.seed),
             faults: faults.into(),
@@ -90,10 +95,21 @@ impl<'r> ScenarioLine<'r> {
         Self(Rc::new(RefCell::new(inner)), ())
     }
 
-    /// Ticks since the start.
+    /// Makes this time zero: faults, and expectations without an `after`, count from now on.
+    pub(super) fn begin_time(&self) {
+        let mut inner = self.0.borrow_mut();
+        let tick = inner.rig.tick();
+        inner.first_tick = Some(tick);
+        inner.checks.begin_time(tick);
+        for fault in &mut inner.faults {
+            (fault.start, fault.end) = (tick + fault.start, fault.end.saturating_add(tick));
+        }
+    }
+
+    /// Ticks since time zero.
     pub(super) fn ticks(&self) -> u64 {
         let inner = self.0.borrow();
-        inner.rig.tick() - inner.first_tick
+        inner.rig.tick() - inner.first_tick.unwrap_or(inner.rig.tick())
     }
 
     /// Ticks on the rig's clock.
@@ -110,10 +126,10 @@ impl<'r> ScenarioLine<'r> {
         self.0.borrow().error.is_some()
     }
 
-    /// Lets time pass up to this tick since the start, in which nobody reads.
+    /// Lets time pass up to this tick since time zero, in which nobody reads.
     pub(super) fn pass_to(&self, ticks: u64) {
         let mut inner = self.0.borrow_mut();
-        let until = inner.first_tick + ticks;
+        let until = inner.first_tick.unwrap_or_default() + ticks;
         // An error is kept, and ends the scenario.
         let _ = inner.advance(until, false);
     }
@@ -125,14 +141,12 @@ impl<'r> ScenarioLine<'r> {
         inner.to_board.take(bytes, tick);
     }
 
-    /// Lets the person press the arm switch anew, if the board has been armed since the start.
+    /// Lets the person press the arm switch anew.
     pub(super) fn press_switch(&self) {
         let mut inner = self.0.borrow_mut();
-        if inner.told.was_armed() {
-            let until = inner.rig.press_switch() + inner.rig.tick();
-            // An error is kept, and ends the scenario.
-            let _ = inner.advance(until, false);
-        }
+        let until = inner.rig.press_switch() + inner.rig.tick();
+        // An error is kept, and ends the scenario.
+        let _ = inner.advance(until, false);
     }
 
     /// The host is killed, or another one starts.
@@ -161,22 +175,17 @@ impl<'r> ScenarioLine<'r> {
         }
         let unmet = inner.checks.unmet(&inner.told, failures);
         let mut timeline = std::mem::take(&mut inner.timeline);
-        let first_tick = inner.first_tick;
-        let of_board = inner.told.entries().map(|(tick, what)| {
-            let t_ms = 1e3 * tick.saturating_sub(first_tick) as f64 / f64::from(inner.tick_hz);
-            TimelineEntry { t_ms, what }
-        });
-        timeline.extend(of_board);
-        timeline.sort_by(|one, other| one.t_ms.total_cmp(&other.t_ms));
+        timeline.extend(inner.told.entries());
+        timeline.sort_by_key(|(tick, _)| *tick);
+        let entry = |(tick, what)| TimelineEntry { t_ms: inner.checks.ms(tick), what };
+        let timeline = timeline.into_iter().map(entry).collect();
         Ok(ScenarioOutcome { timeline, expectations: scenario.expectations.len(), unmet })
     }
 }
 
 impl Inner<'_> {
     fn note(&mut self, what: impl Into<String>) {
-        let ticks = self.rig.tick() - self.first_tick;
-        let t_ms = 1e3 * ticks as f64 / f64::from(self.tick_hz);
-        self.timeline.push(TimelineEntry { t_ms, what: what.into() });
+        self.timeline.push((self.rig.tick(), what.into()));
     }
 
     /// Lets time pass up to a tick, or until bytes are there for a host that reads.
@@ -189,7 +198,7 @@ impl Inner<'_> {
                 return Ok(());
             }
             let next_due = [&self.to_board, &self.to_host].map(Direction::next_due);
-            let next_fault = self.faults.front().map(|fault| fault.start);
+            let next_fault = self.first_tick.and(self.faults.front()).map(|fault| fault.start);
             let next_end = self.present.iter().map(|fault| fault.end).min();
             let others = next_due.into_iter().chain([next_fault, next_end]).flatten();
             let until = others.fold(until, u64::min).max(tick + 1);
@@ -229,18 +238,16 @@ impl Inner<'_> {
     fn begin_and_end_faults(&mut self, tick: u64) -> Result<(), RigError> {
         let mut line_changes = self.present.iter().any(|fault| fault.end <= tick);
         self.present.retain(|fault| fault.end > tick);
-        while let Some(fault) = self.faults.pop_front_if(|fault| fault.start <= tick) {
+        let has_begun = self.first_tick.is_some();
+        while let Some(fault) = self.faults.pop_front_if(|fault| has_begun && fault.start <= tick) {
             self.note(format!("fault of line {} begins", fault.line));
             self.checks.begin(fault.name.as_deref(), tick);
-            match fault.cause {
-                Cause::Rig(cause) => {
-                    let caused = self.rig.cause(cause, fault.end.saturating_sub(tick));
-                    self.keep(caused, Some(fault.line))?;
-                }
-                Cause::Line { .. } => {
-                    self.present.push(fault);
-                    line_changes = true;
-                }
+            if let Some(cause) = rig_fault(fault.cause, self.rig.board(), self.voltage_max_v_peak) {
+                let caused = self.rig.cause(cause, fault.end.saturating_sub(tick));
+                self.keep(caused, Some(fault.line))?;
+            } else {
+                self.present.push(fault);
+                line_changes = true;
             }
         }
         if line_changes {
@@ -263,6 +270,22 @@ impl Inner<'_> {
         let [to_board, to_host] = damages;
         self.to_board.set(&to_board, self.tick_hz);
         self.to_host.set(&to_host, self.tick_hz);
+    }
+}
+
+/// The fault of a rig; `None` for one of the line.
+fn rig_fault(cause: Cause, board: &Board, voltage_max_v_peak: f32) -> Option<RigFault> {
+    match cause {
+        Cause::Line { .. } => None,
+        Cause::Rig(fault) => Some(fault),
+        Cause::DacStuck { fraction } => {
+            let of_full_scale = fraction * f64::from(voltage_max_v_peak / board.limits.full_scale_v_peak);
+            let code = (of_full_scale.clamp(-1.0, 1.0) * f64::from(i16::MAX)).round() as i16;
+            Some(RigFault::World(WorldFault::DacStuck(DacCode::from_bits(code))))
+        }
+        Cause::TickCountWraps { in_ms } => {
+            Some(RigFault::WrapSoon { ticks: u32::try_from(ticks_of(in_ms, board.tick_hz)).unwrap_or(u32::MAX) })
+        }
     }
 }
 

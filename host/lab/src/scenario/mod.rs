@@ -1,5 +1,7 @@
 //! Runs a scenario on a rig: the host's commands and the faults at their times, and what has to be seen meanwhile.
 //!
+//! The host connects and plays the scenario's scene; time zero is the end of that play command.
+//!
 //! [`run_in_process`] runs one on the in-process rig, and [`run`] on any [`BoardRig`]. Host and board are the real
 //! ones: a [`Player`](frixel_play::Player) over a [`Device`](frixel_driver::Device), and the firmware of the rig.
 //! Faults of the line are made at the host's end of it; everything else is the rig's.
@@ -16,7 +18,7 @@ use std::fmt::{self, Display};
 use frixel_hil_sim::{
     BoardMemory, BoardRig, InProcessError, InProcessRig, Point, RigConfig, RigError, Stroke, StrokeError, WorldConfig,
 };
-use frixel_scene::{At, CompileError, Program, Scenario, Scene, compile, printable};
+use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
 use crate::default_stroke::REPEAT_PAUSE_S;
@@ -41,7 +43,7 @@ pub struct ScenarioOutcome {
 /// Something that happened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimelineEntry {
-    /// Time since the start, ms.
+    /// Time since the play began, ms.
     pub t_ms: f64,
     /// What happened.
     pub what: String,
@@ -92,18 +94,6 @@ pub enum ScenarioError {
         file: String,
         /// The reason.
         source: RigError,
-    },
-    /// A command or a fault begins after the end, which only a board can say of a tick.
-    #[error(
-        "{file}:{line}: tick {tick} of this board is after the end of the scenario: raise `seconds`, or begin earlier"
-    )]
-    AfterEnd {
-        /// The scenario's file.
-        file: String,
-        /// Line of the command or the fault.
-        line: usize,
-        /// The tick at which it begins.
-        tick: u64,
     },
     /// A scene was not given.
     #[error("{file} plays {scene}, and this scene was not given")]
@@ -166,21 +156,16 @@ pub fn run_in_process(
     run(scenario, programs, &mut rig)
 }
 
-/// Checks that nothing begins after the end, for a board of so many ticks a second.
-fn check_times(scenario: &Scenario, tick_hz: u32) -> Result<(), ScenarioError> {
-    let end = At::Ms(1e3 * scenario.seconds).tick(tick_hz);
-    let commands = scenario.commands.iter().map(|command| (command.at.tick(tick_hz), command.line));
-    let faults = scenario.faults.iter().map(|fault| (fault.at.tick(tick_hz), fault.line));
-    match commands.chain(faults).find(|(tick, _)| *tick > end) {
-        Some((tick, line)) => Err(ScenarioError::AfterEnd { file: scenario.file.clone(), line, tick }),
-        None => Ok(()),
-    }
+/// A time in ticks of a board: the next whole number of them.
+fn ticks_of(ms: f64, tick_hz: u32) -> u64 {
+    // A time that is above a whole number of ticks by rounding alone is that number.
+    (1e-3 * ms * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64
 }
 
 /// Runs a scenario on a rig, whose world has the finger of [`stroke_and_world`].
 pub fn run(scenario: &Scenario, programs: &Programs, rig: &mut dyn BoardRig) -> Result<ScenarioOutcome, ScenarioError> {
-    check_times(scenario, rig.board().tick_hz)?;
-    let line = ScenarioLine::new(scenario, rig);
+    let no_scene = || ScenarioError::NoScene { file: scenario.file.clone(), scene: scenario.scene.clone() };
+    let line = ScenarioLine::new(scenario, programs.get(&scenario.scene).ok_or_else(no_scene)?, rig);
     let mut host = Host::new(scenario, programs, line.clone());
     host.run();
     let failures = host.into_failures();

@@ -30,11 +30,6 @@ impl Told {
         }
     }
 
-    /// Whether the board has ever been armed.
-    pub(super) fn was_armed(&self) -> bool {
-        self.history.iter().any(|(_, state, _)| *state == State::Armed)
-    }
-
     fn fault(&self) -> Option<Fault> {
         self.history.last().and_then(|(.., fault)| *fault)
     }

@@ -33,7 +33,7 @@ pub enum Mistake {
     Fit(#[from] FitMistake),
     /// An expectation of a scenario does not say what has to be seen.
     #[error(
-        "this [[expect]] expects nothing: add `output`, `electrode_below_v`, `friction_n`, `state`, `fault` or `error`"
+        "this [[expect]] expects nothing: add `output`, `electrode_below_fraction`, `friction_fraction`, `state`, `fault` or `error`"
     )]
     NothingExpected,
     /// An expectation of a scenario counts from what has no such name.

@@ -11,7 +11,9 @@ use frixel_wire::fault::{Fault, State};
 use crate::compile_error::CompileError;
 use crate::fields::read_text;
 
-/// A scenario, as its file says it (`docs/scenarios.md`). Times count from the start, at which the host connects.
+/// A scenario, as its file says it (`docs/scenarios.md`). A host connects and plays the scene; times count from there.
+///
+/// A fraction is of what the board reaches with the scene, so that a scenario fits every board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// The name of the file, as it was given.
@@ -20,7 +22,7 @@ pub struct Scenario {
     pub about: String,
     /// The scene's file, relative to the folder of the scenario.
     pub scene: String,
-    /// How long it runs, in s.
+    /// How long it runs after the play began, s.
     pub seconds: f64,
     /// Seed of all that is random.
     pub seed: u64,
@@ -41,8 +43,8 @@ impl Scenario {
     ///
     /// ```
     /// let text = "scenario = 1\nscene = \"brick.toml\"\nseconds = 1\n\
-    ///             [[command]]\nat_ms = 0\ndo = \"play\"\n\
-    ///             [[expect]]\nfrom_ms = 500\noutput = \"driven\"\n";
+    ///             [[command]]\nat_ms = 600\ndo = \"stop\"\n\
+    ///             [[expect]]\nfrom_ms = 100\nto_ms = 500\noutput = \"driven\"\n";
     /// let scenario = frixel_scene::Scenario::parse(text, "brick-plays.toml")?;
     /// assert_eq!((scenario.commands.len(), scenario.expectations.len()), (1, 1));
     /// # Ok::<(), frixel_scene::CompileError>(())
@@ -78,31 +80,11 @@ pub struct StraightStroke {
     pub speed_mm_per_s: f64,
 }
 
-/// A time in a scenario, or how long something lasts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum At {
-    /// In ms since the start.
-    Ms(f64),
-    /// In ticks of the board since the start.
-    Tick(u64),
-}
-
-impl At {
-    /// The time in ticks of a board: the next whole number of them.
-    pub fn tick(self, tick_hz: u32) -> u64 {
-        match self {
-            // A time that is above a whole number of ticks by rounding alone is that number.
-            Self::Ms(ms) => (ms * 1e-3 * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64,
-            Self::Tick(tick) => tick,
-        }
-    }
-}
-
 /// Something that the host does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioCommand {
-    /// When it begins. A command that takes longer than until the next one delays it.
-    pub at: At,
+    /// When it begins, ms. A command that takes longer than until the next one delays it.
+    pub at_ms: f64,
     /// Its name, for expectations.
     pub name: Option<String>,
     /// Line of the file, from one.
@@ -116,7 +98,7 @@ pub struct ScenarioCommand {
 pub enum Action {
     /// Connects again, after the connection was given up.
     Connect,
-    /// Uploads the scenario's scene, arms the board and plays.
+    /// Uploads the scenario's scene again, arms the board and plays.
     Play,
     /// Uploads the scenario's scene and commits it.
     Upload,
@@ -157,8 +139,8 @@ pub enum Action {
 /// A fault with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioFault {
-    /// When it begins.
-    pub at: At,
+    /// When it begins, ms.
+    pub at_ms: f64,
     /// How long it lasts, in ms; `None` until the end.
     pub for_ms: Option<f64>,
     /// Its name, for expectations.
@@ -181,6 +163,16 @@ pub enum Cause {
     },
     /// At the board, or around it.
     Rig(RigFault),
+    /// The DAC holds a voltage, as a fraction of the largest one that the scene may drive.
+    DacStuck {
+        /// At most full scale is held.
+        fraction: f64,
+    },
+    /// The board's tick count wraps around after a time.
+    TickCountWraps {
+        /// In ms.
+        in_ms: f64,
+    },
 }
 
 /// What happens to bytes on the line.
@@ -202,7 +194,7 @@ pub enum LineDamage {
 pub struct Expectation {
     /// Line of the file, from one.
     pub line: usize,
-    /// The command or fault from which times count; `None` for the start.
+    /// The command or fault from which times count; `None` for the play with which the scenario begins.
     pub after: Option<String>,
     /// First time, in ms.
     pub from_ms: f64,
@@ -221,9 +213,9 @@ pub enum Seen {
     OutputOff,
     /// A code other than zero at least once, and at least once in every 10 ms.
     OutputDriven,
-    /// The electrode's voltage is below this one in every tick, V.
+    /// The electrode's voltage is below this fraction of the largest one that the scene may drive, in every tick.
     ElectrodeBelow(f64),
-    /// The mean of the friction felt while the finger is down lies between these, N.
+    /// The mean of the electric friction felt while the finger is down lies between these fractions of the largest.
     Friction([f64; 2]),
     /// The board has said of its state, by the end of the span.
     State(State),

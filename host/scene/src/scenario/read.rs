@@ -3,13 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use frixel_hil_sim::{NoiseConfig, RigFault, WorldFault};
-use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 
 use super::tables::{command, expect, fault, file, stroke, when};
-use super::{
-    Action, At, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke,
-};
+use super::{Action, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke};
 use crate::fields::Fields;
 use crate::grammar::FieldSpec;
 use crate::log::Log;
@@ -141,18 +138,16 @@ fn line_of(fields: &Fields, log: &Log) -> usize {
     log.source().line_and_column(fields.table_place()).0
 }
 
-/// The time of a command or a fault, in a scenario of so many seconds. Only a board knows when a tick is.
-fn at(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<At> {
-    let [ms, tick] = fields.in_either_unit(log, &when::AT_MS, &when::AT_TICK);
+/// The time of a command or a fault, in a scenario of so many seconds.
+fn at_ms(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<f64> {
     let place = fields.place(when::AT_MS.name);
-    let at_ms = fields.number(log, &ms);
+    let at_ms = fields.number(log, &when::AT_MS);
     if let (Some(at_ms), Some(seconds)) = (at_ms, seconds)
         && at_ms > 1e3 * seconds
     {
         log.add(place, Mistake::AfterEnd { at_ms, seconds });
     }
-    let at_tick = fields.number(log, &tick).map(|tick| At::Tick(tick as u64));
-    at_ms.map(At::Ms).or(at_tick)
+    at_ms
 }
 
 /// What a command does, before its fields are read.
@@ -186,7 +181,7 @@ fn scenario_command(
     log: &mut Log,
 ) -> Option<ScenarioCommand> {
     let line = line_of(&fields, log);
-    let at = at(&mut fields, seconds, log);
+    let at_ms = at_ms(&mut fields, seconds, log);
     let name = names.read(&mut fields, log);
     let action = match fields.choice_or_nearest(log, &command::DO, &VERBS) {
         Some(Verb::Plain(action)) => Some(action()),
@@ -209,7 +204,7 @@ fn scenario_command(
         }
     };
     fields.close(log);
-    Some(ScenarioCommand { at: at?, name, line, action: action? })
+    Some(ScenarioCommand { at_ms: at_ms?, name, line, action: action? })
 }
 
 /// What goes wrong, before its fields are read.
@@ -224,7 +219,7 @@ pub(super) enum Kind {
     DacStuck,
     TouchJumps,
     Rig(RigFault),
-    WrapSoon,
+    TickCountWraps,
 }
 
 pub(super) const KINDS: [(&str, Kind); 21] = [
@@ -248,23 +243,23 @@ pub(super) const KINDS: [(&str, Kind); 21] = [
     ("reset", Kind::Rig(RigFault::Reset)),
     ("option-bytes", Kind::Rig(RigFault::OptionBytes)),
     ("late-tick", Kind::Rig(RigFault::LateTick)),
-    ("tick-count-wraps", Kind::WrapSoon),
+    ("tick-count-wraps", Kind::TickCountWraps),
 ];
 const NO_NOISE: NoiseConfig = NoiseConfig { bit_error_rate: 0.0, lost_share: 0.0, doubled_share: 0.0 };
 
 fn scenario_fault(mut fields: Fields, seconds: Option<f64>, names: &mut Names, log: &mut Log) -> Option<ScenarioFault> {
     let line = line_of(&fields, log);
-    let at = at(&mut fields, seconds, log);
+    let at_ms = at_ms(&mut fields, seconds, log);
     let name = names.read(&mut fields, log);
     let Some(kind) = fields.choice_or_nearest(log, &fault::CAUSE, &KINDS) else {
         fields.give_up_without(log, fault::CAUSE.name);
         return None;
     };
     let cause = cause(kind, &mut fields, log);
-    let happens_once = matches!(kind, Kind::Rig(_) | Kind::WrapSoon);
+    let happens_once = matches!(kind, Kind::Rig(_) | Kind::TickCountWraps);
     let for_ms = if happens_once { None } else { fields.number(log, &when::FOR_MS) };
     fields.close(log);
-    Some(ScenarioFault { at: at?, for_ms, name, line, cause: cause? })
+    Some(ScenarioFault { at_ms: at_ms?, for_ms, name, line, cause: cause? })
 }
 
 fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
@@ -276,14 +271,10 @@ fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
         Kind::SlowOff => {
             return number(&fault::BY_MS).map(|ms| world(WorldFault::AmplifierSlowOff { delay_s: 1e-3 * ms }));
         }
-        Kind::DacStuck => {
-            return number(&fault::CODE).map(|code| world(WorldFault::DacStuck(DacCode::from_bits(code as i16))));
-        }
+        Kind::DacStuck => return number(&fault::FRACTION).map(|fraction| Cause::DacStuck { fraction }),
         Kind::TouchJumps => return number(&fault::BY_MM).map(|mm| world(WorldFault::TouchJumps { by_m: 1e-3 * mm })),
         Kind::Rig(fault) => return Some(Cause::Rig(fault)),
-        Kind::WrapSoon => {
-            return number(&fault::TICKS_LEFT).map(|ticks| Cause::Rig(RigFault::WrapSoon { ticks: ticks as u32 }));
-        }
+        Kind::TickCountWraps => return number(&fault::IN_MS).map(|in_ms| Cause::TickCountWraps { in_ms }),
         Kind::Cut => Some(LineDamage::Cut),
         Kind::Noise(noise) => number(&fault::SHARE_OF).map(|share| LineDamage::Noise(noise(share))),
         Kind::Late => number(&fault::BY_MS).map(|ms| LineDamage::Late { ms }),
@@ -323,8 +314,8 @@ fn expected(mut fields: Fields, names: &Names, log: &mut Log) -> Vec<Expectation
             Output::Off => Seen::OutputOff,
             Output::Driven => Seen::OutputDriven,
         }),
-        fields.number(log, &expect::ELECTRODE_BELOW_V).map(Seen::ElectrodeBelow),
-        fields.interval(log, &expect::FRICTION_N).map(Seen::Friction),
+        fields.number(log, &expect::ELECTRODE_BELOW_FRACTION).map(Seen::ElectrodeBelow),
+        fields.interval(log, &expect::FRICTION_FRACTION).map(Seen::Friction),
         fields.choice(log, &expect::STATE, &STATES).map(Seen::State),
         fields.choice(log, &expect::FAULT, &FAULTS).map(Seen::Fault),
         fields.text(log, &expect::ERROR).map(Seen::Error),

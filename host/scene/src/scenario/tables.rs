@@ -8,15 +8,12 @@ use crate::tables::{number, word};
 /// Longest scenario, and longest time in one: an hour.
 const SECONDS_MAX: f64 = 3_600.0;
 const TIME_MS: Range = Range::new(0.0, 1e3 * SECONDS_MAX, " ms");
-const TICKS: Range = Range::new(0.0, 1e9, " ticks");
+/// Of what the board reaches. A fault may go beyond.
+const FRACTION: Range = Range::new(-10.0, 10.0, "");
 const SHARE: Range = Range::new(0.0, 1.0, "");
 
 const fn text(name: &'static str, meaning: &'static str) -> FieldSpec {
     FieldSpec::new(name, Holds::Text, Means(""), meaning)
-}
-
-const fn whole(name: &'static str, range: Range, meaning: &'static str) -> FieldSpec {
-    FieldSpec::new(name, Holds::Whole(range), Mistake, meaning)
 }
 
 /// The file itself.
@@ -29,7 +26,7 @@ pub(super) mod file {
     pub(crate) const SCENE: FieldSpec =
         FieldSpec::new("scene", Holds::Text, Mistake, "the scene's file, relative to this file's folder");
     pub(crate) const SECONDS: FieldSpec =
-        number("seconds", Range::new(0.001, SECONDS_MAX, " s"), Mistake, "how long it runs");
+        number("seconds", Range::new(0.001, SECONDS_MAX, " s"), Mistake, "how long it runs after the play began");
     pub(crate) const SEED: FieldSpec =
         FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 1e15, "")), Number(1.0), "seed of all that is random");
     pub(crate) const WORLD: FieldSpec = word(
@@ -41,7 +38,7 @@ pub(super) mod file {
         "stroke",
         Holds::Table,
         Means("a sweep over the screen in 3 s, again and again"),
-        "where the finger goes from the first `play` on",
+        "where the finger goes from each `play` on",
     );
     pub(crate) const COMMAND: FieldSpec =
         FieldSpec::new("command", Holds::Tables, Means("none"), "what the host does, in the order of time");
@@ -69,15 +66,13 @@ pub(super) mod stroke {
 
 /// What commands, faults and expectations share.
 pub(super) mod when {
-    use super::{FieldSpec, Means, Mistake, TICKS, TIME_MS, number, text};
+    use super::{FieldSpec, Means, Mistake, TIME_MS, number, text};
 
-    pub(crate) const AT_MS: FieldSpec = number("at_ms", TIME_MS, Mistake, "when, in ms since the start");
-    pub(crate) const AT_TICK: FieldSpec =
-        number("at_tick", TICKS, Mistake, "when, in ticks of the board since the start");
+    pub(crate) const AT_MS: FieldSpec = number("at_ms", TIME_MS, Mistake, "when, in ms since the play began");
     pub(crate) const NAME: FieldSpec = text("name", "a name, for `after` of an expectation");
     pub(crate) const FOR_MS: FieldSpec = number("for_ms", TIME_MS, Means("until the end"), "how long");
     #[cfg(test)]
-    pub(crate) const ALL: &[FieldSpec] = &[AT_MS, AT_TICK, NAME, FOR_MS];
+    pub(crate) const ALL: &[FieldSpec] = &[AT_MS, NAME, FOR_MS];
 }
 
 /// `[[command]]`.
@@ -97,7 +92,7 @@ pub(super) mod command {
 
 /// `[[fault]]`.
 pub(super) mod fault {
-    use super::{FieldSpec, Means, Mistake, Range, SHARE, number, whole, word};
+    use super::{FRACTION as FRACTIONS, FieldSpec, Means, Mistake, Range, SHARE, TIME_MS, number, word};
 
     pub(crate) const CAUSE: FieldSpec = word("cause", Mistake, "what goes wrong");
     pub(crate) const LINE: FieldSpec = word("line", Means("`\"both\"`"), "`\"to-board\"`, `\"to-host\"` or `\"both\"`");
@@ -107,17 +102,20 @@ pub(super) mod fault {
         number("by_mm", Range::new(-2_000.0, 2_000.0, " mm"), Mistake, "how far every second report is off in x");
     pub(crate) const GAIN: FieldSpec =
         number("gain", Range::new(-10.0, 10.0, ""), Mistake, "what is left of the voltage");
-    pub(crate) const CODE: FieldSpec =
-        whole("code", Range::new(-32_768.0, 32_767.0, ""), "the code that the DAC holds; 32767 is full scale");
-    pub(crate) const TICKS_LEFT: FieldSpec =
-        whole("ticks", Range::new(0.0, 4_294_967_295.0, ""), "ticks before the wrap from which the board counts on");
+    pub(crate) const FRACTION: FieldSpec = number(
+        "fraction",
+        FRACTIONS,
+        Mistake,
+        "the voltage that the DAC holds, as a fraction of the largest one that the scene may drive",
+    );
+    pub(crate) const IN_MS: FieldSpec = number("in_ms", TIME_MS, Mistake, "time until the tick count wraps around");
     #[cfg(test)]
-    pub(crate) const ALL: &[FieldSpec] = &[CAUSE, LINE, SHARE_OF, BY_MS, BY_MM, GAIN, CODE, TICKS_LEFT];
+    pub(crate) const ALL: &[FieldSpec] = &[CAUSE, LINE, SHARE_OF, BY_MS, BY_MM, GAIN, FRACTION, IN_MS];
 }
 
 /// `[[expect]]`.
 pub(super) mod expect {
-    use super::{FieldSpec, Holds, Means, Number, Range, TIME_MS, number, text, word};
+    use super::{FRACTION, FieldSpec, Holds, Means, Number, TIME_MS, number, text, word};
 
     pub(crate) const AFTER: FieldSpec =
         text("after", "name of a command or fault: times count from its end or its start");
@@ -130,17 +128,18 @@ pub(super) mod expect {
         "`\"zero\"`: DAC code zero in every tick; `\"off\"`: and the amplifier disabled; `\"driven\"`: a code other than \
          zero at least once, and at least once in every 10 ms",
     );
-    pub(crate) const ELECTRODE_BELOW_V: FieldSpec = number(
-        "electrode_below_v",
-        Range::new(0.0, 10_000.0, " V"),
+    pub(crate) const ELECTRODE_BELOW_FRACTION: FieldSpec = number(
+        "electrode_below_fraction",
+        FRACTION,
         Means(""),
-        "the electrode's voltage either way, in every tick",
+        "the electrode's voltage either way, in every tick, as a fraction of the largest one that the scene may drive",
     );
-    pub(crate) const FRICTION_N: FieldSpec = FieldSpec::new(
-        "friction_n",
-        Holds::Interval(Range::new(-100.0, 100.0, " N")),
+    pub(crate) const FRICTION_FRACTION: FieldSpec = FieldSpec::new(
+        "friction_fraction",
+        Holds::Interval(FRACTION),
         Means(""),
-        "`[least, largest]`: the mean of the friction felt while the finger is down",
+        "`[least, largest]`: the mean of the electric friction felt while the finger is down, as a fraction of the \
+         largest",
     );
     pub(crate) const STATE: FieldSpec =
         word("state", Means(""), "what the board has said of its state, by the last time");
@@ -150,5 +149,5 @@ pub(super) mod expect {
         text("error", "words of a sentence with which a command or the connection fails in that time");
     #[cfg(test)]
     pub(crate) const ALL: &[FieldSpec] =
-        &[AFTER, FROM_MS, TO_MS, OUTPUT, ELECTRODE_BELOW_V, FRICTION_N, STATE, FAULT, ERROR];
+        &[AFTER, FROM_MS, TO_MS, OUTPUT, ELECTRODE_BELOW_FRACTION, FRICTION_FRACTION, STATE, FAULT, ERROR];
 }

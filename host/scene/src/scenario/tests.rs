@@ -12,23 +12,24 @@ fn parsed(tables: &str) -> Result<Scenario, String> {
 fn a_scenario_is_read_in_its_units() {
     let scenario = parsed(
         "seed = 7\nworld = \"realistic\"\nstroke = { from_mm = [10, 40], to_mm = [110, 40], speed_mm_per_s = 50 }\n\
-         [[command]]\nat_ms = 0\ndo = \"play\"\n[[command]]\nat_tick = 400\ndo = \"trigger\"\nlayer = \"OK\"\nfor_ms = 50\n\
+         [[command]]\nat_ms = 0\ndo = \"play\"\n[[command]]\nat_ms = 10\ndo = \"trigger\"\nlayer = \"OK\"\nfor_ms = 50\n\
          [[fault]]\nname = \"noise\"\nat_ms = 300\nfor_ms = 20\ncause = \"bits-flipped\"\nshare = 1e-3\nline = \"to-board\"\n\
          [[fault]]\nat_ms = 400\ncause = \"reset\"\n[[fault]]\nat_ms = 500\ncause = \"amplifier-sags\"\ngain = 0.5\n\
-         [[expect]]\nafter = \"noise\"\nfrom_ms = 1\nto_ms = 9\noutput = \"driven\"\nstate = \"active\"\n",
+         [[fault]]\nat_ms = 600\ncause = \"dac-stuck\"\nfraction = 0.4\n\
+         [[expect]]\nafter = \"noise\"\nfrom_ms = 1\nto_ms = 9\noutput = \"driven\"\nfriction_fraction = [0.4, 0.6]\nstate = \"active\"\n",
     )
     .unwrap();
     assert_eq!((scenario.seed, scenario.is_realistic, scenario.resets()), (7, true, 1));
     assert_eq!(scenario.stroke.map(|stroke| stroke.speed_mm_per_s), Some(50.0));
     let trigger = Action::Trigger { layer: "OK".into(), duration_s: Some(0.05) };
     assert_eq!(scenario.commands[1].action, trigger);
-    assert_eq!(scenario.commands[1].at.tick(40_000), 400);
-    assert_eq!(scenario.faults[0].at.tick(40_000), 12_000);
+    assert_eq!((scenario.commands[1].at_ms, scenario.faults[0].at_ms), (10.0, 300.0));
     let damage = LineDamage::Noise(NoiseConfig { bit_error_rate: 1e-3, ..NoiseConfig::default() });
     assert_eq!(scenario.faults[0].cause, Cause::Line { directions: [true, false], damage });
     assert_eq!(scenario.faults[2].cause, Cause::Rig(RigFault::World(WorldFault::AmplifierGain(0.5))));
+    assert_eq!(scenario.faults[3].cause, Cause::DacStuck { fraction: 0.4 });
     let seen: Vec<&Seen> = scenario.expectations.iter().map(|expectation| &expectation.seen).collect();
-    assert_eq!(seen, [&Seen::OutputDriven, &Seen::State(State::Active)]);
+    assert_eq!(seen, [&Seen::OutputDriven, &Seen::Friction([0.4, 0.6]), &Seen::State(State::Active)]);
     assert_eq!((scenario.expectations[0].from_ms, scenario.expectations[0].to_ms), (1.0, Some(9.0)));
 }
 
@@ -39,7 +40,7 @@ fn a_mistake_is_a_sentence_with_line_and_column() {
             "[[command]]\nat_ms = 0\ndo = \"pley\"\n",
             "test.toml:6:6: `do = \"pley\"` is not known; did you mean `play`?",
         ),
-        ("[[command]]\ndo = \"play\"\n", "test.toml:4:1: [[command]] has no `at_ms` or `at_tick`: add one of them"),
+        ("[[command]]\ndo = \"play\"\n", "test.toml:4:1: [[command]] has no `at_ms`: add it"),
         ("[[command]]\nat_ms = 0\n", "test.toml:4:1: [[command]] has no `do`: add it"),
         ("[[command]]\nat_ms = 0\ndo = \"hang\"\n", "test.toml:4:1: [[command]] has no `for_ms`: add it"),
         (

@@ -111,7 +111,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let recorder = self.player.recorder_mut();
         let rows = recorder.take_rows();
         self.outputs.keep_samples(&recorder.take_samples());
-        let written = self.outputs.write(&rows, recorder.markers());
+        let written = self.outputs.write(&rows, recorder.markers(), recorder.start_s().unwrap_or(0.0));
         self.writing += begin.elapsed();
         written
     }
@@ -185,11 +185,10 @@ impl<L: RecordedLink> Play<'_, L> {
         if let Some(lines) = self.control.as_ref().and_then(Control::kept) {
             self.outputs.keep_lines(lines);
         }
-        let written = self.outputs.write(&rows, recorder.markers());
+        let written = self.outputs.write(&rows, recorder.markers(), recorder.start_s().unwrap_or(0.0));
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
         let marked = (recorder.markers(), is_requested || ended.is_err());
-        let start_s = recorder.start_s().unwrap_or(0.0);
-        let finished = written.and_then(|()| self.outputs.finish(program, &report, start_s, marked));
+        let finished = written.and_then(|()| self.outputs.finish(program, &report, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
         let failure = ended.err().filter(|_| !interrupted);
         let (files, failure) = match finished {

@@ -1,6 +1,6 @@
 //! The output files of a play.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
 use crate::output_file::{
@@ -15,7 +15,7 @@ use super::super::experiment::cut_off;
 use super::record_file::{self, RecordFile};
 use super::recorded::Sources;
 use super::target::Target;
-use super::with_log::joined;
+use super::with_log::{LayeredRow, LogJoin};
 use super::{CommandError, PlayArgs};
 
 /// The option that names the folder.
@@ -123,10 +123,8 @@ pub(super) struct Outputs {
     replaced_at_s: Option<f64>,
     /// The layers of the scene that are off, by index, from a time on, s.
     off: Vec<(f64, Vec<usize>)>,
-    log: Option<PathBuf>,
-    /// The rows so far, if they will be joined with a log, with the layer under the finger at each. They are not in the
-    /// trace.
-    rows: Vec<(FeltRow, Option<TracedLayer>)>,
+    /// The log that the rows are joined with.
+    log: Option<LogJoin>,
 }
 
 impl Outputs {
@@ -147,7 +145,7 @@ impl Outputs {
             RecordFile::start(output, metadata, args.overwrite)
         };
         let record = files.record.as_ref().zip(metadata).map(create).transpose()?;
-        let log = args.with_log.clone();
+        let log = args.with_log.as_deref().map(LogJoin::new);
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
         Ok(Self {
             _folder: folder,
@@ -161,23 +159,28 @@ impl Outputs {
             replaced_at_s: None,
             off: Vec::new(),
             log,
-            rows: Vec::new(),
         })
     }
 
-    /// Writes rows and flushes them to the file. `markers` are all so far.
-    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker]) -> Result<(), CommandError> {
-        if let Some(record) = self.record.as_mut().filter(|_| self.log.is_none()) {
-            record.write(rows, markers)?;
+    /// Writes rows and flushes them to the file; with a log, those that it has reached. `markers` are all so far, and
+    /// `start_s` is the time from the power-on of the board to time zero of the rows.
+    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker], start_s: f64) -> Result<(), CommandError> {
+        let rows = rows.iter().map(|row| (*row, self.touch(row))).collect();
+        let rows = match &mut self.log {
+            Some(log) => log.add(rows, start_s),
+            None => rows,
+        };
+        self.put(&rows, markers)
+    }
+
+    fn put(&mut self, rows: &[LayeredRow], markers: &[Marker]) -> Result<(), CommandError> {
+        if let Some(record) = &mut self.record {
+            let rows: Vec<FeltRow> = rows.iter().map(|(row, _)| *row).collect();
+            record.write(&rows, markers)?;
         }
-        for row in rows {
+        for (row, layer) in rows {
             self.csv.write(row)?;
-            let layer = self.touch(row);
-            if self.log.is_some() {
-                self.rows.push((*row, layer));
-            } else {
-                self.trace.push(row, layer);
-            }
+            self.trace.push(row, *layer);
         }
         Ok(self.csv.flush()?)
     }
@@ -244,37 +247,18 @@ impl Outputs {
         self.touched.untouched().filter_map(|layer| self.touched.title(layer)).cloned().collect()
     }
 
-    /// Joins the rows with a log, writes `felt.csv` anew with them, records and draws them.
-    fn write_joined(&mut self, log: &Path, start_s: f64, markers: &[Marker]) -> Result<(), CommandError> {
-        let (rows, layers): (Vec<FeltRow>, Vec<Option<TracedLayer>>) =
-            std::mem::take(&mut self.rows).into_iter().unzip();
-        let joined = joined(log, &rows, start_s)?;
-        if let Some(record) = &mut self.record {
-            record.write(&joined, markers)?;
-        }
-        self.csv.restart()?;
-        for (row, layer) in joined.iter().zip(layers) {
-            self.csv.write(row)?;
-            self.trace.push(row, layer);
-        }
-        Ok(())
-    }
-
     /// Completes `felt.csv` and the file of `--record`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg`
     /// for a board at a port, and `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv`
     /// stands alone; what a person's finger did stays in `felt.csv.partial`, because without the summary nothing says
     /// that it is of a person.
-    ///
-    /// `start_s` is the time from the power-on of the board to time zero of the rows.
     pub(super) fn finish(
         mut self,
         program: &Program,
         report: &Report,
-        start_s: f64,
         (markers, interrupted): (&[Marker], bool),
     ) -> Result<Vec<PathBuf>, CommandError> {
-        let log = self.log.take();
-        let joined = log.map_or(Ok(()), |log| self.write_joined(&log, start_s, markers));
+        let (rows, joined) = self.log.take().map_or((Vec::new(), Ok(())), LogJoin::finish);
+        let joined = self.put(&rows, markers).and(joined);
         let record = self.record.take().map(|record| record.finish(markers, interrupted)).transpose();
         let others = joined.and_then(|()| Ok((self.write_others(program, report)?, record?)));
         let Self { files, csv, is_simulated, .. } = self;
@@ -359,8 +343,8 @@ mod tests {
         let args = PlayArgs { with_log: log, ..PlayArgs::ideal("a.toml".as_ref(), &out) };
         let plate = program("plate");
         let mut outputs = Outputs::create(&args, files(&args), false, &plate, None).unwrap();
-        outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }], &[]).unwrap();
-        let error = outputs.finish(&plate, &report(&plate), 0.0, (&[], false)).unwrap_err().to_string();
+        outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }], &[], 0.0).unwrap();
+        let error = outputs.finish(&plate, &report(&plate), (&[], false)).unwrap_err().to_string();
         assert!(error.contains("felt.csv.partial: rename it to keep it"), "{error}");
         assert!(!folder.path().join("felt.csv").exists(), "the next play would replace it");
         let kept = fs::read_to_string(folder.path().join("felt.csv.partial")).unwrap();
@@ -384,12 +368,12 @@ mod tests {
         let (first, second) = (program("first"), program("second"));
         let mut outputs = Outputs::create(&args, files(&args), true, &first, None).unwrap();
         outputs.switch(0.0, Vec::new());
-        outputs.write(&rows[..1_000], &[]).unwrap();
+        outputs.write(&rows[..1_000], &[], 0.0).unwrap();
         outputs.switch(1.0, vec![0]);
-        outputs.write(&rows[1_000..1_500], &[]).unwrap();
+        outputs.write(&rows[1_000..1_500], &[], 0.0).unwrap();
         outputs.replace(1.5, &second);
-        outputs.write(&rows[1_500..], &[]).unwrap();
-        let files = outputs.finish(&second, &report(&second), 0.0, (&[], false)).unwrap();
+        outputs.write(&rows[1_500..], &[], 0.0).unwrap();
+        let files = outputs.finish(&second, &report(&second), (&[], false)).unwrap();
         let svg = fs::read_to_string(&files[2]).unwrap();
         let shown: Vec<&str> = svg.lines().filter(|line| ["first", "first off", "second"].contains(line)).collect();
         assert_eq!(shown, ["first", "first off", "second"]);
