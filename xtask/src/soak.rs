@@ -123,7 +123,9 @@ fn strokes() -> Result<(), String> {
 }
 
 fn people() -> Result<(), String> {
-    ignored("fits of 200 people", &["--release", "--package", "frixel-lab", "--test", "main"], &["coverage::"])?;
+    let floors = ["run", "--locked", "--release", "--package", "frixel-lab", "--example", "fit_floors"];
+    results::run("floors of fits", cargo_in(".").args(floors))?;
+    ignored("fits of odd recordings", &["--release", "--package", "frixel-lab", "--test", "main"], &["coverage::"])?;
     ignored("fits of 600 tables of means", &["--release", "--package", "frixel-lab", "--lib"], &["fit::means"])
 }
 

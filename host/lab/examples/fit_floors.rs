@@ -22,6 +22,9 @@ use person::{Law, Protocol, Random};
 use rayon::prelude::*;
 use tally::Tally;
 
+/// Prints a part for a number of people or tables; whether its floors hold.
+type Part = fn(Option<u64>) -> bool;
+
 /// Recordings of each person.
 const SEEDS: u64 = 3;
 
@@ -39,8 +42,7 @@ fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let part = arguments.next();
     let count = arguments.next().and_then(|count| count.parse().ok());
-    let parts: [(&str, fn(Option<u64>) -> bool); 4] =
-        [("people", people), ("filters", filters), ("square", square), ("means", means)];
+    let parts: [(&str, Part); 4] = [("people", people), ("filters", filters), ("square", square), ("means", means)];
     let asked = parts.iter().filter(|(name, _)| part.as_deref().is_none_or(|part| part == *name));
     // All parts run, whether one before it holds or not.
     let held: Vec<bool> = asked.map(|(_, run)| run(count)).collect();

@@ -4,6 +4,7 @@
 mod coverage;
 mod empirical;
 mod examples;
+#[allow(dead_code, reason = "the example fit_floors uses the rest")]
 mod filters;
 mod goodput;
 mod person;
@@ -11,6 +12,7 @@ mod refusals;
 mod scenarios;
 mod simulated;
 mod slow_sensors;
+#[allow(dead_code, reason = "the example fit_floors uses the rest")]
 mod tally;
 
 use frixel_lab::fit::Settings;

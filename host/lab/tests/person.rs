@@ -119,9 +119,9 @@ impl Person {
         for _ in 0..50 {
             self.gap_m = 0.5 * (thin_m + thick_m);
             if self.attraction_n(150.0, self.load_n) > gain * self.load_n {
-                thin_m = self.gap_m
+                thin_m = self.gap_m;
             } else {
-                thick_m = self.gap_m
+                thick_m = self.gap_m;
             }
         }
         Self { law, ..self }

@@ -116,6 +116,7 @@ impl fmt::Display for Tally {
             1e2 * self.electric(),
             1e2 * self.coefficient(),
             1e2 * self.doubt(),
-        )
+        )?;
+        self.reasons.iter().try_for_each(|reason| write!(formatter, "\n    {reason}"))
     }
 }

@@ -242,7 +242,7 @@ pub enum FitError {
     /// The voltage makes no friction.
     #[error(
         "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven, \
-         that voltage and friction belong to the same time, and that friction was not smoothed over a switch of the drive"
+         that voltage and friction belong to the same time, and that friction was not smoothed, so that it changes before its switch"
     )]
     NoElectricFriction {
         /// Electric friction at the highest voltage.
@@ -278,7 +278,7 @@ pub enum FitError {
         if .high - .value < *.value && .value - .low < *.value {
             format!("wider than +-20 % of the {natural:.4} without the drive")
         } else {
-            "wider than the value itself".to_owned()
+            "wider than the value itself, as where the drive adds next to nothing or friction was smoothed".to_owned()
         }
     )]
     TooUncertain {
