@@ -32,7 +32,6 @@ mod least_squares;
 mod means;
 mod measured_points;
 mod profile;
-pub mod recipe;
 mod recording;
 mod rules;
 mod search;
