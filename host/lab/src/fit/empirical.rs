@@ -9,7 +9,7 @@ use super::error::FitError;
 use super::least_squares::Solution;
 use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels, mean_and_error};
 use super::profile::rounded;
-use super::{Data, Division, FittedData, HeldOut, Point, Settings, StrokeResult, results, verdict};
+use super::{Data, Division, FittedData, HeldOut, Point, Preparation, Settings, StrokeResult, results, verdict};
 use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
 
@@ -35,6 +35,8 @@ pub struct EmpiricalFit {
     pub strokes: usize,
     /// How rows were divided into strokes.
     pub division: Division,
+    /// What was left out and corrected before the fit.
+    pub preparation: Preparation,
 }
 
 /// How electric friction grows up to the highest voltage of the data.
@@ -68,8 +70,9 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         fitted => fitted?,
     };
     verdict::check_estimates(data.division, &strokes, &friction_coefficient, &highest.electric_friction_n)?;
-    let (normal_load_n, division) = (data.normal_load_n, data.division);
-    Ok(EmpiricalFit { friction_coefficient, law, highest, normal_load_n, held_out_n, strokes: strokes.len(), division })
+    let (normal_load_n, division, preparation) = (data.normal_load_n, data.division, data.preparation);
+    let strokes = strokes.len();
+    Ok(EmpiricalFit { friction_coefficient, law, highest, normal_load_n, held_out_n, strokes, division, preparation })
 }
 
 type Law = (VoltageLaw, MeasuredPoint, Option<(f64, f64)>);
@@ -204,10 +207,11 @@ impl EmpiricalFit {
             }
         };
         let notes = [
-            "the law holds for this screen and this load, and up to this voltage: above it, scenes are refused",
-            &format!("below the lowest voltage of the data, {below}"),
+            "the law holds for this screen and this load, and up to this voltage: above it, scenes are refused"
+                .to_owned(),
+            format!("below the lowest voltage of the data, {below}"),
         ];
-        for note in notes {
+        for note in notes.into_iter().chain(self.preparation.notes(self.division)) {
             let _ = writeln!(text, "  note: {note}");
         }
         text
@@ -237,6 +241,8 @@ impl EmpiricalFit {
             "normal_load_n": self.normal_load_n,
             "held_out_error_n": self.held_out_n.map(|(error_n, _)| error_n),
             "strokes": self.strokes,
+            "strokes_left_out": self.preparation.left_out_names(),
+            "sensor_zero_n": self.preparation.sensor_zero_n(),
         })
     }
 }
