@@ -39,12 +39,6 @@ fn fail(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_page_of_recipes_is_made_of_their_files() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/recipes.md");
-    frixel_testkit::golden::hold(&docs, &fit::recipe::page());
-}
-
-#[test]
 fn a_calibrated_person_is_recovered() {
     let folder = TempDir::new().unwrap();
     let said = succeed(folder.path(), &["calibrate", "-o", "data.csv", "--finger-seed", "5"]);

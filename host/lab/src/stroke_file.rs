@@ -140,20 +140,14 @@ pub fn to_csv(rows: impl IntoIterator<Item = [f64; 4]>) -> String {
     text
 }
 
-/// Whether a cell is empty or not a number, as programs write what they do not know.
-fn is_unknown(row: &Row, place: Place) -> bool {
-    let text = row.text(place);
-    text.is_empty() || text.eq_ignore_ascii_case("nan")
-}
-
 fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<StrokeRow, StrokeFileError> {
     row.check_length()?;
     let t_s = row.real(t)?;
-    if is_unknown(row, x) && is_unknown(row, y) {
+    if (row.real_if_known(x)?, row.real_if_known(y)?) == (None, None) {
         return Ok(StrokeRow { t_s, place: None, normal_load_n: None });
     }
     let place = Point { x_m: row.real(x)? / MM_PER_M, y_m: row.real(y)? / MM_PER_M };
-    let normal_load_n = load.map(|load| row.real_if_filled(load)).transpose()?.flatten();
+    let normal_load_n = load.map(|load| row.real_if_known(load)).transpose()?.flatten();
     match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= LOAD_MAX_N)) {
         Some(found_n) => Err(StrokeFileError::NoLoad { row: row.number(), found_n }),
         None => Ok(StrokeRow { t_s, place: Some(place), normal_load_n }),

@@ -9,11 +9,14 @@
 //!
 //! A Parquet file of [`recording`](crate::recording) is a table, too, with its rows numbered as those of its CSV.
 //!
-//! Cells may have blanks around them. Blank lines, and lines that start with `#`, are skipped. Rows are numbered as the
-//! lines of the file, so that an editor or a spreadsheet shows the row that a message names.
+//! Cells may have blanks around them. Blank lines, and lines that start with `#`, are skipped, and so is what
+//! instruments write above the header ([`layout`]). Rows are numbered as the lines of the file, so that an editor or a
+//! spreadsheet shows the row that a message names.
 
+mod blanks;
 mod dialect;
 mod error;
+mod layout;
 mod lines;
 mod unit;
 mod utf16;
@@ -24,12 +27,16 @@ use std::io::{self, Chain, Cursor, Read};
 use csv::{ByteRecord, Reader, ReaderBuilder};
 
 use crate::input::{ROWS_MAX, at_most, check_header};
+use frixel_scene::NAME_MAX_CHARS;
+
 use crate::recording::{MAGIC, Recording};
 
+use blanks::Blanks;
 pub(crate) use dialect::Dialect;
 use dialect::Digits;
 pub use error::TableError;
 pub(crate) use error::system_error;
+use layout::BLANK;
 use lines::Lines;
 use unit::Named;
 pub use unit::Unit;
@@ -37,9 +44,12 @@ use utf16::Utf8;
 
 /// Similarity from which one name is suggested for another, as a part of their length.
 const LIKENESS: f64 = 0.6;
+/// What programs write into a cell whose value they do not know.
+const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
 /// Number of characters of a cell that a message quotes.
 const QUOTED_CHARS: usize = 40;
-/// Bytes from which it is found how a table is written.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+/// Bytes from which it is found how a table is written; its header lies in them.
 const HEAD_BYTES: u64 = 64 << 10;
 
 /// A column that a caller reads.
@@ -90,13 +100,17 @@ pub struct Reading<T> {
     pub understood: Option<String>,
 }
 
-type Input<R> = Lines<Chain<Cursor<Vec<u8>>, Utf8<R>>>;
+type Input<R> = Lines<Blanks<Chain<Cursor<Vec<u8>>, Utf8<R>>>>;
 
 /// A table that is read row by row.
 pub struct Table<R> {
     reader: Reader<Input<R>>,
     dialect: Dialect,
     names: Vec<String>,
+    /// What a row of units says of each name; empty without such a row.
+    units: Vec<String>,
+    /// Where header and units stand, if not in the first lines.
+    layout: Vec<String>,
     /// Whether a caller has asked for the column of each name.
     asked: Vec<bool>,
     /// The columns whose header states a unit otherwise than by the name that the caller gave.
@@ -107,7 +121,7 @@ pub struct Table<R> {
 }
 
 impl<R: Read> Table<R> {
-    /// Reads the header. Fails if it cannot be told what separates the columns.
+    /// Reads down to the header. Fails if it cannot be told what separates the columns.
     pub fn new(input: R) -> Result<Self, TableError> {
         let mut input = Utf8::new(input).map_err(TableError::Read)?;
         let mut head = Vec::new();
@@ -118,15 +132,24 @@ impl<R: Read> Table<R> {
             head = recording.to_csv();
         }
         let is_whole = (head.len() as u64) < HEAD_BYTES;
-        let dialect = Dialect::of(&mut head, is_whole, input.order())?;
-        let input = Lines::new(Cursor::new(head).chain(input));
+        if head.starts_with(BYTE_ORDER_MARK) {
+            head.drain(..BYTE_ORDER_MARK.len());
+        }
+        if !is_whole && !head.iter().any(|byte| matches!(byte, b'\n' | b'\r')) {
+            return Err(TableError::HeaderTooLong { limit: HEAD_BYTES });
+        }
+        let (dialect, found) = Dialect::of(&mut head, is_whole, input.order())?;
+        let (units, layout) = (found.units().to_vec(), found.words(&head));
+        found.mark(&mut head);
+        let input = Blanks::new(Cursor::new(head).chain(input), dialect.separator() == BLANK);
+        let input = Lines::new(input);
         let builder = &mut ReaderBuilder::new();
         let mut reader = builder.flexible(true).comment(Some(b'#')).delimiter(dialect.separator()).from_reader(input);
         let header = reader.byte_headers().map_err(TableError::read)?;
         check_header(header.iter()).map_err(|error| TableError::Read(error.into()))?;
         let names: Vec<String> = header.iter().map(name).collect();
         let asked = vec![false; names.len()];
-        Ok(Self { reader, dialect, asked, names, stated: Vec::new(), rows: 0, cells: ByteRecord::new() })
+        Ok(Self { reader, dialect, asked, names, units, layout, stated: Vec::new(), rows: 0, cells: ByteRecord::new() })
     }
 
     /// How the table is written.
@@ -139,7 +162,7 @@ impl<R: Read> Table<R> {
     pub fn understood(&self) -> Option<String> {
         let stated = self.stated.iter().map(String::as_str).collect::<Vec<_>>().join(" and ");
         let stated = (!stated.is_empty()).then(|| format!("read {stated}"));
-        let words: Vec<String> = stated.into_iter().chain(self.dialect.words()).collect();
+        let words: Vec<String> = stated.into_iter().chain(self.layout.clone()).chain(self.dialect.words()).collect();
         (!words.is_empty()).then(|| words.join("; "))
     }
 
@@ -164,8 +187,8 @@ impl<R: Read> Table<R> {
     pub fn find(&mut self, column: Column) -> Result<Option<Place>, TableError> {
         let exact = (0..).zip(&self.names).filter(|(_, name)| *name == column.name);
         let mut places: Vec<Place> = exact.map(|(index, _)| Place { index, power_of_ten: 0 }).collect();
-        if places.is_empty()
-            && let Some(unit) = column.converted
+        if let Some(unit) = column.converted
+            && (places.is_empty() || !self.units.is_empty())
         {
             places = self.find_converted(column.name, unit)?;
         }
@@ -187,9 +210,14 @@ impl<R: Read> Table<R> {
     /// The places of the columns that state the quantity in a unit of their own.
     fn find_converted(&mut self, name: &str, unit: Unit) -> Result<Vec<Place>, TableError> {
         let mut places = Vec::new();
-        for (index, header) in self.names.iter().enumerate() {
+        for (index, plain) in self.names.iter().enumerate() {
+            let header = &match self.units.get(index).map(|unit| unit::without_brackets(unit)) {
+                Some(unit) if unit::is_unit(unit) => format!("{plain} [{unit}]"),
+                _ => plain.clone(),
+            };
             match unit::named(header, name, unit) {
                 Named::Other => {}
+                Named::In(_) if plain == name => places.push(Place { index, power_of_ten: 0 }),
                 Named::In(scale) => {
                     places.push(Place { index, power_of_ten: unit.power_from(scale) });
                     let stated = format!("`{header}` in {}", unit::words(name, unit, scale));
@@ -261,10 +289,11 @@ impl<R: Read> Table<R> {
     }
 }
 
-/// A cell of the header. What is not UTF-8 is Latin-1, in which older programs write the `µ` of a unit.
+/// The beginning of a cell of the header. What is not UTF-8 is Latin-1, in which older programs write the `µ` of a
+/// unit.
 fn name(cell: &[u8]) -> String {
     let text = str::from_utf8(cell).map_or_else(|_| cell.iter().copied().map(char::from).collect(), str::to_owned);
-    text.trim().to_owned()
+    text.trim().chars().take(NAME_MAX_CHARS).collect()
 }
 
 /// A row of a table.
@@ -291,7 +320,8 @@ impl<'t> Row<'t> {
     /// Fails if the row has more or fewer cells than the header.
     pub fn check_length(&self) -> Result<(), TableError> {
         let (row, expected, found) = (self.number, self.names.len(), self.cells.len());
-        if found == expected { Ok(()) } else { Err(TableError::Length { row, expected, found }) }
+        let is_whole = found == expected || layout::is_short(self.names, found);
+        if is_whole { Ok(()) } else { Err(TableError::Length { row, expected, found }) }
     }
 
     /// A cell without blanks around it; empty if the row is too short.
@@ -347,9 +377,15 @@ impl<'t> Row<'t> {
         place.name_in(self.names).to_owned()
     }
 
-    /// The number in a cell; `None` if the cell is empty.
-    pub fn real_if_filled(&self, place: Place) -> Result<Option<f64>, TableError> {
-        if self.text(place).is_empty() { Ok(None) } else { self.real(place).map(Some) }
+    /// The text of a cell; `None` if it says that its writer knew nothing.
+    pub fn known(&self, place: Place) -> Option<Cow<'t, str>> {
+        let text = self.text(place);
+        (!UNKNOWN.iter().any(|unknown| text.eq_ignore_ascii_case(unknown))).then_some(text)
+    }
+
+    /// The number in a cell; `None` if the cell says that its writer knew nothing.
+    pub fn real_if_known(&self, place: Place) -> Result<Option<f64>, TableError> {
+        self.known(place).map(|_| self.real(place)).transpose()
     }
 }
 
@@ -491,7 +527,7 @@ mod tests {
         let row = table.next_row().unwrap().unwrap();
         assert_eq!([a, b].map(|place| row.real(place).unwrap().to_string()), ["-2", "1000"]);
         let row = table.next_row().unwrap().unwrap();
-        assert_eq!(row.real_if_filled(a).unwrap(), None);
+        assert_eq!(row.real_if_known(a).unwrap(), None);
         let said = row.real(b).unwrap_err().to_string();
         assert_eq!(said, "row 3, column b: expected a number, found an empty cell: correct the cell or delete the row");
     }

@@ -1,6 +1,7 @@
 //! Fits recover people, and scenarios show what they expect.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+mod columns;
 mod coverage;
 mod empirical;
 mod examples;

@@ -6,6 +6,7 @@ import csv
 import datetime
 import json
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -54,9 +55,39 @@ def test_data_that_give_no_finger_are_refused() -> None:
     data = measured()
     with pytest.raises(FitError):
         fit({**data, "voltage_v_rms": np.zeros(4800)})
-    with pytest.raises(ParameterError, match="no column friction_n \\(they have voltage_v_rms, normal_force_n"):
+    with pytest.raises(FitError, match="the header has no column friction_n: name the column so, in newtons"):
         fit({name: data[name] for name in ("voltage_v_rms", "normal_force_n")})
     with pytest.raises(ParameterError, match="columns have one length, found"):
         fit({**data, "friction_n": data["friction_n"][1:]})
     with pytest.raises(ParameterError, match="found 'power'"):
         fit(data, law="power")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("column", ["voltage_v_rms", "normal_force_n", "friction_n"])
+@pytest.mark.parametrize("row", [0, 77, 4799])
+def test_a_number_that_is_missing_is_named_by_row_and_column(column: str, row: int, tmp_path: Path) -> None:
+    data = {name: values.astype(float) for name, values in measured().items()}
+    data[column][row] = np.nan
+    said = f'row {row + 2}, column {column}: expected a number, found "nan": correct the cell or delete the row'
+    with pytest.raises(FitError, match=f"^{re.escape(said)}$"):
+        fit(data)
+    pandas = pytest.importorskip("pandas")
+    with pytest.raises(FitError, match=f"^{re.escape(said)}$"):
+        fit(pandas.DataFrame(data))
+    pandas.DataFrame(data).to_csv(tmp_path / "data.csv", index=False, na_rep="nan")
+    refused = subprocess.run([os.environ["FRIXEL"], "fit", str(tmp_path / "data.csv")], capture_output=True, text=True)
+    assert said in refused.stderr
+
+
+def test_columns_are_read_as_those_of_a_file() -> None:
+    data = measured()
+    fitted = fit(data, date=DAY)
+    unknown = fit({**data, "speed_mm_s": np.full(4800, np.nan)}, date=DAY)
+    assert unknown.summary == fitted.summary
+    others = {name: values for name, values in data.items() if name not in ("friction_n", "stroke")}
+    names = np.array(["#1,", 'a"b', "2;\n3"])[data["stroke"] % 3] + data["stroke"].astype(str)
+    scaled = fit({"stroke": names, "Friction [mN]": 1e3 * data["friction_n"], **others}, date=DAY)
+    assert scaled.summary["electric_friction_n"] == pytest.approx(fitted.summary["electric_friction_n"], rel=1e-9)
+    assert "read `Friction [mN]` in millinewtons" in scaled.words
+    with pytest.raises(FitError, match="row 3, column voltage_v_rms: -75 V is below zero"):
+        fit({**data, "voltage_v_rms": np.where(np.arange(4800) == 1, -75.0, data["voltage_v_rms"])})

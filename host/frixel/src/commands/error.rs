@@ -18,7 +18,6 @@ use frixel_hil_sim::emulated::EmulatorError;
 use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_lab::calibration::CalibrationError;
 use frixel_lab::fit::FitError;
-use frixel_lab::fit::recipe::RecipeError;
 use frixel_lab::model_csv::CsvError;
 use frixel_lab::recording::{Difference, RecordingError, ReplayError, StrokeOptionsError};
 use frixel_lab::scenario::ScenarioError;
@@ -122,10 +121,6 @@ pub(crate) enum CommandError {
     ModelCsv { input: String, source: CsvError },
     #[error("{}: {source}", path.display())]
     Fit { path: PathBuf, source: FitError },
-    #[error("{}: {source}", path.display())]
-    Recipe { path: PathBuf, source: RecipeError },
-    #[error("--recipe: {0}")]
-    NoRecipe(RecipeError),
     #[error(transparent)]
     Calibration(CalibrationError),
     #[error("{}: {source}", path.display())]

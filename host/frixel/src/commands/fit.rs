@@ -7,7 +7,6 @@ use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
 use clap::{Args, ValueEnum};
-use frixel_lab::fit::recipe::{self, Recipe};
 use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, FingerProfile, Screen};
@@ -32,12 +31,8 @@ pub(super) struct FitArgs {
     ///
     /// A paper's table is data as well: `friction_n` is then a mean, beside its standard error `friction_se_n`, or its
     /// standard deviation `friction_sd_n` and the number `n` of what was averaged.
-    #[arg(value_name = "DATA.csv", required_unless_present = "recipe")]
-    data: Option<PathBuf>,
-    /// Read a file of a published data set as its recipe says (docs/recipes.md); without DATA.csv, print the recipe,
-    /// and without NAME, the list of them.
-    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
-    recipe: Option<String>,
+    #[arg(value_name = "DATA.csv")]
+    data: PathBuf,
     /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name
     /// that ends in .svg; with another law, those of an earlier fit are removed.
     #[arg(short, long, value_name = "FINGER.toml")]
@@ -119,9 +114,7 @@ impl Fitted {
 }
 
 pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
-    let (Some(path), false) = (&args.data, args.recipe.as_deref() == Some("")) else {
-        return print_recipes(args.recipe.as_deref().unwrap_or_default());
-    };
+    let path = &args.data;
     if let (Law::Empirical, Some(found)) = (args.law, args.voltage) {
         return Err(CommandError::VoltageOfLaw { found });
     }
@@ -135,15 +128,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         seed: args.seed,
     };
     let refused = |source| CommandError::Fit { path: path.clone(), source };
-    let Reading { value: data, understood } = match args.recipe.as_deref() {
-        None => fit::data(open(path)?).map_err(refused)?,
-        Some(name) => {
-            let recipe = Recipe::named(name).map_err(CommandError::NoRecipe)?;
-            let table = recipe.table(open(path)?);
-            let table = table.map_err(|source| CommandError::Recipe { path: path.clone(), source })?;
-            Reading { value: fit::data(table.value.as_bytes()).map_err(refused)?.value, understood: table.understood }
-        }
-    };
+    let Reading { value: data, understood } = fit::data(open(path)?).map_err(refused)?;
     note_understood(path, understood.as_deref());
     let fit = match args.law {
         Law::Contact => fit::fit_data(data, &settings).map(|fit| Fitted::Contact(Box::new(fit))),
@@ -170,16 +155,6 @@ fn method_of(division: Division) -> &'static str {
             "load cell, strokes with the drive switched on and off"
         }
     }
-}
-
-/// Prints a recipe; the list of all without a name.
-fn print_recipes(name: &str) -> Result<(), CommandError> {
-    if name.is_empty() {
-        return print_line(recipe::list());
-    }
-    let lines = Recipe::named(name).map_err(CommandError::NoRecipe)?.lines();
-    let lines: Vec<String> = lines.into_iter().map(|(key, value)| format!("  {key:<22} {value}")).collect();
-    print_line(lines.join("\n"))
 }
 
 /// The profile, and the residual plots beside it if it is a file.

@@ -107,7 +107,7 @@ fn touched(text: &str) -> Result<u64, TableError> {
     while let Some(row) = table.next_row()? {
         row.check_length()?;
         row.real(t)?;
-        if row.real_if_filled(x)?.is_some() || row.real_if_filled(y)?.is_some() {
+        if row.real_if_known(x)?.is_some() || row.real_if_known(y)?.is_some() {
             row.real(x)?;
             row.real(y)?;
             touched += 1;

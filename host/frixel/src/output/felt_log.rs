@@ -125,10 +125,10 @@ fn rows(bytes: &[u8]) -> Result<Vec<LogRow>, TableError> {
         row.check_length()?;
         rows.push(LogRow {
             t_s: row.real(t)?,
-            x_mm: row.real_if_filled(x)?,
-            y_mm: row.real_if_filled(y)?,
-            speed_mm_s: row.real_if_filled(speed)?,
-            felt_n: row.real_if_filled(felt)?,
+            x_mm: row.real_if_known(x)?,
+            y_mm: row.real_if_known(y)?,
+            speed_mm_s: row.real_if_known(speed)?,
+            felt_n: row.real_if_known(felt)?,
         });
     }
     Ok(rows)

@@ -10,7 +10,7 @@ use super::least_squares::Solution;
 use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels, mean_and_error};
 use super::profile::rounded;
 use super::summary::NAMED_V_RMS;
-use super::{Data, Division, FittedData, HeldOut, Point, Settings, StrokeResult, results, verdict};
+use super::{Data, Division, FittedData, HeldOut, Point, Preparation, Settings, StrokeResult, results, verdict};
 use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
 
@@ -44,6 +44,8 @@ pub struct EmpiricalFit {
     pub load_range_n: (f64, f64),
     /// As in [`Fit`](super::Fit::bandwidth_hz).
     pub bandwidth_hz: Option<f64>,
+    /// What was left out and corrected before the fit.
+    pub preparation: Preparation,
 }
 
 /// How electric friction grows up to the highest voltage of the data.
@@ -76,7 +78,7 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         }
         fitted => fitted?,
     };
-    let FittedData { normal_load_n, division, rows, voltage_range_v_rms, load_range_n, bandwidth_hz, .. } = data;
+    let FittedData { normal_load_n, division, rows, voltage_range_v_rms, load_range_n, bandwidth_hz, preparation, .. } = data;
     verdict::check_estimates(division, &strokes, &friction_coefficient, &highest.electric_friction_n, normal_load_n)?;
     let strokes = strokes.len();
     Ok(EmpiricalFit {
@@ -91,6 +93,7 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         voltage_range_v_rms,
         load_range_n,
         bandwidth_hz,
+        preparation,
     })
 }
 
@@ -226,10 +229,11 @@ impl EmpiricalFit {
             }
         };
         let notes = [
-            "the law holds for this screen and this load, and up to this voltage: above it, scenes are refused",
-            &format!("below the lowest voltage of the data, {below}"),
+            "the law holds for this screen and this load, and up to this voltage: above it, scenes are refused"
+                .to_owned(),
+            format!("below the lowest voltage of the data, {below}"),
         ];
-        for note in notes {
+        for note in notes.into_iter().chain(self.preparation.notes(self.division)) {
             let _ = writeln!(text, "  note: {note}");
         }
         text
@@ -277,6 +281,8 @@ impl EmpiricalFit {
             "held_out_error_n": self.held_out_n.map(|(error_n, _)| error_n),
             "points": points,
             "intervals_n": intervals_n,
+            "strokes_left_out": self.preparation.left_out_names(),
+            "sensor_zero_n": self.preparation.sensor_zero_n(),
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::copies::ROWS;
 use super::faults::{FaultyStroke, sentence};
 use crate::table::TableError;
 
@@ -64,6 +65,29 @@ pub enum FitError {
         found: f64,
         /// Time of the row before it.
         before: f64,
+    },
+    /// Rows stand in the recording twice.
+    #[error(
+        "rows {row} to {} have the numbers of rows {of} to {}: delete the copy, or record anew what was not measured twice",
+        row + ROWS as u64 - 1,
+        of + ROWS as u64 - 1
+    )]
+    RowsTwice {
+        /// The first row of the copy.
+        row: u64,
+        /// The first row of what was copied.
+        of: u64,
+    },
+    /// A stroke turns, and no times tell what lies around the turn.
+    #[error(
+        "row {row}: the finger turns within stroke {stroke}, friction or speed changes its sign there: add a column time_s, \
+         so that what lies around the turn is left out, or give each direction a stroke of its own"
+    )]
+    TurnWithoutTime {
+        /// The first row after the turn.
+        row: u64,
+        /// The stroke.
+        stroke: String,
     },
     /// The loads are all zero.
     #[error("column normal_force_n is zero throughout, there are no loads: record the normal force with a load cell")]

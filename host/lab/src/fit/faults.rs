@@ -1,4 +1,4 @@
-//! Strokes that cannot be used: all of them are found before any is named.
+//! Strokes that cannot be used: all of them are found before any is named. A few odd ones are left out.
 
 use core::fmt;
 
@@ -6,6 +6,8 @@ use super::error::FitError;
 
 /// Faults that are described; of the others only the strokes are named.
 const DESCRIBED: usize = 6;
+/// Part of the strokes that may be odd: they are left out.
+const LEFT_OUT_PART: f64 = 0.25;
 
 /// Why a stroke cannot be used.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,47 +47,67 @@ pub struct FaultyStroke {
     pub fault: Fault,
 }
 
+impl fmt::Display for Fault {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Short { found } => write!(formatter, "too short, {found}, where 0.4 s and 5 rows are the least"),
+            Self::Load { load_n, percent, median_n } => write!(
+                formatter,
+                "its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, more than 15 %"
+            ),
+            Self::Speed { speed_mm_s } => write!(
+                formatter,
+                "its speed of {speed_mm_s:.3} mm/s is outside 20 to 100 mm/s, where the lag of friction was measured"
+            ),
+            Self::NoSlip { found } => write!(formatter, "did not slip: {found}"),
+        }
+    }
+}
+
 impl fmt::Display for FaultyStroke {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let stroke = &self.stroke;
-        match &self.fault {
-            Fault::Short { found } => {
-                write!(formatter, "stroke {stroke} is too short, {found}, where 0.4 s and 5 rows are the least")
-            }
-            Fault::Load { load_n, percent, median_n } => write!(
-                formatter,
-                "stroke {stroke}: its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, \
-                 more than 15 %"
-            ),
-            Fault::Speed { speed_mm_s } => write!(
-                formatter,
-                "stroke {stroke}: its speed of {speed_mm_s:.3} mm/s is outside 20 to 100 mm/s, where the lag of \
-                 friction was measured"
-            ),
-            Fault::NoSlip { found } => write!(formatter, "stroke {stroke} did not slip: {found}"),
-        }
+        let Self { stroke, fault } = self;
+        let verb = match fault {
+            Fault::Short { .. } => " is",
+            Fault::Load { .. } | Fault::Speed { .. } => ":",
+            Fault::NoSlip { .. } => "",
+        };
+        write!(formatter, "stroke {stroke}{verb} {fault}")
     }
 }
 
 /// The strokes with faults, as far as they have been found.
 #[derive(Debug, Default)]
-pub(super) struct Faults(Vec<FaultyStroke>);
+pub(super) struct Faults {
+    pub(super) faulty: Vec<FaultyStroke>,
+    /// Number of all strokes.
+    pub(super) strokes: usize,
+}
 
 impl Faults {
     pub(super) fn push(&mut self, stroke: &str, fault: Fault) {
-        self.0.push(FaultyStroke { stroke: stroke.to_owned(), fault });
+        self.faulty.push(FaultyStroke { stroke: stroke.to_owned(), fault });
+    }
+
+    /// Fails if a person has to look at the recording: where more than a few strokes are odd, or where friction itself
+    /// says that a finger stuck, since to leave those out would choose among results.
+    pub(super) fn check(&self) -> Result<(), FitError> {
+        let has_stuck = self.faulty.iter().any(|faulty| matches!(faulty.fault, Fault::NoSlip { .. }));
+        if has_stuck || self.faulty.len() as f64 > LEFT_OUT_PART * self.strokes as f64 { self.refuse() } else { Ok(()) }
     }
 
     /// Fails if there are faults.
-    pub(super) fn check(&self) -> Result<(), FitError> {
-        if self.0.is_empty() { Ok(()) } else { Err(FitError::FaultyStrokes(self.0.clone())) }
+    pub(super) fn refuse(&self) -> Result<(), FitError> {
+        if self.faulty.is_empty() { Ok(()) } else { Err(FitError::FaultyStrokes(self.faulty.clone())) }
     }
 }
 
 /// The faults in a sentence: the first of them in words, and all strokes for `--without`.
 pub(super) fn sentence(faulty: &[FaultyStroke]) -> String {
     let described: Vec<String> = faulty.iter().take(DESCRIBED).map(ToString::to_string).collect();
-    let names: Vec<&str> = faulty.iter().map(|faulty| faulty.stroke.as_str()).collect();
+    let mut names: Vec<&str> = faulty.iter().map(|faulty| faulty.stroke.as_str()).collect();
+    // Pieces of one stroke.
+    names.dedup();
     let (it, more) = match faulty.len() {
         0 | 1 => ("it", String::new()),
         count if count > DESCRIBED => ("them", format!("; and {} more", count - DESCRIBED)),

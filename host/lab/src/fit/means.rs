@@ -20,8 +20,8 @@ use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
 use super::search::{Search, start};
-use super::table::{FRICTION, LOAD, VOLTAGE, voltage_v_rms};
-use super::{FittedData, Settings, rules};
+use super::table::{FRICTION, LOAD, VOLTAGE, check_voltage};
+use super::{FittedData, Preparation, Settings, rules};
 use crate::bootstrap::Draws;
 use crate::statistics::median;
 use crate::table::{Column, Place, Reading, Row, Table, Unit};
@@ -103,9 +103,11 @@ pub(super) fn read<R: Read>(mut table: Table<R>, errors: &Errors) -> Result<Read
     while let Some(row) = table.next_row()? {
         row.check_length()?;
         let (standard_error_n, count) = errors.read(&row)?;
+        let voltage_v_rms = row.real(voltage)?;
+        check_voltage(row.number(), voltage_v_rms)?;
         rows.push(MeanRow {
             number: row.number(),
-            voltage_v_rms: voltage_v_rms(&row, voltage)?,
+            voltage_v_rms,
             normal_force_n: row.real(load)?,
             friction_n: row.real(friction)?,
             standard_error_n,
@@ -157,6 +159,7 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, F
         has_speed: false,
         bandwidth_hz: None,
         held_out: None,
+        preparation: Preparation::default(),
     })
 }
 

@@ -22,6 +22,7 @@
 //!   model says and what a power law without any model says.
 
 mod contrast;
+mod copies;
 mod empirical;
 mod error;
 mod faults;
@@ -31,15 +32,17 @@ mod law;
 mod least_squares;
 mod means;
 mod measured_points;
+mod preparation;
 mod profile;
-pub mod recipe;
 mod recording;
 mod rules;
 mod search;
 mod sensor;
 mod summary;
 mod table;
+mod turns;
 mod verdict;
+mod zero;
 
 pub use crate::bootstrap::Estimate;
 use contrast::{Edges, Levels, Phases, StrokeMeans};
@@ -54,6 +57,7 @@ pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
 use least_squares::{Observation, Solution, residuals_n};
 pub use means::MeanRow;
 pub use measured_points::MeasuredPoint;
+pub use preparation::Preparation;
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
@@ -61,6 +65,7 @@ use search::{Replicate, Search, attraction_of, coupling_of, start};
 pub use summary::{Summary, words};
 pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
+pub use zero::SensorZero;
 
 /// What to fit for.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,6 +123,8 @@ pub struct Fit {
     pub bandwidth_hz: Option<f64>,
     /// Errors in strokes that a fit has not seen; `None` for means, and if a fit without one stroke does not converge.
     pub held_out: Option<HeldOut>,
+    /// What was left out and corrected before the fit.
+    pub preparation: Preparation,
     /// What was measured in each stroke, and what the fit says.
     pub strokes: Vec<StrokeResult>,
 }
@@ -169,6 +176,7 @@ struct FittedData {
     has_speed: bool,
     bandwidth_hz: Option<f64>,
     held_out: Option<HeldOut>,
+    preparation: Preparation,
 }
 
 impl FittedData {
@@ -180,11 +188,17 @@ impl FittedData {
     }
 
     fn of_recording(rows: Vec<Row>, settings: &Settings) -> Result<Self, FitError> {
+        table::check_numbers(&rows)?;
+        let (rows, sensor_zero) = zero::taken_from(rows);
         let mut faults = Faults::default();
         let fitted = Self::of_strokes_without(&mut faults, rows, settings);
         // A faulty stroke may be the cause of what else is wrong.
         faults.check()?;
-        fitted
+        if matches!(fitted, Err(FitError::TooFewStrokes { .. } | FitError::TooFewAtVoltage { .. })) {
+            // Those that were left out are missing.
+            faults.refuse()?;
+        }
+        Ok(Self { preparation: Preparation { left_out: faults.faulty, sensor_zero }, ..fitted? })
     }
 
     /// Fits the laws to the strokes without faults; the others are added to `faults`.
@@ -229,6 +243,7 @@ impl FittedData {
             has_speed: recording.has_speed,
             bandwidth_hz,
             held_out,
+            preparation: Preparation::default(),
             strokes,
         })
     }
@@ -279,6 +294,7 @@ fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
         has_speed: data.has_speed,
         bandwidth_hz: data.bandwidth_hz,
         held_out: data.held_out,
+        preparation: data.preparation.clone(),
         strokes: results(&data.strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
     let Fit { friction_coefficient, electric_friction_n, .. } = &fit;

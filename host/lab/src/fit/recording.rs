@@ -1,8 +1,10 @@
 //! Divides rows into strokes, and drops what is no steady sliding.
 
+use super::copies;
 use super::error::FitError;
 use super::faults::{Fault, Faults};
 use super::table::Row;
+use super::turns::{STILL_MM_S, pieces};
 use crate::statistics::median;
 
 /// What is dropped at the beginning of a stroke, in seconds: the finger starts to slide.
@@ -15,8 +17,6 @@ const SHORTEST_S: f64 = START_S + 0.2 + END_S;
 const KEPT_ROWS: usize = 5;
 /// Speeds at which the lag of friction was measured, in mm/s (arXiv 2505.11162).
 const SPEEDS_MM_S: core::ops::RangeInclusive<f64> = 20.0..=100.0;
-/// A finger slower than this, in mm/s, turns or stands still.
-const STILL_MM_S: f64 = 5.0;
 /// A gap in time of this many usual intervals, but at least [`GAP_S`], divides two strokes.
 const GAP_INTERVALS: f64 = 10.0;
 /// See [`GAP_INTERVALS`], in seconds.
@@ -52,6 +52,11 @@ impl Stroke {
         median(self.rows.iter().map(value))
     }
 
+    /// Whether too little is left of it without start and end.
+    fn is_short(&self) -> bool {
+        self.rows.len() < KEPT_ROWS || self.duration_s().is_some_and(|duration_s| duration_s < SHORTEST_S)
+    }
+
     /// Time from the first to the last row; `None` without times.
     fn duration_s(&self) -> Option<f64> {
         Some(self.rows.last()?.time_s? - self.rows.first()?.time_s?)
@@ -72,10 +77,12 @@ impl Recording {
     /// and turns.
     pub(super) fn new(rows: Vec<Row>, without: &[String], faults: &mut Faults) -> Result<Self, FitError> {
         let has_time = rows.iter().all(|row| row.time_s.is_some());
-        let has_speed = rows.iter().all(|row| row.speed_mm_s.is_some());
+        let has_speed = rows.iter().any(|row| row.speed_mm_s.is_some());
         check_time(&rows)?;
+        copies::check(&rows)?;
         let (division, strokes) = divided(rows, has_time)?;
         let strokes = left(strokes, without)?;
+        faults.strokes = strokes.len();
         let trimmed = strokes.into_iter().map(|stroke| (stroke.name.clone(), trimmed(stroke, division)));
         let strokes =
             trimmed.filter_map(|(name, stroke)| stroke.map_err(|fault| faults.push(&name, fault)).ok()).collect();
@@ -88,23 +95,22 @@ impl Recording {
 }
 
 fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), FitError> {
-    let count = rows.len();
-    if rows.first().is_some_and(|row| row.stroke.is_some()) {
-        return Ok((Division::Column, by(rows, |before, row| before.stroke != row.stroke)));
+    if rows.iter().any(|row| row.stroke.is_some()) {
+        let strokes = by(rows, |before, row| before.stroke != row.stroke);
+        let strokes = strokes.into_iter().filter(|stroke| stroke.rows.iter().all(|row| row.stroke.is_some()));
+        let strokes: Vec<Vec<Stroke>> = strokes.map(|stroke| turned(stroke, has_time)).collect::<Result<_, _>>()?;
+        return Ok((Division::Column, strokes.concat()));
     }
+    let count = rows.len();
     let gap_s = if has_time { GAP_S.max(GAP_INTERVALS * usual_interval_s(rows.iter())) } else { f64::INFINITY };
     let is_still = |row: &Row| row.speed_mm_s.is_some_and(|speed| speed.abs() < STILL_MM_S);
     let is_next = |before: &Row, row: &Row| {
-        let turned = before.friction_n * row.friction_n < 0.0
-            || before.speed_mm_s.zip(row.speed_mm_s).is_some_and(|(one, other)| one * other < 0.0);
         let paused = row.time_s.zip(before.time_s).is_some_and(|(now_s, then_s)| now_s - then_s > gap_s);
-        turned || paused || (is_still(before) && !is_still(row))
+        paused || (is_still(before) && !is_still(row))
     };
-    let mut strokes = by(rows.clone(), is_next);
-    // What is short lies around a turn, where speed and friction change sign more than once.
-    strokes.retain(|stroke| {
-        stroke.rows.len() >= KEPT_ROWS && stroke.duration_s().is_none_or(|duration_s| duration_s >= SHORTEST_S)
-    });
+    let strokes = by(rows.clone(), is_next).into_iter().flat_map(|stroke| pieces(stroke.rows)).zip(1..);
+    let strokes = strokes.map(|(rows, number)| Stroke { name: number.to_string(), rows });
+    let strokes: Vec<Stroke> = strokes.filter(|stroke| !stroke.is_short()).collect();
     if strokes.len() > 2 {
         return Ok((Division::Motion, strokes));
     }
@@ -115,6 +121,21 @@ fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), Fi
     let blocks = rows.chunks(count.div_ceil(BLOCKS)).enumerate();
     let blocks = blocks.map(|(index, rows)| Stroke { name: (index + 1).to_string(), rows: rows.to_vec() });
     Ok((Division::Blocks, blocks.collect()))
+}
+
+/// Divides a stroke of the column where the finger turns. Fails without times: rows around a turn are no steady sliding.
+fn turned(stroke: Stroke, has_time: bool) -> Result<Vec<Stroke>, FitError> {
+    let name = stroke.name;
+    let pieces = pieces(stroke.rows).into_iter().map(|rows| Stroke { name: name.clone(), rows });
+    let mut pieces: Vec<Stroke> = pieces.collect();
+    if let Some(row) = pieces.get(1).and_then(|piece| piece.rows.first()).filter(|_| !has_time) {
+        return Err(FitError::TurnWithoutTime { row: row.number, stroke: name });
+    }
+    // What is short lies around a turn.
+    if pieces.iter().any(|piece| !piece.is_short()) {
+        pieces.retain(|piece| !piece.is_short());
+    }
+    Ok(pieces)
 }
 
 /// Divides rows where `is_next` finds that a row begins the next stroke.
@@ -176,19 +197,140 @@ fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, Fault> {
     if count < KEPT_ROWS {
         return Err(Fault::Short { found: format!("{count} rows of steady sliding") });
     }
-    if stroke.rows.iter().all(|row| row.speed_mm_s.is_some()) {
-        let speed_mm_s = stroke.median(|row| row.speed_mm_s.unwrap_or_default().abs());
+    let speeds_mm_s = stroke.rows.iter().filter_map(|row| row.speed_mm_s).map(f64::abs);
+    if speeds_mm_s.clone().next().is_some() {
+        let speed_mm_s = median(speeds_mm_s);
         if speed_mm_s < STILL_MM_S {
             return Err(Fault::NoSlip { found: format!("its speed is {speed_mm_s:.1} mm/s") });
         }
         if !SPEEDS_MM_S.contains(&speed_mm_s) {
             return Err(Fault::Speed { speed_mm_s });
         }
-        stroke.rows.retain(|row| row.speed_mm_s.is_some_and(|speed| SPEEDS_MM_S.contains(&speed.abs())));
+        stroke.rows.retain(|row| row.speed_mm_s.is_none_or(|speed| SPEEDS_MM_S.contains(&speed.abs())));
     }
     let sign = if stroke.median(|row| row.friction_n) < 0.0 { -1.0 } else { 1.0 };
     for row in &mut stroke.rows {
         row.friction_n *= sign;
     }
     Ok(stroke)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::copies;
+    use super::super::zero::taken_from;
+    use super::{Faults, Recording, Row};
+    use crate::fit::FitError;
+
+    /// Rows of a finger that slides one way, a thousand a second, from a time on.
+    fn slide(rows: &mut Vec<Row>, count: usize, start_s: f64, sign: f64, speed_mm_s: Option<f64>) {
+        for index in 0..count {
+            // What differs from row to row, as noise does.
+            let noise = ((rows.len() as f64 * 0.618_034).fract() - 0.5) * 0.02;
+            rows.push(Row {
+                number: rows.len() as u64 + 2,
+                voltage_v_rms: if index / 25 % 2 == 0 { 0.0 } else { 150.0 },
+                normal_force_n: 0.5 + noise,
+                friction_n: sign * (0.25 - 3.0 * noise),
+                time_s: Some(start_s + 1e-3 * index as f64),
+                stroke: None,
+                speed_mm_s,
+            });
+        }
+    }
+
+    fn named(rows: &[Row], name: impl Fn(usize) -> String) -> Vec<Row> {
+        let name = |(index, row): (usize, &Row)| Row { stroke: Some(name(index)), ..row.clone() };
+        rows.iter().enumerate().map(name).collect()
+    }
+
+    /// The numbers of the rows of each stroke.
+    fn strokes(rows: Vec<Row>) -> Vec<Vec<u64>> {
+        let recording = Recording::new(rows, &[], &mut Faults::default()).unwrap();
+        recording.strokes.iter().map(|stroke| stroke.rows.iter().map(|row| row.number).collect()).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// A column that has one name for several directions gives the strokes of one that has a name for each.
+        #[test]
+        fn a_stroke_that_turns_is_that_of_its_pieces(
+            pieces in prop::collection::vec((20_usize..900, 0.001_f64..0.4), 1..6),
+            group in 1_usize..6,
+            shows in 0_usize..3,
+        ) {
+            let (mut rows, mut piece_of, mut time_s, mut sign) = (Vec::new(), Vec::new(), 0.0, 1.0);
+            for (piece, (count, pause_s)) in pieces.iter().enumerate() {
+                let (friction, speed) = [(sign, None), (sign, Some(60.0 * sign)), (1.0, Some(60.0 * sign))][shows];
+                slide(&mut rows, *count, time_s, friction, speed);
+                piece_of.resize(rows.len(), piece);
+                time_s += 1e-3 * *count as f64 + pause_s;
+                sign = -sign;
+            }
+            let divided = strokes(named(&rows, |index| piece_of[index].to_string()));
+            prop_assert_eq!(strokes(named(&rows, |index| (piece_of[index] / group).to_string())), divided);
+        }
+
+        /// What an untared sensor adds is subtracted again.
+        #[test]
+        fn a_constant_of_the_sensor_changes_no_row_in_contact(
+            load_n in -0.4_f64..2.0,
+            friction_n in -0.4_f64..0.4,
+            rest in 320_usize..600,
+            lifts in 1_usize..4,
+        ) {
+            let mut rows = Vec::new();
+            for lift in 0..lifts {
+                let (first, start_s) = (rows.len(), 10.0 * lift as f64);
+                slide(&mut rows, rest, start_s, 0.0, Some(0.0));
+                for row in rows.iter_mut().skip(first) {
+                    row.normal_force_n -= 0.5;
+                }
+                slide(&mut rows, 1400, start_s + 1e-3 * rest as f64, 1.0, Some(60.0));
+            }
+            let (tared, _) = taken_from(rows.clone());
+            let untared = rows.into_iter().map(|row| Row {
+                normal_force_n: row.normal_force_n + load_n,
+                friction_n: row.friction_n + friction_n,
+                ..row
+            });
+            let (found, zero) = taken_from(untared.collect());
+            let zero = zero.unwrap();
+            prop_assert!((zero.normal_force_n - load_n).abs() < 2e-3 && (zero.friction_n - friction_n).abs() < 2e-3);
+            prop_assert_eq!(found.len(), 1400 * lifts);
+            for (one, other) in found.iter().zip(&tared) {
+                prop_assert!((one.normal_force_n - other.normal_force_n).abs() < 1e-9);
+                prop_assert!((one.friction_n - other.friction_n).abs() < 1e-9);
+            }
+        }
+
+        /// Sliding alone shows no zero, however its load wanders.
+        #[test]
+        fn a_finger_in_contact_is_no_zero(swing in 0.0_f64..0.3, period in 0.3_f64..20.0) {
+            let mut rows = Vec::new();
+            slide(&mut rows, 20_000, 0.0, 1.0, None);
+            for row in &mut rows {
+                let load = 1.0 + swing * libm::sin(core::f64::consts::TAU * row.time_s.unwrap() / period);
+                (row.normal_force_n, row.friction_n) = (row.normal_force_n * load, row.friction_n * load);
+            }
+            prop_assert_eq!(taken_from(rows.clone()), (rows, None));
+        }
+
+        /// Fifteen rows hold a whole window, wherever they begin.
+        #[test]
+        fn rows_that_return_are_named(from in 0_usize..400, count in 15_usize..100, later_s in 0.0_f64..9.0) {
+            let mut rows = Vec::new();
+            slide(&mut rows, 500, 0.0, 1.0, None);
+            prop_assert!(copies::check(&rows).is_ok());
+            let copy = rows[from..from + count].to_vec().into_iter();
+            rows.extend(copy.map(|row| Row { number: row.number + 1000, time_s: row.time_s.map(|time_s| time_s + later_s), ..row }));
+            match copies::check(&rows) {
+                Err(FitError::RowsTwice { row, of }) => prop_assert_eq!(row, of + 1000),
+                other => prop_assert!(false, "{other:?}"),
+            }
+        }
+    }
 }

@@ -64,6 +64,11 @@ pub struct Summary {
     /// Bandwidth with which friction follows a switch of the drive, Hz: that of force sensor and finger together;
     /// `null` where the data cannot tell.
     pub bandwidth_hz: Option<f64>,
+    /// Names of the odd strokes that were left out.
+    pub strokes_left_out: Vec<String>,
+    /// Normal force and friction that the force sensor read without contact, which were subtracted, N; `null` where no
+    /// rows are without contact.
+    pub sensor_zero_n: Option<[f64; 2]>,
     /// Root mean square error of electric friction in strokes that a fit has not seen, N; `null` for means.
     pub held_out_error_n: Option<f64>,
 }
@@ -99,6 +104,8 @@ impl From<&Fit> for Summary {
             rows: fit.rows,
             division: fit.division.key(),
             bandwidth_hz: fit.bandwidth_hz,
+            strokes_left_out: fit.preparation.left_out_names().into_iter().map(str::to_owned).collect(),
+            sensor_zero_n: fit.preparation.sensor_zero_n(),
             held_out_error_n: fit.held_out.map(|held_out| held_out.contact_error_n),
         }
     }
@@ -168,7 +175,8 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         "convention",
         format!("radius 8 mm, stiffness 18 MPa/m; with them the skin gap is {skin_um:.2} um on the screen {screen}"),
     );
-    for note in notes(fit) {
+    let notes = notes(fit).into_iter().map(str::to_owned).chain(fit.preparation.notes(fit.division));
+    for note in notes {
         let _ = writeln!(text, "  note: {note}");
     }
     text

@@ -1,10 +1,11 @@
 //! Reads a recording from CSV text.
 
+use std::borrow::Cow;
 use std::io::Read;
 
 use super::error::FitError;
 use super::means::{self, MeanRow};
-use crate::table::{Column, Place, Reading, Table, Unit};
+use crate::table::{Column, Place, Reading, Table, TableError, Unit};
 
 /// Highest voltage that is read, in volts rms: above what any amplifier for touchscreens has.
 const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
@@ -16,7 +17,7 @@ pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit:
 pub(super) const STROKE: Column = Column::new("stroke", "");
 pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MillimetresPerSecond);
 
-/// A row of a recording.
+/// A row of a recording. What its writer did not know is `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Number of the row in its file; the header is row 1.
@@ -57,8 +58,8 @@ pub fn data(input: impl Read) -> Result<Reading<Data>, FitError> {
 }
 
 /// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`
-/// and `speed_mm_s` are read if there are such columns; others are ignored. Columns stand in any order, and may state
-/// another unit ([`table`](crate::table)).
+/// and `speed_mm_s` are read if there are such columns, and their empty cells and `nan` are unknown; others are ignored.
+/// Columns stand in any order, and may state another unit ([`table`](crate::table)).
 pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
     recording(Table::new(input)?)
 }
@@ -69,26 +70,41 @@ fn recording<R: Read>(mut table: Table<R>) -> Result<Reading<Vec<Row>>, FitError
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         row.check_length()?;
-        let number = row.number();
+        let real_if_known = |place: Option<Place>| place.map(|place| row.real_if_known(place)).transpose();
         rows.push(Row {
-            number,
-            voltage_v_rms: voltage_v_rms(&row, voltage)?,
+            number: row.number(),
+            voltage_v_rms: row.real(voltage)?,
             normal_force_n: row.real(load)?,
             friction_n: row.real(friction)?,
-            time_s: time.map(|time| row.real(time)).transpose()?,
-            stroke: stroke.map(|stroke| row.text(stroke).into_owned()),
-            speed_mm_s: speed.map(|speed| row.real(speed)).transpose()?,
+            time_s: real_if_known(time)?.flatten(),
+            stroke: stroke.and_then(|stroke| row.known(stroke)).map(Cow::into_owned),
+            speed_mm_s: real_if_known(speed)?.flatten(),
         });
     }
+    check_numbers(&rows)?;
     Ok(Reading { value: rows, understood: table.understood() })
 }
 
-/// The voltage of a row. Fails if no driver has it.
-pub(super) fn voltage_v_rms(row: &crate::table::Row, voltage: Place) -> Result<f64, FitError> {
-    let (number, found) = (row.number(), row.real(voltage)?);
+/// Fails if a number of a row is not finite, or its voltage none of a driver.
+pub(super) fn check_numbers(rows: &[Row]) -> Result<(), FitError> {
+    for row in rows {
+        let optional = [(TIME, row.time_s), (SPEED, row.speed_mm_s)];
+        let optional = optional.into_iter().filter_map(|(column, value)| Some((column, value?)));
+        let numbers = [(VOLTAGE, row.voltage_v_rms), (LOAD, row.normal_force_n), (FRICTION, row.friction_n)];
+        if let Some((column, value)) = numbers.into_iter().chain(optional).find(|(_, value)| !value.is_finite()) {
+            let (row, column, found) = (row.number, column.name.to_owned(), value.to_string());
+            return Err(TableError::NotANumber { row, column, found }.into());
+        }
+        check_voltage(row.number, row.voltage_v_rms)?;
+    }
+    Ok(())
+}
+
+/// Fails if no driver has this voltage.
+pub(super) fn check_voltage(row: u64, found: f64) -> Result<(), FitError> {
     match found {
-        found if found < 0.0 => Err(FitError::NegativeVoltage { row: number, found }),
-        found if found > VOLTAGE_MAX_V_RMS => Err(FitError::VoltageTooHigh { row: number, found }),
-        found => Ok(found),
+        found if found < 0.0 => Err(FitError::NegativeVoltage { row, found }),
+        found if found > VOLTAGE_MAX_V_RMS => Err(FitError::VoltageTooHigh { row, found }),
+        _ => Ok(()),
     }
 }

@@ -2,16 +2,14 @@
 
 use std::borrow::Cow;
 
-use csv::ReaderBuilder;
-
 use super::TableError;
+use super::layout::{BLANK, Layout};
 use super::utf16::ByteOrder;
 
 /// What may stand between columns, with its name.
-const SEPARATORS: [(u8, &str); 3] = [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs")];
+const SEPARATORS: [(u8, &str); 4] = [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs"), (BLANK, "blanks")];
 /// How a spreadsheet is told the separator, in a line above the header.
 const TOLD: &[u8] = b"sep=";
-const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// The decimal sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,14 +38,14 @@ pub(super) enum Digits<'t> {
 }
 
 impl Dialect {
-    /// Finds the dialect from the beginning of a table, which may end in the midst of a row unless it `is_whole`. Fails
-    /// if it can be separated in two ways.
-    pub(super) fn of(head: &mut [u8], is_whole: bool, order: Option<ByteOrder>) -> Result<Self, TableError> {
-        let separator = match told_separator(head) {
-            Some(separator) => separator,
-            None => separator(head, is_whole)?,
+    /// Finds dialect and layout from the beginning of a table, which may end in the midst of a row unless it
+    /// `is_whole`. Fails if it can be separated in two ways.
+    pub(super) fn of(head: &mut [u8], is_whole: bool, order: Option<ByteOrder>) -> Result<(Self, Layout), TableError> {
+        let layout = match told_separator(head) {
+            Some(separator) => Layout::of(head, separator, is_whole),
+            None => layout(head, is_whole)?,
         };
-        Ok(Self { separator, decimal: decimal(&records(head, separator, is_whole)), order })
+        Ok((Self { separator: layout.separator, decimal: decimal(&layout), order }, layout))
     }
 
     pub(crate) fn separator(self) -> u8 {
@@ -103,58 +101,36 @@ fn name(separator: u8) -> &'static str {
 
 /// The separator that a first line such as `sep=;` tells. The line becomes a comment.
 fn told_separator(head: &mut [u8]) -> Option<u8> {
-    let start = if head.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
-    let line = head.get_mut(start..)?;
-    let (separator, end) = (*line.get(TOLD.len())?, *line.get(TOLD.len() + 1)?);
-    let is_told = line.get(..TOLD.len())?.eq_ignore_ascii_case(TOLD);
+    let (separator, end) = (*head.get(TOLD.len())?, *head.get(TOLD.len() + 1)?);
+    let is_told = head.get(..TOLD.len())?.eq_ignore_ascii_case(TOLD);
     let separator =
         SEPARATORS.iter().find(|(byte, _)| *byte == separator).filter(|_| is_told && matches!(end, b'\r' | b'\n'))?;
-    // The byte order mark would otherwise hide the comment from the reader.
-    line.get_mut(..1)?.fill(b'#');
-    head.get_mut(..start)?.fill(b'#');
+    head.get_mut(..1)?.fill(b'#');
     Some(separator.0)
 }
 
-type Records = Vec<Vec<String>>;
-
-/// The header and the whole rows of the beginning of a table.
-fn records(head: &[u8], separator: u8, is_whole: bool) -> Records {
-    let builder = &mut ReaderBuilder::new();
-    let mut reader =
-        builder.flexible(true).has_headers(false).comment(Some(b'#')).delimiter(separator).from_reader(head);
-    let cells =
-        |record: csv::ByteRecord| record.iter().map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
-    let mut records: Records = reader.byte_records().map_while(Result::ok).map(cells).collect();
-    records.retain(|record| record.iter().any(|cell| !cell.is_empty()));
-    if !is_whole && records.len() > 1 {
-        records.pop();
+/// The layout by the one separator that gives the header columns, and each row as many; by blanks if none gives the
+/// header columns. Fails if there are more.
+fn layout(head: &[u8], is_whole: bool) -> Result<Layout, TableError> {
+    let of = |separator: u8| Layout::of(head, separator, is_whole);
+    let layouts = SEPARATORS.iter().filter(|(separator, _)| *separator != BLANK).map(|(separator, _)| of(*separator));
+    let mut found: Vec<Layout> = layouts.filter(|layout| layout.columns() > 1).collect();
+    if found.is_empty() {
+        // A name may have blanks, too.
+        return Ok(Some(of(BLANK)).filter(Layout::has_numbers).unwrap_or_else(|| of(b',')));
     }
-    records
+    if found.iter().filter(|layout| layout.is_even()).count() == 1 {
+        found.retain(Layout::is_even);
+    }
+    if let [one, other, ..] = &found[..] {
+        let readings = [one, other].map(|layout| (name(layout.separator), layout.columns()));
+        return Err(TableError::SeparatorDoubtful { readings });
+    }
+    Ok(found.swap_remove(0))
 }
 
-/// The one separator that gives the header columns, and each row as many. Fails if there are more.
-fn separator(head: &[u8], is_whole: bool) -> Result<u8, TableError> {
-    let mut found = Vec::new();
-    for (separator, _) in SEPARATORS {
-        let records = records(head, separator, is_whole);
-        let columns = records.first().map_or(0, Vec::len);
-        let is_even = records.iter().all(|record| record.len() == columns);
-        if columns > 1 {
-            found.push((separator, columns, is_even));
-        }
-    }
-    let even: Vec<_> = found.iter().filter(|(_, _, is_even)| *is_even).collect();
-    match (&found[..], &even[..]) {
-        ([], _) => Ok(b','),
-        ([(separator, ..)], _) | (_, [(separator, ..)]) => Ok(*separator),
-        ([(one, columns, _), (other, others, _), ..], _) => Err(TableError::SeparatorDoubtful {
-            readings: [(*one, *columns), (*other, *others)].map(|(separator, columns)| (name(separator), columns)),
-        }),
-    }
-}
-
-fn decimal(records: &[Vec<String>]) -> Decimal {
-    let cells = || records.iter().skip(1).flatten();
+fn decimal(layout: &Layout) -> Decimal {
+    let cells = || layout.rows().flatten();
     let (mut sure, mut doubtful) = (false, false);
     for comma in cells().filter_map(|cell| comma_number(cell)) {
         sure |= comma == Comma::Sure;
@@ -189,6 +165,11 @@ fn comma_number(text: &str) -> Option<Comma> {
     let is_number = are_digits(whole) && are_digits(digits) && text.replacen(',', ".", 1).parse::<f64>().is_ok();
     let is_doubtful = (1..=3).contains(&whole.len()) && !whole.starts_with('0') && part.len() == 3 && are_digits(part);
     is_number.then_some(if is_doubtful { Comma::Doubtful } else { Comma::Sure })
+}
+
+/// Whether a text is a number with either decimal sign.
+pub(super) fn is_number(text: &str) -> bool {
+    text.parse::<f64>().is_ok() || comma_number(text).is_some()
 }
 
 fn is_point_number(text: &str) -> bool {

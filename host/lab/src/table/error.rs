@@ -16,6 +16,11 @@ pub enum TableError {
     Read(io::Error),
     /// There is no header.
     Empty,
+    /// The beginning of the input has no end of a line.
+    HeaderTooLong {
+        /// Most bytes of the lines down to the header.
+        limit: u64,
+    },
     /// The header can be separated in two ways.
     SeparatorDoubtful {
         /// Names of the separators, with the number of columns that each gives.
@@ -23,7 +28,7 @@ pub enum TableError {
     },
     /// The header of a column states its unit in a way that can be read as two.
     UnitDoubtful {
-        /// The column's header.
+        /// The column's header, or the name and the unit below it.
         header: String,
         /// The units, such as `newtons or in millinewtons`.
         readings: String,
@@ -93,6 +98,7 @@ impl TableError {
         match self {
             Self::Read(error) => format!("the table cannot be read ({error})"),
             Self::Empty => "the table is empty".to_owned(),
+            Self::HeaderTooLong { limit } => format!("the first line has more than {limit} bytes"),
             Self::SeparatorDoubtful { readings: [(one, columns), (other, others)] } => {
                 format!(
                     "the header can be read as {columns} columns that {one} separate, or as {others} that {other} do"
@@ -129,7 +135,7 @@ impl TableError {
     /// What to do about it.
     fn advice(&self) -> String {
         match self {
-            Self::Read(_) | Self::Empty => "give a CSV file with a header row".to_owned(),
+            Self::Read(_) | Self::Empty | Self::HeaderTooLong { .. } => "give a CSV file with a header row".to_owned(),
             Self::UnitDoubtful { advice, .. } => advice.clone(),
             Self::ColumnMissing { unit: "", .. } => "name the column so".to_owned(),
             Self::ColumnMissing { unit, .. } => format!("name the column so, in {unit}"),

@@ -50,6 +50,9 @@ const LENGTHS: &[Scale] = &[
 ];
 const SPEEDS: &[Scale] = &[scale("m/s", "m/s", 0), scale("mm/s", "mm/s", -3), scale("cm/s", "cm/s", -2)];
 
+/// A unit of each quantity.
+const ALL: [Unit; 5] = [Unit::Volts, Unit::Newtons, Unit::Seconds, Unit::Metres, Unit::MillimetresPerSecond];
+
 impl Unit {
     /// All units of the same quantity.
     fn scales(self) -> &'static [Scale] {
@@ -136,6 +139,20 @@ impl Written {
         let is_doubtful = scale.power == -3 && text.starts_with('M') && matches!(unit, Unit::Volts | Unit::Newtons);
         Some(if is_doubtful { Self::MegaOrMilli(scale) } else { Self::Sure(scale) })
     }
+}
+
+/// Whether a text is a unit, alone or in brackets.
+pub(super) fn is_unit(text: &str) -> bool {
+    let text = without_brackets(text);
+    let (text, _) = without_rest(text, "_rms");
+    ALL.iter().any(|unit| Written::of(text, *unit).is_some())
+}
+
+/// A unit without its brackets.
+pub(super) fn without_brackets(text: &str) -> &str {
+    let brackets = [('[', ']'), ('(', ')')].into_iter();
+    let mut inside = brackets.filter_map(|(open, close)| text.strip_prefix(open)?.strip_suffix(close));
+    inside.next().unwrap_or(text).trim()
 }
 
 /// What a header says about the column `name` in `unit`.

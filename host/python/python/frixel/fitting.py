@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import datetime
+import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _frixel
-from ._arguments import array, each, real, refusal, whole
+from ._arguments import each, real, refusal, whole
 from ._arguments import text as checked_text
 from .errors import ParameterError
 from .profiles import Finger, Screen
@@ -46,16 +48,6 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class _Rows:
-    voltage_v_rms: list[float]
-    normal_force_n: list[float]
-    friction_n: list[float]
-    time_s: list[float] | None
-    stroke: list[str] | None
-    speed_mm_s: list[float] | None
-
-
-@dataclass(frozen=True)
 class _Settings:
     empirical: bool
     voltage_v_rms: float
@@ -85,8 +77,10 @@ def fit(
     ----------
     data
         Columns of shape (n,), for example a `pandas.DataFrame`: `voltage_v_rms` (V), `normal_force_n` and `friction_n`
-        (N), and if they are known `time_s` (s), `stroke` (the name or number of each stroke) and `speed_mm_s` (mm/s).
-        The finger slides in strokes, while the drive is switched on and off.
+        (N), and if they are known `time_s` (s), `stroke` (the name or number of each stroke) and `speed_mm_s` (mm/s);
+        `nan` in one of these is unknown. The finger slides in strokes, while the drive is switched on and off. Names
+        may state other units, and tables of means are data, as for the command; others are ignored. Messages count
+        rows as in a CSV file, whose header is row 1.
     law
         `contact` for the contact model, which data that contradict it refuse; `empirical` for a law of its own.
     screen
@@ -105,9 +99,9 @@ def fit(
     Raises
     ------
     ParameterError
-        A column is missing, or of another length.
+        A column has another length.
     FitError
-        The data do not give a finger.
+        A column is missing or has a wrong number, or the data do not give a finger.
     """
     if law not in ("contact", "empirical"):
         raise refusal("the law", "'contact' or 'empirical'", law)
@@ -115,12 +109,7 @@ def fit(
         raise refusal("data", "a dictionary of columns or a DataFrame", data)
     if not (date is None or isinstance(date, datetime.date)):
         raise refusal("date", "a datetime.date", date)
-    forces = [_column(data, name) for name in ("voltage_v_rms", "normal_force_n", "friction_n")]
-    times, speeds = [_column(data, name) if name in data else None for name in ("time_s", "speed_mm_s")]
-    strokes = [str(name) for name in np.asarray(data["stroke"]).reshape(-1)] if "stroke" in data else None
-    lengths = {len(column) for column in (*forces, times, strokes, speeds) if column is not None}
-    if len(lengths) > 1:
-        raise ParameterError(f"columns have one length, found {sorted(lengths)}")
+    table = _csv(data)
     day = (date or datetime.datetime.now().astimezone().date()).isoformat()
     settings = _Settings(
         law == "empirical",
@@ -132,13 +121,19 @@ def fit(
         checked_text("method", method),
         Screen.of(screen),
     )
-    rows = _Rows(forces[0], forces[1], forces[2], times, strokes, speeds)
-    summary, words, profile = _frixel.fit_finger(rows, settings)
+    summary, words, profile = _frixel.fit_finger(table, settings)
     return Fit(Finger.parse(profile), json.loads(summary), words)
 
 
-def _column(data: Mapping[str, ArrayLike], name: str) -> list[float]:
-    if name not in data:
-        raise ParameterError(f"the data have no column {name} (they have {', '.join(map(str, data))})")
-    values: list[float] = array(name, data[name]).reshape(-1).tolist()
-    return values
+def _csv(data: Mapping[str, ArrayLike]) -> str:
+    """The columns as the table that the command reads: one reader, one validation, and the same numbers of rows."""
+    columns = {str(name): np.asarray(data[name]) for name in data}
+    shapes = {values.shape for values in columns.values()}
+    if len(shapes) > 1 or any(len(shape) != 1 for shape in shapes):
+        raise ParameterError(f"data: columns have one length, found shapes {sorted(shapes)}")
+    text = io.StringIO()
+    # In quotes, a word is neither a comment nor a separator.
+    writer = csv.writer(text, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
+    return text.getvalue()

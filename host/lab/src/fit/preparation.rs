@@ -1,0 +1,45 @@
+//! What was done to a recording before it was fitted.
+
+use super::{Division, FaultyStroke, SensorZero};
+
+/// What was left out of a recording, and corrected in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Preparation {
+    /// Odd strokes that were left out.
+    pub left_out: Vec<FaultyStroke>,
+    /// The zero of the force sensor, as rows without contact tell it.
+    pub sensor_zero: Option<SensorZero>,
+}
+
+impl Preparation {
+    /// Names of the strokes that were left out.
+    pub fn left_out_names(&self) -> Vec<&str> {
+        self.left_out.iter().map(|faulty| &*faulty.stroke).collect()
+    }
+
+    /// What the force sensor read without contact, normal force and friction, in newtons.
+    pub fn sensor_zero_n(&self) -> Option<[f64; 2]> {
+        self.sensor_zero.map(|zero| [zero.normal_force_n, zero.friction_n])
+    }
+
+    /// A note for each of them; none for means.
+    pub fn notes(&self, division: Division) -> Vec<String> {
+        if division == Division::Means {
+            return Vec::new();
+        }
+        let note = |faulty: &FaultyStroke| format!("stroke {} left out: {}", faulty.stroke, faulty.fault);
+        let mut notes: Vec<String> = self.left_out.iter().map(note).collect();
+        notes.push(match self.sensor_zero {
+            Some(SensorZero { normal_force_n, friction_n, duration_s }) => format!(
+                "the sensor's zero was taken from {duration_s:.1} s without contact: {normal_force_n:.3} N of load, \
+                 {friction_n:.3} N of friction"
+            ),
+            None => {
+                "no second without contact shows the sensor's zero: a sensor that was not tared shifts the friction \
+                     coefficient (docs/outputs.md, \"Taring\")"
+                    .to_owned()
+            }
+        });
+        notes
+    }
+}

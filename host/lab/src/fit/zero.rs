@@ -1,0 +1,116 @@
+//! The zero of the force sensor, as rows without contact tell it.
+//!
+//! A sensor that nobody tared adds a constant to load and friction. While no finger touches the screen, it reads that
+//! constant and nothing else, so that averages over short times agree; those of a finger that rests do not.
+
+use super::recording::usual_interval_s;
+use super::table::Row;
+use super::turns::STILL_MM_S;
+use crate::statistics::{mean, median, quantile};
+
+/// Duration of an average, in seconds, and what is left out where a finger may land or lift.
+const BLOCK_S: f64 = 0.05;
+/// Least time without contact, in seconds.
+const DURATION_MIN_S: f64 = 0.2;
+/// Parts of the loads below those that count as the lowest one and as that in contact: a finger also lifts.
+const LOWEST_PART: f64 = 0.01;
+const CONTACT_PART: f64 = 0.9;
+/// Below this part of the load in contact no finger slides as in the rest of the recording.
+const LIFTED_SHARE: f64 = 0.5;
+/// How far averages without contact may differ, as a part of the load in contact.
+const AGREEMENT: f64 = 0.02;
+/// How far rows without contact may differ, likewise: each has the sensor's noise.
+const SCATTER: f64 = 0.2;
+/// Least part of the rows below [`LIFTED_SHARE`], and of their averages, that agree: the others are a finger that lands
+/// or lifts.
+const AGREEING_PART: f64 = 0.8;
+/// Smallest load of a finger, in newtons; less is noise.
+const CONTACT_MIN_N: f64 = 0.03;
+
+/// What the force sensor read without contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorZero {
+    /// Normal force, in newtons.
+    pub normal_force_n: f64,
+    /// Friction, in newtons.
+    pub friction_n: f64,
+    /// Time without contact, in seconds.
+    pub duration_s: f64,
+}
+
+/// The rows in contact, as a tared sensor has them, and the zero that was taken from the others; all rows as they are
+/// and `None` if none are without contact for sure.
+pub(super) fn taken_from(rows: Vec<Row>) -> (Vec<Row>, Option<SensorZero>) {
+    let Some((zero, least_n)) = zero(&rows) else { return (rows, None) };
+    let in_contact = rows.into_iter().filter(|row| row.normal_force_n >= least_n);
+    let tared = in_contact.map(|row| Row {
+        normal_force_n: row.normal_force_n - zero.normal_force_n,
+        friction_n: row.friction_n - zero.friction_n,
+        ..row
+    });
+    (tared.collect(), Some(zero))
+}
+
+/// The zero, and the reading of the normal force from which on a finger is in contact.
+fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
+    if rows.iter().any(|row| row.time_s.is_none()) {
+        return None;
+    }
+    let mut loads_n: Vec<f64> = rows.iter().map(|row| row.normal_force_n).collect();
+    loads_n.sort_by(f64::total_cmp);
+    let (lowest_n, contact_n) = (quantile(&loads_n, LOWEST_PART), quantile(&loads_n, CONTACT_PART));
+    let lifted_below = |low_n: f64| low_n + LIFTED_SHARE * (contact_n - low_n);
+    let blocks = blocks(rows, lifted_below(lowest_n));
+    let over = |block: &[Row], value: fn(&Row) -> f64| mean(block.iter().map(value));
+    let centre = |value: fn(&Row) -> f64| median(blocks.iter().map(|block| over(block, value)));
+    let (load, friction): (fn(&Row) -> f64, fn(&Row) -> f64) = (|row| row.normal_force_n, |row| row.friction_n);
+    let (load_n, friction_n) = (centre(load), centre(friction));
+    let step_n = contact_n - load_n;
+    if !(step_n >= CONTACT_MIN_N) {
+        return None;
+    }
+    let agree = |rows: &[Row]| {
+        (over(rows, load) - load_n).abs() <= AGREEMENT * step_n
+            && (over(rows, friction) - friction_n).abs() <= AGREEMENT * step_n
+    };
+    let agreeing: Vec<&[Row]> = blocks.iter().copied().filter(|block| agree(block)).collect();
+    let duration_s = BLOCK_S * agreeing.len() as f64;
+    let least_n = lifted_below(load_n);
+    let lifted: Vec<f64> = loads_n.iter().copied().take_while(|load_n| *load_n < least_n).collect();
+    let near = lifted.iter().filter(|one_n| (**one_n - load_n).abs() < SCATTER * step_n).count();
+    let is_most = |part: usize, all: usize| part as f64 >= AGREEING_PART * all as f64;
+    if duration_s < DURATION_MIN_S || !is_most(agreeing.len(), blocks.len()) || !is_most(near, lifted.len()) {
+        return None;
+    }
+    // A drive that adds friction acts on a finger.
+    let (driven, idle): (Vec<Row>, Vec<Row>) =
+        agreeing.iter().flat_map(|block| block.iter()).cloned().partition(|row| row.voltage_v_rms > 0.0);
+    if !driven.is_empty() && !idle.is_empty() && !(agree(&driven) && agree(&idle)) {
+        return None;
+    }
+    let over_all = |value: fn(&Row) -> f64| mean(agreeing.iter().flat_map(|block| block.iter()).map(value));
+    Some((SensorZero { normal_force_n: over_all(load), friction_n: over_all(friction), duration_s }, least_n))
+}
+
+/// Blocks of consecutive rows below a load while no finger moves, without those at the ends of each run.
+fn blocks(rows: &[Row], load_n: f64) -> Vec<&[Row]> {
+    let interval_s = usual_interval_s(rows.iter());
+    let count = (BLOCK_S / interval_s).round();
+    if !(1.0..1e9).contains(&count) {
+        return Vec::new();
+    }
+    let is_lifted = |row: &Row| {
+        row.normal_force_n < load_n && row.speed_mm_s.is_none_or(|speed_mm_s| speed_mm_s.abs() < STILL_MM_S)
+    };
+    let is_next = |one: &Row, next: &Row| {
+        let gap_s = next.time_s.zip(one.time_s).map_or(0.0, |(next_s, time_s)| next_s - time_s);
+        is_lifted(one) == is_lifted(next) && (0.0..BLOCK_S).contains(&gap_s)
+    };
+    let runs = rows.chunk_by(is_next).filter(|run| run.first().is_some_and(is_lifted));
+    runs.flat_map(|run| {
+        let blocks = run.chunks_exact(count as usize);
+        let inner = blocks.len().saturating_sub(2);
+        blocks.skip(1).take(inner)
+    })
+    .collect()
+}

@@ -1,0 +1,209 @@
+//! Tables as others record and write them give the finger that made them: 0.5, and 70 mN at 150 V under 0.5 N.
+
+use std::fmt::Write as _;
+
+use frixel_lab::fit::{self, Data, Fit, FitError, Row, words};
+use proptest::prelude::*;
+
+use super::person::Random;
+use super::settings;
+
+/// A smooth law of the voltage near that of the contact model under a load.
+fn electric_n(voltage_v_rms: f64) -> f64 {
+    0.07 * (voltage_v_rms / 150.0).powf(2.15)
+}
+
+/// Strokes of 1.4 s, 1,000 rows a second, with the drive on in every second 25 rows.
+fn strokes(seed: u64, count: usize) -> Vec<Row> {
+    let mut random = Random::new(seed);
+    let mut rows = Vec::new();
+    for stroke in 1..=count {
+        for index in 0..1400 {
+            let on_v_rms = [75.0, 106.0, 150.0][stroke % 3];
+            let voltage_v_rms = if index / 25 % 2 == 1 { on_v_rms } else { 0.0 };
+            let normal_force_n = 0.5 + 0.005 * random.gaussian();
+            rows.push(Row {
+                number: rows.len() as u64 + 2,
+                voltage_v_rms,
+                normal_force_n,
+                friction_n: 0.5 * normal_force_n + electric_n(voltage_v_rms) + 0.004 * random.gaussian(),
+                time_s: Some(3.0 * stroke as f64 + 1e-3 * f64::from(index)),
+                stroke: Some(stroke.to_string()),
+                speed_mm_s: Some(60.0),
+            });
+        }
+    }
+    rows
+}
+
+fn csv(rows: &[Row]) -> String {
+    let mut text = "time_s,stroke,voltage_v_rms,normal_force_n,friction_n,speed_mm_s\n".to_owned();
+    for row in rows {
+        let (time_s, speed_mm_s) = (row.time_s.unwrap(), row.speed_mm_s.unwrap());
+        let (stroke, volts, load_n) = (row.stroke.as_deref().unwrap(), row.voltage_v_rms, row.normal_force_n);
+        writeln!(text, "{time_s:.3},{stroke},{volts},{load_n:.4},{:.5},{speed_mm_s}", row.friction_n).unwrap();
+    }
+    text
+}
+
+fn fit_of(rows: Vec<Row>) -> Result<Fit, FitError> {
+    fit::fit(rows, &settings())
+}
+
+/// Checks that a fit is that of the finger, and returns it in words.
+fn right(fit: Result<Fit, FitError>) -> String {
+    let fit = fit.unwrap_or_else(|error| panic!("{error}"));
+    assert!((fit.friction_coefficient.value - 0.5).abs() < 0.005, "{:?}", fit.friction_coefficient);
+    let electric = fit.electric_friction_n;
+    assert!((electric.value - 0.07).abs() < 0.0021 && electric.high - electric.low < 0.006, "{electric:?}");
+    words(&fit, "example")
+}
+
+/// The last part of each stroke is the way back, `pause_s` later.
+fn with_turns(mut rows: Vec<Row>, part: f64, pause_s: f64) -> Vec<Row> {
+    for (index, row) in rows.iter_mut().enumerate() {
+        if (index % 1400) as f64 >= 1400.0 * (1.0 - part) {
+            row.time_s = row.time_s.map(|time_s| time_s + pause_s);
+            row.friction_n = -row.friction_n;
+            row.speed_mm_s = row.speed_mm_s.map(|speed_mm_s| -speed_mm_s);
+        }
+    }
+    rows
+}
+
+#[test]
+fn strokes_that_turn_are_divided_there() {
+    for (part, pause_s) in [(0.3, 0.3), (0.1, 0.0), (0.5, 0.0)] {
+        right(fit_of(with_turns(strokes(1, 24), part, pause_s)));
+    }
+    let mut rows = with_turns(strokes(1, 24), 0.3, 0.0);
+    rows.iter_mut().for_each(|row| row.time_s = None);
+    let said = fit_of(rows).unwrap_err().to_string();
+    assert!(
+        said.starts_with("row 982: the finger turns within stroke 1") && said.contains("add a column time_s"),
+        "{said}"
+    );
+}
+
+#[test]
+fn an_odd_load_is_left_out_and_named_and_many_are_refused() {
+    let heavier = |count: usize| {
+        let mut rows = strokes(5, 24);
+        for row in rows.iter_mut().skip(4 * 1400).take(count * 1400) {
+            row.normal_force_n += 0.12;
+            row.friction_n += 0.06;
+        }
+        fit_of(rows)
+    };
+    let said = right(heavier(1));
+    assert!(said.contains("note: stroke 5 left out: its load of 0.620 N is 24 % off the median load"), "{said}");
+    right(heavier(6));
+    let said = heavier(7).unwrap_err().to_string();
+    assert!(said.starts_with("stroke 5: its load") && said.contains("--without 5,6,7,8,9,10,11"), "{said}");
+}
+
+/// Before each stroke the sensor rests for 0.3 s.
+fn untared(rest: impl Fn(usize, usize) -> [f64; 2]) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (stroke, sliding) in strokes(4, 24).chunks(1400).enumerate() {
+        for index in 0..300 {
+            let [normal_force_n, friction_n] = rest(stroke, index);
+            let time_s = sliding[0].time_s.map(|time_s| time_s - 0.301 + 1e-3 * index as f64);
+            rows.push(Row {
+                voltage_v_rms: 0.0,
+                normal_force_n,
+                friction_n,
+                time_s,
+                speed_mm_s: Some(0.0),
+                ..sliding[0].clone()
+            });
+        }
+        let tare = |row: &Row| Row {
+            normal_force_n: row.normal_force_n + 0.15,
+            friction_n: row.friction_n + 0.06,
+            ..row.clone()
+        };
+        rows.extend(sliding.iter().map(tare));
+    }
+    rows
+}
+
+#[test]
+fn rows_without_contact_show_the_zero_of_the_sensor() {
+    let said = right(fit_of(untared(|_, _| [0.15, 0.06])));
+    let note = "the sensor's zero was taken from 4.8 s without contact: 0.150 N of load, 0.060 N of friction";
+    assert!(said.contains(note), "{said}");
+    let said = right(fit_of(strokes(4, 24)));
+    assert!(said.contains("a sensor that was not tared shifts the friction coefficient"), "{said}");
+    // A finger that rests with another load each time is no zero.
+    let resting = fit_of(untared(|stroke, _| [0.15 + 0.005 * stroke as f64, 0.06])).unwrap();
+    assert_eq!(resting.preparation.sensor_zero, None);
+}
+
+#[test]
+fn rows_that_were_copied_are_refused() {
+    let rows = strokes(1, 12);
+    let copy = rows.iter().cloned().map(|row| Row {
+        number: row.number + 16800,
+        stroke: row.stroke.map(|name| name + "b"),
+        ..row
+    });
+    let said = fit_of(rows.iter().cloned().chain(copy).collect()).unwrap_err().to_string();
+    assert!(said.starts_with("rows 16802 to 16809 have the numbers of rows 2 to 9: delete the copy"), "{said}");
+}
+
+fn fit_of_text(text: &str) -> (Result<Fit, FitError>, String) {
+    let reading = fit::data(text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(matches!(reading.value, Data::Recording(_)));
+    (fit::fit_data(reading.value, &settings()), reading.understood.unwrap_or_default())
+}
+
+#[test]
+fn an_unknown_speed_is_none() {
+    let text = csv(&strokes(6, 24)).replace(",60\n", ",nan\n");
+    let (unknown, _) = fit_of_text(&text);
+    let (without, _) = fit_of_text(&text.replace(",nan\n", "\n").replace(",speed_mm_s", ""));
+    assert_eq!(right(unknown), right(without));
+}
+
+#[test]
+fn tables_of_instruments_are_read() {
+    let rows: String = strokes(7, 12).iter().fold(String::new(), |mut text, row| {
+        let time_s = row.time_s.unwrap();
+        writeln!(text, "{time_s:.3}\t{}\t{:.4}\t{:.5}", row.voltage_v_rms, row.normal_force_n, row.friction_n).unwrap();
+        text
+    });
+    let head = "Recorder 3\nRate 1000 Hz\n\ntime_s\tvoltage_v_rms\tnormal_force_n\tfriction_n\ns\tV\tN\tN\n";
+    let labview = format!("{head}{rows}");
+    let percent =
+        format!("% recorder 3\n% time_s voltage_v_rms normal_force_n friction_n\n{}", rows.replace('\t', " "));
+    for (text, said) in [
+        (labview.clone(), "the header is line 4; line 5 has units; columns are separated by tabs"),
+        (
+            labview.replace('.', ","),
+            "the header is line 4; line 5 has units; columns are separated by tabs, with decimal commas",
+        ),
+        (percent, "the header is line 2; columns are separated by blanks"),
+    ] {
+        let (fit, understood) = fit_of_text(&text);
+        right(fit);
+        assert_eq!(understood, said);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// A file and rows of a program are validated by the same rule.
+    #[test]
+    fn a_number_that_is_missing_is_named_by_row_and_column(index in 0_usize..200, column in 0_usize..3) {
+        let mut rows = strokes(1, 1);
+        rows.truncate(200);
+        let name = ["voltage_v_rms", "normal_force_n", "friction_n"][column];
+        let row = &mut rows[index];
+        *[&mut row.voltage_v_rms, &mut row.normal_force_n, &mut row.friction_n][column] = f64::NAN;
+        let expected = format!("row {}, column {name}: expected a number, found \"NaN\": correct the cell or delete the row", index + 2);
+        prop_assert_eq!(fit::rows(csv(&rows).as_bytes()).unwrap_err().to_string(), expected.clone());
+        prop_assert_eq!(fit_of(rows).unwrap_err().to_string(), expected);
+    }
+}
