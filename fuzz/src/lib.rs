@@ -82,8 +82,11 @@ const COMBINED_MAX: usize = 3;
 
 /// A recording to start from, the bytes of its file.
 pub fn recording_file() -> Vec<u8> {
-    let row =
-        |number: u32| FeltRow { t_s: f64::from(number), x_mm: (number % 3 > 0).then_some(2.5), ..FeltRow::default() };
+    let row = |number: u32| FeltRow {
+        t_s: f64::from(number),
+        x_mm: (!number.is_multiple_of(3)).then_some(2.5),
+        ..FeltRow::default()
+    };
     let recording = Recording::of_rows(Metadata::default(), &(0..50).map(row).collect::<Vec<_>>());
     let mut bytes = Vec::new();
     recording.write_parquet(&mut bytes).expect("a recording");

@@ -124,7 +124,7 @@ fn strokes() -> Result<(), String> {
 
 fn people() -> Result<(), String> {
     let floors = ["run", "--locked", "--release", "--package", "frixel-lab", "--example", "fit_floors"];
-    results::run("floors of fits", cargo_in(".").args(floors))?;
+    run_command("floors of fits", cargo_in(".").args(floors))?;
     ignored("fits of odd recordings", &["--release", "--package", "frixel-lab", "--test", "main"], &["coverage::"])?;
     ignored("fits of 600 tables of means", &["--release", "--package", "frixel-lab", "--lib"], &["fit::means"])
 }

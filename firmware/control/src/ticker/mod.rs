@@ -41,6 +41,7 @@ use crate::supervisor::{self, Supervisor};
 use crate::{Active, Board, Ceilings, Drive, Sense, Track};
 
 /// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
+#[allow(clippy::struct_excessive_bools, reason = "each is an input or an event of its own")]
 pub struct Ticker<'a> {
     timing: Timing,
     ceilings: Ceilings,

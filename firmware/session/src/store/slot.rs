@@ -117,17 +117,15 @@ impl Writer {
                 flash.begin_erase(self.page);
                 self.next = Next::Word(0);
             }
-            Next::Word(number) => match self.bytes.as_chunks().0.get(number) {
-                Some(word) => {
-                    flash.begin_write(self.page * F::PAGE_LEN + (number * WORD_LEN) as u32, *word);
-                    self.next = Next::Word(number + 1);
-                }
-                None => {
+            Next::Word(number) => {
+                let Some(word) = self.bytes.as_chunks().0.get(number) else {
                     let mut written = [0; COPY_LEN];
                     let is_read = flash.read(self.page * F::PAGE_LEN, &mut written);
                     return if is_read && written == self.bytes { Writing::Done } else { Writing::Failed };
-                }
-            },
+                };
+                flash.begin_write(self.page * F::PAGE_LEN + (number * WORD_LEN) as u32, *word);
+                self.next = Next::Word(number + 1);
+            }
         }
         Writing::UnderWay
     }

@@ -14,7 +14,7 @@ use frixel_wire::payload::from_board_frame;
 
 use crate::calls::{connected, reconnected, scene};
 use crate::fake_board::FakeBoard;
-use crate::virtual_link::{Fate, VirtualLine, line_of};
+use crate::virtual_link::{Fate, VirtualLine, VirtualLink, line_of};
 
 const SECOND: Duration = Duration::from_secs(1);
 
@@ -47,7 +47,8 @@ fn a_silent_port_gives_a_timeout() {
 /// A board that accepts a command and says that it did something else.
 #[test]
 fn a_state_that_the_command_does_not_lead_to_is_an_error() {
-    let commands: [(&str, fn(&mut Device<_>) -> Result<(), DeviceError>, State); 5] = [
+    type Call = fn(&mut Device<VirtualLink>) -> Result<(), DeviceError>;
+    let commands: [(&str, Call, State); 5] = [
         ("arm", Device::arm, State::Armed),
         ("play", Device::play, State::Active),
         ("stop", Device::stop, State::Armed),

@@ -80,7 +80,7 @@ enum Law {
 /// A finger, fitted by one of the laws.
 enum Fitted {
     Contact(Box<Fit>),
-    Empirical(EmpiricalFit),
+    Empirical(Box<EmpiricalFit>),
 }
 
 impl Fitted {
@@ -132,7 +132,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
     note_understood(path, understood.as_deref());
     let fit = match args.law {
         Law::Contact => fit::fit_data(data, &settings).map(|fit| Fitted::Contact(Box::new(fit))),
-        Law::Empirical => fit::fit_empirical(data, &settings).map(Fitted::Empirical),
+        Law::Empirical => fit::fit_empirical(data, &settings).map(|fit| Fitted::Empirical(Box::new(fit))),
     };
     let fit = fit.map_err(refused)?;
     if let Some(outputs) = &outputs {

@@ -78,7 +78,9 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         }
         fitted => fitted?,
     };
-    let FittedData { normal_load_n, division, rows, voltage_range_v_rms, load_range_n, bandwidth_hz, preparation, .. } = data;
+    let FittedData {
+        normal_load_n, division, rows, voltage_range_v_rms, load_range_n, bandwidth_hz, preparation, ..
+    } = data;
     verdict::check_estimates(division, &strokes, &friction_coefficient, &highest.electric_friction_n, normal_load_n)?;
     let strokes = strokes.len();
     Ok(EmpiricalFit {

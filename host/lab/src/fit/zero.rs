@@ -63,7 +63,8 @@ fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
     let blocks = blocks(rows, lifted_below(lowest_n));
     let over = |block: &[Row], value: fn(&Row) -> f64| mean(block.iter().map(value));
     let centre = |value: fn(&Row) -> f64| median(blocks.iter().map(|block| over(block, value)));
-    let (load, friction): (fn(&Row) -> f64, fn(&Row) -> f64) = (|row| row.normal_force_n, |row| row.friction_n);
+    let load: fn(&Row) -> f64 = |row| row.normal_force_n;
+    let friction: fn(&Row) -> f64 = |row| row.friction_n;
     let (load_n, friction_n) = (centre(load), centre(friction));
     let step_n = contact_n - load_n;
     if !(step_n >= CONTACT_MIN_N) {
@@ -85,7 +86,8 @@ fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
     // A drive that adds friction acts on a finger.
     let (driven, idle): (Vec<Row>, Vec<Row>) =
         agreeing.iter().flat_map(|block| block.iter()).cloned().partition(|row| row.voltage_v_rms > 0.0);
-    if !driven.is_empty() && !idle.is_empty() && !(agree(&driven) && agree(&idle)) {
+    let are_both = !driven.is_empty() && !idle.is_empty();
+    if are_both && !(agree(&driven) && agree(&idle)) {
         return None;
     }
     let over_all = |value: fn(&Row) -> f64| mean(agreeing.iter().flat_map(|block| block.iter()).map(value));
