@@ -94,6 +94,11 @@ impl Layout {
         self.lines.get(self.header).map_or(0, |line| line.cells.len())
     }
 
+    /// Whether the header has names only.
+    pub(super) fn has_names(&self) -> bool {
+        self.lines.get(self.header).is_some_and(|line| !line.cells.iter().any(|cell| is_number(cell)))
+    }
+
     /// The cells of the rows below the header.
     pub(super) fn rows(&self) -> impl Iterator<Item = &[String]> {
         let below = self.lines.iter().enumerate().skip(self.header + 1);
