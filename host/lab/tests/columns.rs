@@ -77,7 +77,9 @@ fn strokes_that_turn_are_divided_there() {
         right(fit_of(with_turns(strokes(1, 24), part, pause_s)));
     }
     let mut rows = with_turns(strokes(1, 24), 0.3, 0.0);
-    rows.iter_mut().for_each(|row| row.time_s = None);
+    for row in &mut rows {
+        row.time_s = None;
+    }
     let said = fit_of(rows).unwrap_err().to_string();
     assert!(
         said.starts_with("row 982: the finger turns within stroke 1") && said.contains("add a column time_s"),

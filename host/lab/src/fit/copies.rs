@@ -35,7 +35,9 @@ fn measured(row: &Row) -> [u64; 3] {
 
 fn hash(rows: &[Row]) -> u64 {
     let mut hasher = DefaultHasher::new();
-    rows.iter().for_each(|row| measured(row).hash(&mut hasher));
+    for row in rows {
+        measured(row).hash(&mut hasher);
+    }
     hasher.finish()
 }
 

@@ -325,8 +325,8 @@ mod tests {
             let mut rows = Vec::new();
             slide(&mut rows, 500, 0.0, 1.0, None);
             prop_assert!(copies::check(&rows).is_ok());
-            let copy = rows[from..from + count].to_vec().into_iter();
-            rows.extend(copy.map(|row| Row { number: row.number + 1000, time_s: row.time_s.map(|time_s| time_s + later_s), ..row }));
+            let copy = rows[from..from + count].to_vec();
+            rows.extend(copy.into_iter().map(|row| Row { number: row.number + 1000, time_s: row.time_s.map(|time_s| time_s + later_s), ..row }));
             match copies::check(&rows) {
                 Err(FitError::RowsTwice { row, of }) => prop_assert_eq!(row, of + 1000),
                 other => prop_assert!(false, "{other:?}"),

@@ -15,7 +15,7 @@ use super::unit::is_unit;
 const COMMENTS: [u8; 2] = [b'#', b'%'];
 /// The separator of columns that any number of blanks separates.
 pub(super) const BLANK: u8 = b' ';
-/// The last column of LabVIEW, whose cell rows leave out.
+/// The last column of `LabVIEW`, whose cell rows leave out.
 const COMMENT_COLUMN: &str = "Comment";
 
 /// A line that is not blank.
@@ -58,7 +58,7 @@ impl Line {
     }
 }
 
-/// Whether a row with so many cells leaves out no more than LabVIEW's last column.
+/// Whether a row with so many cells leaves out no more than the last column of `LabVIEW`.
 pub(super) fn is_short(names: &[String], cells: usize) -> bool {
     names.len() == cells + 1 && names.last().is_some_and(|name| name.eq_ignore_ascii_case(COMMENT_COLUMN))
 }
@@ -204,8 +204,11 @@ mod tests {
 
     use super::super::{Column, Table, TableError, Unit};
 
-    /// The row numbers, voltages and frictions of a table, and how it was understood.
-    fn read(text: &[u8]) -> Result<(Vec<(u64, f64, f64)>, String), TableError> {
+    /// Row number, voltage and friction.
+    type Numbers = (u64, f64, f64);
+
+    /// The rows of a table, and how it was understood.
+    fn read(text: &[u8]) -> Result<(Vec<Numbers>, String), TableError> {
         let mut table = Table::new(text)?;
         let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts))?;
         let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::Newtons))?;
