@@ -8,49 +8,53 @@ const TURN_SHARE: f64 = 0.25;
 /// A finger slower than this, in mm/s, turns or stands still.
 pub(super) const STILL_MM_S: f64 = 5.0;
 
-/// A signed quantity that tells the direction of sliding.
-struct Direction {
-    /// A value of this size has a direction, a smaller one has that of the values before.
-    least: f64,
-    sign: Option<bool>,
-    /// The first row of those that may belong to the next direction.
-    first: Option<usize>,
+/// A finger that turns does not turn back within this time, in seconds; noise does.
+const TURN_BACK_S: f64 = 0.1;
+/// The same in rows, where there are no times.
+const TURN_BACK_ROWS: usize = 5;
+
+/// The rows at which a signed quantity changes its sign and stays beyond the noise, which is smaller than `least`.
+fn turns(rows: &[Row], least: f64, value: impl Fn(&Row) -> Option<f64>) -> Vec<usize> {
+    let (mut turns, mut sign, mut first) = (Vec::new(), None, None);
+    for (index, value) in rows.iter().enumerate().filter_map(|(index, row)| Some((index, value(row)?))) {
+        if sign == Some(value > 0.0) {
+            first = None;
+            continue;
+        }
+        let turn = *first.get_or_insert(index);
+        if value.abs() < least {
+            continue;
+        }
+        first = None;
+        if sign.replace(value > 0.0).is_none() {
+            continue;
+        }
+        match turns.last() {
+            Some(before) if is_noise(rows, *before, turn) => {
+                turns.pop();
+            }
+            _ => turns.push(turn),
+        }
+    }
+    turns
 }
 
-impl Direction {
-    fn new(least: f64) -> Self {
-        Self { least, sign: None, first: None }
-    }
-
-    /// The row at which the direction changed, as row `index` with this value shows.
-    fn turn(&mut self, index: usize, value: f64) -> Option<usize> {
-        let sign = value > 0.0;
-        if self.sign == Some(sign) {
-            self.first = None;
-            return None;
-        }
-        let first = *self.first.get_or_insert(index);
-        if value.abs() < self.least {
-            return None;
-        }
-        self.first = None;
-        self.sign.replace(sign).map(|_| first)
-    }
+/// Whether two turns follow each other faster than those of a finger.
+fn is_noise(rows: &[Row], before: usize, turn: usize) -> bool {
+    let time_s = |index: usize| rows.get(index).and_then(|row| row.time_s);
+    let between_s = time_s(turn).zip(time_s(before)).map(|(now_s, then_s)| now_s - then_s);
+    between_s.map_or(turn - before < TURN_BACK_ROWS, |between_s| between_s < TURN_BACK_S)
 }
 
-/// Divides rows where the sign of friction or speed changes, and stays changed beyond the noise.
+/// Divides rows where friction or speed turns.
 pub(super) fn pieces(rows: Vec<Row>) -> Vec<Vec<Row>> {
-    let mut friction = Direction::new(TURN_SHARE * median(rows.iter().map(|row| row.friction_n.abs())));
-    let mut speed = Direction::new(STILL_MM_S);
-    let mut turns: Vec<usize> = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
-        turns.extend(friction.turn(index, row.friction_n));
-        turns.extend(row.speed_mm_s.and_then(|speed_mm_s| speed.turn(index, speed_mm_s)));
-    }
-    turns.sort_unstable();
-    turns.dedup();
+    let friction_n = median(rows.iter().map(|row| row.friction_n.abs()));
+    let mut turns_of_both = turns(&rows, TURN_SHARE * friction_n, |row| Some(row.friction_n));
+    turns_of_both.extend(turns(&rows, STILL_MM_S, |row| row.speed_mm_s));
+    turns_of_both.sort_unstable();
+    turns_of_both.dedup();
     let mut rest = rows;
-    let mut pieces: Vec<Vec<Row>> = turns.iter().rev().map(|turn| rest.split_off(*turn)).collect();
+    let mut pieces: Vec<Vec<Row>> = turns_of_both.iter().rev().map(|turn| rest.split_off(*turn)).collect();
     pieces.push(rest);
     pieces.reverse();
     pieces.retain(|piece| !piece.is_empty());

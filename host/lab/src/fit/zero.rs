@@ -61,37 +61,39 @@ fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
     let (lowest_n, contact_n) = (quantile(&loads_n, LOWEST_PART), quantile(&loads_n, CONTACT_PART));
     let lifted_below = |low_n: f64| low_n + LIFTED_SHARE * (contact_n - low_n);
     let blocks = blocks(rows, lifted_below(lowest_n));
-    let over = |block: &[Row], value: fn(&Row) -> f64| mean(block.iter().map(value));
-    let centre = |value: fn(&Row) -> f64| median(blocks.iter().map(|block| over(block, value)));
-    let load: fn(&Row) -> f64 = |row| row.normal_force_n;
-    let friction: fn(&Row) -> f64 = |row| row.friction_n;
-    let (load_n, friction_n) = (centre(load), centre(friction));
+    let averages: Vec<[f64; 2]> = blocks.iter().map(|block| average(block.iter())).collect();
+    let centre = [0, 1].map(|force| median(averages.iter().map(|average| average[force])));
+    let [load_n, _] = centre;
     let step_n = contact_n - load_n;
     if !(step_n >= CONTACT_MIN_N) {
         return None;
     }
-    let agree = |rows: &[Row]| {
-        (over(rows, load) - load_n).abs() <= AGREEMENT * step_n
-            && (over(rows, friction) - friction_n).abs() <= AGREEMENT * step_n
+    let agrees = |average: [f64; 2]| {
+        average.iter().zip(centre).all(|(one_n, centre_n)| (one_n - centre_n).abs() <= AGREEMENT * step_n)
     };
-    let agreeing: Vec<&[Row]> = blocks.iter().copied().filter(|block| agree(block)).collect();
+    let agreeing: Vec<&[Row]> =
+        blocks.iter().zip(&averages).filter(|(_, average)| agrees(**average)).map(|(block, _)| *block).collect();
     let duration_s = BLOCK_S * agreeing.len() as f64;
     let least_n = lifted_below(load_n);
-    let lifted: Vec<f64> = loads_n.iter().copied().take_while(|load_n| *load_n < least_n).collect();
-    let near = lifted.iter().filter(|one_n| (**one_n - load_n).abs() < SCATTER * step_n).count();
+    let lifted = loads_n.iter().take_while(|one_n| **one_n < least_n);
+    let near = lifted.clone().filter(|one_n| (**one_n - load_n).abs() < SCATTER * step_n).count();
     let is_most = |part: usize, all: usize| part as f64 >= AGREEING_PART * all as f64;
-    if duration_s < DURATION_MIN_S || !is_most(agreeing.len(), blocks.len()) || !is_most(near, lifted.len()) {
+    if duration_s < DURATION_MIN_S || !is_most(agreeing.len(), blocks.len()) || !is_most(near, lifted.count()) {
         return None;
     }
-    // A drive that adds friction acts on a finger.
-    let (driven, idle): (Vec<Row>, Vec<Row>) =
-        agreeing.iter().flat_map(|block| block.iter()).cloned().partition(|row| row.voltage_v_rms > 0.0);
-    let are_both = !driven.is_empty() && !idle.is_empty();
-    if are_both && !(agree(&driven) && agree(&idle)) {
+    // A drive that adds friction acts on a finger. Without rows of a kind, its average is not a number.
+    let rows = || agreeing.iter().copied().flatten();
+    let of_drive = |is_on: bool| average(rows().filter(|row| (row.voltage_v_rms > 0.0) == is_on));
+    if [true, false].map(of_drive).into_iter().any(|average| !average[0].is_nan() && !agrees(average)) {
         return None;
     }
-    let over_all = |value: fn(&Row) -> f64| mean(agreeing.iter().flat_map(|block| block.iter()).map(value));
-    Some((SensorZero { normal_force_n: over_all(load), friction_n: over_all(friction), duration_s }, least_n))
+    let [normal_force_n, friction_n] = average(rows());
+    Some((SensorZero { normal_force_n, friction_n, duration_s }, least_n))
+}
+
+/// Mean normal force and friction.
+fn average<'r>(rows: impl Iterator<Item = &'r Row> + Clone) -> [f64; 2] {
+    [mean(rows.clone().map(|row| row.normal_force_n)), mean(rows.map(|row| row.friction_n))]
 }
 
 /// Blocks of consecutive rows below a load while no finger moves, without those at the ends of each run.

@@ -109,18 +109,23 @@ fn told_separator(head: &mut [u8]) -> Option<u8> {
     Some(separator.0)
 }
 
-/// The layout by the one separator that gives the header columns, and each row as many; by blanks if none gives the
-/// header columns. Fails if there are more.
+/// The layout by the one separator that gives the header names of columns, and each row as many cells; by blanks if none
+/// gives names. Fails if there are more.
 fn layout(head: &[u8], is_whole: bool) -> Result<Layout, TableError> {
     let of = |separator: u8| Layout::of(head, separator, is_whole);
     let layouts = SEPARATORS.iter().filter(|(separator, _)| *separator != BLANK).map(|(separator, _)| of(*separator));
     let mut found: Vec<Layout> = layouts.filter(|layout| layout.columns() > 1).collect();
-    if found.is_empty() {
+    if !found.iter().any(Layout::has_names) {
         // A name may have blanks, too.
-        return Ok(Some(of(BLANK)).filter(Layout::has_numbers).unwrap_or_else(|| of(b',')));
+        let blanks = Some(of(BLANK)).filter(|layout| layout.has_names() && layout.has_numbers());
+        if blanks.is_some() || found.is_empty() {
+            return Ok(blanks.unwrap_or_else(|| of(b',')));
+        }
     }
-    if found.iter().filter(|layout| layout.is_even()).count() == 1 {
-        found.retain(Layout::is_even);
+    for is_likelier in [Layout::has_names, Layout::is_even] {
+        if found.iter().any(is_likelier) {
+            found.retain(is_likelier);
+        }
     }
     if let [one, other, ..] = &found[..] {
         let readings = [one, other].map(|layout| (name(layout.separator), layout.columns()));

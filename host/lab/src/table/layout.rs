@@ -94,6 +94,11 @@ impl Layout {
         self.lines.get(self.header).map_or(0, |line| line.cells.len())
     }
 
+    /// Whether the header has names only.
+    pub(super) fn has_names(&self) -> bool {
+        self.lines.get(self.header).is_some_and(|line| !line.cells.iter().any(|cell| is_number(cell)))
+    }
+
     /// The cells of the rows below the header.
     pub(super) fn rows(&self) -> impl Iterator<Item = &[String]> {
         let below = self.lines.iter().enumerate().skip(self.header + 1);
@@ -199,11 +204,11 @@ mod tests {
 
     use super::super::{Column, Table, TableError, Unit};
 
-    /// Row numbers, voltages and frictions.
-    type Rows = Vec<(u64, f64, f64)>;
+    /// Row number, voltage and friction.
+    type Numbers = (u64, f64, f64);
 
     /// The rows of a table, and how it was understood.
-    fn read(text: &[u8]) -> Result<(Rows, String), TableError> {
+    fn read(text: &[u8]) -> Result<(Vec<Numbers>, String), TableError> {
         let mut table = Table::new(text)?;
         let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts))?;
         let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::Newtons))?;
