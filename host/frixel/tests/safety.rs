@@ -144,6 +144,8 @@ fn every_scenario_of_a_fault_stands_on_the_page_and_no_other() {
     let mut found: Vec<String> = named.map(str::to_owned).collect();
     expected.sort();
     found.sort();
+    // One scenario may stand for several faults.
+    found.dedup();
     assert_eq!(found, expected);
 }
 

@@ -162,9 +162,10 @@ fn steps(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
 fn greet(board: &mut impl LoopedBoard) {
     let kind = board.board().kind;
     board.say(format_args!(""));
-    board.say(format_args!("{}{kind}", Said::Begin(VERSION, "")));
     board.say(format_args!("Read docs/first-board.md first. No amplifier is plugged in, and its supply is off."));
     confirm(board, format_args!("This begins the self-test."), GREETING);
+    // Not before: what a board says at its start is lost where no host has opened the port yet.
+    board.say(format_args!("{}{kind}", Said::Begin(VERSION, "")));
 }
 
 /// Says what to do until the person types `word`.

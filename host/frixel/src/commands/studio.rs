@@ -10,6 +10,8 @@ use std::process::{Command, Stdio};
 use clap::Args;
 use thiserror::Error;
 
+use crate::input;
+
 use super::error::CommandError;
 use super::terminal::{note, print_line};
 
@@ -79,7 +81,8 @@ fn page(args: &StudioArgs) -> Result<PathBuf, StudioError> {
         Some(page) => page.clone(),
         None => page_of_checkout()?,
     };
-    fs::canonicalize(&page).map_err(|source| StudioError::Page { path: page.display().to_string(), source })
+    let path = input::open(&page, u64::MAX).and_then(|_| fs::canonicalize(&page));
+    path.map_err(|source| StudioError::Page { path: page.display().to_string(), source })
 }
 
 fn page_of_checkout() -> Result<PathBuf, StudioError> {

@@ -12,7 +12,7 @@ use super::folders::{VirtualBoard, until};
 use super::{ANSWERS, Folder, Ran};
 
 /// A finger that never comes down within a test.
-const NO_FINGER: &str = "t_s,x_mm,y_mm\n10000,10,20\n10001,20,20\n";
+const NO_FINGER: &str = "t_s,x_mm,y_mm\n0,,\n10000,10,20\n10001,20,20\n";
 /// Strokes at a speed at which friction follows the drive.
 const STROKES: &str = "sim --out board --from 25,40 --to 95,40 --speed 44 --minimum-jerk";
 /// Most tries of what fails when the machine lets a client or the board wait for longer than an answer may take.

@@ -163,7 +163,8 @@ impl Plan {
             let lines: Vec<_> = reason.trim_end().lines().map(brief).collect();
             PlanError::NotAPlan { name: name.to_owned(), reason: lines.join("\n") }
         };
-        check_toml(text).map_err(|(_, mistake)| not_a_plan(mistake.to_string()))?;
+        check_toml(text)
+            .map_err(|(_, mistake)| PlanError::NotAPlan { name: name.to_owned(), reason: mistake.to_string() })?;
         let plan: Self = toml::from_str(text).map_err(|error: toml::de::Error| not_a_plan(error.to_string()))?;
         plan.check(name)?;
         Ok(plan)
