@@ -45,7 +45,8 @@ impl Ceilings {
     }
 
     /// The nearest length of a half period that a carrier may have, in ticks.
+    #[allow(clippy::manual_clamp, reason = "`clamp` panics where its ends are the wrong way round")]
     pub(crate) fn half_period_ticks(&self, ticks: u32) -> u32 {
-        ticks.clamp(HALF_PERIOD_MIN_TICKS, self.half_period_max_ticks)
+        ticks.min(self.half_period_max_ticks).max(HALF_PERIOD_MIN_TICKS)
     }
 }

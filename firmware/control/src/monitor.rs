@@ -255,7 +255,7 @@ impl MonitorCheck {
     }
 
     fn choose_ticks_to_count(&mut self) {
-        // A ready line that is wrong when it is high does not call for attention by itself.
+        // A high line does not trigger `count`, so where high is wrong, every tick is counted.
         let watches_ready = self.ready_while_disabled == ReadyWhileDisabled::Low && !self.is_enabled;
         let counts_all = self.wrong_count > 0 || self.switching_ticks > 0 || watches_ready || self.ready_left_ticks > 0;
         self.uncounted_below_v = if counts_all { f32::NEG_INFINITY } else { self.floor_v };

@@ -54,9 +54,10 @@ pub enum Order<'a> {
 }
 
 impl Order<'_> {
-    /// Whether the order comes from a host command, and so restarts the host timeout.
+    /// Whether the order restarts the host timeout: one that the session hands over when a frame comes. The others may
+    /// have waited, such as a play behind a commit.
     pub fn is_sign_of_life(&self) -> bool {
-        !matches!(self, Self::Track(_) | Self::Lift | Self::Load(_) | Self::Unload)
+        matches!(self, Self::HostHeard | Self::Arm | Self::Disarm | Self::Stop | Self::ClearFault)
     }
 
     /// Whether [`Status::orders_applied`] counts this order.

@@ -95,13 +95,13 @@ impl Supervisor {
     }
 
     /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `driven_code` is the code of the
-    /// previous tick. The gain is left out in a tick that has taken an order, the longest of all ticks.
+    /// previous tick. `leaves_out_gain` saves the time of summing up the gain, unless every tick is counted anyway.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode, has_taken_order: bool) {
+    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode, leaves_out_gain: bool) {
         let (comparison, must_count) = self.monitor.advance(driven_code.bits(), sense.monitor_v);
         if must_count || sense.amplifier_fault || !sense.arm_switch {
             self.latch_first_fault(sense, comparison);
-        } else if !has_taken_order && self.monitor.sum(comparison) {
+        } else if !leaves_out_gain && self.monitor.sum(comparison) {
             self.raise(Fault::Monitor, monitor_detail(sense));
         }
     }

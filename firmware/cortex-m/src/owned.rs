@@ -42,7 +42,7 @@ impl<T> Owned<T> {
     /// Returns the value to the handler; `None` before it was given.
     ///
     /// # Safety
-    /// Only the handler that owns the value calls this, once in each run.
+    /// Only the handler that owns the value calls this, once in each run, and keeps no reference beyond that run.
     #[allow(clippy::mut_from_ref, reason = "the handler is the one owner, says the caller")]
     pub unsafe fn get(&self) -> Option<&mut T> {
         // SAFETY: it was given, and is not written again. A handler does not interrupt itself, so this is the only

@@ -77,13 +77,13 @@ pub mod notice {
         (
             OPTION_BYTES,
             "the processor's option bytes are not those that the board needs, so it refuses to arm: switch the amplifier \
-             off, set them with `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0` and reset the board \
-             (docs/hardware.md, Option bytes)",
+             off, set them with `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and \
+             compare all of them if it refuses again (docs/hardware.md, Option bytes)",
         ),
         (
             STORED_LIMITS_REFUSED,
             "the board does not use its stored limits, but those built into its firmware: one exceeds a \
-             ceiling, or they were stored for another series resistance or by a build with other ceilings; flash a \
+             ceiling, or they are damaged or were stored for another series resistance or by another build; flash a \
              build for the resistance that is soldered, or store them again with bring-up",
         ),
         (

@@ -48,7 +48,7 @@ pub struct Device<L: Link> {
     uploaded: Option<(u32, Duration)>,
     /// Time between pings that the committed scene needs, if this value has committed it.
     committed: Option<Duration>,
-    /// The board may be armed or active, because of this value or of a scene that plays without a host.
+    /// The board may be armed or active because of this value.
     armed: bool,
     /// The stream that was started last.
     stream: Option<StreamProgress>,

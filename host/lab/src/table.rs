@@ -126,9 +126,11 @@ impl<R: Read> Table<R> {
         let mut input = Utf8::new(input).map_err(TableError::Read)?;
         let mut head = Vec::new();
         input.by_ref().take(HEAD_BYTES).read_to_end(&mut head).map_err(TableError::Read)?;
+        let mut is_cut_off = false;
         if head.starts_with(MAGIC) {
             input.read_to_end(&mut head).map_err(TableError::Read)?;
             let recording = Recording::read_parquet(head).map_err(|error| TableError::Read(io::Error::other(error)))?;
+            is_cut_off = recording.is_cut_off;
             head = recording.to_csv();
         }
         let is_whole = (head.len() as u64) < HEAD_BYTES;
@@ -139,7 +141,8 @@ impl<R: Read> Table<R> {
             return Err(TableError::HeaderTooLong { limit: HEAD_BYTES });
         }
         let (dialect, found) = Dialect::of(&mut head, is_whole, input.order())?;
-        let (units, layout) = (found.units().to_vec(), found.words(&head));
+        let (units, mut layout) = (found.units().to_vec(), found.words(&head));
+        layout.extend(is_cut_off.then(|| "the recording was cut off, and ends with its last whole rows".to_owned()));
         found.mark(&mut head);
         let input = Blanks::new(Cursor::new(head).chain(input), dialect.separator() == BLANK);
         let input = Lines::new(input);

@@ -339,7 +339,9 @@ impl<L: Link + Recorded> Player<L> {
         let stopped = if self.state == State::Active { self.device.stop() } else { Ok(()) };
         // A board that has left the active state by itself refuses to stop.
         let stopped = stopped.or_else(|error| if is_refusal(&error) { Ok(()) } else { Err(error) });
-        (self.state, self.fault) = match stopped.and_then(|()| self.device.disarm()) {
+        // Whatever the answer to the stop was.
+        let disarmed = self.device.disarm();
+        (self.state, self.fault) = match stopped.and(disarmed) {
             // The board has latched a fault that this host has not heard of.
             Err(DeviceError::Refused { refusal: Refusal::Faulted(fault), .. }) => (State::Faulted, Some(fault)),
             Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => (State::Faulted, None),

@@ -107,14 +107,15 @@ pub(crate) fn write_parquet(
 
 /// A finger or a screen in place of the scene's own: the text of its file, and its name.
 type Profile = Option<(Option<String>, String)>;
-/// What is read of a recording: columns, text of the scene, files that it names, finger and screen, and [`Made`].
-type Read<'py> = (Bound<'py, PyDict>, String, NamedFiles, [Profile; 2], String);
+/// What is read of a recording: columns, text of the scene, files that it names, finger and screen, [`Made`], and
+/// whether the file was cut off.
+type Read<'py> = (Bound<'py, PyDict>, String, NamedFiles, [Profile; 2], String, bool);
 
 /// Reads the recording of a play, the bytes of its file, which messages call `name`.
 #[pyfunction]
 pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str) -> PyResult<Read<'py>> {
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (format!("{name}: {error}"),));
-    let Recording { metadata, columns: read, .. } =
+    let Recording { metadata, columns: read, is_cut_off } =
         py.detach(|| Recording::read_parquet(recording)).map_err(|error| failed(&error))?;
     let (found, values): (Vec<Field>, Vec<Values>) =
         read.into_iter().map(|Column { field, values }| (field, values)).unzip();
@@ -142,7 +143,7 @@ pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str)
         (metadata.scene.clone(), metadata.later_scenes.clone(), metadata.markers.clone());
     let made = Made { metadata, files, later_scenes, markers };
     let made = serde_json::to_string(&made).map_err(|error| failed(&error))?;
-    Ok((columns(py, &found, values)?, scene, of_scene, profiles, made))
+    Ok((columns(py, &found, values)?, scene, of_scene, profiles, made, is_cut_off))
 }
 
 /// Plays a recording, the bytes of its file, again, and compares it. Messages call the file `name`. Returns the number

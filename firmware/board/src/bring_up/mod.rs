@@ -75,7 +75,7 @@ pub enum Sync {
 /// The checks that a board makes by itself. None of them drives anything behind the DAC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// The memory in which limits and scene are stored can be written while the firmware runs.
+    /// The memory in which limits are stored can be written while the firmware runs.
     Storage,
     /// Amplifier enable and DAC clear are low without a kick, high after one, low again within 1 ms of the last one,
     /// and low at once when told so.

@@ -21,9 +21,9 @@ const JUDGED_EVERY_S: f32 = 1e-3;
 /// before it hide it for at most five eighths of the 10 ms, and the slowest carrier is balanced twice in the 10 ms
 /// that follow.
 const JUDGEMENTS: u32 = 10;
-/// The sums are judged from the squares of the drive on that so many seconds at the offset's tolerance have. Below,
-/// noise and steps of the ADC are not small against a quarter of the drive. A quarter of the 10 ms, so that the mean
-/// drive must have half of the offset's tolerance: 4 V rms of 200 V.
+/// The sums are judged once the sum of the squared drive reaches that of a constant drive at the offset's tolerance for
+/// this time. Below, noise and steps of the ADC are not small against a quarter of the drive. A quarter of the 10 ms, so
+/// that the mean drive must have half of the offset's tolerance: 4 V rms of 200 V.
 const JUDGED_FROM_S: f32 = 2.5e-3;
 /// Codes are divided by two to this power, so that the squares of 10 ms fit into 32 bits up to 100,000 ticks a second.
 const SHIFT: u32 = 4;
@@ -67,7 +67,8 @@ impl Gain {
         }
     }
 
-    /// Sums up a tick, and returns whether the sums show a gain that is a fault. Ticks may be left out.
+    /// Sums up a tick, and returns whether the sums show a gain that is a fault. At most every second tick is
+    /// left out, when each takes an order: a fault is then found after twice the time.
     #[inline]
     pub(super) fn take(&mut self, comparison: Comparison) -> bool {
         let Comparison { expected_v, driven_code, deviation_v, .. } = comparison;

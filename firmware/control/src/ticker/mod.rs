@@ -55,6 +55,8 @@ pub struct Ticker<'a> {
     was_lifted: bool,
     /// An order was applied since the last tick.
     has_taken_order: bool,
+    /// The last tick left the amplifier's gain out.
+    has_left_out_gain: bool,
     /// Coefficients of the current scene.
     active: &'a mut Active,
     pool: &'a BitmapPool,
@@ -106,6 +108,7 @@ impl<'a> Ticker<'a> {
             finger: Finger::Up,
             was_lifted: false,
             has_taken_order: false,
+            has_left_out_gain: false,
             active,
             pool,
             clicks: Clicks::NONE,
@@ -154,8 +157,9 @@ impl<'a> Ticker<'a> {
         // come first, so that what they find at this tick stops the output at this tick; and a lift is taken in any
         // state, so that none is left for a later play.
         let driven_code = self.dac_code;
-        let has_taken_order = core::mem::take(&mut self.has_taken_order);
-        self.supervisor.check(sense, driven_code, has_taken_order);
+        // The longest ticks take an order: they leave the gain out, at most every second one.
+        self.has_left_out_gain = core::mem::take(&mut self.has_taken_order) && !self.has_left_out_gain;
+        self.supervisor.check(sense, driven_code, self.has_left_out_gain);
         self.supervisor.expire(self.tick);
         self.finger.expire(self.tick);
         self.stream.advance(&mut self.inputs.stream);

@@ -243,7 +243,8 @@ pub fn read_limits(
 }
 
 /// The limits with which a board starts, and its notices: what is stored in `slot`, or else what is built in.
-/// `flash` is `None` on a board without a usable flash.
+/// `flash` is `None` on a board without a usable flash. Stored limits that are refused, are damaged or are of another
+/// build's layout leave the built-in ones, with a notice.
 pub fn load_limits<F: Flash>(
     flash: Option<&F>,
     slot: Slot,
@@ -252,9 +253,9 @@ pub fn load_limits<F: Flash>(
 ) -> (BoardLimits, u8) {
     let stored = flash.and_then(|flash| slot.find(flash));
     match stored.map(|bytes| read_limits(&bytes, built_in, ceilings)) {
-        None => (*built_in, ceilings.notices()),
+        None if flash.is_none_or(|flash| slot.is_erased(flash)) => (*built_in, ceilings.notices()),
         Some(Ok(limits)) => (limits, ceilings.notices()),
-        Some(Err(_)) => (*built_in, ceilings.notices() | notice::STORED_LIMITS_REFUSED),
+        None | Some(Err(_)) => (*built_in, ceilings.notices() | notice::STORED_LIMITS_REFUSED),
     }
 }
 

@@ -31,6 +31,14 @@ impl Slot {
         self.newest(flash).map(|copy| copy.limits)
     }
 
+    /// Whether nothing was ever stored here.
+    pub(super) fn is_erased<F: Flash>(&self, flash: &F) -> bool {
+        [self.first_page, self.first_page + 1].into_iter().all(|page| {
+            let mut bytes = [0; COPY_LEN];
+            flash.read(page * F::PAGE_LEN, &mut bytes) && bytes.iter().all(|byte| *byte == 0xff)
+        })
+    }
+
     fn newest<F: Flash>(&self, flash: &F) -> Option<Copy> {
         let copies = [self.first_page, self.first_page + 1].map(|page| read_copy(flash, page));
         match copies {

@@ -336,8 +336,8 @@ impl fmt::Display for Refusal {
             ),
             Self::OptionBytes => f.write_str(
                 "the processor has option bytes with which the board may not drive: switch the amplifier off, run \
-                 `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0` and reset the board (docs/hardware.md, \
-                 Option bytes)",
+                 `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and compare all of them \
+                 if it refuses again (docs/hardware.md, Option bytes)",
             ),
         }
     }

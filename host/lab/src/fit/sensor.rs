@@ -24,12 +24,17 @@ const WIDER: [(Side, Edge); 4] = [
 /// Change of electric friction under wider edges that is allowed, as a part of it, beside the 99.9 % interval of noise.
 const SETTLED_SHARE: f64 = 3e-3;
 
+/// Means of a voltage over other rows differ by less than this part of it.
+const SAME_VOLTAGE: f64 = 0.01;
+
 /// What is looked at around a switch, in seconds: `frixel calibrate` switches after 20 to 30 ms.
 const BEFORE_S: f64 = 8e-3;
 const AFTER_S: f64 = 18e-3;
 /// Friction from this long before a switch to the switch, and from this long after it, may be on its way.
 const EDGE_S: f64 = 3e-3;
 const SETTLED_S: f64 = 12e-3;
+/// Most intervals that are looked at: those of a megahertz. Shorter ones are no sensor's.
+const BINS_MAX: usize = 26_000;
 /// Fewer switches in either direction than this say nothing.
 const SWITCHES_MIN: usize = 50;
 /// Noise of the averaged friction, as a part of its step, with which a rise cannot be told.
@@ -103,11 +108,8 @@ struct Shift {
 
 /// What other edges change in electric friction, over strokes; `None` if too few strokes are left.
 fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
-    let pairs: Vec<(f64, f64)> = used
-        .iter()
-        .zip(wider)
-        .filter_map(|(used, wider)| weighted_attraction(used).zip(weighted_attraction(wider)))
-        .collect();
+    let pairs: Vec<(f64, f64)> =
+        used.iter().zip(wider).filter_map(|(used, wider)| weighted_attractions(used, wider)).collect();
     if pairs.len() < GROUP_MIN {
         return None;
     }
@@ -121,15 +123,27 @@ fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
     (share.is_finite() && error.is_finite()).then_some(Shift { share, error: error.max(f64::MIN_POSITIVE) })
 }
 
-/// Attractions of a stroke, weighted by the squares of their voltages, as least squares does for a square law; `None`
-/// without any.
-fn weighted_attraction(stroke: &StrokeMeans) -> Option<f64> {
-    let of = stroke.observations.iter().filter_map(|one| match one.measured {
-        Measured::Attraction(attraction_n) => Some(one.voltage_v_rms * one.voltage_v_rms * attraction_n),
+/// Attractions of a stroke under both edges, weighted by the squares of their voltages, as least squares does for a
+/// square law; `None` without any. A voltage that wider edges leave no rows of does not count.
+fn weighted_attractions(used: &StrokeMeans, wider: &StrokeMeans) -> Option<(f64, f64)> {
+    let mut sums = None;
+    for (voltage_v_rms, attraction_n) in attractions(used) {
+        let is_same = |other_v_rms: f64| (other_v_rms - voltage_v_rms).abs() <= SAME_VOLTAGE * voltage_v_rms;
+        if let Some((_, wider_n)) = attractions(wider).find(|(other_v_rms, _)| is_same(*other_v_rms)) {
+            let weight = voltage_v_rms * voltage_v_rms;
+            let (of_used, of_wider) = sums.unwrap_or_default();
+            sums = Some((of_used + weight * attraction_n, of_wider + weight * wider_n));
+        }
+    }
+    sums
+}
+
+/// The voltages of a stroke with the drive on, and their attractions.
+fn attractions(stroke: &StrokeMeans) -> impl Iterator<Item = (f64, f64)> {
+    stroke.observations.iter().filter_map(|one| match one.measured {
+        Measured::Attraction(attraction_n) => Some((one.voltage_v_rms, attraction_n)),
         Measured::Friction(_) => None,
-    });
-    let of: Vec<f64> = of.collect();
-    (!of.is_empty()).then(|| of.iter().sum())
+    })
 }
 
 /// Sum and number of friction over load in each interval around a switch.
@@ -151,6 +165,9 @@ fn rise_s(phases: &Phases) -> Option<f64> {
     }
     let before = (BEFORE_S / interval_s).round() as usize;
     let bins = before + (AFTER_S / interval_s).round() as usize;
+    if bins > BINS_MAX {
+        return None;
+    }
     // Once for switches that turn the drive on, once for those that turn it off: their difference is free of what
     // friction does beside.
     let mut averages = [Average(vec![(0.0, 0.0); bins]), Average(vec![(0.0, 0.0); bins])];

@@ -17,8 +17,10 @@ const LOWEST_PART: f64 = 0.01;
 const CONTACT_PART: f64 = 0.9;
 /// Below this part of the load in contact no finger slides as in the rest of the recording.
 const LIFTED_SHARE: f64 = 0.5;
-/// How far averages without contact may differ, as a part of the load in contact.
-const AGREEMENT: f64 = 0.02;
+/// How far averages without contact may differ: by so many of their standard errors, the noise of the sensor, or by
+/// this part of the load in contact. The load of a finger that rests on the screen wanders by more.
+const AGREEMENT_ERRORS: f64 = 4.0;
+const AGREEMENT: f64 = 0.002;
 /// How far rows without contact may differ, likewise: each has the sensor's noise.
 const SCATTER: f64 = 0.2;
 /// Least part of the rows below [`LIFTED_SHARE`], and of their averages, that agree: the others are a finger that lands
@@ -68,9 +70,12 @@ fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
     if !(step_n >= CONTACT_MIN_N) {
         return None;
     }
-    let agrees = |average: [f64; 2]| {
-        average.iter().zip(centre).all(|(one_n, centre_n)| (one_n - centre_n).abs() <= AGREEMENT * step_n)
-    };
+    let errors: Vec<[f64; 2]> = blocks.iter().map(|block| standard_errors(block)).collect();
+    let tolerance_n = [0, 1].map(|force| {
+        let noise_n = median(errors.iter().map(|error| error[force]));
+        (AGREEMENT_ERRORS * noise_n).max(AGREEMENT * step_n)
+    });
+    let agrees = |average: [f64; 2]| (0..2).all(|force| (average[force] - centre[force]).abs() <= tolerance_n[force]);
     let agreeing: Vec<&[Row]> =
         blocks.iter().zip(&averages).filter(|(_, average)| agrees(**average)).map(|(block, _)| *block).collect();
     let duration_s = BLOCK_S * agreeing.len() as f64;
@@ -94,6 +99,16 @@ fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
 /// Mean normal force and friction.
 fn average<'r>(rows: impl Iterator<Item = &'r Row> + Clone) -> [f64; 2] {
     [mean(rows.clone().map(|row| row.normal_force_n)), mean(rows.map(|row| row.friction_n))]
+}
+
+/// Standard errors of the means of normal force and friction, as those of rows that are independent.
+fn standard_errors(block: &[Row]) -> [f64; 2] {
+    let means = average(block.iter());
+    let count = block.len() as f64;
+    let error = |value: fn(&Row) -> f64, centre: f64| {
+        (mean(block.iter().map(|row| (value(row) - centre).powi(2))) / count).sqrt()
+    };
+    [error(|row| row.normal_force_n, means[0]), error(|row| row.friction_n, means[1])]
 }
 
 /// Blocks of consecutive rows below a load while no finger moves, without those at the ends of each run.

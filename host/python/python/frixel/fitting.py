@@ -128,6 +128,11 @@ def fit(
 def _csv(data: Mapping[str, ArrayLike]) -> str:
     """The columns as the table that the command reads: one reader, one validation, and the same numbers of rows."""
     columns = {str(name): np.asarray(data[name]) for name in data}
+    # A word or a number beside the columns, such as a participant, is not one of them.
+    columns = {name: values for name, values in columns.items() if values.ndim > 0}
+    for name, values in columns.items():
+        if values.dtype.kind in "mM":
+            raise refusal(f"data[{name!r}]", "numbers (seconds for a time)", values.dtype)
     shapes = {values.shape for values in columns.values()}
     if len(shapes) > 1 or any(len(shape) != 1 for shape in shapes):
         raise ParameterError(f"data: columns have one length, found shapes {sorted(shapes)}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -19,7 +20,7 @@ from ._arguments import mapping, participant_code, refusal, shown
 from ._arguments import path as checked_path
 from ._arguments import text as checked_text
 from ._files import name_of, read_bytes
-from .errors import ColumnError, FrixelError, ParameterError, PlayError
+from .errors import ColumnError, FrixelError, FrixelWarning, ParameterError, PlayError
 from .profiles import Finger, Screen
 from .scene import Scene
 
@@ -81,7 +82,9 @@ class Recording(Mapping[str, NDArray[Any]]):
             Its scene cannot be compiled: it is of another version, or a picture was too large for the file.
         """
         content = read_bytes(path, "this recording", PlayError)
-        columns, text, files, profiles, made = _frixel.read_parquet(content, name_of(path))
+        columns, text, files, profiles, made, is_cut_off = _frixel.read_parquet(content, name_of(path))
+        if is_cut_off:
+            warnings.warn(f"{name_of(path)} was cut off: it ends with its last whole rows", FrixelWarning, stacklevel=2)
         finger = None if profiles[0] is None else Finger(*profiles[0])
         screen = None if profiles[1] is None else Screen(*profiles[1])
         scene = Scene(text.encode(), name_of(path), files=files, finger=finger, screen=screen)

@@ -120,6 +120,8 @@ class FrixelScene extends HTMLElement {
   #root;
   /** Aborted when the element leaves the document. */
   #left = new AbortController();
+  /** Number of loads that have begun: only the last one is shown. */
+  #loads = 0;
   /** @type {Samples | undefined} */
   #samples;
   #line = element("p", { className: "line fine", role: "status" });
@@ -221,6 +223,7 @@ class FrixelScene extends HTMLElement {
    */
   async #load(parts) {
     const { engine, map } = parts;
+    const load = ++this.#loads;
     const profiles = {
       finger: this.getAttribute("finger") ?? undefined,
       screen: this.getAttribute("screen") ?? undefined,
@@ -234,8 +237,8 @@ class FrixelScene extends HTMLElement {
     }
     const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
     const drawn = await engine.map(files, entry, profiles, { ...sizePx, speedMmPerS: 100 });
-    // It has left the document meanwhile.
-    if (this.#parts !== parts) return;
+    // It has left the document, or another scene was given to it meanwhile.
+    if (this.#parts !== parts || this.#loads !== load) return;
     this.#scene = [files, entry, profiles];
     this.#check = check;
     map.show(drawn, check);

@@ -32,17 +32,22 @@ pub(crate) fn written(limits: &BoardLimits) -> Result<[u8; LIMITS_LEN], LimitsEr
     write_limits(limits, CEILINGS)
 }
 
-/// Stores limits and reads them back; `goes_on` is called again and again meanwhile, and returns `false` to give up a
+/// Stores limits in both copies and reads them back, so that no earlier limits are left to fall back on. `goes_on` is called again and again meanwhile, and returns `false` to give up a
 /// flash that never ends an operation. `false` if that failed.
 pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut goes_on: impl FnMut() -> bool) -> bool {
     let Ok(bytes) = written(limits) else { return false };
-    let mut writer = Writer::new(LIMITS_SLOT, flash, &bytes);
-    while goes_on() {
-        match writer.step(flash) {
-            Writing::UnderWay => {}
-            Writing::Done => return load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits,
-            Writing::Failed => break,
+    for _ in 0..2 {
+        let mut writer = Writer::new(LIMITS_SLOT, flash, &bytes);
+        loop {
+            if !goes_on() {
+                return false;
+            }
+            match writer.step(flash) {
+                Writing::UnderWay => {}
+                Writing::Done => break,
+                Writing::Failed => return false,
+            }
         }
     }
-    false
+    load_limits(Some(&*flash), LIMITS_SLOT, &LIMITS, CEILINGS).0 == *limits
 }
