@@ -95,13 +95,13 @@ impl Supervisor {
     }
 
     /// Latches a fault if the amplifier, its monitor or the arm switch requires it. `driven_code` is the code of the
-    /// previous tick. `leaves_out_gain` saves the time of summing up the gain, unless every tick is counted anyway.
+    /// previous tick.
     #[inline]
-    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode, leaves_out_gain: bool) {
+    pub(crate) fn check(&mut self, sense: &Sense, driven_code: DacCode) {
         let (comparison, must_count) = self.monitor.advance(driven_code.bits(), sense.monitor_v);
         if must_count || sense.amplifier_fault || !sense.arm_switch {
             self.latch_first_fault(sense, comparison);
-        } else if !leaves_out_gain && self.monitor.sum(comparison) {
+        } else if self.monitor.sum(comparison) {
             self.raise(Fault::Monitor, monitor_detail(sense));
         }
     }

@@ -10,7 +10,7 @@
 //! A Parquet file of [`recording`](crate::recording) is a table, too, with its rows numbered as those of its CSV.
 //!
 //! Cells may have blanks around them. Blank lines, and lines that start with `#`, are skipped, and so is what
-//! instruments write above the header ([`layout`]). Rows are numbered as the lines of the file, so that an editor or a
+//! instruments write above the header (`layout`). Rows are numbered as the lines of the file, so that an editor or a
 //! spreadsheet shows the row that a message names.
 
 mod blanks;

@@ -67,8 +67,7 @@ impl Gain {
         }
     }
 
-    /// Sums up a tick, and returns whether the sums show a gain that is a fault. At most every second tick is
-    /// left out, when each takes an order: a fault is then found after twice the time.
+    /// Sums up a tick, and returns whether the sums show a gain that is a fault.
     #[inline]
     pub(super) fn take(&mut self, comparison: Comparison) -> bool {
         let Comparison { expected_v, driven_code, deviation_v, .. } = comparison;

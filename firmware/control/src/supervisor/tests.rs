@@ -22,7 +22,7 @@ fn reading(monitor_v: f32) -> Sense {
 /// The person at the arm switch releases it and presses it again.
 fn press_switch(supervisor: &mut Supervisor) {
     for arm_switch in [false, true] {
-        supervisor.check(&Sense { arm_switch, ..reading(0.0) }, DacCode::ZERO, false);
+        supervisor.check(&Sense { arm_switch, ..reading(0.0) }, DacCode::ZERO);
     }
 }
 
@@ -49,7 +49,7 @@ fn driving(dac_code: i16) -> Supervisor {
     for tick in 0..40 {
         // The first code is seen at the second tick.
         let monitor_v = if tick == 0 { 0.0 } else { driven_v(dac_code) };
-        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code), false);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
     }
     assert_eq!(supervisor.state(), State::Active);
     supervisor
@@ -62,7 +62,7 @@ fn driven_v(dac_code: i16) -> f32 {
 /// Ticks with this reading until the supervisor faults, `limit` at most.
 fn ticks_to_fault(supervisor: &mut Supervisor, monitor_v: f32, dac_code: i16, limit: u32) -> Option<u32> {
     (1..=limit).find(|_| {
-        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code), false);
+        supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
         supervisor.state() == State::Faulted
     })
 }
@@ -123,7 +123,7 @@ fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
 fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
     let mut supervisor = driving(0);
     for _ in 0..400_000 {
-        supervisor.check(&reading(60.0), DacCode::ZERO, false);
+        supervisor.check(&reading(60.0), DacCode::ZERO);
     }
     assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 1), Some(1), "a fault latches");
     supervisor.apply(&Order::ClearFault, 0);
@@ -135,7 +135,7 @@ fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
 fn a_cleared_monitor_fault_comes_again_when_its_cause_is_still_there() {
     let mut supervisor = driving(0);
     for _ in 0..1000 {
-        supervisor.check(&reading(60.0), DacCode::ZERO, false);
+        supervisor.check(&reading(60.0), DacCode::ZERO);
     }
     supervisor.apply(&Order::ClearFault, 0);
     let ticks = ticks_to_fault(&mut supervisor, 60.0, 0, 1000);
@@ -152,7 +152,7 @@ fn the_arm_switch_counts_only_while_it_has_to_be_held() {
         (State::Faulted, Some((Fault::Deadline, 1))),
     ] {
         let mut supervisor = in_state(state);
-        supervisor.check(&let_go, DacCode::ZERO, false);
+        supervisor.check(&let_go, DacCode::ZERO);
         assert_eq!(supervisor.fault(), fault, "{state:?}");
     }
 }
@@ -160,7 +160,7 @@ fn the_arm_switch_counts_only_while_it_has_to_be_held() {
 /// A ready line that is low at these ticks.
 fn ready_low_at(supervisor: &mut Supervisor, ticks: u32, low_at: &[u32]) -> Option<u32> {
     (0..ticks).find(|tick| {
-        supervisor.check(&Sense { amplifier_fault: low_at.contains(tick), ..reading(0.0) }, DacCode::ZERO, false);
+        supervisor.check(&Sense { amplifier_fault: low_at.contains(tick), ..reading(0.0) }, DacCode::ZERO);
         supervisor.state() == State::Faulted
     })
 }
@@ -186,9 +186,9 @@ fn an_amplifiers_fault_counts_in_every_state() {
     let faulty = Sense { amplifier_fault: true, ..reading(0.0) };
     for state in [State::Disarmed, State::Armed, State::Active] {
         let mut supervisor = in_state(state);
-        supervisor.check(&faulty, DacCode::ZERO, false);
+        supervisor.check(&faulty, DacCode::ZERO);
         assert_eq!((supervisor.state(), supervisor.fault()), (state, None));
-        supervisor.check(&faulty, DacCode::ZERO, false);
+        supervisor.check(&faulty, DacCode::ZERO);
         assert_eq!(supervisor.fault(), Some((Fault::Amplifier, 0)), "{state:?}");
         assert_eq!(supervisor.state(), State::Faulted);
     }
@@ -281,7 +281,7 @@ fn a_host_that_arms_again_is_not_silent_any_more() {
 #[test]
 fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
     let armed = |supervisor: &mut Supervisor, now_tick| {
-        supervisor.check(&reading(0.0), DacCode::ZERO, false);
+        supervisor.check(&reading(0.0), DacCode::ZERO);
         supervisor.apply(&Order::Arm, now_tick);
         supervisor.state() == State::Armed
     };
@@ -310,7 +310,7 @@ proptest! {
         let mut supervisor = in_state(State::Disarmed);
         for (tick, (amplifier_fault, arm_switch, monitor_v, dac_code)) in inputs.into_iter().enumerate() {
             let before = supervisor.state();
-            supervisor.check(&Sense { amplifier_fault, monitor_v, arm_switch }, DacCode::from_bits(dac_code), false);
+            supervisor.check(&Sense { amplifier_fault, monitor_v, arm_switch }, DacCode::from_bits(dac_code));
             supervisor.expire(tick as u32);
             prop_assert!(matches!(supervisor.state(), State::Disarmed | State::Faulted));
             prop_assert!(before != State::Faulted || supervisor.state() == State::Faulted);

@@ -41,7 +41,6 @@ use crate::supervisor::{self, Supervisor};
 use crate::{Active, Board, Ceilings, Drive, Sense, Track};
 
 /// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
-#[allow(clippy::struct_excessive_bools, reason = "each is an input or an event of its own")]
 pub struct Ticker<'a> {
     timing: Timing,
     ceilings: Ceilings,
@@ -53,10 +52,6 @@ pub struct Ticker<'a> {
     finger: Finger,
     /// The finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
-    /// An order was applied since the last tick.
-    has_taken_order: bool,
-    /// The last tick left the amplifier's gain out.
-    has_left_out_gain: bool,
     /// Coefficients of the current scene.
     active: &'a mut Active,
     pool: &'a BitmapPool,
@@ -107,8 +102,6 @@ impl<'a> Ticker<'a> {
             supervisor: Supervisor::new(board),
             finger: Finger::Up,
             was_lifted: false,
-            has_taken_order: false,
-            has_left_out_gain: false,
             active,
             pool,
             clicks: Clicks::NONE,
@@ -157,9 +150,7 @@ impl<'a> Ticker<'a> {
         // come first, so that what they find at this tick stops the output at this tick; and a lift is taken in any
         // state, so that none is left for a later play.
         let driven_code = self.dac_code;
-        // The longest ticks take an order: they leave the gain out, at most every second one.
-        self.has_left_out_gain = core::mem::take(&mut self.has_taken_order) && !self.has_left_out_gain;
-        self.supervisor.check(sense, driven_code, self.has_left_out_gain);
+        self.supervisor.check(sense, driven_code);
         self.supervisor.expire(self.tick);
         self.finger.expire(self.tick);
         self.stream.advance(&mut self.inputs.stream);

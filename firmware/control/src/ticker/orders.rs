@@ -10,7 +10,6 @@ impl<'a> Ticker<'a> {
     /// Applies an order of the session, before a tick. Returns the coefficients that an [`Order::Load`] replaced.
     #[inline(never)]
     pub fn apply(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
-        self.has_taken_order = true;
         match order {
             Order::Track(track) => {
                 self.was_lifted |= self.finger.follow(&track, self.tick, self.timing.track_ticks_max);
