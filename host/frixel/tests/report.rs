@@ -326,7 +326,7 @@ fn three_questions_are_answered_on_the_first_screen() {
     for (answer, question, figure, says) in [
         (answers[0], "Error against run time", MEASURED, ["MEASURED here", "16 instructions, estimated 27 cycles"]),
         (answers[1], "Stability on stiff", "stability-f64", ["n = 6.81e6", "of the load before pull-off"]),
-        (answers[2], "What is left out", "scene", ["estimated 1358 of 2550 cycles", "250.0 to 380.0 mN at 150 V rms"]),
+        (answers[2], "What is left out", "scene", ["estimated 1529 of 2550 cycles", "250.0 to 380.0 mN at 150 V rms"]),
     ] {
         assert!(answer.contains(&format!("<th>{question}")), "{answer}");
         assert!(answer.contains(&format!("<a href=\"#{figure}\">")), "{answer}");
