@@ -339,9 +339,12 @@ impl<L: Link + Recorded> Player<L> {
         let stopped = if self.state == State::Active { self.device.stop() } else { Ok(()) };
         // A board that has left the active state by itself refuses to stop.
         let stopped = stopped.or_else(|error| if is_refusal(&error) { Ok(()) } else { Err(error) });
-        // Whatever the answer to the stop was.
-        let disarmed = self.device.disarm();
-        (self.state, self.fault) = match stopped.and(disarmed) {
+        // A board that answers with another state is disarmed all the same; one that does not answer is left alone.
+        let stopped = match stopped {
+            Err(error @ DeviceError::WrongState { .. }) => self.device.disarm().and(Err(error)),
+            stopped => stopped.and_then(|()| self.device.disarm()),
+        };
+        (self.state, self.fault) = match stopped {
             // The board has latched a fault that this host has not heard of.
             Err(DeviceError::Refused { refusal: Refusal::Faulted(fault), .. }) => (State::Faulted, Some(fault)),
             Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => (State::Faulted, None),
