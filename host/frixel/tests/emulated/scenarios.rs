@@ -9,11 +9,11 @@ use crate::emulator::{image, pico_image};
 use crate::example::{page, run, text};
 
 /// Scenarios that a rig cannot run, each with the input that it lacks.
-const NOT_ON_QEMU: [(&str, &str); 1] = [("counters-wrap", "it has no input for its tick count")];
+const NOT_ON_QEMU: [(&str, &str); 1] = [("counters-wrap", "its emulator has no input for it")];
 const NOT_ON_PICO: [(&str, &str); 3] = [
-    ("counters-wrap", "an unmodified image has no input for its ticks"),
+    ("counters-wrap", "an unmodified image has no input for it"),
     ("dac-holds-its-code", "too fast for 8000 ticks a second"),
-    ("late-tick", "an unmodified image has no input for its ticks"),
+    ("late-tick", "an unmodified image has no input for it"),
 ];
 
 /// The ones that run on the Pico with every change. All of them take half an hour.

@@ -26,7 +26,7 @@ inequality holds, too, where answers choose the levels, and with them the grid."
 class Answers:
     """Correct answers at each level. The order of the trials does not matter to an estimate."""
 
-    def __init__(self, trials: Iterable[tuple[float, bool]] = ()) -> None:
+    def __init__(self, trials: Iterable[tuple[float, bool | np.bool_]] = ()) -> None:
         self._counts: dict[float, tuple[int, int]] = {}
         for trial in each("trials", trials):
             try:
