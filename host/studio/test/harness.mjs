@@ -110,7 +110,7 @@ export async function openOnlyEngine(url, options) {
  * Gives the page an engine of the test's own, as `tested`, with a function `sceneFiles(name)`. That of the page itself
  * ends, so that the machine has time for this one.
  */
-async function addOnlyEngine(page) {
+export async function addOnlyEngine(page) {
   await page.waitForFunction(() => globalThis.studioPage);
   await page.evaluate(async () => {
     studioPage.engine.close();
