@@ -1,11 +1,11 @@
 // Notes calls of functions of the image, as a debugger's breakpoints that never stop would: the firmware does not know.
 
-/** Register of a function's first argument (Procedure Call Standard for the Arm Architecture, 6.1.1). */
-const FIRST_ARGUMENT = 0;
+/** Register of a method's first argument behind `self` (Procedure Call Standard for the Arm Architecture, 6.1.1). */
+const ARGUMENT = 1;
 
 export class CallWatch {
   #rp2040;
-  /** Number of the function, and words to read of what its first argument points at, by its address.
+  /** Number of the function, and words to read of what that argument points at, by its address.
    *  @type {Map<number, { number: number, wordCount: number }>} */
   #watched = new Map();
   /** @type {number[]} */
@@ -28,7 +28,7 @@ export class CallWatch {
       return;
     }
     this.#calls.push(watched.number);
-    const pointer = this.#rp2040.core.registers[FIRST_ARGUMENT];
+    const pointer = this.#rp2040.core.registers[ARGUMENT];
     for (let index = 0; index < watched.wordCount; index += 1) {
       this.#calls.push(this.#rp2040.readUint32(pointer + 4 * index) >>> 0);
     }

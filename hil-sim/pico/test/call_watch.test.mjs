@@ -11,7 +11,7 @@ test("calls of watched functions are noted, with the words that their first argu
     [0x2000_0104, 0xffff_ffff],
   ]);
   const registers = new Uint32Array(16);
-  registers[0] = 0x2000_0100;
+  registers[1] = 0x2000_0100;
   const calls = new CallWatch({ core: { registers }, readUint32: (address) => memory.get(address) | 0 });
   calls.watch(0x2000_2000, 2);
   calls.watch(0x2000_3000, 0);

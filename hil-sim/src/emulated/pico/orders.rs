@@ -9,8 +9,7 @@ const ORDER_WORDS: usize = 17;
 /// Numbers of the watched functions, in the order in which they are watched.
 const APPLY: u32 = 0;
 const TICK: u32 = 1;
-/// Parts of their names, and the words to read of what their first argument points at. It is the order: the compiler
-/// knows the only ticker, and leaves `self` out.
+/// Parts of their names, and the words to read of what their argument behind `self` points at: the order.
 const NAMES: [(&str, usize); 2] = [("Ticker$GT$5apply", ORDER_WORDS), ("6Ticker4tick", 0)];
 
 /// An order that the tick has taken.
