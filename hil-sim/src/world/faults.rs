@@ -47,6 +47,7 @@ pub enum WorldFault {
 
 impl WorldFault {
     /// Checks the numbers of a fault of the amplifier.
+    #[cfg(unix)]
     pub(crate) fn check(self) -> Result<(), OutOfRange> {
         self.of_amplifier(AmplifierConfig::IDEAL).check()
     }
