@@ -37,7 +37,7 @@ const M33_CORE: Core = Core { name: "m33", target: M33, machine: "mps2-an505" };
 const EMULATOR: &str = "qemu-system-arm";
 
 /// The counts that `frixel report` shows without being given others.
-const COMMITTED: &str = "host/frixel/src/report/bench.json";
+pub(crate) const COMMITTED: &str = "host/frixel/src/report/bench.json";
 
 /// Measures everything and writes `target/bench/bench.json`, and with `FRIXEL_BLESS=1` [`COMMITTED`].
 pub(crate) fn bench() -> Result<Figures, String> {

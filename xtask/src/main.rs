@@ -10,6 +10,7 @@ mod hardware;
 mod licences;
 mod machine_paths;
 mod needs;
+mod numbers;
 mod packages;
 mod pico_rig;
 mod portability;
@@ -36,6 +37,7 @@ cargo xtask soak     the parts that take too long for that; each takes an hour a
 cargo xtask soak PART
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes
                      with FRIXEL_BLESS=1, writes down what each kind of layer costs, which compiler and board use
+cargo xtask numbers  the tables of docs/inside/numbers.md, of what bench wrote down
 cargo xtask studio   the studio as one HTML file, <frixel-scene> beside it, the widget of the Python module; the page's
                      path is the last line
 cargo xtask studio --site FOLDER [ADDRESS]
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         ["studio-shots"] => require(&studio_tests::NEEDS).and_then(|()| studio_tests::take_shots()),
         ["dist", folder] => dist::make(folder),
         ["hardware"] => hardware::write(),
+        ["numbers"] => numbers::write(),
         ["fuzz", seconds] => match seconds.parse() {
             Ok(seconds) => require(&[Need::CppCompiler]).and_then(|()| fuzz::run_for(Duration::from_secs(seconds))),
             Err(_) => Err(format!("expected a number of seconds, found `{seconds}`\n{USAGE}")),
@@ -83,7 +86,11 @@ fn main() -> ExitCode {
         },
         ["bench"] => require(&EMULATED).and_then(|()| bench::bench()).and_then(|figures| {
             print!("{}", figures.table());
-            if env::var_os("FRIXEL_BLESS").is_some() { bench::costs::bless(&figures) } else { Ok(()) }
+            if env::var_os("FRIXEL_BLESS").is_some() {
+                bench::costs::bless(&figures).and_then(|()| numbers::write())
+            } else {
+                Ok(())
+            }
         }),
         _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
     };

@@ -1,4 +1,4 @@
-//! The brick scene, from its file to the finger: the goals that README names.
+//! The brick scene, from its file to the finger: the goals that `docs/inside/numbers.md` names.
 //!
 //! The reference is evaluated here a second time, from the picture as the compiler resampled it, and compared with that
 //! of the recorder, so that the errors below are errors against the picture.

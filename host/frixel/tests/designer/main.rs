@@ -6,12 +6,12 @@ mod demo;
 #[cfg(unix)]
 mod experiments;
 mod first_scene;
+mod numbers;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
 #[cfg(unix)]
 mod ports;
-mod readme;
 mod streams;
 mod strokes;
 #[cfg(unix)]

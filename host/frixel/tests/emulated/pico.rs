@@ -20,7 +20,7 @@ pub(super) fn play(folder: &Path) -> Command {
     command
 }
 
-/// README's goal for a finger at constant speed: within 5 % rms of what the drive can reach.
+/// Goal of `docs/inside/numbers.md` for a finger at constant speed: within 5 % rms of what the drive can reach.
 #[test]
 fn a_band_is_felt_as_the_scene_asks_for_it() {
     if emulator::pico_image().is_none() {

@@ -1,4 +1,4 @@
-//! Figures in the README are what the command beside them prints.
+//! Felt friction in `docs/inside/numbers.md` is what the command beside them prints.
 //!
 //! A line `    $ frixel ...` is run, and the lines behind it, indented by six, are lines of its output.
 
@@ -15,8 +15,8 @@ fn name(line: &str) -> &str {
 }
 
 #[test]
-fn figures_in_the_readme_are_printed_by_their_commands() {
-    let path = scenes().join("../README.md");
+fn felt_friction_is_printed_by_the_commands_beside_it() {
+    let path = scenes().join("../docs/inside/numbers.md");
     let text = fs::read_to_string(&path).unwrap();
     let scenes = scenes().display().to_string();
     let (mut printed, mut commands, mut figures) = (String::new(), 0, 0);
