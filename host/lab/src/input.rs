@@ -1,8 +1,9 @@
-//! What is read of a file, at most, by whatever opens it: the command, the page and Python.
+//! What is read of a file, and how much at most, by whatever opens it: the command, the page and Python.
 
 use std::io::{self, Read};
 
 use thiserror::Error;
+use unicode_normalization::UnicodeNormalization;
 
 /// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
 pub const PICTURE_MAX_BYTES: u64 = 64 << 20;
@@ -14,6 +15,17 @@ pub const ROWS_MAX: u64 = 10_000_000;
 /// Most columns of a table, and most bytes of a cell of its header.
 const COLUMNS_MAX: u64 = 4096;
 const HEADER_CELL_MAX_BYTES: u64 = 1024;
+
+/// Whether two names of files are the same text. An accented letter is one character or two, and file systems and text
+/// editors choose differently.
+///
+/// ```
+/// assert!(frixel_lab::input::is_same_name("gr\u{fc}n.png", "gru\u{308}n.png"));
+/// assert!(!frixel_lab::input::is_same_name("gr\u{fc}n.png", "grun.png"));
+/// ```
+pub fn is_same_name(one: &str, other: &str) -> bool {
+    one.nfc().eq(other.nfc())
+}
 
 /// Refuses a table with too many columns, or with a header that has a cell of too many bytes.
 pub(crate) fn check_header<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Result<(), InputError> {

@@ -9,11 +9,9 @@ use std::path::{Path, PathBuf};
 use frixel_felt::check::SceneCheck;
 use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
-use frixel_lab::input::PICTURE_MAX_BYTES;
+use frixel_lab::input::{PICTURE_MAX_BYTES, is_same_name};
 use frixel_lab::simulation::board_costs;
-use frixel_scene::{
-    CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft, is_same_name,
-};
+use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -182,8 +180,13 @@ impl ReadFiles {
 impl Files for ReadFiles {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
         let mut read = self.read.borrow_mut();
-        if let (Some(folder), false) = (&self.folder, read.contains_key(name)) {
-            read.insert(name.to_owned(), read_in(folder, name)?);
+        if !read.contains_key(name) {
+            let same = read.iter().find(|(other, _)| is_same_name(other, name)).map(|(_, bytes)| bytes.clone());
+            let found = match (same, &self.folder) {
+                (None, Some(folder)) => Some(read_in(folder, name)?),
+                (same, _) => same,
+            };
+            read.extend(found.map(|bytes| (name.to_owned(), bytes)));
         }
         read.bytes(name)
     }

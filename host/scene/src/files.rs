@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use unicode_normalization::UnicodeNormalization;
-
 /// Provides the bytes of the files that a scene names.
 ///
 /// [`Scene::parse`](crate::Scene::parse) reads each file once, so that compiling needs only the scene. Where the files
@@ -41,23 +39,11 @@ pub enum FileUnavailable {
 
 impl Files for BTreeMap<String, Vec<u8>> {
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        let same = || self.iter().find(|(other, _)| is_same_name(other, name)).map(|(_, bytes)| bytes);
-        self.get(name).or_else(same).cloned().ok_or_else(|| FileUnavailable::Missing {
+        self.get(name).cloned().ok_or_else(|| FileUnavailable::Missing {
             place: "the scene's set of files".to_owned(),
             files: self.keys().map(|name| file_name(name).to_owned()).collect(),
         })
     }
-}
-
-/// Whether two names are the same text. An accented letter is one character or two, and systems of files and text editors
-/// choose differently.
-///
-/// ```
-/// assert!(frixel_scene::is_same_name("gr\u{fc}n.png", "gru\u{308}n.png"));
-/// assert!(!frixel_scene::is_same_name("gr\u{fc}n.png", "grun.png"));
-/// ```
-pub fn is_same_name(one: &str, other: &str) -> bool {
-    one.nfc().eq(other.nfc())
 }
 
 /// The part of a file's name behind the last slash.

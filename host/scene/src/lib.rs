@@ -87,7 +87,7 @@ pub use compile::{compile, compile_draft};
 pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Message};
 pub use file::Scene;
-pub use files::{FileUnavailable, Files, is_same_name};
+pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
 pub use kinds::{layer_kinds, without_place};
 pub use layer_map::{LayerError, LayerMap};

@@ -11,10 +11,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel_hil_sim::TouchConfig;
+use frixel_lab::input::is_same_name;
 use frixel_lab::sweep::Source;
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, is_same_name,
-    parse_touch_source,
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, parse_touch_source,
 };
 use thiserror::Error;
 

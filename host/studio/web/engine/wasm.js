@@ -172,13 +172,16 @@ function named(names, values) {
 }
 
 /**
- * The bytes of a request for a scene.
+ * The bytes of a request for a scene. The module compares names byte by byte; an accented letter is one character or
+ * two, and file systems and text editors choose differently: a file goes by its name in either form.
  * @param {T.Request} request
  */
 function requestOf({ files, ...rest }) {
   const encoder = new TextEncoder();
-  const contents = Object.entries(files).map(([name, content]) => {
-    return { name, bytes: typeof content === "string" ? encoder.encode(content) : content };
+  const contents = Object.entries(files).flatMap(([name, content]) => {
+    const bytes = typeof content === "string" ? encoder.encode(content) : content;
+    const forms = new Set([name, name.normalize("NFC"), name.normalize("NFD")]);
+    return [...forms].map((form) => ({ name: form, bytes }));
   });
   const heads = contents.map(({ name, bytes }) => ({ name, len: bytes.length }));
   const json = encoder.encode(JSON.stringify({ ...rest, files: heads }));

@@ -4,7 +4,7 @@
 import { projectOf, UNPACKED_MAX_BYTES } from "./archive.js";
 import { byId, sentenceOf, shortName } from "./dom.js";
 import { forgetNotice, notify } from "./notices.js";
-import { TEXT_MAX_BYTES, isPicture, tooLarge } from "./project.js";
+import { TEXT_MAX_BYTES, isPicture, sameName, tooLarge } from "./project.js";
 
 /** @import { Files } from "../engine/types" */
 /** @import { Kind } from "./profiles.js" */
@@ -113,10 +113,10 @@ export class Incoming {
   async #sort(found, refused) {
     const texts = Object.fromEntries(found.texts);
     // A scene of the drop, or the scene that the page has, may use the others.
-    const used = new Set((await this.#usedFiles()).names);
+    const used = new Set((await this.#usedFiles()).names.map(sameName));
     for (const entry of Object.keys(texts)) {
       const { names } = await this.#usedFiles(texts, entry);
-      for (const name of names) if (name !== entry) used.add(name);
+      for (const name of names) if (name !== entry) used.add(sameName(name));
     }
     for (const [fileName, text] of found.texts) {
       const name = fileName.replace(/\.toml$/i, "");
@@ -147,11 +147,11 @@ export async function read(file, found) {
       throw new Error(`this is no ${ending === "png" ? "PNG" : "JPEG"} picture, whatever its name says`);
     if (ending === "png" && !String.fromCharCode(...bytes.slice(-PNG_END_BYTES)).includes(PNG_END))
       throw new Error("this PNG picture is cut off: its end is missing; save or copy it anew");
-    return { files: [...found.files, [file.name, bytes]] };
+    return { files: [...found.files, [sameName(file.name), bytes]] };
   }
   const text = textOf(bytes);
   if (text.trim() === "") throw new Error("this file is empty: it has no scene");
-  return { texts: [...found.texts, [file.name, text]] };
+  return { texts: [...found.texts, [sameName(file.name), text]] };
 }
 
 /** @param {Uint8Array} bytes */

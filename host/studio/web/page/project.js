@@ -36,7 +36,7 @@ export class Project {
   #engine;
   #name = "scene";
   /**
-   * Files of one's own, as the scene writes their names: texts of TOML files, bytes of pictures.
+   * Files of one's own, by their names as `sameName` writes them: texts of TOML files, bytes of pictures.
    * @type {Map<string, Content>}
    */
   files = new Map();
@@ -96,7 +96,7 @@ export class Project {
    */
   add(name, content) {
     const text = isToml(name) && typeof content !== "string" ? new TextDecoder().decode(content) : content;
-    this.files.set(name, isToml(name) && typeof text === "string" ? text.replaceAll(/\r\n?/g, "\n") : text);
+    this.files.set(sameName(name), isToml(name) && typeof text === "string" ? text.replaceAll(/\r\n?/g, "\n") : text);
   }
 
   /**
@@ -128,7 +128,7 @@ export class Project {
   async filesForLink(text) {
     const { names, isWhole } = await this.#engine.usedFiles(await this.filesFor(text), this.entry);
     // A mistake may hide the name of a file.
-    return [...this.files].filter(([name]) => !isWhole || names.includes(name));
+    return [...this.files].filter(([name]) => !isWhole || names.map(sameName).includes(name));
   }
 
   /**
@@ -169,6 +169,14 @@ export function assertTextsFit({ name, text, files }) {
 /** @param {Content} content */
 export function bytesOf(content) {
   return typeof content === "string" ? new TextEncoder().encode(content).length : content.length;
+}
+
+/**
+ * A name of a file in the characters that the page compares: scenes and file systems may have others for the same text.
+ * @param {string} name
+ */
+export function sameName(name) {
+  return name.normalize("NFC");
 }
 
 /** @param {string} name */
