@@ -8,12 +8,12 @@ mod recorded;
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Result;
 use clap::Args;
-use frixel_lab::calibration::{CalibrationError, align, read_board, write_csv};
+use frixel_lab::calibration::{align, read_board, write_csv};
 use frixel_lab::recording::{Metadata, calibration_fields};
 use frixel_wire::hello::Hello;
 
-use super::error::CommandError;
 use super::experiment;
 use super::interrupt::Interrupt;
 use super::parquet;
@@ -64,7 +64,7 @@ pub(super) struct CalibrateArgs {
     arm: bool,
 }
 
-pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
     parquet::check_participant(&args.output, args.participant.as_deref())?;
     let inputs = Inputs::new(&args.forces);
     let recording = Recording::new(&args.output, "-o", &inputs, args.overwrite, CUT_OFF)?;
@@ -88,7 +88,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), CommandError> {
 }
 
 /// Makes the recording of what one that was cut off has left.
-fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<(), CommandError> {
+fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<()> {
     let (_partial, text) = recording.resume()?;
     let board = read_board(text.as_bytes())?;
     let copied = forces::copy(args)?.partial();
@@ -97,12 +97,7 @@ fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<(), CommandErro
 }
 
 /// Joins what board and sensor saw, and writes it.
-fn write(
-    args: &CalibrateArgs,
-    recording: &Recording,
-    (board, forces): &Recorded,
-    hello: Option<&Hello>,
-) -> Result<(), CommandError> {
+fn write(args: &CalibrateArgs, recording: &Recording, (board, forces): &Recorded, hello: Option<&Hello>) -> Result<()> {
     let rows = align(board, forces)?;
     let (output, mut bytes) = (recording.output(), Vec::new());
     write_csv(&mut bytes, &rows)?;
@@ -122,10 +117,4 @@ fn write(
     let highest = rows.iter().map(|row| row.voltage_v_rms).fold(0.0, f64::max);
     let voltage = if highest < 145.0 { format!(" --voltage {highest:.0}") } else { String::new() };
     say(output, format_args!("  {:<16} frixel fit {path}{voltage} -o finger.toml", "next"))
-}
-
-impl From<CalibrationError> for CommandError {
-    fn from(error: CalibrationError) -> Self {
-        Self::Calibration(error)
-    }
 }

@@ -1,10 +1,10 @@
 //! `frixel completions`: completion of commands and options for a shell.
 
+use anyhow::Result;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use super::Cli;
-use super::error::CommandError;
 use super::terminal::print;
 
 #[derive(Debug, Args)]
@@ -13,7 +13,7 @@ pub(super) struct CompletionsArgs {
     shell: Shell,
 }
 
-pub(super) fn run(args: &CompletionsArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &CompletionsArgs) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "frixel", &mut script);
     print(String::from_utf8_lossy(&script))

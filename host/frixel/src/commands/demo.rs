@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Result;
 use clap::Args;
 
+use super::error::writing;
 use crate::output_file::{Inputs, OutputFile};
 
-use super::error::CommandError;
 use super::play::{self, PlayArgs};
 use super::terminal::print_line;
 
@@ -31,7 +32,7 @@ impl Default for DemoArgs {
     }
 }
 
-pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &DemoArgs) -> Result<()> {
     let scene = args.out.join("brick.toml");
     create(&args.out.join(PICTURE_NAME), PICTURE)?;
     let place = scene.display();
@@ -51,9 +52,9 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), CommandError> {
 }
 
 /// Writes a file unless there is one already, and returns whether it did.
-fn create(path: &Path, bytes: &[u8]) -> Result<bool, CommandError> {
+fn create(path: &Path, bytes: &[u8]) -> Result<bool> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(CommandError::writing(folder))?;
+        std::fs::create_dir_all(folder).map_err(writing(folder))?;
     }
     Ok(OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)?)
 }

@@ -3,11 +3,11 @@
 
 use crate::output_file::Recording;
 use crate::rigs::PortLink;
+use anyhow::{Result, anyhow, bail};
 use frixel_driver::Device;
 use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
-use super::error::CommandError;
 use super::ports;
 use super::terminal::note;
 
@@ -19,7 +19,7 @@ const PEAK_SHARE: f64 = 0.99;
 
 /// Connects to the board at a serial port, says what a person should know of it, and rejects one whose electrode may
 /// not be driven. The command takes these boards in place of a port.
-pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>, CommandError> {
+pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>> {
     let device = Device::connect(PortLink::new(ports::open(port, boards)?))?;
     for sentence in device.hello().notice_sentences() {
         note(format_args!("note: {sentence}"));
@@ -27,17 +27,23 @@ pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<P
     if arm || device.hello().board.is_simulated() {
         return Ok(device);
     }
-    Err(CommandError::NotArmed { port: port.to_owned() })
+    bail!(
+        "{port} is a board with an electrode: add --arm, and hold the board's arm switch, to let it drive hundreds of \
+         volts"
+    )
 }
 
 /// The highest voltage of an experiment, in volts rms: the given one, which must be within the board's limit, or else
 /// what the board allows, up to 150.
-pub(super) fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits) -> Result<f64, CommandError> {
+pub(super) fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits) -> Result<f64> {
     let limit_v_rms = PEAK_SHARE * f64::from(limits.voltage_max_v_peak);
     match given_v_rms {
         None => Ok(limit_v_rms.min(VOLTAGE_MAX_V_RMS)),
         Some(volts) if volts <= limit_v_rms => Ok(volts),
-        Some(found) => Err(CommandError::VoltageAboveBoard { found, limit_v_rms }),
+        Some(found) => bail!(
+            "--voltage {found} is above what this board drives, {limit_v_rms:.0} V rms: give at most that, or leave \
+             --voltage out"
+        ),
     }
 }
 
@@ -46,11 +52,11 @@ pub(super) fn voltage(text: &str) -> Result<f64, String> {
     number(text, above_zero_to(VOLTAGE_MAX_V_RMS), "a voltage above 0, at most 150 V rms")
 }
 
-/// Adds to an error that ended a recording where its rows are, if it has any and the error does not say so itself.
-pub(super) fn cut_off(recording: &Recording, error: CommandError) -> CommandError {
-    if recording.is_cut_off() && !matches!(error, CommandError::OtherSession { .. }) {
+/// Adds to an error that ended a recording where its rows are, if it has any.
+pub(super) fn cut_off(recording: &Recording, error: anyhow::Error) -> anyhow::Error {
+    if recording.is_cut_off() {
         let (partial, advice) = (recording.partial(), recording.advice());
-        return CommandError::RecordingCutOff { source: error.into(), partial, advice };
+        return anyhow!("{error}; what was recorded until then is in {}: {advice}", partial.display());
     }
     error
 }

@@ -1,11 +1,11 @@
 //! `frixel faults`: what a board says of its last fault.
 
+use anyhow::Result;
 use clap::Args;
 use frixel_driver::Device;
 use frixel_scene::printable;
 use frixel_wire::fault::State;
 
-use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::ports;
 use super::terminal::print_line;
@@ -21,7 +21,7 @@ pub(super) struct FaultsArgs {
     clear: bool,
 }
 
-pub(super) fn run(args: &FaultsArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &FaultsArgs) -> Result<()> {
     let device = Device::connect(ports::open(&args.port, &[])?)?;
     let mut device = waiting::watch(device, &Interrupt::default());
     let hello = *device.hello();

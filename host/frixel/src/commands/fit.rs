@@ -3,9 +3,11 @@
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
+use super::error::reading;
 use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
+use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
@@ -13,7 +15,6 @@ use frixel_scene::{Experiment, FingerProfile, Screen};
 use time::OffsetDateTime;
 
 use super::argument::positive;
-use super::error::CommandError;
 use super::terminal::{note_understood, print_line, say};
 
 /// Voltage at which electric friction is stated if none is given, in volts rms.
@@ -113,10 +114,13 @@ impl Fitted {
     }
 }
 
-pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &FitArgs) -> Result<()> {
     let path = &args.data;
     if let (Law::Empirical, Some(found)) = (args.law, args.voltage) {
-        return Err(CommandError::VoltageOfLaw { found });
+        bail!(
+            "--voltage {found} states the friction of the contact model, and an empirical law is stated at the highest \
+             voltage of the data: leave --voltage out"
+        );
     }
     let (screen_name, screen) = screen(args.screen.as_deref())?;
     let outputs = args.output.as_deref().map(|output| Outputs::new(args, path, output)).transpose()?;
@@ -127,7 +131,7 @@ pub(super) fn run(args: &FitArgs) -> Result<(), CommandError> {
         without: args.without.clone(),
         seed: args.seed,
     };
-    let refused = |source| CommandError::Fit { path: path.clone(), source };
+    let refused = |error| anyhow!("{}: {error}", path.display());
     let Reading { value: data, understood } = fit::data(open(path)?).map_err(refused)?;
     note_understood(path, understood.as_deref());
     let fit = match args.law {
@@ -164,7 +168,7 @@ struct Outputs {
 }
 
 impl Outputs {
-    fn new(args: &FitArgs, data: &PathBuf, path: &Path) -> Result<Self, CommandError> {
+    fn new(args: &FitArgs, data: &PathBuf, path: &Path) -> Result<Self> {
         let inputs = Inputs::new([data].into_iter().chain(args.screen.as_ref().map(PathBuf::from).as_ref()));
         let profile = OutputFile::new(path, "-o", &inputs)?;
         if !profile.is_file() {
@@ -175,7 +179,7 @@ impl Outputs {
         Ok(Self { profile, plots: Some(plots) })
     }
 
-    fn write(&self, args: &FitArgs, data: &Path, fit: &Fitted, screen: &str) -> Result<(), CommandError> {
+    fn write(&self, args: &FitArgs, data: &Path, fit: &Fitted, screen: &str) -> Result<()> {
         let method = args.method.clone().unwrap_or_else(|| method_of(fit.division()).to_owned());
         let date = OffsetDateTime::now_utc().date().to_string();
         let experiment = Experiment { date, method, screen: screen.to_owned() };
@@ -196,13 +200,13 @@ impl Outputs {
 }
 
 /// The screen of the experiment and the name by which profiles refer to it.
-pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen), CommandError> {
+pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen)> {
     let Some(named) = named else { return Ok(("example".to_owned(), Screen::example())) };
     if let Some(screen) = Screen::bundled(named) {
         return Ok((named.to_owned(), screen));
     }
     let path = Path::new(named);
-    let text = input::read_text(path, input::TOML_MAX_BYTES).map_err(CommandError::reading(path))?;
+    let text = input::read_text(path, input::TOML_MAX_BYTES).map_err(reading(path))?;
     let screen = Screen::parse(&text, named)?;
     let name = screen.name.clone().unwrap_or_else(|| {
         path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
@@ -210,9 +214,9 @@ pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen), CommandErr
     Ok((name, screen))
 }
 
-fn open(path: &Path) -> Result<Box<dyn Read>, CommandError> {
+fn open(path: &Path) -> Result<Box<dyn Read>> {
     if path == Path::new("-") {
         return Ok(Box::new(Bounded::new(io::stdin().lock(), input::CSV_MAX_BYTES)));
     }
-    Ok(Box::new(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?)))
+    Ok(Box::new(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(reading(path))?)))
 }

@@ -1,12 +1,12 @@
 //! `frixel info`.
 
+use anyhow::Result;
 use clap::Args;
 use frixel_driver::Device;
 use frixel_layers::feature_names;
 use frixel_model::TouchBound;
 use frixel_wire::hello::{BoardLimits, Hello};
 
-use super::error::CommandError;
 use super::ports;
 use super::terminal::print;
 
@@ -17,7 +17,7 @@ pub(super) struct InfoArgs {
     port: String,
 }
 
-pub(super) fn run(args: &InfoArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &InfoArgs) -> Result<()> {
     let device = Device::connect(ports::open(&args.port, &[])?)?;
     print(describe(device.hello()))
 }

@@ -2,10 +2,9 @@
 
 use std::num::NonZero;
 
+use anyhow::{Result, anyhow};
 use clap::Args;
 use rayon::ThreadPoolBuilder;
-
-use super::error::CommandError;
 
 /// Most threads that a command takes.
 const JOBS_MAX: i64 = 1024;
@@ -20,10 +19,12 @@ pub(super) struct JobsArgs {
 
 impl JobsArgs {
     /// Does work that simulates on the threads of its rayon pool.
-    pub(super) fn run<R: Send>(self, work: impl FnOnce() -> R + Send) -> Result<R, CommandError> {
+    pub(super) fn run<R: Send>(self, work: impl FnOnce() -> R + Send) -> Result<R> {
         let jobs = self.jobs.map(usize::from);
         let threads = jobs.or_else(|| std::thread::available_parallelism().ok().map(NonZero::get)).unwrap_or(1);
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(CommandError::Threads)?;
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool =
+            pool.map_err(|error| anyhow!("the threads of --jobs cannot start: {error}; give a smaller number"))?;
         Ok(pool.install(work))
     }
 }

@@ -35,10 +35,10 @@ mod waiting;
 
 use std::path::PathBuf;
 
+use anyhow::Result;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
-use error::CommandError;
 use stroke::StrokeArgs;
 
 const EXIT_CODES: &str = "Exit codes: 0 when the command did what it says, 1 when it failed (its last line on standard \
@@ -148,7 +148,7 @@ struct SimArgs {
 }
 
 impl Cli {
-    pub(crate) fn run(self) -> Result<(), CommandError> {
+    pub(crate) fn run(self) -> Result<()> {
         match self.command {
             None => demo::run(&demo::DemoArgs::default()),
             Some(Command::Demo(args)) => demo::run(&args),
@@ -161,7 +161,7 @@ impl Cli {
             #[cfg(unix)]
             Some(Command::Sim(args)) => sim::run(&args),
             #[cfg(not(unix))]
-            Some(Command::Sim(_)) => Err(CommandError::NoPseudoTerminal { what: "frixel sim" }),
+            Some(Command::Sim(_)) => Err(error::no_pseudo_terminal("frixel sim")),
             Some(Command::Studio(args)) => studio::run(&args),
             Some(Command::Ports) => ports::run(),
             Some(Command::Info(args)) => info::run(&args),
@@ -196,7 +196,7 @@ pub(crate) fn with_nested_tip(mut error: clap::Error) -> clap::Error {
 }
 
 /// Prints the error that ended a command.
-pub(crate) fn report_error(error: &CommandError) {
+pub(crate) fn report_error(error: &anyhow::Error) {
     terminal::note(format_args!("frixel: {error}"));
 }
 

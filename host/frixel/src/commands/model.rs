@@ -3,12 +3,13 @@
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
+use super::error::reading;
 use crate::input::{self, Bounded};
 use crate::output_file::{Inputs, OutputFile};
+use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};
 use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
 
-use super::error::CommandError;
 use super::terminal::{note, note_understood};
 
 #[derive(Debug, Subcommand)]
@@ -63,7 +64,7 @@ impl From<PrecisionName> for Precision {
     }
 }
 
-pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
+pub(super) fn run(command: &ModelCommand) -> Result<()> {
     let (ModelCommand::Eval(args) | ModelCommand::Invert(args)) = command;
     let input = open(args.input.as_deref())?;
     let output = args.output.as_deref().unwrap_or(Path::new("-"));
@@ -89,27 +90,27 @@ pub(super) fn run(command: &ModelCommand) -> Result<(), CommandError> {
                 CsvError::Table(_) => (&args.input, "standard input"),
             };
             let input = path.as_ref().map_or(stream.to_owned(), |path| path.display().to_string());
-            return Err(CommandError::ModelCsv { input, source });
+            bail!("{input}: {source}");
         }
     }
     Ok(())
 }
 
-fn open(path: Option<&Path>) -> Result<Box<dyn Read>, CommandError> {
+fn open(path: Option<&Path>) -> Result<Box<dyn Read>> {
     match path {
-        Some(path) => Ok(Box::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?)),
+        Some(path) => Ok(Box::new(input::open(path, input::CSV_MAX_BYTES).map_err(reading(path))?)),
         None => Ok(Box::new(Bounded::new(io::stdin().lock(), input::CSV_MAX_BYTES))),
     }
 }
 
 /// Notes what the contact cannot mean. Fails if a row has no answer.
-fn judge(summary: &Summary) -> Result<(), CommandError> {
+fn judge(summary: &Summary) -> Result<()> {
     let rows = |count: u64| if count == 1 { "1 row has".to_owned() } else { format!("{count} rows have") };
     if let Some(doubt) = model_csv::wider_than_finger(summary.beyond_finger_rows) {
         note(format_args!("frixel: {doubt}"));
     }
     match summary.invalid_rows {
         0 => Ok(()),
-        invalid => Err(CommandError::InvalidRows { rows: rows(invalid) }),
+        invalid => bail!("{} no answer; the column `status` says why", rows(invalid)),
     }
 }

@@ -5,12 +5,13 @@ use std::fs;
 use std::io;
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 
+use super::error::{at, reading, writing};
 use crate::input;
 use crate::output_file::{Inputs, OutputFile};
+use anyhow::{Result, bail};
 use clap::Args;
 use frixel_scene::{Screen, check_picture, layer_kinds};
 
-use super::error::CommandError;
 use super::terminal::print_line;
 
 /// How the names of pictures end.
@@ -25,16 +26,16 @@ pub(super) struct NewArgs {
     picture: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &NewArgs) -> Result<()> {
     let stem = args.name.file_stem().map(|stem| stem.to_string_lossy());
     if stem.is_none_or(|stem| stem.starts_with(['.', '~'])) {
-        return Err(CommandError::SceneName { name: args.name.clone() });
+        bail!("\"{}\" has no name for a scene: give one such as wood, or scenes/wood.toml", args.name.display());
     }
     let path = scene_path(&args.name);
     if args.name.extension().is_some_and(is_of_picture) {
-        let (name, scene) = (args.name.clone(), quoted(&args.name.with_extension("")));
-        let picture = quoted(args.picture.as_ref().unwrap_or(&name));
-        return Err(CommandError::SceneNameOfPicture { scene, picture, name });
+        let (name, scene) = (args.name.display(), quoted(&args.name.with_extension("")));
+        let picture = quoted(args.picture.as_ref().unwrap_or(&args.name));
+        bail!("{name} is the name of a picture, and a scene needs another: frixel new {scene} --picture {picture}");
     }
     let text = match &args.picture {
         Some(picture) => {
@@ -44,7 +45,7 @@ pub(super) fn run(args: &NewArgs) -> Result<(), CommandError> {
         None => with_stripes(),
     };
     if path.exists() || !OutputFile::new(&path, "the scene", &Inputs::new(&args.picture))?.write_new(text.as_bytes())? {
-        return Err(CommandError::SceneExists { path });
+        bail!("{} is there already, and is not overwritten: give another name, or remove it", path.display());
     }
     let (name, path) = (path.display(), quoted(&path));
     print_line(format_args!(
@@ -64,9 +65,9 @@ fn scene_path(name: &Path) -> PathBuf {
 }
 
 /// Width and height of a picture that can be played.
-fn pixels(picture: &Path) -> Result<(usize, usize), CommandError> {
-    let bytes = input::read(picture, input::PICTURE_MAX_BYTES).map_err(CommandError::reading(picture))?;
-    check_picture(&bytes).map_err(|reason| CommandError::Picture { path: picture.to_owned(), reason })
+fn pixels(picture: &Path) -> Result<(usize, usize)> {
+    let bytes = input::read(picture, input::PICTURE_MAX_BYTES).map_err(reading(picture))?;
+    check_picture(&bytes).map_err(at(format!("{} is no picture that can be played", picture.display())))
 }
 
 fn is_of_picture(extension: &OsStr) -> bool {
@@ -81,9 +82,9 @@ fn quoted(path: &Path) -> String {
 }
 
 /// The path of a picture from the folder of the scene.
-fn name_from(scene: &Path, picture: &Path) -> Result<String, CommandError> {
-    let from = real_folder(scene).map_err(CommandError::writing(scene))?;
-    let to = real_folder(picture).map_err(CommandError::reading(picture))?;
+fn name_from(scene: &Path, picture: &Path) -> Result<String> {
+    let from = real_folder(scene).map_err(writing(scene))?;
+    let to = real_folder(picture).map_err(reading(picture))?;
     let name = relative(&from, &to).join(picture.file_name().unwrap_or_default());
     // Scenes have slashes on every operating system.
     Ok(name.display().to_string().replace(MAIN_SEPARATOR, "/"))

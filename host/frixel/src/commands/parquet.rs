@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use anyhow::{Result, bail};
 use frixel_lab::recording::{Field, Metadata, Recording};
 
+use super::error::at;
 use crate::output_file::OutputFile;
-
-use super::error::CommandError;
 
 /// Whether a file is to be Parquet, by its name.
 pub(super) fn is_named_so(path: &Path) -> bool {
@@ -14,23 +14,21 @@ pub(super) fn is_named_so(path: &Path) -> bool {
 }
 
 /// Rejects the code of a participant for an output that has no place for it.
-pub(super) fn check_participant(output: &Path, participant: Option<&str>) -> Result<(), CommandError> {
+pub(super) fn check_participant(output: &Path, participant: Option<&str>) -> Result<()> {
     if participant.is_some() && !is_named_so(output) {
-        return Err(CommandError::ParticipantInTable { path: output.to_owned() });
+        bail!(
+            "--participant goes into a Parquet file, and {} is none by its name: give one that ends in .parquet",
+            output.display()
+        );
     }
     Ok(())
 }
 
 /// Writes the rows of a table in CSV as a recording with these columns.
-pub(super) fn write(
-    output: &OutputFile,
-    csv: &[u8],
-    fields: Vec<Field>,
-    metadata: Metadata,
-) -> Result<(), CommandError> {
-    let failed = CommandError::recording;
-    let recording = Recording::of_csv(metadata, csv, fields).map_err(failed(output.path()))?;
+pub(super) fn write(output: &OutputFile, csv: &[u8], fields: Vec<Field>, metadata: Metadata) -> Result<()> {
+    let path = output.path().display();
+    let recording = Recording::of_csv(metadata, csv, fields).map_err(at(&path))?;
     let mut bytes = Vec::new();
-    recording.write_parquet(&mut bytes).map_err(failed(output.path()))?;
+    recording.write_parquet(&mut bytes).map_err(at(&path))?;
     Ok(output.write(&bytes)?)
 }

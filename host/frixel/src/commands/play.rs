@@ -23,11 +23,11 @@ mod with_log;
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Result;
 use clap::Args;
 
 use crate::output::{Effects, Report};
 
-use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke::StrokeArgs;
@@ -154,10 +154,10 @@ struct Played {
     report: Report,
     files: Vec<PathBuf>,
     /// The failure that ended the play early, if any. The report and the files have what was played until then.
-    failure: Option<CommandError>,
+    failure: Option<anyhow::Error>,
 }
 
-pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &PlayArgs) -> Result<()> {
     let target = Target::of(&args.port);
     plan::check_options(args, target)?;
     let interrupt = Interrupt::watch()?;
@@ -178,12 +178,12 @@ pub(super) fn run(args: &PlayArgs) -> Result<(), CommandError> {
 }
 
 /// Prints the results of a play, and returns its failure.
-fn finish(args: &PlayArgs, played: Played) -> Result<(), CommandError> {
+fn finish(args: &PlayArgs, played: Played) -> Result<()> {
     print(args, &played)?;
     played.failure.map_or(Ok(()), Err)
 }
 
-fn print(args: &PlayArgs, Played { report, files, .. }: &Played) -> Result<(), CommandError> {
+fn print(args: &PlayArgs, Played { report, files, .. }: &Played) -> Result<()> {
     if args.record.as_deref() == Some(Path::new("-")) {
         note(report.summary());
         return Ok(());

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::output_file::{FileWriter, Inputs, Recording};
+use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use frixel_driver::{Device, Event, Link};
 use frixel_felt::recorder::Observation;
@@ -13,7 +14,6 @@ use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_wire::hello::Hello;
 
-use super::error::CommandError;
 use super::experiment::cut_off;
 use super::interrupt::Interrupt;
 use super::parquet;
@@ -52,12 +52,19 @@ pub(super) struct RecordArgs {
     seconds: Option<f64>,
 }
 
-pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &RecordArgs) -> Result<()> {
     parquet::check_participant(&args.output, args.participant.as_deref())?;
     let recording = Recording::new(&args.output, "-o", &Inputs::default(), args.overwrite, CUT_OFF)?;
     if args.finish {
         let (writer, text) = recording.resume()?;
-        let other = |error: TableError| CommandError::OtherRow { partial: recording.partial(), found: error.found() };
+        let other = |error: TableError| {
+            anyhow!(
+                "{} is no recorded stroke, which has t_s,x_mm,y_mm ({}): correct or delete the row, or record anew \
+                 with --overwrite",
+                recording.partial().display(),
+                error.found()
+            )
+        };
         return finish(args, &recording, writer, touched(&text).map_err(other)?, None);
     }
     // Without a port, the recording is finished above.
@@ -76,12 +83,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<(), CommandError> {
     }
 }
 
-fn record<L: Link>(
-    args: &RecordArgs,
-    device: &mut Device<L>,
-    interrupt: &Interrupt,
-    rows: &mut Rows,
-) -> Result<(), CommandError> {
+fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interrupt, rows: &mut Rows) -> Result<()> {
     device.subscribe(device.hello().tick_hz / ROWS_HZ)?;
     note("slide a finger over the screen; Ctrl-C ends the record");
     let end = args.seconds.map(|seconds| device.now() + Duration::from_secs_f64(seconds));
@@ -123,9 +125,11 @@ fn finish(
     writer: FileWriter,
     touched: u64,
     board: Option<&Hello>,
-) -> Result<(), CommandError> {
+) -> Result<()> {
     if touched == 0 {
-        return Err(CommandError::NothingRecorded);
+        bail!(
+            "nothing is recorded, because the board saw no finger: slide one over its screen while `frixel record` runs"
+        );
     }
     if parquet::is_named_so(&args.output) {
         drop(writer);
@@ -151,14 +155,14 @@ struct Rows {
 }
 
 impl Rows {
-    fn new(writer: FileWriter, tick_hz: u32) -> Result<Self, CommandError> {
+    fn new(writer: FileWriter, tick_hz: u32) -> Result<Self> {
         let mut rows = Self { writer, tick_hz: f64::from(tick_hz), first_tick: None, is_down: false, touched: 0 };
         rows.write(HEADER)?;
         Ok(rows)
     }
 
     /// Adds a row while a finger is there, and one without a place when it leaves.
-    fn add(&mut self, observation: &Observation) -> Result<(), CommandError> {
+    fn add(&mut self, observation: &Observation) -> Result<()> {
         if observation.finger.is_none() && !self.is_down {
             return Ok(());
         }
@@ -175,11 +179,11 @@ impl Rows {
         }
     }
 
-    fn write(&mut self, line: impl Display) -> Result<(), CommandError> {
+    fn write(&mut self, line: impl Display) -> Result<()> {
         Ok(writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))?)
     }
 
-    fn flush(&mut self) -> Result<(), CommandError> {
+    fn flush(&mut self) -> Result<()> {
         Ok(self.writer.flush().map_err(|source| self.writer.error(source))?)
     }
 }

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::{Scene, compile};
 
 use super::demo;
-use super::error::CommandError;
 use super::profiles::ProfileArgs;
 use super::terminal::print_line;
 use crate::output_file::Inputs;
@@ -29,7 +29,7 @@ pub(super) struct ReportArgs {
     bench: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &ReportArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &ReportArgs) -> Result<()> {
     let names = args.profiles.names();
     let (name, scene, files) = if let Some(path) = &args.scene {
         let (scene, files) = names.load_with_files(path);

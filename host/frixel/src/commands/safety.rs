@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use anyhow::Result;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use frixel_hil_sim::Board;
@@ -13,7 +14,6 @@ use frixel_model::{
 use frixel_session::store::{LimitsError, RAIL_MAX, check_touched_board};
 
 use super::argument;
-use super::error::CommandError;
 use super::terminal::print;
 use crate::scene_file;
 
@@ -52,7 +52,7 @@ pub(super) struct SafetyArgs {
     voltage_v_rms: f64,
 }
 
-pub(super) fn run(args: &SafetyArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &SafetyArgs) -> Result<()> {
     let gap_m = 1e-6 * scene_file::screen(&args.screen)?.coating_gap_um();
     let board = Board::named(&args.board).unwrap_or(Board::NUCLEO_G474RE);
     let series_ohm = args.series_kohm.map_or(f64::from(board.limits.series_resistance_ohm), |kohm| 1e3 * kohm);

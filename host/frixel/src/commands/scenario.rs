@@ -5,6 +5,7 @@ use std::path::Path;
 #[cfg(unix)]
 use std::sync::mpsc;
 
+use anyhow::{Result, anyhow, bail};
 use clap::ValueEnum;
 #[cfg(unix)]
 use frixel_hil_sim::World;
@@ -14,12 +15,12 @@ use frixel_hil_sim::{Board, RigConfig, WorldConfig};
 use frixel_lab::scenario::{self, Programs, ScenarioOutcome, run_in_process};
 use frixel_scene::{Scenario, Scene};
 
+use super::error::of_finger;
 use crate::input;
 #[cfg(unix)]
 use crate::rigs::EmulatedRig;
 use crate::scene_file::{check_path, load};
 
-use super::error::CommandError;
 use super::stroke::check_on_screen;
 use super::terminal::{note, print_line};
 
@@ -36,10 +37,14 @@ pub(super) enum RigKind {
 }
 
 /// Runs a scenario, prints what happened, and fails if something was not as expected and `expect` is set.
-pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), CommandError> {
+pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
     let scenario = read(file)?;
     if expect && scenario.expectations.is_empty() {
-        return Err(CommandError::NothingExpected { file: file.to_owned() });
+        bail!(
+            "{}: --expect compares with what this scenario expects, and it expects nothing: add an [[expect]] \
+             (docs/scenarios.md)",
+            file.display()
+        );
     }
     let scenes = scenes(&scenario, file)?;
     let outcome = match rig {
@@ -52,14 +57,15 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), Command
         #[cfg(unix)]
         RigKind::Pico => run_on_pico(&scenario, &scenes)?,
         #[cfg(not(unix))]
-        RigKind::Qemu => return Err(CommandError::NoPseudoTerminal { what: "--rig qemu" }),
+        RigKind::Qemu => return Err(super::error::no_pseudo_terminal("--rig qemu")),
         #[cfg(not(unix))]
-        RigKind::Pico => return Err(CommandError::NoPseudoTerminal { what: "--rig pico" }),
+        RigKind::Pico => return Err(super::error::no_pseudo_terminal("--rig pico")),
     };
     print(&outcome)?;
     let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);
     if expect && unmet > 0 {
-        return Err(CommandError::Unmet { file: file.to_owned(), unmet });
+        let were = if unmet == 1 { "thing was" } else { "things were" };
+        bail!("{}: {unmet} {were} not as expected: see above", file.display());
     }
     if unmet == 0 && expectations > 0 {
         print_line(format_args!("all of {expectations} expectations were met"))?;
@@ -69,7 +75,7 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<(), Command
 
 /// Runs a scenario on the firmware in an emulator.
 #[cfg(unix)]
-fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome, CommandError> {
+fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome> {
     let (programs, world) = prepare(scenario, scenes, &BOARD)?;
     let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
@@ -86,14 +92,14 @@ fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result
 
 /// Runs a scenario on the image of the Pico in an emulator.
 #[cfg(unix)]
-fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome, CommandError> {
+fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome> {
     let (programs, world) = prepare(scenario, scenes, &Board::PICO)?;
     let mut rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
     Ok(scenario::run(scenario, &programs, &mut rig)?)
 }
 
 /// The programs of a scenario for a board. Says where its stroke is off their screen.
-fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<Programs, CommandError> {
+fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<Programs> {
     let programs = scenario::programs(scenario, scenes, board)?;
     if let (Some(_), Some(program)) = (&scenario.stroke, programs.get(&scenario.scene)) {
         let (stroke, _) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
@@ -105,38 +111,33 @@ fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board
 
 /// The programs of a scenario for a board, and the world around it.
 #[cfg(unix)]
-fn prepare(
-    scenario: &Scenario,
-    scenes: &BTreeMap<String, Scene>,
-    board: &Board,
-) -> Result<(Programs, World), CommandError> {
+fn prepare(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<(Programs, World)> {
     let programs = programs(scenario, scenes, board)?;
     let (stroke, config) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
     let mut world = World::new(config, stroke, scenario.seed)?;
     if let Some(program) = programs.get(&scenario.scene) {
-        world.set_finger(program.header.friction_law().map_err(CommandError::Finger)?);
+        world.set_finger(program.header.friction_law().map_err(of_finger)?);
     }
     Ok((programs, world))
 }
 
-fn print(outcome: &ScenarioOutcome) -> Result<(), CommandError> {
+fn print(outcome: &ScenarioOutcome) -> Result<()> {
     outcome.timeline.iter().try_for_each(print_line)?;
     outcome.unmet.iter().for_each(note);
     Ok(())
 }
 
-fn read(file: &Path) -> Result<Scenario, CommandError> {
-    let bytes = input::read(file, input::TOML_MAX_BYTES).map_err(|source| CommandError::ScenarioUnreadable {
-        file: file.to_owned(),
-        source,
-        advice: check_path(file, "check the path").to_owned(),
+fn read(file: &Path) -> Result<Scenario> {
+    let bytes = input::read(file, input::TOML_MAX_BYTES).map_err(|error| {
+        let advice = check_path(file, "check the path");
+        anyhow!("{}: this scenario cannot be read ({error}): {advice}", file.display())
     })?;
     let text = String::from_utf8_lossy(&bytes);
     Ok(Scenario::parse(&text, &file.display().to_string())?)
 }
 
 /// The scenes of a scenario, whose files are named relative to its folder.
-fn scenes(scenario: &Scenario, file: &Path) -> Result<BTreeMap<String, Scene>, CommandError> {
+fn scenes(scenario: &Scenario, file: &Path) -> Result<BTreeMap<String, Scene>> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let scenes = scenario.scenes().map(|name| Ok((name.to_owned(), load(&folder.join(name))?)));
     scenes.collect()

@@ -5,9 +5,8 @@ mod migrate;
 mod preview;
 mod schema;
 
+use anyhow::Result;
 use clap::Subcommand;
-
-use super::error::CommandError;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum SceneCommand {
@@ -24,7 +23,7 @@ pub(super) enum SceneCommand {
     Schema,
 }
 
-pub(super) fn run(command: &SceneCommand) -> Result<(), CommandError> {
+pub(super) fn run(command: &SceneCommand) -> Result<()> {
     match command {
         SceneCommand::Check(args) => check::run(args),
         SceneCommand::Preview(args) => preview::run(args),

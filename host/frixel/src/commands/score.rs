@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::error::of_play;
 use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
+use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::RigConfig;
 use frixel_lab::score::{Score, TrialPlan, Way};
@@ -11,7 +13,6 @@ use frixel_lab::simulation::SimulationError;
 use frixel_scene::compile;
 
 use super::argument::number;
-use super::error::CommandError;
 use super::jobs::JobsArgs;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke;
@@ -59,7 +60,7 @@ pub(super) struct ScoreArgs {
     json: bool,
 }
 
-pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &ScoreArgs) -> Result<()> {
     let rig = rig(args)?;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]).chain(args.touch.file()));
@@ -70,7 +71,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
     let trials = trial_plan(args)?.of_people(args.people, &scene, &program, args.ideal)?;
     let _folder = OutputFolder::open(&args.out)?;
     let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(|error| match error {
-        SimulationError::Play(error) => CommandError::of_play("sim", error),
+        SimulationError::Play(error) => of_play("sim", error),
         SimulationError::World(error) => error.into(),
     })?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
@@ -91,7 +92,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<(), CommandError> {
 }
 
 /// The simulated board and its world.
-fn rig(args: &ScoreArgs) -> Result<RigConfig, CommandError> {
+fn rig(args: &ScoreArgs) -> Result<RigConfig> {
     let mut rig = RigConfig::default();
     if !args.ideal {
         rig.world = rig.world.realistic();
@@ -103,7 +104,7 @@ fn rig(args: &ScoreArgs) -> Result<RigConfig, CommandError> {
 }
 
 /// What each finger does.
-fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan, CommandError> {
+fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
     let way = match args.stroke.as_str() {
         "human" => Way::Human,
         "human-rough" => Way::HumanRough,

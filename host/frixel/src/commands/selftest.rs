@@ -8,18 +8,16 @@ use std::path::PathBuf;
 
 use std::time::{Duration, Instant};
 
+use anyhow::{Result, bail};
 use clap::Args;
 use frixel_driver::{Device, Event, SerialLink};
 use frixel_wire::fault::State;
 use frixel_wire::message::TickTimes;
 
-use super::error::CommandError;
 use super::interrupt::Interrupt;
 use super::ports;
 use super::terminal::print_line;
 use super::waiting;
-
-pub(super) use wires::WiresError;
 
 /// Most pings whose round trip is measured, and longest time for them.
 const PINGS_MAX: u32 = 50;
@@ -57,7 +55,7 @@ struct Check {
     found: String,
 }
 
-pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &SelftestArgs) -> Result<()> {
     if args.wires {
         return wires::run(&args.port, args.seconds, args.output.as_deref());
     }
@@ -80,10 +78,13 @@ pub(super) fn run(args: &SelftestArgs) -> Result<(), CommandError> {
         print_line(format_args!("{name:16} {verdict:7} {found}"))?;
     }
     let failed = checks.iter().filter(|check| !check.passed).count();
-    if failed > 0 { Err(CommandError::SelftestFailed { port: args.port.clone(), failed }) } else { Ok(()) }
+    if failed > 0 {
+        bail!("{failed} of the checks of {} failed; docs/hardware.md says what each part needs", args.port);
+    }
+    Ok(())
 }
 
-fn round_trip(device: &mut Device<SerialLink>) -> Result<Check, CommandError> {
+fn round_trip(device: &mut Device<SerialLink>) -> Result<Check> {
     let mut times = Vec::new();
     let begin = Instant::now();
     for _ in 0..PINGS_MAX {
@@ -102,7 +103,7 @@ fn round_trip(device: &mut Device<SerialLink>) -> Result<Check, CommandError> {
 }
 
 /// Checks the board's clock, the rate of its telemetry, and that its output is zero.
-fn telemetry(device: &mut Device<SerialLink>, tick_hz: u32) -> Result<[Check; 3], CommandError> {
+fn telemetry(device: &mut Device<SerialLink>, tick_hz: u32) -> Result<[Check; 3]> {
     let mut messages = Vec::new();
     device.subscribe(tick_hz / MESSAGES_HZ)?;
     device.wait(TELEMETRY, &mut |event| {

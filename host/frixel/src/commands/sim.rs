@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::error::{of_finger, of_generated_stroke};
 use crate::output_file::Inputs;
 use crate::rigs::{Dropped, Server};
 use crate::scene_file::ProfileNames;
+use anyhow::Result;
 use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke};
 use frixel_lab::default_stroke::REPEAT_PAUSE_S;
 use frixel_model::FrictionLaw;
 use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
-use super::error::CommandError;
 use super::fit::screen;
 use super::interrupt::Interrupt;
 use super::terminal::{note, print_line};
@@ -27,13 +28,13 @@ const ROWS_HZ: u32 = 1000;
 /// A scene without friction of its own, from which the contact of a profile is computed.
 const NO_SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
 
-pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &SimArgs) -> Result<()> {
     let interrupt = Interrupt::watch()?;
     let stroke = match args.stroke.stroke([SCREEN_WIDTH_M, SCREEN_HEIGHT_M], None, args.seed)? {
         Some(stroke) => stroke,
-        None => Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(CommandError::GeneratedStroke)?,
+        None => Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(of_generated_stroke)?,
     };
-    let stroke = stroke.looped(REPEAT_PAUSE_S).map_err(CommandError::GeneratedStroke)?;
+    let stroke = stroke.looped(REPEAT_PAUSE_S).map_err(of_generated_stroke)?;
     let mut config = RigConfig::default();
     let own_finger = own_finger(args, &mut config)?;
     config.world = args.touch.applied_to(config.world, args.ideal)?;
@@ -63,7 +64,7 @@ pub(super) fn run(args: &SimArgs) -> Result<(), CommandError> {
 
 /// Sets the effects of the world, and returns the contact of the finger that stays whatever scene plays, if there is
 /// one.
-fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<FrictionLaw>, CommandError> {
+fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<FrictionLaw>> {
     if !args.ideal {
         config.world = config.world.realistic();
     }
@@ -73,11 +74,11 @@ fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<FrictionL
             config.world.fingertip = person.fingertip;
         }
         let coating_gap_m = 1e-6 * screen(args.screen.as_deref())?.1.coating_gap_um();
-        return person.contact(coating_gap_m).map(|contact| Some(contact.into())).map_err(CommandError::Finger);
+        return person.contact(coating_gap_m).map(|contact| Some(contact.into())).map_err(of_finger);
     }
     let Some(finger) = &args.finger else { return Ok(None) };
     let names = ProfileNames { finger: Some(finger.clone()), screen: args.screen.clone() };
     let scene = names.applied_to(Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?)?;
     let program = compile(&scene, &config.board.limits, config.board.tick_hz)?;
-    program.header.friction_law().map(Some).map_err(CommandError::Finger)
+    program.header.friction_law().map(Some).map_err(of_finger)
 }

@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use super::error::{at, of_generated_stroke, reading};
 use crate::input;
+use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
 use frixel_lab::recording::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 use frixel_lab::stroke_file::StrokeFile;
+use frixel_scene::Shown;
 
 use super::argument::{above_zero_to, number};
-use super::error::CommandError;
 use super::terminal::{note, note_understood};
 
 /// Time between two positions of a stroke that are checked, s.
@@ -73,21 +75,18 @@ impl StrokeArgs {
 
     /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width
     /// and height, in m, for `seconds` seconds.
-    pub(super) fn stroke(
-        &self,
-        screen_m: [f64; 2],
-        seconds: Option<f64>,
-        seed: u64,
-    ) -> Result<Option<Stroke>, CommandError> {
+    pub(super) fn stroke(&self, screen_m: [f64; 2], seconds: Option<f64>, seed: u64) -> Result<Option<Stroke>> {
         if let Some(path) = self.file() {
             return from_file(path).map(Some);
         }
         self.options().generated(screen_m, seconds, seed).map_err(|error| match error {
-            StrokeOptionsError::InPlace => CommandError::StrokeInPlace,
-            StrokeOptionsError::TooLong { seconds } => CommandError::StrokeTooLong { name: self.name(), seconds },
-            StrokeOptionsError::TooOften { .. } => CommandError::StrokeTooOften(error),
-            StrokeOptionsError::Straight(source) => CommandError::StraightStroke(source),
-            StrokeOptionsError::Human(source) => CommandError::GeneratedStroke(source),
+            StrokeOptionsError::InPlace => {
+                anyhow!("--from and --to are the same place: give two places that differ")
+            }
+            StrokeOptionsError::TooLong { seconds } => too_long(&self.name(), seconds),
+            StrokeOptionsError::TooOften { .. } => anyhow!("--times: {error}"),
+            StrokeOptionsError::Straight(source) => anyhow!("--from and --to: {source}; give two places that differ"),
+            StrokeOptionsError::Human(source) => of_generated_stroke(source),
         })
     }
 
@@ -97,15 +96,19 @@ impl StrokeArgs {
     }
 }
 
-pub(super) fn from_file(path: &Path) -> Result<Stroke, CommandError> {
-    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?;
-    let file =
-        StrokeFile::read(bytes.as_slice()).map_err(|source| CommandError::Stroke { path: path.into(), source })?;
+fn too_long(name: &str, seconds: f64) -> anyhow::Error {
+    let seconds = Shown(seconds);
+    anyhow!("{name} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds")
+}
+
+pub(super) fn from_file(path: &Path) -> Result<Stroke> {
+    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
+    let file = StrokeFile::read(bytes.as_slice()).map_err(at(path.display()))?;
     let StrokeFile { stroke, ignored_columns, understood } = file;
     note_understood(path, understood.as_deref());
     let seconds = stroke.duration_s();
     if seconds > STROKE_MAX_S {
-        return Err(CommandError::StrokeTooLong { name: path.display().to_string(), seconds });
+        return Err(too_long(&path.display().to_string(), seconds));
     }
     if !ignored_columns.is_empty() {
         let names = ignored_columns.join(", ");
@@ -139,7 +142,7 @@ pub(super) fn check_on_screen(
     screen_width_m: f64,
     screen_height_m: f64,
     seconds: f64,
-) -> Result<(), CommandError> {
+) -> Result<()> {
     let end_s = seconds.min(stroke.duration_s());
     let checks = (end_s / CHECK_PERIOD_S).ceil().clamp(1.0, CHECKS_MAX);
     let (mut on, mut off) = (0_u32, 0_u32);
@@ -154,7 +157,10 @@ pub(super) fn check_on_screen(
     let in_mm = |side_m: f64| (1e6 * side_m).round() / 1e3;
     let (width_mm, height_mm) = (in_mm(screen_width_m), in_mm(screen_height_m));
     if on == 0 && off > 0 {
-        return Err(CommandError::StrokeOffScreen { name: name.to_owned(), width_mm, height_mm });
+        bail!(
+            "{name} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top \
+             left corner"
+        );
     }
     if off > 0 {
         let percent = (100.0 * f64::from(off) / f64::from(on + off)).max(0.1);

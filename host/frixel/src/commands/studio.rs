@@ -7,12 +7,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
-use thiserror::Error;
 
 use crate::input;
 
-use super::error::CommandError;
 use super::terminal::{note, print_line};
 
 /// The page in the folder of build artefacts.
@@ -35,32 +34,7 @@ pub(super) struct StudioArgs {
     port: Option<String>,
 }
 
-/// Why the studio cannot be opened.
-#[derive(Debug, Error)]
-pub(crate) enum StudioError {
-    /// A port was given.
-    #[error("choose the port in the page, in Chromium or Firefox: leave out --port")]
-    Port,
-    /// There is no page, and no checkout to build it in.
-    #[error("no page is given, and this folder is in no checkout of frixel that could build it: give --page FILE.html")]
-    NoPage,
-    /// The page is not there.
-    #[error("{path} cannot be read ({source}): give --page the file that `cargo xtask studio` prints")]
-    Page {
-        /// Path of the page.
-        path: String,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// `cargo xtask studio` failed.
-    #[error("the page could not be built: `cargo xtask studio` {reason}")]
-    Build {
-        /// How it ended.
-        reason: String,
-    },
-}
-
-pub(super) fn run(args: &StudioArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &StudioArgs) -> Result<()> {
     let page = page(args)?.display().to_string();
     print_line(&page)?;
     if !args.no_browser
@@ -73,30 +47,35 @@ pub(super) fn run(args: &StudioArgs) -> Result<(), CommandError> {
 
 /// The absolute path of the page that was given, or of the one that the checkout around the current folder has or
 /// builds.
-fn page(args: &StudioArgs) -> Result<PathBuf, StudioError> {
+fn page(args: &StudioArgs) -> Result<PathBuf> {
     if args.port.is_some() {
-        return Err(StudioError::Port);
+        bail!("choose the port in the page, in Chromium or Firefox: leave out --port");
     }
     let page = match &args.page {
         Some(page) => page.clone(),
         None => page_of_checkout()?,
     };
     let path = input::open(&page, u64::MAX).and_then(|_| fs::canonicalize(&page));
-    path.map_err(|source| StudioError::Page { path: page.display().to_string(), source })
+    let page = page.display();
+    path.map_err(|error| {
+        anyhow!("{page} cannot be read ({error}): give --page the file that `cargo xtask studio` prints")
+    })
 }
 
-fn page_of_checkout() -> Result<PathBuf, StudioError> {
-    let here = env::current_dir().map_err(|_| StudioError::NoPage)?;
+fn page_of_checkout() -> Result<PathBuf> {
+    let here = env::current_dir().unwrap_or_default();
     let mut folders = here.ancestors();
-    let checkout = folders.find(|folder| folder.join(SIGN_OF_A_CHECKOUT).is_file()).ok_or(StudioError::NoPage)?;
+    let checkout = folders.find(|folder| folder.join(SIGN_OF_A_CHECKOUT).is_file()).context(
+        "no page is given, and this folder is in no checkout of frixel that could build it: give --page FILE.html",
+    )?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| checkout.join(TARGET), PathBuf::from);
     let built = target.join(BUILT_PAGE);
     if built.is_file() { Ok(built) } else { build(checkout) }
 }
 
 /// Builds the page in a checkout, and returns its path.
-fn build(checkout: &Path) -> Result<PathBuf, StudioError> {
-    let failed = |reason: String| StudioError::Build { reason };
+fn build(checkout: &Path) -> Result<PathBuf> {
+    let failed = |reason: String| anyhow!("the page could not be built: `cargo xtask studio` {reason}");
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.current_dir(checkout).args(["xtask", "studio"]).stderr(Stdio::inherit());

@@ -2,11 +2,12 @@
 
 use std::fmt::Display;
 use std::fs::create_dir_all;
-use std::io::{IsTerminal, stderr};
+use std::io::{self, IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
 use frixel_lab::sweep::{Cell, CellResult, KEYS_FILE, Keys, Plan, Study, json, result_file};
 use indicatif::ProgressBar;
@@ -14,7 +15,7 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::argument::shard;
-use super::error::CommandError;
+use super::error::{at, writing};
 use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
@@ -56,7 +57,7 @@ struct MergeArgs {
     out: PathBuf,
 }
 
-pub(super) fn run(args: &SweepArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &SweepArgs) -> Result<()> {
     match (&args.command, &args.plan, &args.out) {
         (Some(SweepCommand::Merge(MergeArgs { out })), ..) => merge(out, &Inputs::default()),
         // Clap requires both.
@@ -65,26 +66,21 @@ pub(super) fn run(args: &SweepArgs) -> Result<(), CommandError> {
     }
 }
 
-fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandError> {
-    let reading = |source| CommandError::SweepInput {
-        path: plan_path.to_owned(),
-        what: "plan",
-        source,
-        advice: "check the path",
-    };
-    let text = input::read_text(plan_path, input::TOML_MAX_BYTES).map_err(reading)?;
+fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
+    let text = input::read_text(plan_path, input::TOML_MAX_BYTES);
+    let text = text.map_err(|error| unreadable(plan_path, "plan", &error, "check the path"))?;
     let plan = Plan::parse(&text, &plan_path.display().to_string())?;
     let folder = plan_path.parent().unwrap_or(Path::new(""));
     let cells = cells(&plan, folder)?;
     for cell in cells.iter().filter(|cell| cell.person == 1) {
-        cell.check().map_err(|source| CommandError::Cell { cell: cell.title(), source })?;
+        cell.check().map_err(at(cell.title()))?;
     }
     let files = plan.scenes.iter().chain(&plan.screens).chain(&plan.touch).map(|name| folder.join(name));
     let inputs = Inputs::new(files.chain([plan_path.to_owned()]));
     let keys = Keys { cells: cells.iter().map(Cell::key).collect() };
     let keys_file = out.join(KEYS_FILE);
     let folder = keys_file.parent().unwrap_or(out);
-    create_dir_all(folder).map_err(CommandError::writing(folder))?;
+    create_dir_all(folder).map_err(writing(folder))?;
     write_shared(&OutputFile::new(&keys_file, "-o", &inputs)?, &json(&keys))?;
 
     let (part, parts) = args.shard.unwrap_or((1, 1));
@@ -94,12 +90,12 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
     let bar = stderr().is_terminal().then(|| ProgressBar::new(left.len() as u64));
     args.jobs.run(|| {
         left.par_iter().try_for_each(|(number, cell)| {
-            let result = cell.play().map_err(|source| CommandError::Cell { cell: cell.title(), source })?;
+            let result = cell.play().map_err(at(cell.title()))?;
             write_shared(&OutputFile::new(&path(*number), "-o", &inputs)?, &result.to_json())?;
             if let Some(bar) = &bar {
                 bar.inc(1);
             }
-            Ok::<(), CommandError>(())
+            anyhow::Ok(())
         })
     })??;
     if let Some(bar) = bar {
@@ -111,7 +107,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<(), CommandErr
 }
 
 /// Writes a file that other processes of the same sweep may write at the same moment, with the same content.
-fn write_shared(file: &OutputFile, text: &str) -> Result<(), CommandError> {
+fn write_shared(file: &OutputFile, text: &str) -> Result<()> {
     let begin = Instant::now();
     loop {
         if input::read(file.path(), text.len() as u64).is_ok_and(|there| there == text.as_bytes()) {
@@ -125,23 +121,24 @@ fn write_shared(file: &OutputFile, text: &str) -> Result<(), CommandError> {
 }
 
 /// The cells of a plan, whose files are named from its folder.
-fn cells(plan: &Plan, folder: &Path) -> Result<Vec<Cell>, CommandError> {
+fn cells(plan: &Plan, folder: &Path) -> Result<Vec<Cell>> {
     let text = |what, name: &str| {
         let path = folder.join(name);
         let advice = "give its file, from the plan's folder, or a bundled one";
         let read = input::read_text(&path, input::TOML_MAX_BYTES);
-        read.map_err(|source| CommandError::SweepInput { path, what, source, advice })
+        read.map_err(|error| unreadable(&path, what, &error, advice))
     };
     plan.cells(|name| Ok(gathered(&folder.join(name), name)?), text)
 }
 
 /// Puts the results of all cells together.
-fn merge(out: &Path, inputs: &Inputs) -> Result<(), CommandError> {
+fn merge(out: &Path, inputs: &Inputs) -> Result<()> {
     let keys: Keys = read(&out.join(KEYS_FILE), "list of the cells of a sweep")?;
     let there: Vec<PathBuf> =
         keys.cells.iter().map(|key| out.join(result_file(key))).filter(|path| path.exists()).collect();
     if there.len() < keys.cells.len() {
-        return Err(CommandError::CellsMissing { folder: out.to_owned(), found: there.len(), of: keys.cells.len() });
+        let (folder, found, of) = (out.display(), there.len(), keys.cells.len());
+        bail!("{folder}: {found} of {of} cells are there: play the others with `frixel sweep PLAN.toml -o {folder}`");
     }
     let result = |(key, path): (&String, &PathBuf)| {
         let what = "result of a cell";
@@ -165,16 +162,19 @@ fn merge(out: &Path, inputs: &Inputs) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn read<T: for<'de> Deserialize<'de>>(path: &Path, what: &'static str) -> Result<T, CommandError> {
+fn read<T: for<'de> Deserialize<'de>>(path: &Path, what: &'static str) -> Result<T> {
     serde_json::from_slice(&read_bytes(path, what)?).map_err(|error| no_sweep_file(path, what, &error))
 }
 
-fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>, CommandError> {
+fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>> {
     let advice = "give the folder of a sweep, which `frixel sweep PLAN.toml -o OUT` makes";
-    let reading = |source| CommandError::SweepInput { path: path.to_owned(), what, source, advice };
-    input::read(path, input::CSV_MAX_BYTES).map_err(reading)
+    input::read(path, input::CSV_MAX_BYTES).map_err(|error| unreadable(path, what, &error, advice))
 }
 
-fn no_sweep_file(path: &Path, what: &'static str, error: &dyn Display) -> CommandError {
-    CommandError::NoSweepFile { path: path.to_owned(), what, reason: error.to_string() }
+fn no_sweep_file(path: &Path, what: &'static str, error: &dyn Display) -> anyhow::Error {
+    anyhow!("{} is no {what} ({error}): delete it, and play the sweep again", path.display())
+}
+
+fn unreadable(path: &Path, what: &str, error: &io::Error, advice: &str) -> anyhow::Error {
+    anyhow!("{}: this {what} cannot be read ({error}): {advice}", path.display())
 }

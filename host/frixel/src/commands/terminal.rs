@@ -6,24 +6,24 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
+use super::error::writing;
 use crate::output_file::OutputFile;
+use anyhow::Result;
 use frixel_scene::{Program, printable_lines};
 
-use super::error::CommandError;
-
 /// Writes text to standard output. Does nothing once its reader has gone, for example `head` at its last line.
-pub(super) fn print(text: impl Display) -> Result<(), CommandError> {
+pub(super) fn print(text: impl Display) -> Result<()> {
     let mut output = stdout().lock();
     write!(output, "{}", printable_lines(&text.to_string())).and_then(|()| output.flush()).or_else(unless_closed)
 }
 
 /// Like [`print`], with a line feed at the end.
-pub(super) fn print_line(text: impl Display) -> Result<(), CommandError> {
+pub(super) fn print_line(text: impl Display) -> Result<()> {
     print(format_args!("{text}\n"))
 }
 
 /// Writes a line for people: to standard error if `output` is standard output.
-pub(super) fn say(output: &OutputFile, text: impl Display) -> Result<(), CommandError> {
+pub(super) fn say(output: &OutputFile, text: impl Display) -> Result<()> {
     if output.is_standard_output() {
         note(text);
         return Ok(());
@@ -54,9 +54,9 @@ pub(super) fn note_refusals(scene: &Path, program: &Program) {
     }
 }
 
-fn unless_closed(error: io::Error) -> Result<(), CommandError> {
+fn unless_closed(error: io::Error) -> Result<()> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(()),
-        _ => Err(CommandError::writing(Path::new("standard output"))(error)),
+        _ => Err(writing(Path::new("standard output"))(error)),
     }
 }

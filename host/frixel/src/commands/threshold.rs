@@ -7,13 +7,15 @@ mod session;
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use anyhow::Result;
 use clap::Args;
 use frixel_lab::calibration::Protocol;
-use frixel_lab::threshold::{Observer, STIMULUS_HZ, Threshold, level_v_rms};
+use frixel_lab::threshold::{Guessed, Observer, STIMULUS_HZ, Threshold, level_v_rms};
 use frixel_scene::{Evidence, Experiment, FingerProfile};
+use thiserror::Error;
 use time::OffsetDateTime;
 
-use super::error::CommandError;
+use super::error::of_finger;
 use super::experiment;
 use super::fit::screen;
 use super::interrupt::Interrupt;
@@ -66,7 +68,7 @@ pub(super) struct ThresholdArgs {
     arm: bool,
 }
 
-pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &ThresholdArgs) -> Result<()> {
     if let Some(path) = &args.noise {
         let output = OutputFile::new(path, "--noise", &Inputs::default())?;
         output.write(&noise::wav(args.seed)?)?;
@@ -88,13 +90,31 @@ pub(super) fn run(args: &ThresholdArgs) -> Result<(), CommandError> {
     });
     reported.map_err(|error| match &recording {
         // The session is over, and has no answers to go on with.
-        Some(recording) if matches!(error, CommandError::Guessed(_)) => {
+        Some(recording) if error.is::<NoThreshold>() => {
             recording.discard_partial();
             error
         }
-        Some(recording) => experiment::cut_off(recording, error),
-        None => error,
+        Some(recording) if !error.is::<OtherSession>() => experiment::cut_off(recording, error),
+        _ => error,
     })
+}
+
+/// The answers show no threshold.
+#[derive(Debug, Error)]
+#[error(
+    "{} of {} answers are right, which is no better than guessing, so that there is no threshold: check that the \
+     electrode is driven, and press less hard", .0.right, .0.trials
+)]
+struct NoThreshold(Guessed);
+
+/// The answers that were kept are of another session.
+#[derive(Debug, Error)]
+#[error(
+    "{}: {reason}: give the options of the session that was cut off, or begin a new one with --overwrite", partial.display()
+)]
+struct OtherSession {
+    partial: PathBuf,
+    reason: String,
 }
 
 /// Prints the threshold, and returns the profile of the finger.
@@ -103,8 +123,8 @@ fn report(
     threshold: &Threshold,
     protocol: &Protocol,
     screen_name: String,
-) -> Result<FingerProfile, CommandError> {
-    let volts = |level_db| level_v_rms(level_db, protocol).map_err(CommandError::Finger);
+) -> Result<FingerProfile> {
+    let volts = |level_db| level_v_rms(level_db, protocol).map_err(of_finger);
     let Threshold { level_db, interval_db: (low_db, high_db) } = *threshold;
     let (threshold_v_rms, interval_v_rms) = (volts(level_db)?, [volts(low_db)?, volts(high_db)?]);
     let highest = protocol.voltage_max_v_rms();

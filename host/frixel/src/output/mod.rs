@@ -34,7 +34,7 @@ use frixel_scene::printable_lines;
 use thiserror::Error;
 
 pub(crate) use csv::{EventCsv, EventRow, FeltCsv, ForcesCsv};
-pub(crate) use felt_log::{FeltLog, FeltLogError};
+pub(crate) use felt_log::FeltLog;
 pub(crate) use felt_svg::draw_felt_svg;
 pub(crate) use fit_svg::draw_fit_svg;
 pub use preview_png::draw_preview_png;

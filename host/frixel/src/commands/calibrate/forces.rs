@@ -6,13 +6,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use crate::commands::error::{at, reading};
 use crate::input::{self, Bounded};
 use crate::output_file::{FileWriter, Inputs, OutputFileError, Recording};
+use anyhow::Result;
 use frixel_lab::calibration::{ForceRow, read_forces};
 use frixel_lab::table::Reading;
 
 use super::super::terminal::note_understood;
-use super::{CUT_OFF, CalibrateArgs, CommandError};
+use super::{CUT_OFF, CalibrateArgs};
 
 /// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
 pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording, OutputFileError> {
@@ -76,13 +78,13 @@ pub(super) fn understood(path: &Path, forces: Reading<Vec<ForceRow>>) -> Vec<For
 }
 
 /// The forces in a file; `-` is standard input.
-pub(super) fn read(path: &Path) -> Result<Vec<ForceRow>, CommandError> {
+pub(super) fn read(path: &Path) -> Result<Vec<ForceRow>> {
     let rows = if path == Path::new("-") {
         read_forces(Bounded::new(stdin(), input::CSV_MAX_BYTES))
     } else {
-        read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?))
+        read_forces(BufReader::new(input::open(path, input::CSV_MAX_BYTES).map_err(reading(path))?))
     };
-    let forces = rows.map_err(|source| CommandError::Forces { path: path.to_owned(), source })?;
+    let forces = rows.map_err(at(path.display()))?;
     Ok(understood(path, forces))
 }
 

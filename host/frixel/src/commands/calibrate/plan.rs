@@ -4,6 +4,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use anyhow::{Result, bail};
 use frixel_driver::Device;
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_lab::calibration::{BoardRow, Protocol, write_board};
@@ -12,7 +13,8 @@ use frixel_scene::{Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{CalibrateArgs, CommandError, experiment};
+use super::{CalibrateArgs, experiment};
+use crate::commands::error::of_finger;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{note, say};
 use crate::output_file::Recording;
@@ -30,34 +32,28 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self, CommandError> {
+    pub(super) fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self> {
         let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits)?;
         let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
-        let scene = protocol.scene().map_err(CommandError::Finger)?;
+        let scene = protocol.scene().map_err(of_finger)?;
         let scene = Scene::parse(&scene, "calibration", &std::collections::BTreeMap::new())?;
         Ok(Self { program: compile(&scene, limits, tick_hz)?, protocol, limits: *limits, tick_hz })
     }
 
     /// Says what will be played.
-    pub(super) fn say(&self, recording: &Recording) -> Result<(), CommandError> {
+    pub(super) fn say(&self, recording: &Recording) -> Result<()> {
         let words = self.protocol.words();
         words.lines().try_for_each(|line| say(recording.output(), format_args!("  {:<16} {line}", "plan")))
     }
 
     /// Starts to play the protocol.
-    pub(super) fn start<L: RecordedLink>(
-        &self,
-        device: Device<L>,
-        telemetry_ticks: u32,
-    ) -> Result<Player<L>, CommandError> {
+    pub(super) fn start<L: RecordedLink>(&self, device: Device<L>, telemetry_ticks: u32) -> Result<Player<L>> {
         let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
-        let mut player = Player::recording(device, recorder.map_err(CommandError::Finger)?);
-        player
-            .start(self.program.clone(), telemetry_ticks, &mut |_| ControlFlow::Continue(()))
-            .map_err(CommandError::Play)?;
-        let samples = self.protocol.samples().map_err(CommandError::Finger)?;
-        player.stream(Feed::of(samples, self.protocol.sample_hz())).map_err(CommandError::Play)?;
+        let mut player = Player::recording(device, recorder.map_err(of_finger)?);
+        player.start(self.program.clone(), telemetry_ticks, &mut |_| ControlFlow::Continue(()))?;
+        let samples = self.protocol.samples().map_err(of_finger)?;
+        player.stream(Feed::of(samples, self.protocol.sample_hz()))?;
         Ok(player)
     }
 
@@ -68,7 +64,7 @@ impl Plan {
         interrupt: &Interrupt,
         time_max: Duration,
         partial: &mut dyn Write,
-    ) -> Result<Vec<BoardRow>, CommandError> {
+    ) -> Result<Vec<BoardRow>> {
         let mut rows = Vec::new();
         write_board(&mut *partial, None)?;
         let bar = ProgressBar::new(self.protocol.strokes as u64);
@@ -78,13 +74,13 @@ impl Plan {
         while !left.is_zero() && player.recorder_mut().ticks_left() > 0 {
             if interrupt.is_requested() {
                 player.stop()?;
-                return Err(CommandError::ExperimentInterrupted);
+                bail!("the run was interrupted: start it again");
             }
             let stepped = player.step(left);
             let seen = rows.len();
             rows.extend(board_rows(player));
             write_board(&mut *partial, rows.get(seen..))?;
-            left = left.saturating_sub(stepped.map_err(CommandError::Play)?);
+            left = left.saturating_sub(stepped?);
             let stroke = (player.recorder_mut().t_s() / (self.protocol.stroke_s + self.protocol.pause_s)) as u64;
             bar.set_position((stroke + 1).min(self.protocol.strokes as u64));
             bar.set_message(if stroke.is_multiple_of(2) { "to the right" } else { "to the left" });

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use anyhow::{Result, bail};
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
@@ -12,7 +13,8 @@ use frixel_model::LoadedContact;
 use frixel_wire::hello::Hello;
 
 use super::plan::{Plan, ROW_HZ};
-use super::{CalibrateArgs, CommandError, experiment, forces};
+use super::{CalibrateArgs, experiment, forces};
+use crate::commands::error::{of_finger, of_generated_stroke, reading};
 use crate::commands::fit::screen;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::waiting;
@@ -23,11 +25,7 @@ const FORCES_LATE: Duration = Duration::from_millis(500);
 
 pub(super) type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
 
-pub(super) fn on_simulator(
-    args: &CalibrateArgs,
-    recording: &Recording,
-    interrupt: &Interrupt,
-) -> Result<Recorded, CommandError> {
+pub(super) fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interrupt) -> Result<Recorded> {
     let simulated = Simulated::new(args)?;
     simulated.plan.say(recording)?;
     let (board, forces) = simulated.record(interrupt)?;
@@ -47,9 +45,9 @@ pub(super) struct Simulated {
 }
 
 impl Simulated {
-    pub(super) fn new(args: &CalibrateArgs) -> Result<Self, CommandError> {
+    pub(super) fn new(args: &CalibrateArgs) -> Result<Self> {
         let coating_gap_m = 1e-6 * screen(None)?.1.coating_gap_um();
-        let (contact, fingertip) = simulated_finger(args.finger_seed, coating_gap_m).map_err(CommandError::Finger)?;
+        let (contact, fingertip) = simulated_finger(args.finger_seed, coating_gap_m).map_err(of_finger)?;
         let rig = RigConfig::default();
         let mut config = RigConfig { world: rig.world.realistic(), ..rig };
         config.world.fingertip = fingertip;
@@ -58,8 +56,8 @@ impl Simulated {
     }
 
     /// Plays the calibration, and returns what the board reported and what the sensor under the screen measured.
-    pub(super) fn record(&self, interrupt: &Interrupt) -> Result<Recorded, CommandError> {
-        let stroke = self.plan.protocol.stroke().map_err(CommandError::GeneratedStroke)?;
+    pub(super) fn record(&self, interrupt: &Interrupt) -> Result<Recorded> {
+        let stroke = self.plan.protocol.stroke().map_err(of_generated_stroke)?;
         let mut memory = BoardMemory::new();
         let mut rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
         rig.world_mut().set_own_finger(self.contact);
@@ -78,10 +76,16 @@ pub(super) fn on_port(
     recording: &Recording,
     interrupt: &Interrupt,
     mut partial: Option<FileWriter>,
-) -> Result<(Recorded, Hello), CommandError> {
-    let Some(forces) = &args.forces else { return Err(CommandError::NoForces { port: args.port.clone() }) };
+) -> Result<(Recorded, Hello)> {
+    let port = &args.port;
+    let Some(forces) = &args.forces else {
+        bail!("a board at {port} measures no forces: give those of a sensor with --forces FILE.csv, or --forces -")
+    };
     if args.finger_seed.is_some() {
-        return Err(CommandError::FingerOnBoard { port: args.port.clone() });
+        bail!(
+            "--finger-seed draws the finger of --port sim only; the finger on {port} is its own: leave --finger-seed \
+             out"
+        );
     }
     let device = experiment::connect(&args.port, &["sim"], args.arm)?;
     let hello = *device.hello();
@@ -103,7 +107,7 @@ pub(super) fn on_port(
     drop(partial);
     let forces = match from_stdin {
         Some(input) => {
-            let bytes = input.after(FORCES_LATE).map_err(CommandError::reading(forces))?;
+            let bytes = input.after(FORCES_LATE).map_err(reading(forces))?;
             forces::understood(forces, read_forces(bytes.as_slice())?)
         }
         None => forces::read(forces)?,

@@ -5,11 +5,13 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
+use crate::commands::error::reading;
 use crate::input;
 use crate::rigs::RecordedLink;
+use anyhow::Result;
 use frixel_play::{Next, PlayError, Player};
 
-use super::{CommandError, Interrupt};
+use super::Interrupt;
 
 /// Longest time between two looks at standard input.
 const LOOK_PERIOD: Duration = Duration::from_millis(5);
@@ -34,7 +36,7 @@ struct Input {
 
 impl Control {
     /// Reads standard input from now on, in a thread of its own.
-    pub(super) fn start(waits: bool, interrupt: &Interrupt) -> Result<Self, CommandError> {
+    pub(super) fn start(waits: bool, interrupt: &Interrupt) -> Result<Self> {
         let (sender, lines) = sync_channel(LINES_AHEAD);
         let read = move || {
             let mut input = stdin().lock();
@@ -45,7 +47,7 @@ impl Control {
             }
         };
         let thread = thread::Builder::new().name("frixel-control".into()).spawn(read);
-        thread.map_err(CommandError::reading("standard input".as_ref()))?;
+        thread.map_err(reading("standard input".as_ref()))?;
         let input = Input { lines, waits, interrupt: interrupt.clone() };
         let lines = if waits { frixel_play::Control::keeping_lines() } else { frixel_play::Control::default() };
         Ok(Self { input, lines })

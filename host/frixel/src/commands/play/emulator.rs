@@ -2,7 +2,9 @@
 
 use std::sync::mpsc;
 
+use crate::commands::error::of_finger;
 use crate::rigs::{EmulatedStream, PicoStream};
+use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoRig};
 use frixel_hil_sim::{Board, World, WorldConfig};
@@ -14,7 +16,7 @@ use super::outputs::PlayFiles;
 use super::plan::Plan;
 use super::simulated_world::SimulatedWorld;
 use super::target::Target;
-use super::{CommandError, Interrupt, PlayArgs, Played};
+use super::{Interrupt, PlayArgs, Played};
 
 /// Plays on the firmware in an emulator, under a simulated finger.
 pub(super) fn play_on_emulator(
@@ -22,7 +24,7 @@ pub(super) fn play_on_emulator(
     scene: &Scene,
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
-) -> Result<Played, CommandError> {
+) -> Result<Played> {
     let (plan, world) = prepare(args, scene, Target::Emulator, &BOARD)?;
     let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
@@ -33,7 +35,7 @@ pub(super) fn play_on_emulator(
     let device = Device::connect(PollingLink::new(EmulatedStream::open(&board, records)?))?;
     let mut played = follow(args, plan, device, outputs, interrupt)?;
     if !interrupt.is_requested() {
-        played.failure = played.failure.or(board.check().err().map(CommandError::from));
+        played.failure = played.failure.or(board.check().err().map(anyhow::Error::from));
     }
     Ok(played)
 }
@@ -44,7 +46,7 @@ pub(super) fn play_on_pico(
     scene: &Scene,
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
-) -> Result<Played, CommandError> {
+) -> Result<Played> {
     let (plan, world) = prepare(args, scene, Target::Pico, &Board::PICO)?;
     let rig = PicoRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
     let device = Device::connect(PollingLink::new(PicoStream::new(rig)))?;
@@ -53,14 +55,14 @@ pub(super) fn play_on_pico(
 
 /// The plan of a play on an emulated board, and the world around the board, with the drawn person's finger or else the
 /// one that the scene was made for.
-fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World), CommandError> {
+fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World)> {
     let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
     let stroke = plan.choose_stroke(args)?;
     let simulated = SimulatedWorld::new(args, scene)?;
     plan.world = Some(simulated.report());
     plan.has_own_reference = simulated.has_own_reference(&stroke);
     let mut world = World::new(simulated.config(WorldConfig::of(board)), stroke, args.seed)?;
-    world.set_finger(plan.program.header.friction_law().map_err(CommandError::Finger)?);
+    world.set_finger(plan.program.header.friction_law().map_err(of_finger)?);
     simulated.set_finger(&mut world);
     Ok((plan, world))
 }

@@ -3,8 +3,10 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
+use crate::commands::error::of_play;
 use crate::output::Report;
 use crate::rigs::RecordedLink;
+use anyhow::{Result, bail};
 use frixel_driver::Device;
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
@@ -16,7 +18,7 @@ use super::plan::Plan;
 use super::progress::Bars;
 use super::recorded::metadata;
 use super::target::Target;
-use super::{CommandError, Interrupt, PlayArgs, Played, note, waiting};
+use super::{Interrupt, PlayArgs, Played, note, waiting};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.
 pub(super) fn follow<L: RecordedLink>(
@@ -25,7 +27,7 @@ pub(super) fn follow<L: RecordedLink>(
     device: Device<L>,
     (files, live_scene): (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
-) -> Result<Played, CommandError> {
+) -> Result<Played> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     check_log(args, is_simulated)?;
     let metadata = files.sources().map(|sources| metadata(args, sources, &plan, &device, is_simulated));
@@ -47,8 +49,14 @@ pub(super) fn follow<L: RecordedLink>(
 
 /// Refuses to join a log to what a finger did on a real board: the joined rows replace a recording while they are
 /// written, and that of a person cannot be made again.
-fn check_log(args: &PlayArgs, is_simulated: bool) -> Result<(), CommandError> {
-    if args.with_log.is_some() && !is_simulated { Err(CommandError::LogOfARealBoard) } else { Ok(()) }
+fn check_log(args: &PlayArgs, is_simulated: bool) -> Result<()> {
+    if args.with_log.is_some() && !is_simulated {
+        bail!(
+            "--with-log joins the log of a virtual board, and the board at this port is not one: leave it out, so \
+             that what a finger does on it is recorded"
+        );
+    }
+    Ok(())
 }
 
 /// Why a board refuses a program, a sentence each.
@@ -75,7 +83,7 @@ struct Play<'a, L: RecordedLink> {
 }
 
 impl<L: RecordedLink> Play<'_, L> {
-    fn start(&mut self) -> Result<(), CommandError> {
+    fn start(&mut self) -> Result<()> {
         let Self { args, plan, player, bars, interrupt, .. } = self;
         let started = player.start(plan.program.clone(), plan.telemetry_period_ticks, &mut |progress| {
             bars.upload(progress);
@@ -87,7 +95,7 @@ impl<L: RecordedLink> Play<'_, L> {
         started.map_err(|error| self.error(error))
     }
 
-    fn until_over(&mut self) -> Result<(), CommandError> {
+    fn until_over(&mut self) -> Result<()> {
         if let Some(feed) = self.plan.feed.take() {
             self.player.stream(feed).map_err(|error| self.error(error))?;
         }
@@ -106,7 +114,7 @@ impl<L: RecordedLink> Play<'_, L> {
         self.player.stop().map_err(|error| self.error(error.into()))
     }
 
-    fn write_rows(&mut self) -> Result<(), CommandError> {
+    fn write_rows(&mut self) -> Result<()> {
         let begin = Instant::now();
         let recorder = self.player.recorder_mut();
         let rows = recorder.take_rows();
@@ -118,7 +126,7 @@ impl<L: RecordedLink> Play<'_, L> {
 
     /// Carries out the lines of `--control`. Returns the longest time until they are looked at again; `None` if they
     /// end the play.
-    fn control(&mut self) -> Result<Option<Duration>, CommandError> {
+    fn control(&mut self) -> Result<Option<Duration>> {
         let t_s = self.player.recorder_mut().t_s();
         let Some(control) = &mut self.control else {
             self.outputs.switch(t_s, self.player.playing().map_or(Vec::new(), LiveLayers::off));
@@ -143,7 +151,7 @@ impl<L: RecordedLink> Play<'_, L> {
     }
 
     /// Replaces the scene if its file was saved.
-    fn refresh_scene(&mut self) -> Result<(), CommandError> {
+    fn refresh_scene(&mut self) -> Result<()> {
         let Some(live_scene) = &mut self.live_scene else { return Ok(()) };
         let refreshed = live_scene.refresh(&mut self.player);
         let Some((files, fate)) = refreshed.map_err(|error| self.error(error))? else { return Ok(()) };
@@ -162,7 +170,7 @@ impl<L: RecordedLink> Play<'_, L> {
     }
 
     /// Sets the output to zero, then writes the remaining rows.
-    fn finish(mut self, ended: Result<(), CommandError>, playing: Duration) -> Played {
+    fn finish(mut self, ended: Result<()>, playing: Duration) -> Played {
         self.bars.finish();
         let (counters, stream) = (self.player.device().counters(), self.player.device().stream_status());
         let mut recorder = self.player.into_recorder();
@@ -198,8 +206,8 @@ impl<L: RecordedLink> Play<'_, L> {
         Played { report, files, failure }
     }
 
-    fn error(&self, error: PlayError) -> CommandError {
-        CommandError::of_play(&self.args.port, error)
+    fn error(&self, error: PlayError) -> anyhow::Error {
+        of_play(&self.args.port, error)
     }
 }
 

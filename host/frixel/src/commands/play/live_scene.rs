@@ -6,6 +6,7 @@ use std::thread::{self, JoinHandle};
 
 use crate::rigs::RecordedLink;
 use crate::scene_file::{ProfileNames, SceneFiles};
+use anyhow::Result;
 use frixel_play::{PlayError, Player, Replaced};
 use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
@@ -13,7 +14,7 @@ use frixel_wire::hello::BoardLimits;
 use super::outputs::PlayFiles;
 use super::plan::{check_measured, print_notes};
 use super::target::Target;
-use super::{CommandError, PlayArgs, note, note_refusals};
+use super::{PlayArgs, note, note_refusals};
 
 /// Loads and compiles scenes while one plays.
 pub(super) struct LiveScene {
@@ -52,7 +53,7 @@ pub(super) enum Fate {
 
 /// A compiled scene, and the files that it was read from.
 struct Compiled {
-    program: Result<Program, CommandError>,
+    program: Result<Program>,
     files: SceneFiles,
 }
 
@@ -146,7 +147,7 @@ impl LiveScene {
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
-    compiled: Result<Program, CommandError>,
+    compiled: Result<Program>,
     player: &mut Player<L>,
 ) -> Result<Option<Fate>, PlayError> {
     let board = player.device().hello().board;

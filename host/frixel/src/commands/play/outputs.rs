@@ -7,16 +7,17 @@ use crate::output_file::{
     FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
 };
 use crate::scene_file::SceneFiles;
+use anyhow::Result;
 use frixel_felt::recorder::{FeltRow, Marker};
 use frixel_lab::recording::Metadata;
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
 use super::super::experiment::cut_off;
+use super::PlayArgs;
 use super::record_file::{self, RecordFile};
 use super::recorded::Sources;
 use super::target::Target;
 use super::with_log::{LayeredRow, LogJoin};
-use super::{CommandError, PlayArgs};
 
 /// The option that names the folder.
 const OPTION: &str = "--out";
@@ -39,7 +40,7 @@ pub(super) struct PlayFiles {
 
 impl PlayFiles {
     /// Rejects a play whose files would overwrite an input, or what a person's finger did on a board.
-    pub(super) fn new(args: &PlayArgs, target: Target, scene: &SceneFiles) -> Result<Self, CommandError> {
+    pub(super) fn new(args: &PlayArgs, target: Target, scene: &SceneFiles) -> Result<Self> {
         // Without a finger that is simulated beside the board, what was felt is unknown.
         let is_felt = target.is_virtual_time() || args.with_log.is_some();
         let (svg, other_svg) = if is_felt { ("felt.svg", "commanded.svg") } else { ("commanded.svg", "felt.svg") };
@@ -60,14 +61,14 @@ impl PlayFiles {
                 record.check_apart_from(other)?;
             }
         }
-        let record = record.map(|record| Ok::<_, CommandError>((record, Sources::new(args, scene)?))).transpose()?;
+        let record = record.map(|record| anyhow::Ok((record, Sources::new(args, scene)?))).transpose()?;
         let files = Self { record, ..files };
         Self::check_earlier(args)?;
         Ok(files)
     }
 
     /// Rejects a play that would replace what a person's finger did on a board.
-    fn check_earlier(args: &PlayArgs) -> Result<(), CommandError> {
+    fn check_earlier(args: &PlayArgs) -> Result<()> {
         if !args.overwrite && is_play_of_person(&args.out) {
             return Err(OutputFileError::OverPlay { path: args.out.clone(), option: OPTION }.into());
         }
@@ -75,7 +76,7 @@ impl PlayFiles {
     }
 
     /// Rejects files that would overwrite one of another scene.
-    pub(super) fn check(&self, scene: &SceneFiles) -> Result<(), CommandError> {
+    pub(super) fn check(&self, scene: &SceneFiles) -> Result<()> {
         let inputs = Inputs::new(scene.paths());
         for file in [&self.felt, &self.summary, &self.svg, &self.other_svg, &self.png] {
             inputs.check(file)?;
@@ -89,7 +90,7 @@ impl PlayFiles {
     }
 
     /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
-    fn start(&self, is_simulated: bool, overwrites: bool) -> Result<FileWriter, CommandError> {
+    fn start(&self, is_simulated: bool, overwrites: bool) -> Result<FileWriter> {
         if is_simulated {
             return Ok(self.felt.create()?);
         }
@@ -136,7 +137,7 @@ impl Outputs {
         is_simulated: bool,
         program: &Program,
         metadata: Option<Metadata>,
-    ) -> Result<Self, CommandError> {
+    ) -> Result<Self> {
         let folder = OutputFolder::open(&args.out)?;
         // The play that wrote into the folder until now may have been of a person.
         PlayFiles::check_earlier(args)?;
@@ -164,7 +165,7 @@ impl Outputs {
 
     /// Writes rows and flushes them to the file; with a log, those that it has reached. `markers` are all so far, and
     /// `start_s` is the time from the power-on of the board to time zero of the rows.
-    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker], start_s: f64) -> Result<(), CommandError> {
+    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker], start_s: f64) -> Result<()> {
         let rows = rows.iter().map(|row| (*row, self.touch(row))).collect();
         let rows = match &mut self.log {
             Some(log) => log.add(rows, start_s),
@@ -173,7 +174,7 @@ impl Outputs {
         self.put(&rows, markers)
     }
 
-    fn put(&mut self, rows: &[LayeredRow], markers: &[Marker]) -> Result<(), CommandError> {
+    fn put(&mut self, rows: &[LayeredRow], markers: &[Marker]) -> Result<()> {
         if let Some(record) = &mut self.record {
             let rows: Vec<FeltRow> = rows.iter().map(|(row, _)| *row).collect();
             record.write(&rows, markers)?;
@@ -256,7 +257,7 @@ impl Outputs {
         program: &Program,
         report: &Report,
         (markers, interrupted): (&[Marker], bool),
-    ) -> Result<Vec<PathBuf>, CommandError> {
+    ) -> Result<Vec<PathBuf>> {
         let (rows, joined) = self.log.take().map_or((Vec::new(), Ok(())), LogJoin::finish);
         let joined = self.put(&rows, markers).and(joined);
         let record = self.record.take().map(|record| record.finish(markers, interrupted)).transpose();
@@ -282,7 +283,7 @@ impl Outputs {
     }
 
     /// Writes the files beside `felt.csv`, which have no names yet.
-    fn write_others(&self, program: &Program, report: &Report) -> Result<[FileWriter; 3], CommandError> {
+    fn write_others(&self, program: &Program, report: &Report) -> Result<[FileWriter; 3]> {
         // The speed of the simulation is another one each time, and equal plays give equal files.
         let reproducible = Report { realtime_factor: None, ..report.clone() };
         let subject = Subject { name: self.title.clone(), simulated: self.is_simulated, draft: report.draft };

@@ -2,17 +2,19 @@
 
 use std::time::Duration;
 
+use crate::commands::error::{of_finger, of_generated_stroke};
 use crate::output::{Effects, WorldReport};
+use anyhow::{Result, bail};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::Stroke;
 use frixel_lab::default_stroke::{REPEAT_PAUSE_S, default_stroke};
 use frixel_play::Feed;
-use frixel_scene::{Program, Scene};
+use frixel_scene::{Program, Scene, Shown};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
 use super::super::stroke::check_on_screen;
 use super::target::Target;
-use super::{CommandError, PlayArgs, note, note_refusals};
+use super::{PlayArgs, note, note_refusals};
 
 /// Highest rate of telemetry that a board sends, in messages a second (PROTOCOL, `Subscribe`).
 const TELEMETRY_MAX_HZ: u32 = 1000;
@@ -40,28 +42,44 @@ pub(super) struct Plan {
 }
 
 /// Rejects options that the board named by `--port` does not support.
-pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<(), CommandError> {
-    let port = || args.port.clone();
+pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<()> {
+    let (port, csv_hz) = (&args.port, args.csv_hz);
     if args.control && args.stream.is_standard_input() {
-        return Err(CommandError::ControlAndStream);
+        bail!("standard input has either the lines of --control or the samples of --stream -: give --stream a file");
     }
     match target {
-        Target::Emulator | Target::Pico if args.watch => Err(CommandError::WatchInVirtualTime { port: port() }),
-        Target::Simulator if args.watch && (args.control || args.stream.is_standard_input()) => {
-            Err(CommandError::WatchReadsInputOnce)
+        Target::Emulator | Target::Pico if args.watch => bail!(
+            "--watch follows the file while a board plays in real time, --port {port} does not: start `frixel sim` and \
+             give its port"
+        ),
+        Target::Simulator if args.watch && (args.control || args.stream.is_standard_input()) => bail!(
+            "--watch on the simulator plays anew after each change, and standard input can be read only once: leave \
+             out --control or --stream -, or start `frixel sim` and give its port"
+        ),
+        Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => bail!(
+            "--with-log joins the log of a virtual board at a port, --port {port} records what is felt itself: leave \
+             it out"
+        ),
+        Target::Emulator | Target::Pico if args.stream.is_given() => {
+            bail!(
+                "the emulated board's serial port is too slow for a stream: leave --stream out, or play on --port sim"
+            )
         }
-        Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => {
-            Err(CommandError::LogInVirtualTime { port: port() })
-        }
-        Target::Emulator | Target::Pico if args.stream.is_given() => Err(CommandError::StreamOnEmulated),
-        Target::Port if args.stroke.is_given() => Err(CommandError::StrokeOnBoard { port: port() }),
-        Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => {
-            Err(CommandError::WorldOnBoard { port: port() })
-        }
-        Target::Port if args.csv_hz > TELEMETRY_MAX_HZ => {
-            Err(CommandError::CsvTooFast { port: port(), found: args.csv_hz, max: TELEMETRY_MAX_HZ })
-        }
-        Target::Port if args.watch && args.stream.is_given() => Err(CommandError::WatchWithStream),
+        Target::Port if args.stroke.is_given() => bail!(
+            "a stroke moves the finger of --port sim, --port qemu and --port pico only; a board at {port} has its own: \
+             leave out --stroke and --from"
+        ),
+        Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => bail!(
+            "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim, --port qemu and --port \
+             pico only; a board at {port} has its own: leave them out"
+        ),
+        Target::Port if csv_hz > TELEMETRY_MAX_HZ => bail!(
+            "{port} sends telemetry at most {TELEMETRY_MAX_HZ} times a second, --csv-hz {csv_hz} is more; give \
+             {TELEMETRY_MAX_HZ} or less"
+        ),
+        Target::Port if args.watch && args.stream.is_given() => bail!(
+            "--watch sends a saved scene while it plays, and a stream runs dry meanwhile: leave out --watch or --stream"
+        ),
         _ => Ok(()),
     }
 }
@@ -73,7 +91,7 @@ impl Plan {
         scene: &Scene,
         target: Target,
         (limits, tick_hz): (&BoardLimits, u32),
-    ) -> Result<Self, CommandError> {
+    ) -> Result<Self> {
         let ticks_per_row = ticks_per_row(args.csv_hz, tick_hz)?;
         args.seconds.map_or(Ok(()), |seconds| check_seconds(seconds, tick_hz))?;
         let program = target.compile(scene, limits, tick_hz)?;
@@ -86,7 +104,8 @@ impl Plan {
         };
         let feed = args.stream.open(tick_hz, target)?;
         if feed.is_some() && !program.records.iter().any(|record| record.layer.is_streamed()) {
-            return Err(CommandError::NoStreamLayer { scene: args.scene.display().to_string() });
+            let scene = args.scene.display();
+            bail!("{scene} has no layer that plays a stream: add one with `kind = \"stream\"`, or leave --stream out");
         }
         note_streams(&program, feed.is_some());
         let (limits, seconds) = (*limits, args.seconds);
@@ -107,14 +126,14 @@ impl Plan {
 
     /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
     /// file of `--stream`, while the finger repeats its stroke, or else as long as the stroke.
-    pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke, CommandError> {
+    pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke> {
         let header = &self.program.header;
         let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
         let seconds = args.seconds.or(self.stream_s);
         let given = args.stroke.stroke([width_m, height_m], seconds, args.seed)?;
         let stroke = match &given {
             Some(stroke) => stroke.clone(),
-            None => default_stroke(&self.program, seconds).map_err(CommandError::GeneratedStroke)?,
+            None => default_stroke(&self.program, seconds).map_err(of_generated_stroke)?,
         };
         let seconds = seconds.unwrap_or(stroke.duration_s());
         check_seconds(seconds, self.tick_hz)?;
@@ -123,7 +142,7 @@ impl Plan {
         }
         self.seconds = Some(seconds);
         if args.seconds.is_none() && stroke.duration_s() < seconds {
-            return stroke.looped(REPEAT_PAUSE_S).map_err(CommandError::GeneratedStroke);
+            return stroke.looped(REPEAT_PAUSE_S).map_err(of_generated_stroke);
         }
         Ok(stroke)
     }
@@ -152,11 +171,11 @@ impl Plan {
     }
 
     /// Creates the recorder of the play. In virtual time, it ends after exactly the ticks of the play.
-    pub(super) fn recorder(&self) -> Result<Recorder, CommandError> {
+    pub(super) fn recorder(&self) -> Result<Recorder> {
         let ticks = (self.seconds() * f64::from(self.tick_hz)).round() as u64;
         let ticks_max = if self.target.is_virtual_time() { ticks } else { u64::MAX };
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks_max, self.ticks_per_row);
-        let recorder = recorder.map_err(CommandError::Finger)?;
+        let recorder = recorder.map_err(of_finger)?;
         Ok(if self.has_own_reference { recorder.through_finger() } else { recorder })
     }
 }
@@ -182,15 +201,18 @@ fn note_streams(program: &Program, has_feed: bool) {
 }
 
 /// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
-pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<(), CommandError> {
+pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<()> {
     match program.warnings().find(|warning| warning.is_refused_by_boards()) {
-        Some(warning) if !board.is_simulated() => Err(CommandError::NotMeasured { warning: warning.clone() }),
+        Some(warning) if !board.is_simulated() => bail!(
+            "a real board plays only what was measured on this finger: {warning}; fit the finger again up to this \
+             voltage and load, or lower the scene's"
+        ),
         _ => Ok(()),
     }
 }
 
 /// Ticks between two rows of `felt.csv`.
-fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
+fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32> {
     let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
     if csv_hz > 0 && divides(&csv_hz) {
         return Ok(tick_hz / csv_hz);
@@ -198,7 +220,8 @@ fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32, CommandError> {
     let below = (1..csv_hz.min(tick_hz)).rev().find(divides);
     let above = (csv_hz..=tick_hz).find(divides);
     let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
-    Err(CommandError::CsvUneven { found: csv_hz, tick_hz, nearest: nearest.join(" or ") })
+    let nearest = nearest.join(" or ");
+    bail!("--csv-hz {csv_hz} does not divide the board's {tick_hz} ticks a second; give {nearest}")
 }
 
 /// Ticks between two telemetry messages: normally one message per row. If the reference depends on the past, the
@@ -210,9 +233,12 @@ fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -
 }
 
 /// Rejects a duration that is shorter than a tick.
-fn check_seconds(seconds: f64, tick_hz: u32) -> Result<(), CommandError> {
+fn check_seconds(seconds: f64, tick_hz: u32) -> Result<()> {
     let tick_s = 1.0 / f64::from(tick_hz);
-    if seconds < tick_s { Err(CommandError::TooShort { seconds, tick_s }) } else { Ok(()) }
+    if seconds < tick_s {
+        bail!("{} s is shorter than one tick of the board, {tick_s} s: play for longer", Shown(seconds));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

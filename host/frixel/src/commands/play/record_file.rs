@@ -3,16 +3,18 @@
 use std::io::Write;
 use std::path::Path;
 
+use anyhow::{Result, bail};
 use frixel_felt::recorder::{FeltRow, Marker};
 use frixel_lab::recording::{
     GrowingFile, Metadata, ParquetWriter, PlayOptions, ROWS_PER_GROUP, play_fields, play_values,
 };
 
+use crate::commands::error::at;
 use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, Recording};
 use crate::scene_file::SceneFiles;
 
 use super::super::parquet;
-use super::{CommandError, PlayArgs};
+use super::PlayArgs;
 
 /// The option that names the file.
 const OPTION: &str = "--record";
@@ -22,10 +24,11 @@ const CUT_OFF: &str = "rename it to keep it";
 const PERSON_GROUP_S: u32 = 10;
 
 /// The file that `--record` names; none without that option.
-pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFile>, CommandError> {
+pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFile>> {
     let Some(path) = &args.record else { return Ok(None) };
     if !parquet::is_named_so(path) && path != Path::new("-") && !path.starts_with("/dev") {
-        return Err(CommandError::NotParquetName { path: path.clone() });
+        let path = path.display();
+        bail!("{path} is no Parquet file by its name: give --record a name that ends in .parquet");
     }
     if args.overwrite {
         return Ok(Some(Recording::new(path, OPTION, inputs, true, CUT_OFF)?.output().clone()));
@@ -48,7 +51,7 @@ pub(super) struct RecordFile {
 impl RecordFile {
     /// Begins the file. What a person's finger does goes to `FILE.partial`, which is a whole Parquet file after each
     /// row group; a play on a simulator can be made again.
-    pub(super) fn start(output: &OutputFile, metadata: Metadata, overwrites: bool) -> Result<Self, CommandError> {
+    pub(super) fn start(output: &OutputFile, metadata: Metadata, overwrites: bool) -> Result<Self> {
         let (file, rows_per_group) = if metadata.is_simulated {
             (output.create()?, ROWS_PER_GROUP)
         } else {
@@ -59,13 +62,13 @@ impl RecordFile {
             (recording(output, overwrites).start()?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
         };
         let path = output.path();
-        let parquet = ParquetWriter::new(Vec::new(), play_fields()).map_err(CommandError::recording(path))?;
+        let parquet = ParquetWriter::new(Vec::new(), play_fields()).map_err(at(path.display()))?;
         let samples = (metadata.play["stream"] == true).then(GrowingFile::default);
         Ok(Self { file, parquet, metadata, samples, rows: Vec::new(), rows_per_group })
     }
 
     /// Adds rows. `markers` are all so far.
-    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker]) -> Result<(), CommandError> {
+    pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker]) -> Result<()> {
         for row in rows {
             self.rows.push(*row);
             if self.rows.len() >= self.rows_per_group {
@@ -95,7 +98,7 @@ impl RecordFile {
     }
 
     /// Writes what is left. The caller commits the file.
-    pub(super) fn finish(mut self, markers: &[Marker], interrupted: bool) -> Result<FileWriter, CommandError> {
+    pub(super) fn finish(mut self, markers: &[Marker], interrupted: bool) -> Result<FileWriter> {
         self.metadata.play["interrupted"] = interrupted.into();
         if let Some(samples) = self.samples.take() {
             self.metadata.add_grown(PlayOptions::STREAM, samples);
@@ -104,20 +107,20 @@ impl RecordFile {
         Ok(self.file)
     }
 
-    fn end_group(&mut self, markers: &[Marker]) -> Result<(), CommandError> {
+    fn end_group(&mut self, markers: &[Marker]) -> Result<()> {
         self.write_group(markers, !self.metadata.is_simulated)
     }
 
     /// Writes a row group, with a footer behind it if the file has to be whole then.
-    fn write_group(&mut self, markers: &[Marker], is_whole: bool) -> Result<(), CommandError> {
+    fn write_group(&mut self, markers: &[Marker], is_whole: bool) -> Result<()> {
         let Self { file, parquet, metadata, rows, .. } = self;
         if !rows.is_empty() {
-            parquet.write(&play_values(rows)).map_err(CommandError::recording(file.path()))?;
+            parquet.write(&play_values(rows)).map_err(at(file.path().display()))?;
             rows.clear();
         }
         if is_whole {
             metadata.markers = markers.to_vec();
-            parquet.end(metadata).map_err(CommandError::recording(file.path()))?;
+            parquet.end(metadata).map_err(at(file.path().display()))?;
         }
         let bytes = std::mem::take(parquet.get_mut());
         file.write_all(&bytes).and_then(|()| file.flush()).map_err(|source| file.error(source).into())
@@ -138,7 +141,7 @@ mod tests {
     use super::*;
 
     /// A record of what a person did on a board, at 1,000 rows a second.
-    fn start(folder: &Path, overwrites: bool) -> Result<RecordFile, CommandError> {
+    fn start(folder: &Path, overwrites: bool) -> Result<RecordFile> {
         let output = OutputFile::new(&folder.join("me.parquet"), OPTION, &Inputs::default())?;
         let metadata = Metadata { tick_hz: 40_000, ticks_per_row: 40, ..Metadata::default() };
         RecordFile::start(&output, metadata, overwrites)

@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use anyhow::Result;
 use frixel_driver::{Device, Link};
 use frixel_lab::recording::{Metadata, PlayOptions, SourceFile};
 
+use crate::commands::error::reading;
 use crate::input;
 use crate::scene_file::SceneFiles;
 
+use super::PlayArgs;
 use super::plan::Plan;
-use super::{CommandError, PlayArgs};
 
 /// What a play is made from, apart from its options.
 #[derive(Clone, Debug, Default)]
@@ -23,7 +25,7 @@ pub(super) struct Sources {
 
 impl Sources {
     /// Reads the files of profiles and stroke; those of the scene are as they were read.
-    pub(super) fn new(args: &PlayArgs, scene: &SceneFiles) -> Result<Self, CommandError> {
+    pub(super) fn new(args: &PlayArgs, scene: &SceneFiles) -> Result<Self> {
         let names = args.profiles.names();
         let (finger, screen) = (names.finger_file(), names.screen_file());
         let profiles = [
@@ -35,7 +37,7 @@ impl Sources {
         let mut read = Vec::new();
         for (name, path) in profiles {
             if let Some(path) = path {
-                let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?;
+                let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
                 read.push((name.to_owned(), bytes));
             }
         }

@@ -3,13 +3,15 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use anyhow::{Result, bail};
 use clap::Args;
 use frixel_lab::recording::Recording;
 
+use crate::commands::error::{at, reading};
 use crate::input;
 
 use super::super::terminal::print_line;
-use super::{CommandError, note};
+use super::note;
 
 #[derive(Debug, Args)]
 pub(in crate::commands) struct ReplayArgs {
@@ -18,17 +20,20 @@ pub(in crate::commands) struct ReplayArgs {
 }
 
 /// Plays a recording again, and says whether its bits are the same.
-pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<(), CommandError> {
+pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let path = &args.recording;
-    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(CommandError::reading(path))?;
-    let recorded = Recording::read_parquet(bytes).map_err(CommandError::recording(path))?;
+    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
+    let recorded = Recording::read_parquet(bytes).map_err(at(path.display()))?;
     if recorded.is_cut_off {
         note(format_args!("{}: it ends in a part of a row group, which is left out", path.display()));
     }
     let played = recorded.replay(&mut || ControlFlow::Continue(()));
-    let played = played.map_err(|source| CommandError::NoReplay { path: path.clone(), source: Box::new(source) })?;
+    let played = played.map_err(at(format!("{} cannot be played again", path.display())))?;
     if let Some(difference) = recorded.first_difference(&played) {
-        return Err(CommandError::ReplayDiffers { path: path.clone(), difference });
+        bail!(
+            "{} plays other bits: {difference}; the file was changed, or this machine computes differently",
+            path.display()
+        );
     }
     let (rows, columns) = (recorded.rows(), recorded.columns.len());
     print_line(format_args!("{}: the same bits, {rows} rows of {columns} columns", path.display()))

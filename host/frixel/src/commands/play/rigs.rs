@@ -1,5 +1,6 @@
 //! How the boards that `--port` can name are opened for a play.
 
+use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
@@ -16,7 +17,7 @@ use super::outputs::PlayFiles;
 use super::plan::{Plan, check_measured};
 use super::simulated_world::SimulatedWorld;
 use super::target::Target;
-use super::{CommandError, Interrupt, PlayArgs, Played};
+use super::{Interrupt, PlayArgs, Played};
 
 /// A simulated board under a simulated finger.
 pub(super) type Simulator<'a> = Device<PollingLink<SimStream<'a>>>;
@@ -27,7 +28,7 @@ pub(super) fn play_on_simulator(
     scene: &Scene,
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
-) -> Result<Played, CommandError> {
+) -> Result<Played> {
     let mut memory = BoardMemory::new();
     let (plan, device) = simulator(args, scene, &mut memory)?;
     follow(args, plan, device, outputs, interrupt)
@@ -38,7 +39,7 @@ pub(super) fn simulator<'a>(
     args: &PlayArgs,
     scene: &Scene,
     memory: &'a mut BoardMemory,
-) -> Result<(Plan, Simulator<'a>), CommandError> {
+) -> Result<(Plan, Simulator<'a>)> {
     let world = SimulatedWorld::new(args, scene)?;
     let mut config = RigConfig::default();
     config.world = world.config(config.world);
@@ -62,8 +63,8 @@ pub(super) fn play_on_emulator(
     _: &Scene,
     _: (PlayFiles, Option<LiveScene>),
     _: &Interrupt,
-) -> Result<Played, CommandError> {
-    Err(CommandError::NoPseudoTerminal { what: "--port qemu" })
+) -> Result<Played> {
+    Err(crate::commands::error::no_pseudo_terminal("--port qemu"))
 }
 
 /// Rejects the emulator, which is there for Unix only, with the other one.
@@ -73,8 +74,8 @@ pub(super) fn play_on_pico(
     _: &Scene,
     _: (PlayFiles, Option<LiveScene>),
     _: &Interrupt,
-) -> Result<Played, CommandError> {
-    Err(CommandError::NoPseudoTerminal { what: "--port pico" })
+) -> Result<Played> {
+    Err(crate::commands::error::no_pseudo_terminal("--port pico"))
 }
 
 /// Plays on the board on a serial port. The scene is compiled for the limits that this board reports.
@@ -83,7 +84,7 @@ pub(super) fn play_on_port(
     scene: &Scene,
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
-) -> Result<Played, CommandError> {
+) -> Result<Played> {
     let device = experiment::connect(&args.port, &BOARDS, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;

@@ -1,11 +1,13 @@
 //! The world around a simulated or emulated board: which effects it has, and whose finger is in it.
 
+use crate::commands::error::of_finger;
 use crate::output::{Effects, WorldReport};
+use anyhow::Result;
 use frixel_hil_sim::{Person, Stroke, TouchConfig, World, WorldConfig};
 use frixel_model::LoadedContact;
 use frixel_scene::Scene;
 
-use super::{CommandError, PlayArgs};
+use super::PlayArgs;
 
 /// The world that the options of a play describe.
 #[derive(Clone, Debug)]
@@ -27,11 +29,11 @@ struct DrawnPerson {
 impl SimulatedWorld {
     /// Reads the options. A person cannot be drawn for a scene of version 1, whose coating contains the skin of its own
     /// finger.
-    pub(super) fn new(args: &PlayArgs, scene: &Scene) -> Result<Self, CommandError> {
-        let draw = |seed: u64| -> Result<DrawnPerson, CommandError> {
+    pub(super) fn new(args: &PlayArgs, scene: &Scene) -> Result<Self> {
+        let draw = |seed: u64| -> Result<DrawnPerson> {
             let coating_gap_m = 1e-6 * scene.screen_without_skin()?.coating_gap_um();
             let person = Person::drawn(seed);
-            let contact = person.contact(coating_gap_m).map_err(CommandError::Finger)?;
+            let contact = person.contact(coating_gap_m).map_err(of_finger)?;
             Ok(DrawnPerson { seed, person, contact })
         };
         let (effects, person) = (args.effects(), args.finger_seed.map(draw).transpose()?);

@@ -3,13 +3,13 @@
 use std::io::stdin;
 use std::path::{Path, PathBuf};
 
+use anyhow::{Result, bail};
 use clap::Args;
 use frixel_play::Feed;
 
 use crate::stream;
 
 use super::super::terminal::note;
-use super::CommandError;
 use super::target::Target;
 
 /// The name of standard input.
@@ -41,16 +41,21 @@ impl StreamArgs {
     }
 
     /// Opens the source of the samples. The simulator waits when a pipe is empty; other boards run out of samples.
-    pub(super) fn open(&self, tick_hz: u32, target: Target) -> Result<Option<Feed>, CommandError> {
+    pub(super) fn open(&self, tick_hz: u32, target: Target) -> Result<Option<Feed>> {
         let waits = target == Target::Simulator;
         match (&self.stream, self.stream_hz) {
             (None, None) => Ok(None),
-            (None, Some(_)) => Err(CommandError::StreamRateAlone),
+            (None, Some(_)) => bail!(
+                "--stream-hz says how many samples a second come on standard input: put --stream - before it, or \
+                 leave it out"
+            ),
             (Some(_), Some(sample_hz)) if self.is_standard_input() => {
                 Ok(Some(stream::raw(stdin(), sample_hz, tick_hz, waits)?))
             }
-            (Some(_), None) if self.is_standard_input() => Err(CommandError::StreamRateMissing),
-            (Some(path), Some(_)) => Err(CommandError::StreamRateOfFile { path: path.clone() }),
+            (Some(_), None) if self.is_standard_input() => {
+                bail!("samples on standard input have no rate of their own: put --stream-hz beside --stream -")
+            }
+            (Some(path), Some(_)) => bail!("{} has a sample rate of its own: leave --stream-hz out", path.display()),
             (Some(path), None) => {
                 let (feed, notes) = stream::wav(path, tick_hz)?;
                 for sentence in notes {

@@ -1,5 +1,6 @@
 //! `--watch` on the simulator: a play from the beginning after each change of the scene.
 
+use anyhow::Result;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -8,7 +9,7 @@ use crate::scene_file::SceneFiles;
 use super::outputs::PlayFiles;
 use super::rigs;
 use super::target::Target;
-use super::{CommandError, Interrupt, PlayArgs, finish, note};
+use super::{Interrupt, PlayArgs, finish, note};
 
 /// Time between two checks of the files.
 const CHECK_PERIOD: Duration = Duration::from_millis(20);
@@ -17,7 +18,7 @@ const CHECK_PERIOD: Duration = Duration::from_millis(20);
 ///
 /// A scene that cannot be played the first time is an error. Later its mistakes are printed, and the files in the
 /// output folder stay those of the play before.
-pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Result<(), CommandError> {
+pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Result<()> {
     let (played, mut files) = play(args, interrupt);
     played?;
     let name = args.scene.display();
@@ -41,7 +42,7 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
 }
 
 /// Loads the scene and plays it. Returns the files that it was read from as well.
-fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<(), CommandError>, SceneFiles) {
+fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<()>, SceneFiles) {
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let played = PlayFiles::new(args, Target::Simulator, &files).and_then(|outputs| {
         let played = rigs::play_on_simulator(args, &scene?, (outputs, None), interrupt)?;

@@ -6,9 +6,8 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::output::{FeltLog, TracedLayer};
+use anyhow::{Result, anyhow};
 use frixel_felt::recorder::FeltRow;
-
-use super::CommandError;
 
 /// How long to wait at the end for the virtual board to write its last rows; it writes ten times a second.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -27,7 +26,7 @@ pub(super) struct LogJoin {
     /// Time from the power-on of the board to the client's time zero.
     start_s: f64,
     waiting: VecDeque<LayeredRow>,
-    failure: Option<CommandError>,
+    failure: Option<anyhow::Error>,
 }
 
 impl LogJoin {
@@ -50,7 +49,7 @@ impl LogJoin {
     }
 
     /// Waits for the log to reach the last row. Returns the rows that are left, and why some of them are not joined.
-    pub(super) fn finish(mut self) -> (Vec<LayeredRow>, Result<(), CommandError>) {
+    pub(super) fn finish(mut self) -> (Vec<LayeredRow>, Result<()>) {
         let started = Instant::now();
         let mut joined = self.join();
         while !self.waiting.is_empty() {
@@ -68,7 +67,7 @@ impl LogJoin {
     fn join(&mut self) -> Vec<LayeredRow> {
         let Some((first, _)) = self.waiting.front() else { return Vec::new() };
         if self.failure.is_none() {
-            self.failure = self.log.read_on(self.start_s + first.t_s).err().map(CommandError::from);
+            self.failure = self.log.read_on(self.start_s + first.t_s).err().map(anyhow::Error::from);
         }
         if self.failure.is_some() {
             return self.waiting.drain(..).collect();
@@ -84,9 +83,13 @@ impl LogJoin {
         ends.map_or(0.0, |((last, _), (first, _))| last.t_s - first.t_s)
     }
 
-    fn too_short(&self) -> CommandError {
+    fn too_short(&self) -> anyhow::Error {
         let end_s = self.start_s + self.waiting.back().map_or(0.0, |(last, _)| last.t_s);
-        CommandError::LogTooShort { path: self.log.path().to_owned(), behind_s: end_s - self.log.end_s() }
+        anyhow!(
+            "{} ends {:.1} s before the play did: give the felt.csv of the `frixel sim` whose port this is",
+            self.log.path().display(),
+            end_s - self.log.end_s()
+        )
     }
 }
 
@@ -132,6 +135,6 @@ mod tests {
         let times: Vec<f64> = joined.iter().map(|(row, _)| row.t_s).collect();
         assert_eq!(times, rows(0, 2 * LOGGED_S).iter().map(|(row, _)| row.t_s).collect::<Vec<_>>());
         assert!(joined[LOGGED_S as usize * ROWS_PER_S as usize..].iter().all(|(row, _)| row.felt_n.is_none()));
-        assert!(matches!(outcome, Err(CommandError::LogTooShort { .. })));
+        assert!(outcome.unwrap_err().to_string().contains("s before the play did"));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::Result;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use frixel_felt::check::{SceneCheck, feel};
@@ -13,9 +14,9 @@ use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
 
 use super::super::argument;
-use super::super::error::CommandError;
 use super::super::profiles::{ProfileArgs, TouchArgs};
 use super::super::terminal::{print, print_line};
+use crate::commands::error::at;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct CheckArgs {
@@ -41,7 +42,7 @@ pub(in super::super) struct CheckArgs {
     json: bool,
 }
 
-pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &CheckArgs) -> Result<()> {
     let board = args.board.as_deref().and_then(Board::named);
     let board = board.map(|board| behind(board, args.series_kohm)).transpose()?;
     let rig = board.map_or_else(RigConfig::default, RigConfig::of);
@@ -79,10 +80,11 @@ pub(super) fn run(args: &CheckArgs) -> Result<(), CommandError> {
 }
 
 /// The board behind another resistance, if there is one.
-fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board, CommandError> {
+fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
     let Some(series_kohm) = series_kohm else { return Ok(board) };
     let board = board.behind(1e3 * series_kohm as f32);
-    check_touched_board(&board.limits).map_err(|source| CommandError::SeriesResistance { series_kohm, source })?;
+    check_touched_board(&board.limits)
+        .map_err(at(format!("no firmware takes a series resistance of {series_kohm} kOhm")))?;
     Ok(board)
 }
 
@@ -97,7 +99,7 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
 }
 
 /// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
-fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<(), CommandError> {
+fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
     let lines = feel::lines(&Perception::of(&draft, touch));
     let felt = lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"));

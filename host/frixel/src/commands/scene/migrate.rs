@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::output_file::{Inputs, OutputFile};
 use crate::scene_file;
+use anyhow::Result;
 use clap::Args;
-
-use super::super::error::CommandError;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct MigrateArgs {
@@ -17,7 +16,7 @@ pub(in super::super) struct MigrateArgs {
     output: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &MigrateArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &MigrateArgs) -> Result<()> {
     let (_, files) = scene_file::load_with_files(&args.scene);
     let output = args.output.as_deref().unwrap_or(Path::new("-"));
     let output = OutputFile::new(output, "-o", &Inputs::new(files.paths()))?;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::output::{draft_line, draw_preview_png};
 use crate::output_file::{Inputs, OutputFile};
+use anyhow::{Result, bail};
 use clap::Args;
 use frixel_felt::Preview;
 use frixel_felt::check::feel;
@@ -12,7 +13,6 @@ use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_scene::compile_draft;
 
 use super::super::argument::number;
-use super::super::error::CommandError;
 use super::super::profiles::ProfileArgs;
 use super::super::terminal::{note_refusals, print_line};
 
@@ -33,9 +33,10 @@ pub(in super::super) struct PreviewArgs {
     map_width: u32,
 }
 
-pub(super) fn run(args: &PreviewArgs) -> Result<(), CommandError> {
+pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     if !args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        return Err(CommandError::NotPng { path: args.output.clone() });
+        let path = args.output.display();
+        bail!("{path} is no PNG file by its name: give the picture a name that ends in .png");
     }
     let board = RigConfig::default().board;
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);

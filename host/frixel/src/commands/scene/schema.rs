@@ -1,8 +1,8 @@
 //! `frixel scene schema`: the JSON schema of the scene file.
 
-use super::super::error::CommandError;
 use super::super::terminal::print;
+use anyhow::Result;
 
-pub(super) fn run() -> Result<(), CommandError> {
+pub(super) fn run() -> Result<()> {
     print(frixel_scene::json_schema())
 }

@@ -4,14 +4,14 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use anyhow::{Context, Result, bail};
 use frixel_board::self_test::{GREETING, LINE_TEST, LineTest, SKIP, UNPLUGGED};
-use frixel_driver::{DEFAULT_BAUD, Link, LinkClosed, SerialLink};
-use thiserror::Error;
+use frixel_driver::{DEFAULT_BAUD, Link, SerialLink};
 
-use super::super::error::CommandError;
 use super::super::ports;
 use super::super::terminal::print_line;
 use super::report::Report;
+use crate::commands::error::writing;
 use crate::input;
 use crate::output_file::{Inputs, OutputFile};
 
@@ -36,34 +36,8 @@ const LINE_BYTES_PER_S: f64 = DEFAULT_BAUD as f64 / 10.0;
 /// In front of a word that the board waits for.
 const ASKS: &str = "Then type: ";
 
-/// Why the self-test did not pass.
-#[derive(Debug, Error)]
-pub(crate) enum WiresError {
-    #[error(
-        "the board at {port} does not run the self-test: flash it with `cargo run --release --bin self-test` in \
-         firmware/board-nucleo-g474re, or press its reset button (docs/first-board.md)"
-    )]
-    OtherProgram { port: String },
-    #[error("the board at {port} has said nothing for {} s: press its reset button, and begin again", SILENCE_MAX.as_secs())]
-    Silent { port: String },
-    #[error("standard input ended before the answer: unplug the amplifier, then type {UNPLUGGED}")]
-    Unanswered,
-    #[error(
-        "the board at {port} has said {} lines and has not ended the self-test: check the line's rate \
-         and its cable, press the reset button, and begin again",
-        SCRIPT_LINES_MAX
-    )]
-    Endless { port: String },
-    #[error(transparent)]
-    Link(#[from] LinkClosed),
-    #[error("the board at {port} has ended the self-test: {reason}")]
-    Stopped { port: String, reason: String },
-    #[error("{failed} of the measurements of {port} are out of their range; docs/first-board.md says what each means")]
-    Failed { port: String, failed: usize },
-}
-
 /// Does the self-test of the board at a port.
-pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<(), CommandError> {
+pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<()> {
     let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
     let link = ports::open(port, &[])?;
     let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
@@ -76,14 +50,15 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
         print_line(line)?;
     }
     if let Some(output) = output {
-        output.write(&report.to_json().map_err(|error| CommandError::writing(output.path())(error.into()))?)?;
+        output.write(&report.to_json().map_err(|error| writing(output.path())(error.into()))?)?;
     }
     talked?;
-    let port = port.to_owned();
     match (report.stopped(), report.failed()) {
-        (Some(reason), _) => Err(WiresError::Stopped { port, reason: reason.trim_end_matches('.').to_owned() }.into()),
+        (Some(reason), _) => bail!("the board at {port} has ended the self-test: {}", reason.trim_end_matches('.')),
         (None, 0) => print_line("Passed."),
-        (None, failed) => Err(WiresError::Failed { port, failed }.into()),
+        (None, failed) => bail!(
+            "{failed} of the measurements of {port} are out of their range; docs/first-board.md says what each means"
+        ),
     }
 }
 
@@ -99,15 +74,21 @@ struct Host {
 
 impl Host {
     /// Answers the board until its last line.
-    fn talk(&mut self, port: &str) -> Result<(), CommandError> {
+    fn talk(&mut self, port: &str) -> Result<()> {
         let begun = Instant::now();
         let (mut is_first, mut heard_at, mut lines) = (true, begun, 0);
         while !self.report.has_ended() {
             if is_first && (begun.elapsed() >= FIRST_LINE_MAX || lines == SCRIPT_LINES_MAX) {
-                return Err(WiresError::OtherProgram { port: port.to_owned() }.into());
+                bail!(
+                    "the board at {port} does not run the self-test: flash it with `cargo run --release --bin \
+                     self-test` in firmware/board-nucleo-g474re, or press its reset button (docs/first-board.md)"
+                );
             }
             if lines == SCRIPT_LINES_MAX {
-                return Err(WiresError::Endless { port: port.to_owned() }.into());
+                bail!(
+                    "the board at {port} has said {SCRIPT_LINES_MAX} lines and has not ended the self-test: check the \
+                     line's rate and its cable, press the reset button, and begin again"
+                );
             }
             // The board may have asked before anyone listened, or waits for the end of the line's test.
             let is_nudged = is_first || self.line_was_tested;
@@ -116,7 +97,8 @@ impl Host {
                     self.type_line("")?;
                     continue;
                 }
-                return Err(WiresError::Silent { port: port.to_owned() }.into());
+                let seconds = SILENCE_MAX.as_secs();
+                bail!("the board at {port} has said nothing for {seconds} s: press its reset button, and begin again");
             };
             heard_at = Instant::now();
             lines += 1;
@@ -133,11 +115,13 @@ impl Host {
         Ok(())
     }
 
-    fn answer(&mut self, word: &str) -> Result<(), WiresError> {
+    fn answer(&mut self, word: &str) -> Result<()> {
         match word {
             GREETING => self.type_line(GREETING),
             UNPLUGGED => {
-                let typed = input::next_line(&mut io::stdin().lock()).ok_or(WiresError::Unanswered)?;
+                let typed = input::next_line(&mut io::stdin().lock()).with_context(|| {
+                    format!("standard input ended before the answer: unplug the amplifier, then type {UNPLUGGED}")
+                })?;
                 self.type_line(typed.trim())
             }
             _ if self.line_seconds == 0 => self.type_line(SKIP),
@@ -145,7 +129,7 @@ impl Host {
         }
     }
 
-    fn test_line(&mut self) -> Result<(), WiresError> {
+    fn test_line(&mut self) -> Result<()> {
         self.type_line(LINE_TEST)?;
         let mut test = LineTest::new();
         let (begun, length) = (Instant::now(), Duration::from_secs(self.line_seconds.into()));
@@ -175,13 +159,13 @@ impl Host {
         self.type_line("")
     }
 
-    fn type_line(&mut self, text: &str) -> Result<(), WiresError> {
+    fn type_line(&mut self, text: &str) -> Result<()> {
         self.link.write(format!("{text}\r").as_bytes())?;
         Ok(())
     }
 
     /// The next line of the board that is not empty; `None` if none ends for so long.
-    fn line(&mut self, patience: Duration) -> Result<Option<String>, WiresError> {
+    fn line(&mut self, patience: Duration) -> Result<Option<String>> {
         let begun = Instant::now();
         loop {
             while let Some(len) = line_len(&self.heard) {

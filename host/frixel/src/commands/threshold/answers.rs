@@ -4,10 +4,11 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use crate::output_file::{FileWriter, Recording};
+use anyhow::Result;
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_lab::threshold::Staircase;
 
-use super::CommandError;
+use super::OtherSession;
 
 /// The answer in a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +41,7 @@ pub(super) struct Answers {
 
 impl Answers {
     /// Begins a session, or goes on with one that was cut off if it `resumes`.
-    pub(super) fn open(recording: Option<&Recording>, resumes: bool) -> Result<Self, CommandError> {
+    pub(super) fn open(recording: Option<&Recording>, resumes: bool) -> Result<Self> {
         // A stream has no other file for what is not whole yet.
         let Some(recording) = recording.filter(|recording| recording.output().is_file()) else {
             return Ok(Self { partial: PathBuf::new(), writer: None, earlier: Vec::new() });
@@ -50,7 +51,7 @@ impl Answers {
             return Ok(Self { partial, writer: Some(recording.start()?), earlier: Vec::new() });
         }
         let (writer, text) = recording.resume()?;
-        let earlier = read(&text).map_err(|reason| CommandError::OtherSession { partial: partial.clone(), reason })?;
+        let earlier = read(&text).map_err(|reason| OtherSession { partial: partial.clone(), reason })?;
         Ok(Self { partial, writer: Some(writer), earlier })
     }
 
@@ -61,8 +62,8 @@ impl Answers {
         highest_v_rms: f64,
         observer: Option<u64>,
         staircase: &mut Staircase,
-    ) -> Result<Vec<f64>, CommandError> {
-        let other = |reason| CommandError::OtherSession { partial: self.partial.clone(), reason };
+    ) -> Result<Vec<f64>> {
+        let other = |reason| anyhow::Error::from(OtherSession { partial: self.partial.clone(), reason });
         for (answer, row) in self.earlier.iter().zip(2..) {
             let Answer { trial, highest_v_rms: found, level_db, is_right, observer: answered } = answer;
             if *answered != observer {
@@ -82,13 +83,13 @@ impl Answers {
     }
 
     /// Keeps an answer.
-    pub(super) fn add(&mut self, answer: Answer) -> Result<(), CommandError> {
+    pub(super) fn add(&mut self, answer: Answer) -> Result<()> {
         let Answer { trial, highest_v_rms, level_db, is_right, observer } = answer;
         let header = if trial == 1 { HEADER } else { "" };
         self.write(&format!("{header}{trial},{highest_v_rms},{level_db},{is_right},{}\n", who(observer)))
     }
 
-    fn write(&mut self, line: &str) -> Result<(), CommandError> {
+    fn write(&mut self, line: &str) -> Result<()> {
         let Some(writer) = &mut self.writer else { return Ok(()) };
         let written = writer.write_all(line.as_bytes()).and_then(|()| writer.flush());
         Ok(written.map_err(|source| writer.error(source))?)

@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
+use anyhow::{Result, anyhow, bail};
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
@@ -19,7 +20,8 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
 use super::answers::{Answer, Answers};
-use super::{CommandError, ThresholdArgs, experiment};
+use super::{NoThreshold, ThresholdArgs, experiment};
+use crate::commands::error::{of_finger, of_generated_stroke};
 use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{print, print_line};
 use crate::commands::waiting;
@@ -36,11 +38,7 @@ const LINES_AHEAD: usize = 64;
 const WRONG_ANSWERS_MAX: u32 = 10;
 
 /// Plays the trials on the board of the options.
-pub(super) fn measure(
-    args: &ThresholdArgs,
-    interrupt: &Interrupt,
-    answers: Answers,
-) -> Result<(Threshold, Protocol), CommandError> {
+pub(super) fn measure(args: &ThresholdArgs, interrupt: &Interrupt, answers: Answers) -> Result<(Threshold, Protocol)> {
     // Without a port, a simulated observer answers; a file of noise ends the command before.
     let port = args.port.as_deref().unwrap_or("sim");
     if port == "sim" {
@@ -48,11 +46,11 @@ pub(super) fn measure(
         let protocol = protocol(args, &config.board.limits)?;
         let stroke = protocol.stroke().and_then(|stroke| stroke.looped(0.0));
         let mut memory = BoardMemory::new();
-        let rig = Rig::new(&mut memory, &config, stroke.map_err(CommandError::GeneratedStroke)?, args.seed)?;
+        let rig = Rig::new(&mut memory, &config, stroke.map_err(of_generated_stroke)?, args.seed)?;
         let line = SimStream::new(rig, Recorder::default());
         session(args, interrupt, Device::connect(PollingLink::new(line))?, protocol, answers)
     } else if args.observer.is_some() {
-        Err(CommandError::ObserverOnBoard { port: port.to_owned() })
+        bail!("--observer answers in place of a person, and feels no board on {port}: leave --port out")
     } else {
         let device = experiment::connect(port, &["sim"], args.arm)?;
         let protocol = protocol(args, &device.hello().limits)?;
@@ -60,7 +58,7 @@ pub(super) fn measure(
     }
 }
 
-fn protocol(args: &ThresholdArgs, limits: &BoardLimits) -> Result<Protocol, CommandError> {
+fn protocol(args: &ThresholdArgs, limits: &BoardLimits) -> Result<Protocol> {
     Ok(Protocol::new(experiment::highest_voltage(args.voltage, limits)?, args.seed))
 }
 
@@ -71,9 +69,9 @@ fn session<L: RecordedLink>(
     device: Device<L>,
     protocol: Protocol,
     mut recorded: Answers,
-) -> Result<(Threshold, Protocol), CommandError> {
+) -> Result<(Threshold, Protocol)> {
     let Some(mut staircase) = Staircase::new(usize::from(args.trials)) else {
-        return Err(CommandError::NoAnswer { trial: 0 });
+        return Err(no_answer(0));
     };
     let mut random = Pcg64::seed_from_u64(args.seed);
     let mut answering = Answering::new(args.observer);
@@ -86,11 +84,11 @@ fn session<L: RecordedLink>(
         }
     }
     let hello = *device.hello();
-    let scene = protocol.scene().map_err(CommandError::Finger)?;
+    let scene = protocol.scene().map_err(of_finger)?;
     let scene = Scene::parse(&scene, "threshold", &std::collections::BTreeMap::new())?;
     let program = compile(&scene, &hello.limits, hello.tick_hz)?;
     let mut player = Player::recording(waiting::watch(device, interrupt), Recorder::default());
-    player.start(program, 0, &mut |_| ControlFlow::Continue(())).map_err(CommandError::Play)?;
+    player.start(program, 0, &mut |_| ControlFlow::Continue(()))?;
     if args.observer.is_none() {
         print_line("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")?;
         print_line("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")?;
@@ -99,7 +97,7 @@ fn session<L: RecordedLink>(
         let trial = staircase.progress().0;
         let is_second = random.next_u64() >> 63 == 1;
         let feed = Feed::of(samples(&protocol, level_db, is_second), protocol.sample_hz());
-        player.stream(feed).map_err(CommandError::Play)?;
+        player.stream(feed)?;
         print(format_args!("  {}: ", title(&staircase)))?;
         guide(&mut player, interrupt)?;
         let is_right = match &mut answering {
@@ -114,7 +112,11 @@ fn session<L: RecordedLink>(
         recorded.add(Answer { trial, highest_v_rms, level_db, is_right, observer: args.observer })?;
     }
     player.stop()?;
-    Ok((staircase.threshold().map_err(CommandError::Guessed)?, protocol))
+    Ok((staircase.threshold().map_err(NoThreshold)?, protocol))
+}
+
+fn no_answer(trial: usize) -> anyhow::Error {
+    anyhow!("the answers ended at trial {trial}: answer each trial with 1 or 2 and Enter")
 }
 
 /// Who answers.
@@ -143,7 +145,7 @@ fn ask<L: RecordedLink>(
     interrupt: &Interrupt,
     answers: &Receiver<String>,
     staircase: &Staircase,
-) -> Result<bool, CommandError> {
+) -> Result<bool> {
     let trial = staircase.progress().0;
     let mut wrong = 0;
     loop {
@@ -152,7 +154,10 @@ fn ask<L: RecordedLink>(
             Ok(line) if line.trim() == "2" => return Ok(true),
             Ok(_) if wrong + 1 == WRONG_ANSWERS_MAX => {
                 player.stop()?;
-                return Err(CommandError::WrongAnswers { trial, count: WRONG_ANSWERS_MAX });
+                bail!(
+                    "{WRONG_ANSWERS_MAX} answers to trial {trial} were neither 1 nor 2: answer each trial with 1 or 2 \
+                     and Enter"
+                );
             }
             Ok(_) => {
                 wrong += 1;
@@ -161,13 +166,13 @@ fn ask<L: RecordedLink>(
             }
             // A board whose host is silent disarms itself: serve it while the person thinks.
             Err(RecvTimeoutError::Timeout) => wait(player, interrupt, 0.0)?,
-            Err(RecvTimeoutError::Disconnected) => return Err(CommandError::NoAnswer { trial }),
+            Err(RecvTimeoutError::Disconnected) => return Err(no_answer(trial)),
         }
     }
 }
 
 /// Plays the two strokes of a trial, and shows their pace: an arrow for each part of the way.
-fn guide<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt) -> Result<(), CommandError> {
+fn guide<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt) -> Result<()> {
     for (stroke, arrow) in [("1 ", ">"), (" 2 ", "<")] {
         print(stroke)?;
         for _ in 0..ARROWS {
@@ -194,14 +199,14 @@ fn answers() -> Receiver<String> {
 }
 
 /// Lets time pass on the board. Stops it if the person wants to end.
-fn wait<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt, seconds: f64) -> Result<(), CommandError> {
+fn wait<L: RecordedLink>(player: &mut Player<L>, interrupt: &Interrupt, seconds: f64) -> Result<()> {
     let mut left = Duration::from_secs_f64(seconds);
     loop {
         if interrupt.is_requested() {
             player.stop()?;
-            return Err(CommandError::ExperimentInterrupted);
+            bail!("the run was interrupted: start it again");
         }
-        left = left.saturating_sub(player.step(left).map_err(CommandError::Play)?);
+        left = left.saturating_sub(player.step(left)?);
         if left.is_zero() {
             return Ok(());
         }
