@@ -48,8 +48,7 @@ mod tests {
     use crate::test_files::files_below;
 
     /// The crates of which no other program is made.
-    const UNPUBLISHED: [&str; 6] =
-        ["frixel-fuzz", "frixel-python", "frixel-research", "frixel-studio", "frixel-testkit", "xtask"];
+    const UNPUBLISHED: [&str; 5] = ["frixel-fuzz", "frixel-python", "frixel-studio", "frixel-testkit", "xtask"];
 
     fn name(manifest: &Value) -> &str {
         manifest["name"].as_str().unwrap()

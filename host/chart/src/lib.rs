@@ -25,7 +25,7 @@ pub use field::{Cell, Field, Raster};
 use legend::Legend;
 pub use strip::{Strip, StripCell};
 use style::{EDGE, NOTE, Scale, TITLE, WIDTH};
-pub use style::{Line, Look, Mark, PALETTE, colour, graded, signed};
+pub use style::{Line, Look, Mark, PALETTE, colour};
 
 /// Default height of a panel, including its title and axes, in pixels.
 const PANEL_HEIGHT: u32 = 360;

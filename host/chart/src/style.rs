@@ -52,23 +52,6 @@ pub fn colour(part: f64) -> RGBColor {
     ViridisRGB.get_color((part.clamp(0.0, 1.0) * COLOUR_STEPS).round() / COLOUR_STEPS)
 }
 
-/// The colour of curve `index` in an ordered family of `count` curves.
-pub fn graded(index: usize, count: usize) -> RGBColor {
-    // The bright end of the scale is too pale for a line on white.
-    colour(0.85 * index as f64 / (count.max(2) - 1) as f64)
-}
-
-/// The colour of a value from -1 to 1: orange for negative and blue for positive values, stronger for larger ones.
-pub fn signed(part: f64) -> RGBColor {
-    let (RGBColor(red, green, blue), strength) = match part {
-        part if part < 0.0 => (PALETTE[1], -part),
-        part if part > 0.0 => (PALETTE[0], part),
-        _ => return BLACK,
-    };
-    let mixed = |channel: u8| (255.0 + (f64::from(channel) - 255.0) * (0.45 + 0.55 * strength.min(1.0))).round() as u8;
-    RGBColor(mixed(red), mixed(green), mixed(blue))
-}
-
 /// The style of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
