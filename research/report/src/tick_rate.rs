@@ -65,8 +65,8 @@ fn scene(wavelength_mm: f64, carrier_hz: u32) -> String {
     format!(
         "version = 1\n\
          [screen]\nwidth_mm = 120\nheight_mm = 80\n\
-         [coating]\nthickness_um = 10\npermittivity = 1\n\
-         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [screen.coating]\nthickness_um = 10\npermittivity = 1\n\
+         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 0\n\
          [carrier]\nfrequency_hz = {carrier_hz}\n\
          [[layer]]\nkind = \"grating\"\nwavelength_mm = {wavelength_mm}\nlow_n = 0.0\nhigh_n = 0.02\n"
     )
