@@ -132,7 +132,7 @@ pub fn plan(text: &str) {
     if plan.people > COMBINED_MAX as u64 || lists > COMBINED_MAX || values > 2 * COMBINED_MAX {
         return;
     }
-    let scene = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
+    let scene = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
     let source = |name: &str| {
         Ok::<_, PlanError>(Source { name: name.to_owned(), text: scene.to_owned(), files: BTreeMap::new() })
     };

@@ -12,7 +12,7 @@ use crate::finger_law::FingerLaw;
 use crate::parameters::{range, within};
 
 /// Version of the layout of scenes.
-pub const SCENE_VERSION: u16 = 2;
+pub const SCENE_VERSION: u16 = 1;
 /// Bytes of the header.
 pub const HEADER_LEN: usize = 56;
 
@@ -87,12 +87,12 @@ pub struct Header {
     /// The host may not change the layers while the scene plays; the board refuses a change.
     pub layers_fixed: bool,
     /// The scene's largest target friction (electric friction), N: the board's table ends there, and friction above it
-    /// is counted as saturated. `None`: the table ends at the friction for the largest voltage. Since protocol 1.3.
+    /// is counted as saturated. `None`: the table ends at the friction for the largest voltage.
     ///
     /// A scene stores the upper half of the number's bits, rounded up: up to 1 % more.
     pub electric_friction_max_n: Option<f32>,
     /// The empirical law of the finger on the screen, under the normal load; `None` if radius, stiffness and gap
-    /// describe it. Since protocol 1.4.
+    /// describe it.
     pub law: Option<FingerLaw>,
 }
 

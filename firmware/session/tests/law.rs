@@ -235,12 +235,3 @@ fn the_least_friction_of_a_law_is_a_step_at_the_slew_limit() {
         }
     }
 }
-
-/// A board before protocol 1.4 does not know bit 5 of the flags. It says so, and a person reads what to do.
-#[test]
-fn a_board_before_1_4_refuses_with_a_sentence() {
-    let [.., flags] = *scene(&header(2.0, &POINTS), &[]).first_chunk::<4>().unwrap();
-    assert_eq!(flags & 1 << 5, 1 << 5);
-    let sentence = Refusal::Scene(SceneError::UnknownFlags(flags)).to_string();
-    assert!(sentence.contains("flag") && sentence.contains("firmware"), "{sentence}");
-}

@@ -11,8 +11,8 @@ use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardLimits, notice};
 use frixel_wire::message::{Command, Refusal};
 use proptest::prelude::*;
+use support::TestBoard;
 use support::flash::{Operations, PAGE_LEN, SimulatedFlash};
-use support::{TestBoard, constant_scene};
 
 const SLOT: Slot = Slot { first_page: 1 };
 const PAGES: usize = 4;
@@ -153,49 +153,28 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
 
     // Above a ceiling, under the version of a build that has ceilings.
     let mut bytes = write_limits(&high, lifted).unwrap();
-    bytes[0] = 3;
+    bytes[0] = 1;
     assert_eq!(load(&flash_with(&[&bytes], false), in_force), (built_in, refused));
 
     let mut board = TestBoard::of(Board { notices: refused, ..Board::SIMULATOR });
     assert_eq!(board.hello().notices, refused);
 }
 
-/// A copy as older firmware stored scenes: magic, sequence number, length and CRC-32 of the content, CRC-32 of the
-/// header, and the content, which begins with the scene's length.
-fn stored_by_older_firmware(scene: &[u8]) -> Vec<u8> {
-    use frixel_wire::frame::crc32;
-    let content = [&(scene.len() as u64).to_le_bytes(), scene].concat();
-    let words = [1, content.len() as u32, crc32(&content)].map(u32::to_le_bytes).concat();
-    let head = [b"fxs1", &words[..]].concat();
-    [&head, &crc32(&head).to_le_bytes()[..], &[0xff; 4], &content].concat()
-}
-
-/// Wherever it lies, in the pages of the limits, too.
+/// In the pages of the limits they are a notice, elsewhere nothing.
 #[test]
-fn a_scene_that_older_firmware_has_stored_is_ignored() {
-    let bytes = stored_by_older_firmware(&constant_scene(0.02));
-    for page in 0..PAGES {
-        let mut flash = SimulatedFlash::new(PAGES, true);
-        flash.bytes[page * PAGE_LEN..][..bytes.len()].copy_from_slice(&bytes);
-        let board = Board::NUCLEO_G474RE;
-        let (limits, notices) = load_limits(Some(&flash), SLOT, &board.limits, Ceilings::InForce);
-        // In the pages of the limits, it may be limits that this build cannot read.
-        let is_of_limits = (page as u32).wrapping_sub(SLOT.first_page) < 2;
-        let expected = if is_of_limits { notice::STORED_LIMITS_REFUSED } else { 0 };
-        assert_eq!((limits, notices), (board.limits, expected));
-        let mut board = TestBoard::of(Board { limits, notices, ..board });
-        board.ticks(board_second());
-        let hello = board.hello();
-        assert_eq!((hello.state, hello.scene_crc32, hello.notices), (State::Disarmed, 0, expected));
-        board.command(Command::Arm).unwrap();
-        assert_eq!(board.command(Command::Play), Err(Refusal::NoScene));
-        board.ticks(board_second());
-        assert_eq!(board.status().telemetry.state, State::Disarmed, "an armed board needs its host");
+fn bytes_of_another_layout_are_never_limits() {
+    let built_in = Board::NUCLEO_G474RE.limits;
+    let mut copy = first_copy(&write_limits(&built_in, Ceilings::InForce).unwrap());
+    copy[3] += 1;
+    for bytes in [&copy[..], b"another program's settings"] {
+        for page in 0..PAGES {
+            let mut flash = SimulatedFlash::new(PAGES, true);
+            flash.bytes[page * PAGE_LEN..][..bytes.len()].copy_from_slice(bytes);
+            let is_of_limits = (page as u32).wrapping_sub(SLOT.first_page) < 2;
+            let notices = if is_of_limits { notice::STORED_LIMITS_REFUSED } else { 0 };
+            assert_eq!(load_limits(Some(&flash), SLOT, &built_in, Ceilings::InForce), (built_in, notices), "{page}");
+        }
     }
-}
-
-fn board_second() -> u32 {
-    Board::NUCLEO_G474RE.tick_hz
 }
 
 #[test]

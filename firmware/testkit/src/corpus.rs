@@ -11,7 +11,7 @@
 //! Each scene begins with
 //!
 //! ```toml scene.toml
-//! version = 2
+//! version = 1
 //! ```
 //!
 //! ## A misspelt kind

@@ -15,7 +15,7 @@ proptest! {
         carrier in 0..4u8,
         max in prop::array::uniform2(0..3u8),
     ) {
-        bytes[..4].copy_from_slice(&[2, 0, flags % 3, flags]);
+        bytes[..4].copy_from_slice(&[1, 0, flags % 3, flags]);
         let mut header = [0; HEADER_LEN];
         header[..32].copy_from_slice(&bytes);
         header[52] = carrier;

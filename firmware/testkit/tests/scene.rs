@@ -24,8 +24,8 @@ fn changed(at: usize, value: u8) -> Vec<u8> {
 
 #[test]
 fn another_version_is_refused_whatever_its_length() {
-    assert_eq!(refused(&changed(0, 1)), SceneError::Version { found: 1 });
-    assert_eq!(refused(&changed(1, 1)), SceneError::Version { found: 0x0102 });
+    assert_eq!(refused(&changed(0, 2)), SceneError::Version { found: 2 });
+    assert_eq!(refused(&changed(1, 1)), SceneError::Version { found: 0x0101 });
     assert_eq!(refused(&[3, 0]), SceneError::Version { found: 3 });
 }
 

@@ -74,8 +74,8 @@ pub enum Fault {
     Watchdog,
     /// The arm switch was released while armed or playing.
     ArmSwitch,
-    /// The configuration read back from the DAC before arming or playing was wrong. Since protocol 1.3; the fault's
-    /// detail is the control register as read.
+    /// The configuration read back from the DAC before arming or playing was wrong. The fault's detail is the
+    /// control register as read.
     Dac,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),

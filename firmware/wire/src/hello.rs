@@ -17,8 +17,8 @@ pub use compatibility::Mismatch;
 pub const MAGIC: [u8; 4] = *b"FRXL";
 /// Major protocol version of this crate, incremented by incompatible changes.
 pub const PROTOCOL_MAJOR: u8 = 1;
-/// Minor protocol version of this crate, incremented by additions that an older peer may ignore.
-pub const PROTOCOL_MINOR: u8 = 4;
+/// Minor protocol version of this crate, incremented by additions that a peer may ignore.
+pub const PROTOCOL_MINOR: u8 = 0;
 /// Maximum length of a hello of any protocol, in bytes.
 pub const HELLO_MAX_LEN: usize = 128;
 /// Length of the hello that this crate writes, in bytes.
@@ -55,12 +55,11 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
-    /// What a person should know before playing ([`notice`]), encoded after the limits. Zero on boards of protocols
-    /// before 1.4.
+    /// What a person should know before playing ([`notice`]), encoded after the limits.
     pub notices: u8,
 }
 
-/// Bits of [`Hello::notices`]: what a person should know of a board before playing. Since protocol 1.4.
+/// Bits of [`Hello::notices`]: what a person should know of a board before playing.
 pub mod notice {
     /// The processor's option bytes are not those that the board needs, such as the brown-out level and the start of
     /// the watchdog. The board refuses to arm ([`Refusal::OptionBytes`](crate::message::Refusal::OptionBytes)).
@@ -116,7 +115,7 @@ pub mod feature {
     pub const STREAM: u32 = 1 << 9;
     /// Polygons as regions.
     pub const POLYGON: u32 = 1 << 10;
-    /// Empirical laws of fingers. Since protocol 1.4.
+    /// Empirical laws of fingers.
     pub const EMPIRICAL: u32 = 1 << 13;
 
     /// The name of each feature that is no kind of layer: that of the board's Cargo feature, where there is one.
@@ -138,9 +137,9 @@ pub enum BoardKind {
     NucleoG474re,
     /// Emulated Cortex-M4F.
     Mps2An386,
-    /// Raspberry Pi Pico (RP2040) with amplifier and electrode, or its emulation. Since protocol 1.4.
+    /// Raspberry Pi Pico (RP2040) with amplifier and electrode, or its emulation.
     Pico,
-    /// Raspberry Pi Pico 2 (RP2350) with amplifier and electrode. Since protocol 1.4.
+    /// Raspberry Pi Pico 2 (RP2350) with amplifier and electrode.
     Pico2,
     /// A kind that this crate does not know, by number.
     Other(u8),
@@ -305,9 +304,9 @@ pub struct BoardLimits {
     pub tick_cycles_max: u32,
     /// Resistance between the amplifier and the electrode, Ohm. It bounds the current through a person whom no coating
     /// protects, and with it the peak voltage at each carrier frequency (`frixel_model::TouchBound`). Infinite on a
-    /// board that nobody can touch, such as a simulated one. Since protocol 1.4; boards before it have no such bound.
+    /// board that nobody can touch, such as a simulated one.
     pub series_resistance_ohm: f32,
-    /// The core whose cycles [`Self::tick_cycles_max`] are. Since protocol 1.4; boards before it have a Cortex-M4F.
+    /// The core whose cycles [`Self::tick_cycles_max`] are.
     pub core: Core,
 }
 
@@ -318,7 +317,6 @@ impl BoardLimits {
     pub const SMALLEST_TICK_CYCLES_MAX: u32 = 2_550;
 
     /// Defaults for limits that a hello omits: no scene can be played, and the host may send one frame at a time.
-    /// Boards of protocols before 1.3 omit [`Self::tick_cycles_max`]; its default is the smallest board's.
     pub const UNSTATED: Self = Self {
         bitmap_pool_bytes: 0,
         records_max: 0,
@@ -330,7 +328,7 @@ impl BoardLimits {
         current_max_a_rms: 0.0,
         current_max_a_peak: 0.0,
         touch_report_period_s: 0.0,
-        tick_cycles_max: Self::SMALLEST_TICK_CYCLES_MAX,
+        tick_cycles_max: 0,
         series_resistance_ohm: f32::INFINITY,
         core: Core::CortexM4f,
     };

@@ -116,8 +116,7 @@ pub enum Command {
         /// The finger's number.
         finger: u8,
     },
-    /// Reads how long the ticks have taken. The board answers [`Accepted::TickTimes`]. Since protocol 1.4; refused by
-    /// a board without telemetry.
+    /// Reads how long the ticks have taken. The board answers [`Accepted::TickTimes`]; one without telemetry refuses.
     TickTimes,
 }
 
@@ -199,7 +198,7 @@ pub enum Accepted {
         /// The text, padded with zeros.
         bytes: [u8; FAULT_TEXT_PIECE_LEN],
     },
-    /// How long the ticks have taken. Since protocol 1.4.
+    /// How long the ticks have taken.
     TickTimes(TickTimes),
 }
 

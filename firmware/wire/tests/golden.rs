@@ -10,7 +10,7 @@ use std::path::Path;
 use frixel_testkit::golden;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
-use frixel_wire::hello::{BoardKind, PROTOCOL_MAJOR, PROTOCOL_MINOR, ResetCause};
+use frixel_wire::hello::{BoardKind, ResetCause};
 use frixel_wire::message::{Accepted, Answer, Command, ConfigField, FromBoard, Refusal, Telemetry};
 use frixel_wire::payload::{PAYLOAD_MAX_LEN, Payload};
 use frixel_wire::scene::SceneError;
@@ -134,8 +134,7 @@ fn one_call_frames_are_the_same() {
     use frixel_wire::payload::{
         chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame, samples_frame,
     };
-    let older = |payload: &Payload| matches!(payload, Payload::HelloRequest { protocol } if *protocol != (PROTOCOL_MAJOR, PROTOCOL_MINOR));
-    for payload in samples::from_host().into_iter().chain(samples::from_board()).filter(|payload| !older(payload)) {
+    for payload in samples::from_host().into_iter().chain(samples::from_board()) {
         let mut direct = [0; FRAME_MAX_LEN];
         let direct = match payload {
             Payload::HelloRequest { .. } => hello_request_frame(&mut direct),

@@ -55,7 +55,6 @@ fn examples_are_frames_and_can_be_read() {
     assert!(examples > 0 && examples == PROTOCOL.matches("\n    frame ").count(), "{examples}");
 }
 
-/// Two pages of an older version had an example each.
 #[test]
 fn examples_of_the_hello_request_have_the_version_of_the_page() {
     let title = PROTOCOL.lines().next().unwrap();

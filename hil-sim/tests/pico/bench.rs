@@ -19,10 +19,10 @@ pub(super) const TICK: Duration = Duration::from_micros(1_000_000 / BOARD.tick_h
 const SWITCH_TIME: Duration = Duration::from_millis(50);
 
 /// The friction of a scene that most tests play.
-pub(super) const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n";
+pub(super) const CONSTANT: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n";
 
 /// Stripes as wide as a finger tells apart, from nothing to nearly all that the board can give.
-pub(super) const GRATING: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\n\
+pub(super) const GRATING: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\n\
      low_n = 0.0\nhigh_fraction = 0.9\n";
 
 /// A host with nothing but a serial line.

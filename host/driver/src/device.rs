@@ -222,9 +222,9 @@ impl<L: Link> Device<L> {
         Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
-    /// How long the board's ticks have taken; `None` if the board does not measure it, or is too old to be asked.
+    /// How long the board's ticks have taken; `None` if the board does not measure it.
     pub fn tick_times(&mut self) -> Result<Option<TickTimes>, DeviceError> {
-        if self.hello.protocol < (1, 4) || self.hello.features & feature::TELEMETRY == 0 {
+        if self.hello.features & feature::TELEMETRY == 0 {
             return Ok(None);
         }
         match self.exchange.request(Command::TickTimes)? {

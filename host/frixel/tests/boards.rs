@@ -81,7 +81,7 @@ fn but_for_the_tick(board: &Board) -> BoardLimits {
 #[test]
 fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
     let board = Board::PICO;
-    let with = |layer: &str| format!("version = 2\n[[layer]]\n{layer}");
+    let with = |layer: &str| format!("version = 1\n[[layer]]\n{layer}");
     let grating = with("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.02\n");
     let noise = with("kind = \"noise\"\nwavelength_min_mm = 1\nwavelength_max_mm = 4\nlow_n = 0\nhigh_n = 0.02\n");
     let limits = but_for_the_tick(&board);

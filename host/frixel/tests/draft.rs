@@ -10,8 +10,8 @@ use tempfile::TempDir;
 
 use crate::processes::run;
 
-const OUT_OF_REACH: &str = "version = 2\n[[layer]]\nname = \"hot\"\nkind = \"constant\"\nfriction_n = 0.9\n";
-const IN_REACH: &str = "version = 2\n[[layer]]\nname = \"warm\"\nkind = \"constant\"\nfriction_n = 0.3\n";
+const OUT_OF_REACH: &str = "version = 1\n[[layer]]\nname = \"hot\"\nkind = \"constant\"\nfriction_n = 0.9\n";
+const IN_REACH: &str = "version = 1\n[[layer]]\nname = \"warm\"\nkind = \"constant\"\nfriction_n = 0.3\n";
 const REFUSAL: &str =
     "5:14: layer 1 \"hot\" asks for up to 0.9 N in total, and at 150 V rms this finger feels at most 0.3799 N";
 
@@ -78,14 +78,14 @@ fn every_output_of_a_draft_says_so() {
 #[test]
 fn what_a_board_has_no_time_or_room_for_plays_as_a_draft() {
     let noise = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 4\nlow_n = 0\nhigh_n = 0.01\n";
-    let folder = folder_with(&format!("version = 2\n{}", noise.repeat(5)));
+    let folder = folder_with(&format!("version = 1\n{}", noise.repeat(5)));
     let play = run(folder.path(), &["play", "scene.toml", "--seconds", "0.3"]);
     assert_eq!(play.status.code(), Some(0), "{}", text(&play.stderr));
     assert!(text(&play.stderr).contains("and the board has time for 2550"), "{}", text(&play.stderr));
 
     let brick = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/textures/brick.png");
     fs::copy(brick, folder.path().join("brick.png")).unwrap();
-    let picture = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\npitch_mm = 0.1\n";
+    let picture = "version = 1\n[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\npitch_mm = 0.1\n";
     fs::write(folder.path().join("scene.toml"), picture).unwrap();
     let play = run(folder.path(), &["play", "scene.toml", "--seconds", "0.3"]);
     assert_eq!(play.status.code(), Some(0), "{}", text(&play.stderr));

@@ -15,7 +15,7 @@ use rustix::fs::{CWD, FileType, Mode, mknodat};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
-const SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
+const SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
@@ -89,12 +89,12 @@ fn a_pipe_or_a_device_in_place_of_a_file_is_one_sentence() {
     let path = folder.path();
     pipe(&path.join("pipe"));
     pipe(&path.join("pipe.toml"));
-    let with = |line: &str| format!("version = 2\n{line}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+    let with = |line: &str| format!("version = 1\n{line}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
     fs::write(path.join("include.toml"), with("include = [\"pipe.toml\"]")).unwrap();
     fs::write(path.join("zero.toml"), with("include = [\"/dev/zero\"]")).unwrap();
     fs::write(path.join("finger.toml"), with("finger = \"pipe.toml\"")).unwrap();
     let bitmap =
-        "version = 2\n[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0.3\nwhite_n = 0.4\n";
+        "version = 1\n[[layer]]\nkind = \"bitmap\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 50\nblack_n = 0.3\nwhite_n = 0.4\n";
     fs::write(path.join("picture.toml"), format!("{bitmap}picture = \"pipe\"\n")).unwrap();
     for (arguments, what) in [
         (&["play", "pipe"][..], "pipe"),
@@ -129,7 +129,7 @@ fn a_file_of_8_gb_is_refused_with_both_numbers() {
     for name in ["big.csv", "big.toml", "big.wav", "big.png"] {
         File::create(path.join(name)).unwrap().set_len(8_000_000_000).unwrap();
     }
-    let stream = "version = 2\n[[layer]]\nkind = \"stream\"\nlow_n = 0.3\nhigh_n = 0.4\n";
+    let stream = "version = 1\n[[layer]]\nkind = \"stream\"\nlow_n = 0.3\nhigh_n = 0.4\n";
     fs::write(path.join("stream.toml"), stream).unwrap();
     for arguments in [
         &["play", "big.toml"][..],
@@ -174,7 +174,7 @@ fn ten_wrong_answers_end_a_threshold() {
 #[test]
 fn a_list_of_mistakes_stops_at_100() {
     let folder = folder();
-    let mut scene = "version = 2\n".to_owned();
+    let mut scene = "version = 1\n".to_owned();
     for layer in 0..4_000 {
         writeln!(scene, "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nwrong_{layer} = 1").unwrap();
     }

@@ -61,8 +61,8 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
     let text = format!(
         "version = 1\n\
          [screen]\nwidth_mm = 120\nheight_mm = 80\n\
-         [coating]\nthickness_um = 5\npermittivity = 1\n\
-         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+         [screen.coating]\nthickness_um = 5\npermittivity = 1\n\
+         [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 0\n\
          [[layer]]\nkind = \"grating\"\nwavelength_mm = {wavelength_mm}\nlow_n = 0.0\nhigh_n = {SWING_N}\n"
     );
     let scene = Scene::parse(&text, "the texture", &BTreeMap::new()).unwrap();

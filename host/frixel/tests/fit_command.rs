@@ -128,7 +128,7 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
     let profile = FingerProfile::parse(&text, "z.toml").unwrap();
     assert!(matches!(profile.evidence, Evidence::Empirical { .. }));
     let scene =
-        "version = 2\nfinger = \"z.toml\"\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
+        "version = 1\nfinger = \"z.toml\"\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
     assert!(succeed(folder.path(), &["scene", "check", "scene.toml"]).contains("empirical"));
     succeed(folder.path(), &["play", "scene.toml", "--out", "out", "--ideal"]);

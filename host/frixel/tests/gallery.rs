@@ -72,7 +72,7 @@ impl Entry {
     /// percentile while the finger slides, in Weber steps.
     fn contrast_steps(&self, finger: &str) -> f64 {
         let rig = RigConfig::default();
-        let scene = self.scene.clone().with_finger(FingerProfile::bundled(finger).unwrap(), finger).unwrap();
+        let scene = self.scene.clone().with_finger(FingerProfile::bundled(finger).unwrap(), finger);
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("under the {finger} finger: {error}"));
         let stroke = default_stroke(&program, None).unwrap();

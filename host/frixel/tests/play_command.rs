@@ -104,7 +104,7 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
 }
 
 /// A scene that adds 2 mN to the example finger's 250 mN everywhere.
-const CONSTANT: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.252\n";
+const CONSTANT: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.252\n";
 
 /// The JSON summary of a play of [`CONSTANT`].
 fn play_constant(folder: &Path, options: &[&str]) -> serde_json::Value {
@@ -202,17 +202,6 @@ fn the_summary_says_which_world_was_simulated() {
     let said = play(&["--ideal", "--finger-seed", "7"]);
     assert!(said.contains("  world            ideal: no load changes, noise,"), "{said}");
     assert!(said.contains("  finger           random person 7, assumed;"), "{said}");
-}
-
-#[test]
-fn a_person_cannot_be_drawn_where_the_finger_is_fixed() {
-    let folder = TempDir::new().unwrap();
-    let scene = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[finger]\nfriction_coefficient = 0.5\n\
-                 normal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
-                 [coating]\nthickness_um = 5\npermittivity = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.252\n";
-    fs::write(folder.path().join("old.toml"), scene).unwrap();
-    succeed(folder.path(), &["play", "old.toml", "--seconds", "0.1"]);
-    refuse(folder.path(), &["play", "old.toml", "--finger-seed", "1"], &["version 1", "frixel scene migrate"]);
 }
 
 #[test]

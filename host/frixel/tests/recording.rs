@@ -13,10 +13,10 @@ use tempfile::TempDir;
 use crate::processes::{frixel, repository, run, succeed};
 
 /// A scene with a picture, a finger and a part of its own.
-const SCENE: &str = "version = 2\ninclude = [\"parts/part.toml\"]\n[[layer]]\nname = \"wall\"\nkind = \"bitmap\"\n\
+const SCENE: &str = "version = 1\ninclude = [\"parts/part.toml\"]\n[[layer]]\nname = \"wall\"\nkind = \"bitmap\"\n\
                      picture = \"brick.png\"\nx_mm = 10\ny_mm = 5\nwidth_mm = 100\npitch_mm = 0.4\nlive = true\n\
                      black_fraction = 0.2\nwhite_fraction = 0.6\n";
-const PART: &str = "version = 2\n[[layer]]\nname = \"button\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
+const PART: &str = "version = 1\n[[layer]]\nname = \"button\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
                     live = true\nstart = \"off\"\n";
 
 fn folder() -> TempDir {
@@ -191,7 +191,7 @@ fn every_line_of_a_play_is_carried_out_again() {
     for lines in plays {
         for rate in ["--csv-hz 40000", "--csv-hz 1000 --finger moist"] {
             let folder = folder();
-            fs::write(folder.path().join("broken.toml"), "version = 2\n[[layer]]\nkind = \"constnat\"\n").unwrap();
+            fs::write(folder.path().join("broken.toml"), "version = 1\n[[layer]]\nkind = \"constnat\"\n").unwrap();
             fs::write(folder.path().join("wall.toml"), SCENE.replace("0.6", "0.4")).unwrap();
             let line = format!("play scene.toml --control --seconds 0.3 {rate} --record a.parquet");
             fed(folder.path(), &line, lines.as_bytes());
@@ -203,7 +203,7 @@ fn every_line_of_a_play_is_carried_out_again() {
 }
 
 /// A scene with a stream layer.
-const STREAMED: &str = "version = 2\n[[layer]]\nname = \"voice\"\nkind = \"stream\"\nlow_n = 0.01\nhigh_n = 0.09\n\
+const STREAMED: &str = "version = 1\n[[layer]]\nname = \"voice\"\nkind = \"stream\"\nlow_n = 0.01\nhigh_n = 0.09\n\
                         live = true\n";
 
 /// Two bytes for each sample, little-endian: a rough texture.

@@ -207,8 +207,8 @@ fn section(name: &str) -> &'static str {
 
 /// Layers on a screen, compiled for the simulated board.
 fn compiled(layers: &str) -> Result<Program, CompileError> {
-    let head = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
-                [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n";
+    let head = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[screen.coating]\nthickness_um = 10\npermittivity = 1\n\
+                [finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 0\n";
     let board = RigConfig::default().board;
     compile(&Scene::parse(&format!("{head}{layers}"), "a scene", &BTreeMap::new())?, &board.limits, board.tick_hz)
 }
@@ -341,7 +341,7 @@ fn a_report_is_about_the_scene_and_the_finger_that_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("two.toml");
     let constant = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.25\n";
-    fs::write(&scene, format!("version = 2\n{}", constant.repeat(2))).unwrap();
+    fs::write(&scene, format!("version = 1\n{}", constant.repeat(2))).unwrap();
     let files = made(&folder.path().join("out"), &[&scene.display().to_string(), "--finger", "dry"]);
     let page = &files["index.html"];
     let answer = answers(page)[2];
@@ -393,7 +393,7 @@ fn every_way_is_as_far_off_as_it_has_to_be() {
 fn a_scene_of_an_empirical_finger_has_a_report() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.toml");
-    let text = "version = 2\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
+    let text = "version = 1\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
                 \"2026-11-23\", method = \"load cell\", screen = \"example\", exponent = 2, points = [[120, 0.09]], \
                 intervals_n = [[0.08, 0.1]] }\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
     fs::write(&scene, text).unwrap();

@@ -177,7 +177,7 @@ fn draft(text: &str, finger: &str, drive: &Drive) -> Program {
     };
     let pictures = SceneFolder(repository().join("scenes"));
     let scene = Scene::parse(&text, "scene.toml", &pictures).unwrap();
-    let scene = scene.with_finger(FingerProfile::bundled(finger).unwrap(), finger).unwrap();
+    let scene = scene.with_finger(FingerProfile::bundled(finger).unwrap(), finger);
     let program = compile_draft(&scene, &drive.limits, Board::NUCLEO_G474RE.tick_hz).unwrap();
     let is_bounded = drive.limits.series_resistance_ohm.is_finite();
     let bound = TouchBound::behind(drive.limits.series_resistance_ohm).voltage_max_v_peak(drive.carrier_hz as f32);
@@ -190,7 +190,7 @@ fn fingers() -> String {
     let mut text = format!("| drive | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
     for drive in drives() {
         let steps = names.map(|finger| {
-            let scene = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n";
+            let scene = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n";
             let reach = draft(scene, finger, &drive).reach;
             format!("{:.2}", weber_steps(reach.natural_friction_n, reach.friction_max_n()))
         });

@@ -55,7 +55,7 @@ fn targets_in_reach_are_printed_in_reach() {
     let files = Files::new();
     for voltage_v_rms in [90, 100, 110, 120, 130, 140, 150] {
         let text = format!(
-            "version = 2\n[drive]\nvoltage_max_v_rms = {voltage_v_rms}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n"
+            "version = 1\n[drive]\nvoltage_max_v_rms = {voltage_v_rms}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n"
         );
         let summary = succeed(&repository(), &["scene", "check", &files.write("whole.toml", &text)]);
         let most = |name: &str| -> f64 {
@@ -218,10 +218,10 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
         path.extension().is_some_and(|extension| extension == "toml").then(|| path.display().to_string())
     });
     let stream = "[carrier]\nshape = \"sine\"\n[[layer]]\nkind = \"stream\"\nlow_n = 0\nhigh_n = 0.01\n";
-    let empirical = "version = 2\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
+    let empirical = "version = 1\nfinger = { friction_coefficient = 0.4, normal_load_n = 0.5, origin = \"empirical\", date = \
         \"2026-11-23\", method = \"load cell\", screen = \"example\", exponent = 2, points = [[150, 0.09]], intervals_n = \
         [[0.08, 0.1]] }\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.21\n";
-    let drift = "version = 2\n[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 10\ndrift_mm_per_s = 20\n\
+    let drift = "version = 1\n[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 10\ndrift_mm_per_s = 20\n\
         low_n = 0\nhigh_n = 0.02\nabove = \"natural\"\n";
     let mut found: Vec<String> = Vec::new();
     let written = [files.scene(stream), files.write("empirical.toml", empirical), files.write("drift.toml", drift)];
@@ -270,7 +270,7 @@ fn wrong_input_is_said_as_play_says_it() {
     assert!(message.contains(":21:1: unknown field `friction_nn` in layer 2 (constant); did you mean `friction_n`?"));
     assert!(
         refused(&["scene", "check", &empty])
-            .ends_with(":1:1: the scene has no `version`: write `version = 2` at the top\n")
+            .ends_with(":1:1: the scene has no `version`: write `version = 1` at the top\n")
     );
     assert!(refused(&["scene", "check", &binary]).contains("not UTF-8"));
     assert!(!Path::new(&files.path("map.png")).exists());
@@ -279,7 +279,7 @@ fn wrong_input_is_said_as_play_says_it() {
 #[test]
 fn a_scene_is_checked_under_the_finger_of_an_option() {
     let files = Files::new();
-    let short = files.write("short.toml", "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+    let short = files.write("short.toml", "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
     let natural_n = |options: &[&str]| {
         let json = succeed(&repository(), &[&["scene", "check", &short, "--json"], options].concat());
         let check: Value = serde_json::from_str(&json).unwrap();
@@ -299,26 +299,6 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
     let broken = files.write("broken.toml", "friction_coefficient = 42\n");
     let message = refused(&["scene", "check", &short, "--finger", &broken]);
     assert!(message.contains("broken.toml:1:24: `friction_coefficient = 42` is out of range: expected 0.001 to 10"));
-    let old = files.scene("");
-    let message = refused(&["scene", "check", &old, "--finger", "dry"]);
-    assert!(message.contains(&format!("`frixel scene migrate {old}` prints it as version 2")), "{message}");
-}
-
-#[test]
-fn a_scene_of_version_one_is_migrated_to_the_same_friction() {
-    let files = Files::new();
-    let old = files.scene(&constant("friction_n = 0.26"));
-    let new = files.write("new.toml", succeed(&repository(), &["scene", "migrate", &old]));
-    let written = files.path("written.toml");
-    succeed(&repository(), &["scene", "migrate", &old, "-o", &written]);
-    assert_eq!(fs::read(&written).unwrap(), fs::read(&new).unwrap());
-    let reach = |scene: &str| {
-        let check: Value = serde_json::from_str(&succeed(&repository(), &["scene", "check", scene, "--json"])).unwrap();
-        check["reach"].clone()
-    };
-    assert_eq!(reach(&old), reach(&new));
-    let message = refused(&["scene", "migrate", &new]);
-    assert!(message.ends_with(":1:11: this scene has version 2 already: there is nothing to migrate\n"), "{message}");
 }
 
 /// Pixels of the rows that a map of 300 by 200 pixels lies in; the caption is below them.

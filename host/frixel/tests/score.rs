@@ -44,7 +44,7 @@ fn an_output_forced_to_zero_keeps_nothing() {
 /// The finger's own noise and load changes are no contrast of the scene.
 #[test]
 fn a_scene_of_nothing_has_no_contrast() {
-    let text = "version = 2\n[[layer]]\nkind = \"constant\"\nlive = true\nfriction_fraction = 0.0\n";
+    let text = "version = 1\n[[layer]]\nkind = \"constant\"\nlive = true\nfriction_fraction = 0.0\n";
     let scene = Scene::parse(text, "nothing.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
     let rig = RigConfig::default();
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
@@ -115,7 +115,7 @@ fn lines(scene: &str, more: &[&str]) -> Vec<(String, String)> {
 /// A plate is one friction everywhere: there are no ratios to its changes, and nothing to notice.
 #[test]
 fn a_plate_has_no_ratios_and_is_not_noticed() {
-    let lines = lines("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n", &["--people", "2"]);
+    let lines = lines("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n", &["--people", "2"]);
     let names: Vec<&str> = lines.iter().map(|(name, _)| name.as_str()).collect();
     for ratio in ["error, 0 to 400 Hz", "correlation, 0 to 400 Hz", "contrast kept", "delay", "peak dF/dt kept"] {
         assert!(!names.contains(&ratio), "{lines:?}");
@@ -131,7 +131,7 @@ fn a_plate_has_no_ratios_and_is_not_noticed() {
 fn levels_are_told_apart_as_far_as_they_differ() {
     let plates = |fraction: f64| {
         format!(
-            "version = 2\n[[layer]]\nname = \"left\"\nkind = \"constant\"\n\
+            "version = 1\n[[layer]]\nname = \"left\"\nkind = \"constant\"\n\
              region = {{ x_mm = 0, y_mm = 0, width_mm = 60, height_mm = 80 }}\nfriction_fraction = {fraction}\n\
              [[layer]]\nname = \"right\"\nkind = \"constant\"\n\
              region = {{ x_mm = 60, y_mm = 0, width_mm = 60, height_mm = 80 }}\nfriction_fraction = 1\n"

@@ -236,9 +236,8 @@ mod command {
 
     const SCENE: &str = r#"
 version = 1
-screen = { width_mm = 120, height_mm = 80 }
-coating = { thickness_um = 10, permittivity = 1 }
-finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }
+screen = { width_mm = 120, height_mm = 80, coating = { thickness_um = 10, permittivity = 1 } }
+finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, skin_gap_um = 0 }
 [[layer]]
 kind = "stream"
 low_n = 0.002

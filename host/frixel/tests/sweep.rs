@@ -7,7 +7,7 @@ use std::process::Command;
 
 use tempfile::TempDir;
 
-const SCENE: &str = "version = 2\n[[layer]]\nname = \"plate\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
+const SCENE: &str = "version = 1\n[[layer]]\nname = \"plate\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
                      region = { x_mm = 20, y_mm = 10, width_mm = 80, height_mm = 60 }\n";
 const PLAN: &str = "scenes = [\"plate.toml\"]\npeople = 3\nstrokes = 2\nseeds = 1\nseconds = 0.6\n\
                     [parameters]\n\"layer.1.friction_fraction\" = [0.02, 0.9]\n";

@@ -29,7 +29,7 @@ fn clean(output: &Output) -> String {
 }
 
 fn layer(line: &str) -> String {
-    format!("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n{line}\n")
+    format!("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n{line}\n")
 }
 
 #[test]
@@ -85,8 +85,8 @@ fn check_notes_the_files_outside_of_the_scene_s_folder() {
     let folder = TempDir::new().unwrap();
     let inner = folder.path().join("inner");
     fs::create_dir(&inner).unwrap();
-    fs::write(folder.path().join("outer.toml"), "version = 2\n").unwrap();
-    fs::write(inner.join("own.toml"), "version = 2\n").unwrap();
+    fs::write(folder.path().join("outer.toml"), "version = 1\n").unwrap();
+    fs::write(inner.join("own.toml"), "version = 1\n").unwrap();
     fs::write(inner.join("scene.toml"), format!("include = [\"../outer.toml\", \"own.toml\"]\n{}", layer(""))).unwrap();
     let printed = clean(&run(&inner, &["scene", "check", "scene.toml"]));
     let notes: Vec<&str> = printed.lines().filter(|line| line.contains("outside of the scene's folder")).collect();

@@ -251,9 +251,8 @@ fn a_scene_plays_through_a_real_serial_port() {
 
 const STREAM_SCENE: &str = r#"
 version = 1
-screen = { width_mm = 120, height_mm = 110 }
-coating = { thickness_um = 10, permittivity = 1 }
-finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }
+screen = { width_mm = 120, height_mm = 110, coating = { thickness_um = 10, permittivity = 1 } }
+finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, skin_gap_um = 0 }
 drive = { host_timeout_ms = 1000 }
 [[layer]]
 kind = "stream"

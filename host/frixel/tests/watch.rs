@@ -69,8 +69,8 @@ fn write_stroke(path: &Path) {
 /// The same total friction everywhere, and the longest host timeout that there is: on a busy machine pings are late.
 fn scene(friction: &str) -> String {
     format!(
-        "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\npermittivity = 1\n\
-         [drive]\nhost_timeout_ms = 1000\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\n\
+        "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[screen.coating]\nthickness_um = 10\npermittivity = 1\n\
+         [drive]\nhost_timeout_ms = 1000\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 0\n\
          [[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n"
     )
 }
@@ -191,10 +191,10 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
 fn an_included_file_is_followed() {
     let folder = TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name);
-    let part = |friction: &str| format!("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n");
+    let part = |friction: &str| format!("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n");
     fs::create_dir(path("parts")).unwrap();
     fs::write(path("parts/flat.toml"), part("0.26")).unwrap();
-    let text = "version = 2\ninclude = [\"parts/flat.toml\"]\n[drive]\nhost_timeout_ms = 1000\n";
+    let text = "version = 1\ninclude = [\"parts/flat.toml\"]\n[drive]\nhost_timeout_ms = 1000\n";
     fs::write(path("scene.toml"), text).unwrap();
     let (mut board, port) = virtual_board(folder.path(), &[]);
     let mut client = watching_client(folder.path(), &port);
@@ -248,7 +248,7 @@ fn a_saved_scene_plays_anew_on_the_simulator() {
     until("the first play", || summary().contains("\"draft\":false") && said().contains("plays anew when it is saved"));
     fs::write(&path, scene("0.9")).unwrap();
     until("a draft", || summary().contains("\"draft\":true"));
-    fs::write(&path, "version = 2\n[[layer]]\nkind = \"constat\"\n").unwrap();
+    fs::write(&path, "version = 1\n[[layer]]\nkind = \"constat\"\n").unwrap();
     until("a mistake", || said().contains("scene.toml is not played: the files in out stay"));
     assert!(said().contains("did you mean `constant`?") && summary().contains("\"draft\":true"), "{}", said());
     fs::write(&path, scene("0.26")).unwrap();

@@ -20,7 +20,7 @@ use frixel_play::Player;
 use frixel_scene::{Scene, compile};
 
 const SCENE: &str = r#"
-version = 2
+version = 1
 [[layer]]
 name = "ground"
 kind = "constant"

@@ -19,7 +19,7 @@ use frixel_lab::simulation::{Simulation, simulate};
 use frixel_play::Feed;
 use frixel_scene::{Scene, compile};
 
-const SCENE: &str = "version = 2\n[[layer]]\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = 0.1\n";
+const SCENE: &str = "version = 1\n[[layer]]\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = 0.1\n";
 const SAMPLE_HZ: u32 = 2000;
 /// Half a second.
 const SAMPLES: u32 = 1000;

@@ -14,7 +14,7 @@ use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
 use frixel_lab::simulation::{Simulation, simulate};
 use frixel_scene::{Scene, compile};
 
-const SCENE: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\nlow_n = 0.0\nhigh_n = 0.1\n";
+const SCENE: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\nlow_n = 0.0\nhigh_n = 0.1\n";
 /// Time between two places of the pointer, s.
 const PERIOD_S: f64 = 2e-3;
 const SECONDS: f64 = 2.0;

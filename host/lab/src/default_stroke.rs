@@ -232,7 +232,7 @@ mod tests {
             ("{ x_mm = 30, y_mm = 20, width_mm = 60, height_mm = 40 }", false),
         ] {
             let text =
-                format!("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nregion = {region}\n");
+                format!("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nregion = {region}\n");
             let scene = Scene::parse(&text, "corner.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
             let (missed, seconds) = missed(&scene);
             assert!(missed.is_empty(), "{region}: {missed:?}");
@@ -246,7 +246,7 @@ mod tests {
         for region in ["", "region = { x_mm = 30, y_mm = 30, width_mm = 30, height_mm = 40 }\n"] {
             for (angle_deg, is_visited) in [(0, false), (30, false), (90, true), (-100, true)] {
                 let text = format!(
-                    "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nangle_deg = {angle_deg}\n\
+                    "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nangle_deg = {angle_deg}\n\
                      low_fraction = 0\nhigh_fraction = 0.9\n{region}"
                 );
                 let scene = Scene::parse(&text, "stripes.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
@@ -272,7 +272,7 @@ mod tests {
         for region in ["", "region = { x_mm = 30, y_mm = 2, width_mm = 20, height_mm = 10 }\n"] {
             for angle_deg in [0, 45, 90, -120] {
                 let text = format!(
-                    "version = 2\n[[layer]]\nkind = \"direction\"\nangle_deg = {angle_deg}\nalong_fraction = 0.1\n\
+                    "version = 1\n[[layer]]\nkind = \"direction\"\nangle_deg = {angle_deg}\nalong_fraction = 0.1\n\
                      against_fraction = 0.9\n{region}"
                 );
                 let scene = Scene::parse(&text, "velvet.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();

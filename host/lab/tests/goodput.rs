@@ -16,7 +16,7 @@ use frixel_wire::frame::Decoder;
 use frixel_wire::scene::bitmap_crc32;
 use rayon::prelude::*;
 
-const SCENE: &str = "version = 2\n[[layer]]\nkind = \"stream\"\nlow_fraction = 0.0\nhigh_fraction = 0.5\n";
+const SCENE: &str = "version = 1\n[[layer]]\nkind = \"stream\"\nlow_fraction = 0.0\nhigh_fraction = 0.5\n";
 const SAMPLE_HZ: u32 = 8_000;
 const PICTURE: [u16; 2] = [250, 200];
 /// Longest time that an upload may take until it has ended, one way or the other.

@@ -46,7 +46,7 @@ pub(crate) fn upload<L: Link>(
     settings: &[LayerSetting],
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
-    let scene = program.scene_bytes_with(device.hello().protocol, settings);
+    let scene = program.scene_bytes_with(settings);
     let bitmaps = program.bitmaps.iter().map(|bitmap| Bitmap {
         crc32: bitmap.crc32,
         width: bitmap.width,

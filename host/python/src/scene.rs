@@ -76,11 +76,11 @@ impl Scene {
             let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
             let (mut own_finger, mut own_screen) = (None, None);
             if let Some((screen, text)) = screen {
-                parsed = parsed.with_screen(screen, text.name())?;
+                parsed = parsed.with_screen(screen, text.name());
                 own_screen = Some(text);
             }
             if let Some((finger, text)) = finger {
-                parsed = parsed.with_finger(finger, text.name())?;
+                parsed = parsed.with_finger(finger, text.name());
                 own_finger = Some(text);
             }
             let board = RigConfig::default().board;

@@ -113,8 +113,8 @@ VALUES: dict[str, Any] = {
 OWN: dict[tuple[str, str], Any] = {
     ("Device", "device"): None,
     ("Answers", "trials"): [(0.1, True)],
-    ("Scene", "text"): b"version = 2\n",
-    ("Scene.parse", "text"): "version = 2\n",
+    ("Scene", "text"): b"version = 1\n",
+    ("Scene.parse", "text"): "version = 1\n",
     ("Finger", "text"): None,
     ("Screen", "text"): None,
     ("TouchSource", "text"): None,

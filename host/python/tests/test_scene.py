@@ -27,7 +27,7 @@ def test_every_bundled_scene_is_read_and_pickled(scenes: Path) -> None:
 
 
 def test_all_mistakes_are_told_with_their_places() -> None:
-    text = 'version = 2\n[[layer]]\nkind = "constnt"\n[[layer]]\nkind = "constant"\nfriction_n = "much"\n'
+    text = 'version = 1\n[[layer]]\nkind = "constnt"\n[[layer]]\nkind = "constant"\nfriction_n = "much"\n'
     with pytest.raises(SceneError) as caught:
         Scene.parse(text)
     error = caught.value
@@ -51,14 +51,14 @@ def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
         Scene.load("/dev/zero")
     with pytest.raises(SceneError, match="this scene file cannot be read"):
         Scene.load(tmp_path)
-    (tmp_path / "picture.toml").write_text('version = 2\n[[layer]]\nkind = "picture"\nfile = "brik.png"\n')
+    (tmp_path / "picture.toml").write_text('version = 1\n[[layer]]\nkind = "picture"\nfile = "brik.png"\n')
     with pytest.raises(SceneError):
         Scene.load(tmp_path / "picture.toml")
 
 
 def test_tables_make_a_scene() -> None:
     tables = {
-        "version": 2,
+        "version": 1,
         "layer": [
             {"kind": "constant", "friction_n": np.float64(0.26), "name": 'say "hü"'},
             {

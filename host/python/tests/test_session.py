@@ -32,7 +32,7 @@ from frixel.experiment import (
 )
 from frixel.experiment.coverage import LEVELS
 
-TEXTS = {"bars.toml": "version = 2\n"}
+TEXTS = {"bars.toml": "version = 1\n"}
 
 
 class Person:
@@ -93,12 +93,12 @@ def test_a_session_that_was_cut_off_goes_on_without_repeating_an_answer(tmp_path
 def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) -> None:
     opened(tmp_path).close()
     manifest = json.loads((tmp_path / "manifest.json").read_text())
-    assert manifest["played"] == {"bars.toml": "436f6de28726501973ddd9fb91fa92c6ec6225e5c28d8fbdb698dc1720e43714"}
+    assert manifest["played"] == {"bars.toml": "dbab12665d98aef021ba64953c61b0ed8a908cfb56a1c01e2fcb4b052b71a2a1"}
     assert str(tmp_path) not in (tmp_path / "manifest.json").read_text()
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"participant": "p02"}, "participant is 'p01' there, and 'p02' here"),
         ({"seed": 8}, "seed is 7 there"),
-        ({"played": {"bars.toml": "version = 1\n"}}, "played is"),
+        ({"played": {"bars.toml": "version = 1\n# other\n"}}, "played is"),
         ({"task": "2afc"}, "a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found '2afc'"),
     ]
     for changed, said in wrong:

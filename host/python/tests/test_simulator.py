@@ -297,6 +297,6 @@ def test_columns_are_read_only_and_complete() -> None:
 
 
 def test_a_draft_is_told() -> None:
-    draft = Scene.parse('version = 2\n[[layer]]\nkind = "constant"\nfriction_n = 9')
+    draft = Scene.parse('version = 1\n[[layer]]\nkind = "constant"\nfriction_n = 9')
     with pytest.warns(frixel.FrixelWarning, match="played as a draft, clamped: .*9"):
         Simulator(draft).run(0.01)

@@ -21,7 +21,7 @@ from frixel import FrixelError, ParameterError, Scene, SceneError, sweep
 
 from .conftest import REPOSITORY
 
-GRATING = """version = 2
+GRATING = """version = 1
 [[layer]]
 kind = "grating"
 wavelength_mm = 4

@@ -17,7 +17,7 @@ from frixel.widget import SceneWidget
 from .conftest import REPOSITORY
 
 PLATE = {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}
-TEXTURED = """version = 2
+TEXTURED = """version = 1
 [[layer]]
 kind = "bitmap"
 picture = "wall.png"

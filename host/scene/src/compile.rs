@@ -83,7 +83,7 @@ pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Prog
 ///
 /// use frixel_scene::{Scene, compile, compile_draft};
 /// # fn draw(limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
-/// let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n";
+/// let text = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n";
 /// let scene = Scene::parse(text, "heavy.toml", &BTreeMap::new())?;
 /// assert!(compile(&scene, limits, 40_000).is_err());
 /// let draft = compile_draft(&scene, limits, 40_000)?;

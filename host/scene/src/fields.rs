@@ -137,11 +137,6 @@ impl<'i> Fields<'i> {
         }
     }
 
-    /// Removes a field whose mistake has been reported.
-    pub(super) fn ignore(&mut self, field: &str) {
-        self.values.remove(field);
-    }
-
     /// The fields, when nothing else of the table matters.
     pub(super) fn into_values(self) -> DeTable<'i> {
         self.values

@@ -23,13 +23,7 @@ use super::stack::LayerTables;
 use super::tables;
 
 /// Version of the file format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Version {
-    /// Screen, coating and finger are embedded, and the coating contains the skin.
-    One,
-    /// Screen and finger are apart.
-    Two,
-}
+pub(super) const VERSION: u32 = 1;
 
 /// A scene file that was read: all fields are known, of the right type and in range. [`super::compile`] makes the other
 /// checks.
@@ -44,9 +38,6 @@ pub struct Scene {
     /// The pictures that layers name. Those of layers with mistakes are included, since a layer may be valid on another
     /// screen.
     pub(super) pictures: PictureBytes,
-    pub(super) version: Version,
-    /// Offset of the version, or of the file if it is absent.
-    pub(super) version_place: usize,
     pub(super) profiles: Profiles,
     pub(super) drive: Drive,
     pub(super) carrier: Carrier,
@@ -153,19 +144,17 @@ impl Scene {
         }
     }
 
-    /// The scene with another finger, from a file or bundled profile called `name`. A scene of version 1 is refused,
-    /// because its coating contains the skin of its own finger.
-    pub fn with_finger(mut self, finger: FingerProfile, name: &str) -> Result<Self, CompileError> {
-        self.refuse_version_one("finger")?;
+    /// The scene with another finger, from a file or bundled profile called `name`.
+    #[must_use]
+    pub fn with_finger(mut self, finger: FingerProfile, name: &str) -> Self {
         self.profiles.finger = finger;
         self.profiles.finger_source = ProfileSource::Option(name.to_owned());
-        Ok(self)
+        self
     }
 
-    /// The scene on another screen, from a file or bundled profile called `name`. A scene of version 1 is refused,
-    /// because its coating contains the skin of its finger.
-    pub fn with_screen(mut self, screen: Screen, name: &str) -> Result<Self, CompileError> {
-        self.refuse_version_one("screen")?;
+    /// The scene on another screen, from a file or bundled profile called `name`.
+    #[must_use]
+    pub fn with_screen(mut self, screen: Screen, name: &str) -> Self {
         self.profiles.screen = screen;
         self.profiles.screen_source = ProfileSource::Option(name.to_owned());
         if let Some(design) = self.design {
@@ -173,28 +162,12 @@ impl Scene {
             let mut log = Log::new(&self.source);
             let pixel_mm = design.pixel_on(&self.profiles.screen);
             if let Some(mut files) = files(&mut log) {
-                let layer_tables = LayerTables::of(&mut files, self.version, &mut log);
-                self.layers = layer_tables.read(self.version, Some(pixel_mm), &mut log);
+                let layer_tables = LayerTables::of(&mut files, &mut log);
+                self.layers = layer_tables.read(Some(pixel_mm), &mut log);
             }
             self.mistakes = log.into_mistakes();
         }
-        Ok(self)
-    }
-
-    /// The screen, for a finger other than the scene's own. A scene of version 1 is refused, because its coating
-    /// contains the skin of its own finger.
-    pub fn screen_without_skin(&self) -> Result<&Screen, CompileError> {
-        self.refuse_version_one("finger")?;
-        Ok(&self.profiles.screen)
-    }
-
-    fn refuse_version_one(&self, what: &'static str) -> Result<(), CompileError> {
-        let mut log = Log::new(&self.source);
-        if self.version == Version::One {
-            let file = self.source.name().to_owned();
-            log.add(self.version_place, FileMistake::VersionOneProfile { what, file });
-        }
-        log.finish(Some(()))
+        self
     }
 
     /// The mistakes of the layers that were not read, in the order of the file.
@@ -235,31 +208,21 @@ fn files<'s>(log: &mut Log<'s>) -> Option<Vec<Fields<'s>>> {
 
 fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     let mut files = files(log)?;
+    if !have_version(&mut files, log) {
+        return None;
+    }
     let (fields, included) = files.split_first_mut()?;
-    let version_place = fields.place(tables::scene::VERSION.name);
-    let version = version(fields, log);
-    match version {
-        Version::One => refuse_version_two(fields, log),
-        Version::Two => {
-            // Its files have been read.
-            let _ = fields.texts(log, &tables::scene::INCLUDE);
-        }
+    // The included files have been read.
+    let _ = fields.texts(log, &tables::scene::INCLUDE);
+    for file in included {
+        join(fields, file, log);
     }
-    for (number, file) in (1..).zip(included) {
-        join(fields, file, number, log);
-    }
-    let profiles = match version {
-        Version::One => profiles::read_v1(fields, log),
-        Version::Two => profiles::read_v2(fields, named, log),
-    };
+    let profiles = profiles::read(fields, named, log);
     let drive = drive(fields.table(log, &tables::scene::DRIVE).unwrap_or_else(|| absent("[drive]")), log);
     let carrier = carrier(fields.table(log, &tables::scene::CARRIER).unwrap_or_else(|| absent("[carrier]")), log);
     let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);
-    let design = match version {
-        Version::One => None,
-        Version::Two => fields.table(log, &tables::scene::DESIGN).and_then(|fields| design(fields, log)),
-    };
-    let layer_tables = LayerTables::of(&mut files, version, log);
+    let design = fields.table(log, &tables::scene::DESIGN).and_then(|fields| design(fields, log));
+    let layer_tables = LayerTables::of(&mut files, log);
     for file in files {
         file.close(log);
     }
@@ -268,14 +231,12 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     let example = Screen::example();
     let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
     let pictures = pictures(layer_tables.pictures(log), named);
-    let layers = layer_tables.read(version, design.map(|design| design.pixel_on(screen)), log);
+    let layers = layer_tables.read(design.map(|design| design.pixel_on(screen)), log);
     let profiles = profiles.filter(|_| head_is_valid)?;
     Some(Scene {
         source: log.source().clone(),
         mistakes: Vec::new(),
         pictures,
-        version,
-        version_place,
         profiles,
         drive,
         carrier,
@@ -305,26 +266,9 @@ fn pictures(names: Vec<String>, files: &dyn Files) -> PictureBytes {
     pictures
 }
 
-/// Reports the fields of a scene of version 1 that came with version 2.
-fn refuse_version_two(fields: &mut Fields, log: &mut Log) {
-    for field in [tables::scene::INCLUDE, tables::scene::DEFAULTS, tables::scene::DESIGN] {
-        if fields.has(field.name) {
-            let file = log.source().name().to_owned();
-            log.add(fields.place(field.name), FileMistake::SinceVersionTwo { field: field.name, file });
-            fields.ignore(field.name);
-        }
-    }
-}
-
-/// Moves the tables of included file `number` into the scene, which may have each of them only once.
-fn join<'i>(scene: &mut Fields<'i>, file: &mut Fields<'i>, number: usize, log: &mut Log) {
+/// Moves the tables of an included file into the scene, which may have each of them only once.
+fn join<'i>(scene: &mut Fields<'i>, file: &mut Fields<'i>, log: &mut Log) {
     use tables::scene::{CARRIER, DESIGN, DRIVE, FINGER, SCREEN, TOUCH};
-    let place = file.place(tables::scene::VERSION.name);
-    let found = file.number(log, &tables::scene::VERSION);
-    if let Some(found) = found.filter(|found| found.to_bits() != 2.0_f64.to_bits()) {
-        let (file, included) = (log.source().includer(number).to_owned(), log.source().name_at(place).to_owned());
-        log.add(place, FileMistake::IncludedVersion { file, included, found });
-    }
     let _ = file.texts(log, &tables::scene::INCLUDE);
     for field in [SCREEN, FINGER, DRIVE, CARRIER, TOUCH, DESIGN] {
         scene.adopt(file, &field, log);
@@ -338,21 +282,19 @@ fn design(mut fields: Fields, log: &mut Log) -> Option<Design> {
     Some(Design { width_px: width_px?, height_px: height_px?, place })
 }
 
-/// The version of the file. If it is absent or unknown, the version that the file's tables are of, so that the other
-/// mistakes can be found.
-fn version(fields: &mut Fields, log: &mut Log) -> Version {
-    let place = fields.place(tables::scene::VERSION.name);
-    let found = fields.number(log, &tables::scene::VERSION);
-    match found {
-        Some(1.0) => Version::One,
-        Some(2.0) => Version::Two,
-        found => {
-            if let Some(found) = found {
-                log.add(place, FileMistake::Version { found });
-            }
-            if fields.has(tables::scene::COATING_V1.name) { Version::One } else { Version::Two }
+/// Reports the files of another version, and returns whether there are none. Their other fields mean nothing to this
+/// reader. The fields of a file without a version are read, so that its other mistakes are found, too.
+fn have_version(files: &mut [Fields], log: &mut Log) -> bool {
+    let mut all = true;
+    for fields in files {
+        let place = fields.place(tables::scene::VERSION.name);
+        let found = fields.number(log, &tables::scene::VERSION);
+        if let Some(found) = found.filter(|found| found.to_bits() != f64::from(VERSION).to_bits()) {
+            log.add(place, FileMistake::Version { found });
+            all = false;
         }
     }
+    all
 }
 
 /// A table that is absent from the file: every field has its default.

@@ -18,8 +18,8 @@ pub(super) struct Gathered {
     pub(super) mistakes: Vec<(usize, FileMistake)>,
 }
 
-/// Reads the files that a scene file includes, and the files that these include. A text that is not TOML, or of version
-/// 1, includes nothing.
+/// Reads the files that a scene file includes, and the files that these include. A text that is not TOML
+/// includes nothing.
 pub(super) fn gather(name: &str, text: &str, files: &dyn Files) -> Gathered {
     let mut gathered = Gathered { source: Source::new(name, text), mistakes: Vec::new() };
     gathered.follow(&mut vec![0], files);
@@ -96,10 +96,6 @@ fn scenes(files: Vec<String>) -> Vec<String> {
 /// The names in `include` of a text, each with its offset.
 fn included_names(text: &str) -> Vec<(usize, String)> {
     let Ok(table) = toml(text) else { return Vec::new() };
-    let version = table.get(tables::scene::VERSION.name).and_then(|value| value.get_ref().as_integer());
-    if version.is_some_and(|version| version.as_str() == "1") {
-        return Vec::new();
-    }
     let names = table.get(tables::scene::INCLUDE.name).and_then(|value| value.get_ref().as_array());
     let name = |value: &toml::Spanned<DeValue>| Some((value.span().start, value.get_ref().as_str()?.to_owned()));
     names.into_iter().flatten().filter_map(name).collect()

@@ -12,9 +12,9 @@
 //! use std::collections::BTreeMap;
 //! use frixel_scene::{Scene, TargetRange, compile};
 //!
-//! let text = "version = 1\nscreen = { width_mm = 120, height_mm = 80 }\n\
-//!     coating = { thickness_um = 10, permittivity = 1 }\n\
-//!     finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 }\n\
+//! let text = "version = 1\nscreen = { width_mm = 120, height_mm = 80, coating = { thickness_um = 10, permittivity = 1 } }\n\
+//!     finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, \
+//!     skin_gap_um = 0 }\n\
 //!     [[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n";
 //! let scene = Scene::parse(text, "flat.toml", &BTreeMap::new())?;
 //! let program = compile(&scene, limits, 40_000)?;
@@ -50,7 +50,6 @@ mod layer_tables;
 mod live_change;
 mod log;
 mod lower;
-mod migrate;
 mod mistake;
 mod nearest;
 mod optimisation;
@@ -93,7 +92,6 @@ pub use kinds::{layer_kinds, without_place};
 pub use layer_map::{LayerError, LayerMap};
 pub use layer_tables::LayerTable;
 pub use live_change::{Clamped, LayerSetting};
-pub use migrate::migrate;
 pub use mistake::{FieldMistake, FileMistake, FitMistake, Mistake, TILDE_ADVICE};
 pub use nearest::Nearest;
 pub use optimisation::Optimisation;

@@ -2,7 +2,7 @@
 
 use super::fields::{Fields, TableOrText};
 use super::files::{FileUnavailable, Files, file_name};
-use super::finger::{self, Elasticity, Evidence, FingerProfile};
+use super::finger::{self, FingerProfile};
 use super::grammar::FieldSpec;
 use super::log::Log;
 use super::mistake::FileMistake;
@@ -34,38 +34,8 @@ pub(super) struct Profiles {
     pub(super) place: usize,
 }
 
-/// Reads `[screen]`, `[coating]` and `[finger]` of a scene of version 1. Its coating contains the skin.
-pub(super) fn read_v1(fields: &mut Fields, log: &mut Log) -> Option<Profiles> {
-    let screen = screen::read_v1(fields, log);
-    let finger = fields.table(log, &tables::scene::FINGER_V1).and_then(|fields| finger_v1(fields, log));
-    let ((screen, place), finger) = screen.zip(finger)?;
-    Some(Profiles {
-        screen,
-        screen_source: ProfileSource::Embedded,
-        finger,
-        finger_source: ProfileSource::Embedded,
-        place,
-    })
-}
-
-fn finger_v1(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
-    let radius_mm = fields.number(log, &tables::finger::RADIUS_MM);
-    let stiffness_pa_per_m = fields.number(log, &tables::finger::STIFFNESS_PA_PER_M);
-    let friction_coefficient = fields.number(log, &tables::finger::FRICTION_COEFFICIENT);
-    let normal_load_n = fields.number(log, &tables::finger::NORMAL_LOAD_N);
-    fields.close(log);
-    Some(FingerProfile {
-        friction_coefficient: friction_coefficient?,
-        normal_load_n: normal_load_n?,
-        radius_mm: radius_mm?,
-        elasticity: Elasticity::WinklerFuss { stiffness_pa_per_m: stiffness_pa_per_m? },
-        skin_gap_um: 0.0,
-        evidence: Evidence::Assumed,
-    })
-}
-
-/// Reads `screen` and `finger` of a scene of version 2: tables, names, or nothing.
-pub(super) fn read_v2(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<Profiles> {
+/// Reads `screen` and `finger` of a scene: tables, names, or nothing.
+pub(super) fn read(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<Profiles> {
     let (screen_place, finger_place) = (fields.place("screen"), fields.place("finger"));
     let screen_kind = Profile {
         field: &tables::scene::SCREEN,

@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use frixel_layers::{FingerLaw, Header, Point, Record, features_of};
-use frixel_wire::hello::{PROTOCOL_MAJOR, PROTOCOL_MINOR};
 use frixel_wire::scene::bitmap_crc32;
 
 use super::LayerSetting;
@@ -14,11 +13,6 @@ use super::played_finger::PlayedFinger;
 use super::reach::Reach;
 use super::titles::LayerTitle;
 use super::warning::Warning;
-
-/// The first protocol version with [`Header::layers_fixed`].
-const LAYERS_FIXED_SINCE: (u8, u8) = (1, 2);
-/// The first protocol version with [`Header::electric_friction_max_n`].
-const ELECTRIC_FRICTION_MAX_SINCE: (u8, u8) = (1, 3);
 
 /// A compiled scene, with its pictures.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,32 +92,22 @@ impl Program {
         Self { header, records, start, patterns, points, bitmaps, titles, ..self.clone() }
     }
 
-    /// The scene's bytes for a board of this protocol version.
+    /// The scene's bytes for a board.
     pub fn scene_bytes(&self) -> Vec<u8> {
-        self.scene_bytes_for((PROTOCOL_MAJOR, PROTOCOL_MINOR))
+        self.scene_bytes_with(&self.start)
     }
 
-    /// The scene's bytes for a board of a protocol version, major and minor, without the flags that an older board does
-    /// not know.
-    pub fn scene_bytes_for(&self, protocol: (u8, u8)) -> Vec<u8> {
-        self.scene_bytes_with(protocol, &self.start)
-    }
-
-    /// As [`Self::scene_bytes_for`], with the gains of these settings, one for each record.
+    /// As [`Self::scene_bytes`], with the gains of these settings, one for each record.
     ///
     /// On a board, every layer is on from the commit until the host switches it off. A layer that is off has the gain 0,
     /// so that it asks for nothing meanwhile.
-    pub fn scene_bytes_with(&self, protocol: (u8, u8), settings: &[LayerSetting]) -> Vec<u8> {
-        let layers_fixed = self.header.layers_fixed && protocol >= LAYERS_FIXED_SINCE;
-        let electric_friction_max_n =
-            self.header.electric_friction_max_n.filter(|_| protocol >= ELECTRIC_FRICTION_MAX_SINCE);
-        let header = Header { layers_fixed, electric_friction_max_n, ..self.header };
+    pub fn scene_bytes_with(&self, settings: &[LayerSetting]) -> Vec<u8> {
         // The compiler has checked the numbers of records and points.
-        let mut bytes = header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
+        let mut bytes = self.header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
         let gains = settings.iter().map(|setting| if setting.on { setting.gain } else { 0.0 });
         bytes.extend(self.records.iter().zip(gains).flat_map(|(record, gain)| Record { gain, ..*record }.write()));
         bytes.extend(self.points.iter().flat_map(Point::write));
-        bytes.extend(header.law.iter().flat_map(FingerLaw::write_points));
+        bytes.extend(self.header.law.iter().flat_map(FingerLaw::write_points));
         bytes
     }
 

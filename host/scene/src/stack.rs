@@ -7,7 +7,6 @@ use toml::de::DeTable;
 
 use super::defaults;
 use super::fields::{Fields, PixelSize, overlaid};
-use super::file::Version;
 use super::grammar::KnownField;
 use super::kinds::Kind;
 use super::layer::Layer;
@@ -35,9 +34,9 @@ pub(super) struct LayerTables<'i> {
 
 impl<'i> LayerTables<'i> {
     /// Takes the tables out of the fields of a scene's files, the scene file's first.
-    pub(super) fn of(files: &mut [Fields<'i>], version: Version, log: &mut Log) -> Self {
+    pub(super) fn of(files: &mut [Fields<'i>], log: &mut Log) -> Self {
         let mut misspelt = Vec::new();
-        let parts: Vec<Part<'i>> = files.iter_mut().map(|fields| part(fields, version, &mut misspelt, log)).collect();
+        let parts: Vec<Part<'i>> = files.iter_mut().map(|fields| part(fields, &mut misspelt, log)).collect();
         let mut stacked = Vec::new();
         stack(0, &parts, log, &mut stacked);
         let own_defaults = parts.iter().map(|part| part.defaults.clone()).collect();
@@ -59,7 +58,7 @@ impl<'i> LayerTables<'i> {
 
     /// Reads the layers, from bottom to top, without those that have mistakes. `pixel_mm` is the size of a pixel of the
     /// scene's design, if it has one.
-    pub(super) fn read(self, version: Version, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
+    pub(super) fn read(self, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
         if let Some(first) = self.layers.first().filter(|_| self.layers.len() > LAYERS_MAX) {
             log.add(first.table_place(), too_many(self.layers.len()));
             return Vec::new();
@@ -79,7 +78,7 @@ impl<'i> LayerTables<'i> {
         }
         log.set_layer(None);
         for layer in &mut layers {
-            settle(layer, version, log);
+            settle(layer, log);
         }
         check_names(&layers, log);
         for defaults in &self.defaults {
@@ -98,12 +97,8 @@ fn too_many(found: usize) -> FileMistake {
     )
 }
 
-fn part<'i>(fields: &mut Fields<'i>, version: Version, misspelt: &mut Vec<String>, log: &mut Log) -> Part<'i> {
-    let defaults = match version {
-        Version::One => None,
-        Version::Two => fields.table(log, &tables::scene::DEFAULTS),
-    };
-    let defaults = defaults.map(Fields::into_values).unwrap_or_default();
+fn part<'i>(fields: &mut Fields<'i>, misspelt: &mut Vec<String>, log: &mut Log) -> Part<'i> {
+    let defaults = fields.table(log, &tables::scene::DEFAULTS).map(Fields::into_values).unwrap_or_default();
     misspelt.extend(defaults::check_names(&defaults, log));
     Part { layers: fields.tables(log, &tables::scene::LAYER).unwrap_or_default(), defaults }
 }
@@ -123,13 +118,10 @@ fn stack<'i>(number: usize, parts: &[Part<'i>], log: &Log, stacked: &mut Vec<(us
     defaults
 }
 
-/// Gives a picture its path from the scene file's folder, and in version 1 the pitch that it had there by default.
-fn settle(layer: &mut Layer, version: Version, log: &Log) {
+/// Gives a picture its path from the scene file's folder.
+fn settle(layer: &mut Layer, log: &Log) {
     if let Kind::Bitmap(bitmap) = &mut layer.kind {
         bitmap.picture = log.source().path_at(layer.places.field("picture"), &bitmap.picture);
-        if version == Version::One && !layer.places.has("pitch_mm") {
-            bitmap.pitch_mm = Some(super::kinds::PITCH_V1_MM);
-        }
     }
 }
 

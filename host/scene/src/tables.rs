@@ -84,11 +84,6 @@ pub(super) mod scene {
         Means("the example finger"),
         "the finger that the scene is meant for: a table, the name of a bundled one, or of a file",
     );
-    pub(crate) const SCREEN_V1: FieldSpec = FieldSpec::new("screen", Holds::Table, Mistake, "the screen");
-    pub(crate) const COATING_V1: FieldSpec =
-        FieldSpec::new("coating", Holds::TableOrTables, Mistake, "coating and skin between electrode and finger");
-    pub(crate) const FINGER_V1: FieldSpec =
-        FieldSpec::new("finger", Holds::Table, Mistake, "the finger that the scene is meant for");
     pub(crate) const DRIVE: FieldSpec =
         FieldSpec::new("drive", Holds::Table, Means("all defaults"), "limits of the drive");
     pub(crate) const CARRIER: FieldSpec =
@@ -117,7 +112,7 @@ pub(super) mod scene {
         FieldSpec::new("layer", Holds::Tables, Means("bare glass"), "the layers of friction");
 }
 
-/// `[screen]` of a scene, and a screen's file. A scene of version 1 has only the size there.
+/// `[screen]` of a scene, and a screen's file.
 pub(super) mod screen {
     use super::*;
 
@@ -186,7 +181,7 @@ pub(super) mod coating {
         number("permittivity", Range::new(1.0, 10_000.0, ""), Mistake, "its relative permittivity");
 }
 
-/// `[finger]` of a scene of version 1, and a part of `[finger]` of version 2 and of a finger profile.
+/// `[finger]` of a scene, and a finger profile.
 pub(super) mod finger {
     use super::*;
 

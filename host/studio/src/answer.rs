@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn the_words_on_the_button_that_arms_a_board_hold_its_notices() {
         let mut hello = Hello {
-            protocol: (1, 4),
+            protocol: (1, 0),
             firmware: (0, 1, 0),
             board: BoardKind::NucleoG474re,
             id: [0; 12],

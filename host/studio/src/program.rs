@@ -52,14 +52,14 @@ fn scene(request: &Request) -> Result<Scene, ProgramError> {
     let mut scene = Scene::parse_bytes(request.scene()?, &request.entry, &request.files)?;
     if let Some(screen) = &request.screen {
         scene = match Screen::bundled(screen) {
-            Some(profile) => scene.with_screen(profile, screen)?,
-            None => scene.with_screen(Screen::parse(screen, "screen")?, "screen")?,
+            Some(profile) => scene.with_screen(profile, screen),
+            None => scene.with_screen(Screen::parse(screen, "screen")?, "screen"),
         };
     }
     if let Some(finger) = &request.finger {
         scene = match FingerProfile::bundled(finger) {
-            Some(profile) => scene.with_finger(profile, finger)?,
-            None => scene.with_finger(FingerProfile::parse(finger, "finger")?, "finger")?,
+            Some(profile) => scene.with_finger(profile, finger),
+            None => scene.with_finger(FingerProfile::parse(finger, "finger")?, "finger"),
         };
     }
     Ok(scene)

@@ -157,7 +157,7 @@ mod tests {
 
     use super::*;
 
-    const SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.11\n";
+    const SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.11\n";
 
     fn request() -> Request {
         let files = [("a.toml".to_owned(), SCENE.as_bytes().to_vec())].into();
@@ -296,7 +296,7 @@ mod tests {
         let mut simulator = Simulator::new(1).unwrap();
         let layer = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\n\
             wavelength_min_mm = 1\nwavelength_max_mm = 3\nlow_n = 0.0\nhigh_n = 9.0\n";
-        let text = format!("version = 2\n{}", layer.repeat(12));
+        let text = format!("version = 1\n{}", layer.repeat(12));
         let files = [("a.toml".to_owned(), text.into_bytes())].into();
         let request = Request { files, ..request() };
         let (_, program) = drafted(&request).unwrap();

@@ -60,7 +60,7 @@ test("New offers four scenes, each with a picture and one sentence, and each pla
 test("completion of a kind inserts what a layer of it needs, and the scene plays", async () => {
   const { page, errors, close } = await openStudio();
   const completed = async (kind, more = "") => {
-    const before = `version = 2\n[[layer]]\n${more}`;
+    const before = `version = 1\n[[layer]]\n${more}`;
     await page.evaluate((text) => (studioPage.editor.text = text), before);
     await page.evaluate(() => studioPage.editor.goTo(undefined, 99));
     await page.locator(".cm-content").press("Control+End");
@@ -86,7 +86,7 @@ test("completion of a kind inserts what a layer of it needs, and the scene plays
     assert.deepEqual([found.layers, found.isDraft], [1, false], `${text}\n${found.said.join("\n")}`);
   }
   const kept = await completed("grating", "wavelength_mm = 3\nlow_n = 0.0\n");
-  assert.match(kept, /^version = 2\n\[\[layer\]\]\nwavelength_mm = 3\nlow_n = 0\.0\nkind = "grating"\nhigh_fraction = 0\.8$/);
+  assert.match(kept, /^version = 1\n\[\[layer\]\]\nwavelength_mm = 3\nlow_n = 0\.0\nkind = "grating"\nhigh_fraction = 0\.8$/);
   assert.deepEqual(errors, []);
   await close();
 });

@@ -69,7 +69,7 @@ test("a scene is played, changed and stopped on a board at a serial port", async
   assert.match(refused, /the scene has no layer "nothing"/);
   const mistake = await page.evaluate(
     (text) => tested.play({ "a.toml": text }, "a.toml", {}).catch((error) => error.problems),
-    'version = 2\n[[layer]]\nkind = "gratin"\n',
+    'version = 1\n[[layer]]\nkind = "gratin"\n',
   );
   assert.equal(mistake[0].line, 3);
   // The scene before plays on.

@@ -11,7 +11,7 @@ import { pageModule } from "./page_module.mjs";
 afterEach(endLeftovers);
 after(cleanUp);
 
-const EMPTY = "version = 2\n";
+const EMPTY = "version = 1\n";
 const JPEG = new URL("../../../scenes/textures/wood.jpg", import.meta.url).pathname;
 const panel = (page) => page.locator(".layer-panel");
 const note = (page) => panel(page).locator("[role=status]").textContent();
@@ -78,11 +78,11 @@ friction_fraction = 0.5`;
   assert.equal(await textOf(page), PLATES);
   const region = "{ x_mm = 80, y_mm = 40, width_mm = 40, height_mm = 40 }";
   const one = `{ kind = "constant", friction_fraction = 0.5, region = ${region} }`;
-  await page.evaluate((text) => played(text), `version = 2\nlayer = [${one}]\n`);
+  await page.evaluate((text) => played(text), `version = 1\nlayer = [${one}]\n`);
   await page.mouse.click(...(await onPage(page, 100, 60)));
   await page.getByRole("button", { name: "Duplicate" }).click();
   const moved = one.replace("x_mm = 80, y_mm = 40", "x_mm = 75, y_mm = 35");
-  assert.equal(await textOf(page), `version = 2\nlayer = [${one}, ${moved}]\n`);
+  assert.equal(await textOf(page), `version = 1\nlayer = [${one}, ${moved}]\n`);
   await plays(page);
   assert.equal(await page.locator(".layer-box").count(), 2);
   assert.deepEqual(errors, []);
@@ -136,7 +136,7 @@ test("a picture of one's own begins a scene and is added to one, by its aspect, 
 test("the frame of a picture without a region is where the picture is", async () => {
   const { page, errors } = await openEditing();
   const layer = 'kind = "bitmap"\npicture = "textures/wood.jpg"\nx_mm = 15\ny_mm = 10\nwidth_mm = 90\n';
-  const text = `version = 2\n[[layer]]\n${layer}`;
+  const text = `version = 1\n[[layer]]\n${layer}`;
   await page.evaluate((text) => played(text), text);
   await page.mouse.click(...(await onPage(page, 60, 40)));
   assert.match(await selected(page), /^bitmap, 90 by [\d.]+ mm at 15, 10$/);

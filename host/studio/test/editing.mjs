@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { openStudio } from "./page.mjs";
 
 export const PLATES = `# Two plates.
-version = 2
+version = 1
 
 # The lower one.
 [[layer]]

@@ -32,8 +32,8 @@ test("from a file, bundled scenes and scenes inside of the element play", async 
   const folder = documentOf(`
     <frixel-scene id="bundled" scene="constant"><img alt="before the script is here"></frixel-scene>
     <frixel-scene id="inside">${GRATING}</frixel-scene>
-    <frixel-scene id="draft">version = 2\n[[layer]]\nkind = "constant"\nfriction_n = 9</frixel-scene>
-    <frixel-scene id="wrong">version = 2\n[[layer]]\nkind = "gratin"</frixel-scene>
+    <frixel-scene id="draft">version = 1\n[[layer]]\nkind = "constant"\nfriction_n = 9</frixel-scene>
+    <frixel-scene id="wrong">version = 1\n[[layer]]\nkind = "gratin"</frixel-scene>
     <frixel-scene id="absent" src="other.toml"></frixel-scene>
     <frixel-scene id="empty"></frixel-scene>`);
   const url = pathToFileURL(path.join(folder, "index.html")).href;
@@ -184,9 +184,9 @@ test("under the content security policy of docs/studio.md a scene plays, and und
 });
 
 test("from a server, `src` names a scene with its files", async (context) => {
-  const part = 'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "wall.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n';
+  const part = 'version = 1\n[[layer]]\nkind = "bitmap"\npicture = "wall.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 80\n';
   const folder = documentOf('<frixel-scene id="there" src="scenes/mine.toml"></frixel-scene>', {
-    "scenes/mine.toml": 'version = 2\ninclude = ["parts/wall.toml"]\n',
+    "scenes/mine.toml": 'version = 1\ninclude = ["parts/wall.toml"]\n',
     "scenes/parts/wall.toml": part,
     "scenes/parts/wall.png": fs.readFileSync(new URL("../../../scenes/textures/leather.png", import.meta.url)),
   });

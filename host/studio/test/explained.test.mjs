@@ -11,7 +11,7 @@ after(cleanUp);
 /** Stripes on the right half; bare glass on the left. */
 const RIGHT_HALF = `${WHOLE_SCREEN_GRATING}region = { x_mm = 60, y_mm = 0, width_mm = 60, height_mm = 80 }\n`;
 /** A layer of one friction. */
-const PLATE = `version = 2
+const PLATE = `version = 1
 
 [[layer]]
 kind = "constant"
@@ -246,7 +246,7 @@ test("names of layers are whole in the table, and the state beside a name, with 
 
 test("a voltage that the board does not let through is a warning at its line, counted while the text is closed", async () => {
   const { page, errors, close } = await openStudio();
-  const text = WHOLE_SCREEN_GRATING.replace("version = 2\n", "version = 2\n[drive]\nvoltage_max_v_rms = 1000\n");
+  const text = WHOLE_SCREEN_GRATING.replace("version = 1\n", "version = 1\n[drive]\nvoltage_max_v_rms = 1000\n");
   await page.evaluate((text) => played(text), text);
   const warning = page.locator("#problems li.warning");
   await warning.waitFor();

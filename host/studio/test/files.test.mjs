@@ -14,7 +14,7 @@ test("bad files and big ones are sentences", async () => {
   const { page, errors, close } = await openStudio();
   const png = fs.readFileSync(new URL("../../../scenes/textures/leather.png", import.meta.url));
   const scene = Buffer.from(
-    'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "bad.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20\n',
+    'version = 1\n[[layer]]\nkind = "bitmap"\npicture = "bad.png"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20\n',
   );
   await give(page, ["bad.png", Buffer.from("not a picture")]);
   await assertSays(page, /bad\.png: .*no PNG/);
@@ -67,7 +67,7 @@ test("a zip whose settings are null opens", async () => {
   const { page, errors, close } = await openStudio();
   const zip = await page.evaluate(async () => {
     const { zipSync } = await import(await studio.moduleUrl("vendor/studio-vendor.js"));
-    const [scene, settings] = ["version = 2\n# of a zip\n", "null"].map((text) => new TextEncoder().encode(text));
+    const [scene, settings] = ["version = 1\n# of a zip\n", "null"].map((text) => new TextEncoder().encode(text));
     return [...zipSync({ "scene.toml": scene, "studio.json": settings })];
   });
   await give(page, ["null.zip", Buffer.from(zip)]);

@@ -8,7 +8,7 @@ import { assertSays, give, openStudio } from "./page.mjs";
 afterEach(endLeftovers);
 after(cleanUp);
 
-const BARE_GLASS = "version = 2\n";
+const BARE_GLASS = "version = 1\n";
 
 /** Collects, in the page, what the numbers say at each frame until `stop()`; returns the texts of friction and Weber steps. */
 function watchNumbers() {
@@ -98,7 +98,7 @@ async function zipOfZeros(page, sizes) {
   const packed = await page.evaluate(async (sizes) => {
     const { zipSync } = await import(await studio.moduleUrl("vendor/studio-vendor.js"));
     const files = sizes.map((size, at) => [`zeros-${at}.png`, new Uint8Array(size)]);
-    const bytes = zipSync(Object.fromEntries([["scene.toml", new TextEncoder().encode("version = 2\n")], ...files]));
+    const bytes = zipSync(Object.fromEntries([["scene.toml", new TextEncoder().encode("version = 1\n")], ...files]));
     let text = "";
     for (const byte of bytes) text += String.fromCharCode(byte);
     return btoa(text);
@@ -135,7 +135,7 @@ test("the map of a long screen has as many pixels along its longer side as any",
       before(map, check);
     };
     for (const [widthMm, heightMm] of [[5, 2000], [2000, 5]]) {
-      await played(`version = 2\n[screen]\nwidth_mm = ${widthMm}\nheight_mm = ${heightMm}\n`);
+      await played(`version = 1\n[screen]\nwidth_mm = ${widthMm}\nheight_mm = ${heightMm}\n`);
       while (sizes.length === 0 || sizes.at(-1)[0] > sizes.at(-1)[1] !== widthMm > heightMm) await wait(20);
     }
     return sizes;
@@ -177,7 +177,7 @@ test("the columns stand before the engine is ready, and where they are then, als
   };
   assert.equal((await seen()).length, 1);
   await page.waitForFunction(() => globalThis.studioPage);
-  await give(page, ["wide.toml", "version = 2\n[screen]\nwidth_mm = 150\nheight_mm = 60\n"]);
+  await give(page, ["wide.toml", "version = 1\n[screen]\nwidth_mm = 150\nheight_mm = 60\n"]);
   await page.waitForFunction(() => studioPage.map.screen.widthMm === 150);
   await page.reload();
   const again = await seen();

@@ -160,8 +160,8 @@ test("a click selects the smallest layer and keeps it; a double click, and Alt, 
 });
 
 test("a press takes a smaller layer that lies on the one that is selected, and drags it", async () => {
-  const below = 'version = 2\n[[layer]]\nname = "ground"\nkind = "constant"\nfriction_n = 0.3\n';
-  const text = PLATES.replace("version = 2\n", below);
+  const below = 'version = 1\n[[layer]]\nname = "ground"\nkind = "constant"\nfriction_n = 0.3\n';
+  const text = PLATES.replace("version = 1\n", below);
   const { page, errors } = await openEditing(text);
   await page.mouse.click(...(await onPage(page, 60, 70)));
   assert.match(await selected(page), /^ground, /);

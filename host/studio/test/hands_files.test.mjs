@@ -19,7 +19,7 @@ test("a layer of another file is moved there, and one whose file is not here say
   assert.equal(await keys(), before.replace("y_mm = 20", "y_mm = 30").replace(/y_mm = 30(?=\nwidth)/, "y_mm = 20"));
   assert.match(await selected(page), /^key, constant, 10 by 40 mm at 20, 30, 3 copies$/);
   await plays(page);
-  await page.evaluate((text) => played(text), 'version = 2\ninclude = ["constant.toml"]\n');
+  await page.evaluate((text) => played(text), 'version = 1\ninclude = ["constant.toml"]\n');
   await page.mouse.click(...(await onPage(page, 100, 40)));
   const note = page.locator(".layer-panel [role=status]");
   assert.match(await note.textContent(), /^This layer comes from constant\.toml: open that file/);

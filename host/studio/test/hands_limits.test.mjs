@@ -11,7 +11,7 @@ import { pageModule } from "./page_module.mjs";
 afterEach(endLeftovers);
 after(cleanUp);
 
-const KEY = `version = 2
+const KEY = `version = 1
 [[layer]]
 name = "key"
 kind = "constant"
@@ -20,7 +20,7 @@ region = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 10 }
 repeat = { columns = 2, rows = 3, dx_mm = 30, dy_mm = 20 }
 `;
 /** A text of so many bytes, of letters that have two. */
-const long = (bytes) => `version = 2\n# ${"é".repeat((bytes - 14) / 2)}`;
+const long = (bytes) => `version = 1\n# ${"é".repeat((bytes - 14) / 2)}`;
 
 test("with Shift a corner keeps the ratio with all copies on the screen, and follows either axis", async () => {
   const { page, errors } = await openEditing(KEY);
@@ -93,7 +93,7 @@ test("a text that is too long is not opened out of a link or a zip, and what was
     const module = async (name) => import(await studio.moduleUrl(`page/${name}.js`));
     const [{ linkOf }, { zipOf }] = [await module("share"), await module("archive")];
     const files = [["parts.toml", text]];
-    const scene = { name: "long", entry: "long.toml", text: "version = 2\n", files, profiles: {} };
+    const scene = { name: "long", entry: "long.toml", text: "version = 1\n", files, profiles: {} };
     return [linkOf("long", text, []), [...zipOf(scene)]];
   }, long(500_002));
   await page.evaluate((link) => (location.hash = new URL(link).hash), link);
@@ -130,40 +130,12 @@ test("Ctrl+D that is held makes one copy, and no key acts on layers behind a dia
 });
 
 test("in a scene without a layer the keys lead from the map to Add", async () => {
-  const { page, errors } = await openEditing("version = 2\n");
+  const { page, errors } = await openEditing("version = 1\n");
   await page.evaluate(() => document.getElementById("options").querySelector("summary").focus());
   await press(page, "Tab", "Space");
   assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Add stripes");
   await press(page, "Enter");
   assert.match(await selected(page), /^stripes, grating/);
-  assert.deepEqual(errors, []);
-});
-
-test("layers of a scene of version 1 neither come nor go on the map, nor is a picture taken for one", async () => {
-  const { page, errors } = await openEditing();
-  const old = fs.readFileSync(new URL("../../scene/src/tests/data/version-1.toml", import.meta.url), "utf8");
-  const layer = PLATES.slice(PLATES.indexOf("[[layer]]"), PLATES.indexOf("# The upper"));
-  const before = `${old.slice(0, old.indexOf("[[layer]]"))}${layer.replace("friction_fraction = 0.5", "friction_n = 0.27")}`;
-  await page.evaluate((text) => played(text), before);
-  await plays(page);
-  await settled(page);
-  const choosers = [];
-  page.on("filechooser", (chooser) => choosers.push(chooser));
-  const note = page.locator(".layer-panel [role=status]");
-  const acts = {
-    Delete: () => press(page, "Delete"),
-    Duplicate: () => press(page, "Control+d"),
-    "Add stripes": () => page.getByRole("button", { name: "Add stripes", exact: true }).click(),
-    "Add picture": () => page.getByRole("button", { name: "Add picture", exact: true }).click(),
-  };
-  for (const [name, act] of Object.entries(acts)) {
-    await page.mouse.click(...(await onPage(page, 110, 70)));
-    await page.mouse.click(...(await onPage(page, 20, 30)));
-    await act();
-    assert.match(await note.textContent(), /^Scenes of version 1/, name);
-    assert.equal(await textOf(page), before, name);
-  }
-  assert.equal(choosers.length, 0);
   assert.deepEqual(errors, []);
 });
 

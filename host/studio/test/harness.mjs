@@ -160,7 +160,7 @@ export async function startVirtualBoard() {
 }
 
 /** A scene whose host timeout is long: a board that a command disarms is told apart from one that falls silent. */
-export const CONSTANT = `version = 2
+export const CONSTANT = `version = 1
 [drive]
 host_timeout_ms = 1000
 [[layer]]

@@ -127,7 +127,7 @@ test("the switch slides the same stroke again without prediction, which is felt 
 });
 
 /** Lines of 1 mm, which reports that come every 10 ms are too rare for at 200 mm/s. */
-const LINES = `version = 2
+const LINES = `version = 1
 
 [[layer]]
 kind = "constant"
@@ -218,7 +218,7 @@ test("a setting that could not be played slides no stroke later, and another boa
   await page.click("#open-lag");
   await wholeStroke(page, 40);
   await watchPlays(page);
-  await page.evaluate(() => (studioPage.editor.text = "version = 2\n[[layer]]\nkind = 7\n"));
+  await page.evaluate(() => (studioPage.editor.text = "version = 1\n[[layer]]\nkind = 7\n"));
   await page.locator("#problems li.error").first().waitFor();
   await page.selectOption("#touch", "500");
   await page.evaluate(() => wait(500));

@@ -95,7 +95,7 @@ function assertOnlyDisarmed({ ms, first, sent, arrived }) {
 const PAUSE_MS = 200;
 /** Pixels along a side of a picture that takes long to compile. */
 const SLOW_PX = 5000;
-const PICTURE_SCENE = `version = 2
+const PICTURE_SCENE = `version = 1
 [drive]
 host_timeout_ms = 1000
 [[layer]]

@@ -114,7 +114,7 @@ export async function give(page, ...files) {
   );
 }
 
-export const WHOLE_SCREEN_GRATING = `version = 2
+export const WHOLE_SCREEN_GRATING = `version = 1
 
 [[layer]]
 kind = "grating"
@@ -123,7 +123,7 @@ low_n = 0.0
 high_n = 0.1
 `;
 
-export const KEYS = `version = 2
+export const KEYS = `version = 1
 
 [[ layer ]]
 name = "key"
@@ -142,7 +142,7 @@ x_mm = 0
 y_mm = 60
 width_mm = 30
 `;
-export const PLAY = `version = 2
+export const PLAY = `version = 1
 include = ["keys.toml"]
 
 [[layer]]

@@ -90,7 +90,7 @@ test("the panel says whether its layer is felt, also while a number is dragged, 
 
 test("the copies of a layer are numbers of its panel, as many as the screen has room for", async () => {
   const { page, errors } = await openEditing();
-  const text = `version = 2
+  const text = `version = 1
 [[layer]]
 name = "key"
 kind = "constant"
@@ -262,7 +262,7 @@ test("on a narrow window with the text open the panel has its place below the ma
   assert.deepEqual(errors, []);
 });
 
-const GRAINS = `version = 2
+const GRAINS = `version = 1
 [[layer]]
 name = "sand"
 kind = "noise"

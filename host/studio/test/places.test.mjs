@@ -14,7 +14,7 @@ const FELT = /\d of the reach\), and at|lies \d+ mm outside of its `region`|the 
 
 /** Scenes of what the gallery does not show, by name. */
 const MORE = {
-  pixels: `version = 2
+  pixels: `version = 1
 [design]
 width_px = 1200
 height_px = 400
@@ -31,7 +31,7 @@ width_mm = 3
 ridge_fraction = 0.4
 repeat = { columns = 2, rows = 3, dx_px = 300, dy_mm = 15 }
 `,
-  polygons: `version = 2
+  polygons: `version = 1
 [defaults]
 region = { shape = "polygon", points_mm = [[10, 10], [40, 10], [25.5, 30]] }
 [[layer]]
@@ -48,7 +48,7 @@ region.points_mm = [
   [70, 60],
 ]
 `,
-  pictures: `version = 2
+  pictures: `version = 1
 [[layer]]
 kind = "bitmap"
 picture = "textures/brick.png"
@@ -150,7 +150,7 @@ test("a layer that counts in pixels of a design in another file is not changed",
     ["x_mm = 10\ny_mm = 10\nwidth_px = 100", "bitmap"],
     ['region = { shape = "polygon", points_px = [[0, 0], [1, 0], [0, 1]] }'],
   ]) {
-    const { place } = await placeIn(`version = 2\n[[layer]]\n${fields}\n`, [10, 11, 12, 13], kind);
+    const { place } = await placeIn(`version = 1\n[[layer]]\n${fields}\n`, [10, 11, 12, 13], kind);
     assert.match(place.whyNotMoved, /pixels of a design in another file/, fields);
     assert.match(place.whyNotResized, /pixels of a design in another file/, fields);
     assert.deepEqual([place.box, place.copies], [{ x: 10, y: 11, width: 12, height: 13 }, [[0, 0]]], fields);
@@ -159,7 +159,7 @@ test("a layer that counts in pixels of a design in another file is not changed",
 
 test("pixels stay whole, unless one has a part or a step is finer", async () => {
   // A pixel is 0.4 mm.
-  const text = (x) => `version = 2\n[design]\nwidth_px = 300\nheight_px = 200
+  const text = (x) => `version = 1\n[design]\nwidth_px = 300\nheight_px = 200
 [[layer]]\nregion = { x_px = ${x}, y_px = 10, width_px = 10, height_px = 10 }\n`;
   const xAfter = async (x, dxMm) => {
     const { moved } = await placeIn(text(x), [10, 4, 4, 4]);
@@ -173,7 +173,7 @@ test("pixels stay whole, unless one has a part or a step is finer", async () => 
 
 test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
   const { EditedLayers } = await pageModule("edited_layers.js");
-  const text = 'version = 2\ninclude = ["parts/b.toml"]\n[[layer]]\nkind = "constant"\n';
+  const text = 'version = 1\ninclude = ["parts/b.toml"]\n[[layer]]\nkind = "constant"\n';
   const bytes = (content) => new TextEncoder().encode(content);
   const whyNot = (more) => {
     const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });

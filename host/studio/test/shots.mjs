@@ -84,7 +84,7 @@ const SHOTS = {
   },
   async files() {
     const { page, close } = await open();
-    const keys = `version = 2
+    const keys = `version = 1
 
 # Twelve keys.
 [[layer]]
@@ -97,7 +97,7 @@ region = { x_mm = 12, y_mm = 12, width_mm = 20, height_mm = 14 }
 repeat = { columns = 4, dx_mm = 25, rows = 3, dy_mm = 20 }
 live = true
 `;
-    await give(page, ["keys.toml", keys], ["phone.toml", 'version = 2\ninclude = ["keys.toml"]\n']);
+    await give(page, ["keys.toml", keys], ["phone.toml", 'version = 1\ninclude = ["keys.toml"]\n']);
     await page.click("#file-tabs >> text=keys.toml");
     await page.waitForTimeout(2500);
     await page.evaluate(() => studioPage.editor.goTo("keys.toml", 9));

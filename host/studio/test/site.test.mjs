@@ -46,7 +46,7 @@ test("a link opens its scene, also without the server", async (context) => {
   await isKept(page);
   const link = await page.evaluate(async () => {
     const { linkOf } = await import(await studio.moduleUrl("page/share.js"));
-    return linkOf("mine", 'version = 2\n[[layer]]\nkind = "constant"\nfriction_fraction = 0.5\n', []);
+    return linkOf("mine", 'version = 1\n[[layer]]\nkind = "constant"\nfriction_fraction = 0.5\n', []);
   });
   assert.ok(link.startsWith(`${address}#`), link);
   end();

@@ -11,7 +11,7 @@ after(cleanUp);
 test("completion offers what the kind of a layer has, and the kind first", async () => {
   const { page, errors, close } = await openStudio();
   const offered = async (layer) => {
-    await page.evaluate((text) => (studioPage.editor.text = text), `version = 2\n[[layer]]\n${layer}\n`);
+    await page.evaluate((text) => (studioPage.editor.text = text), `version = 1\n[[layer]]\n${layer}\n`);
     await page.evaluate(() => studioPage.editor.goTo(undefined, 99));
     await page.keyboard.press("Control+Space");
     const labels = page.locator(".cm-tooltip-autocomplete .cm-completionLabel");
@@ -33,12 +33,12 @@ test("bad scenes are sentences", async () => {
   for (const [text, expected] of [
     ["", /no `version`/],
     ["]]][[[ = = \u0000", /not TOML/],
-    ['version = 2\n[[layer]]\nkind = "<img src=x onerror=alert(1)>"\n', /<img src=x onerror=alert\(1\)>/],
+    ['version = 1\n[[layer]]\nkind = "<img src=x onerror=alert(1)>"\n', /<img src=x onerror=alert\(1\)>/],
     [
-      'version = 2\n[[layer]]\nkind = "bitmap"\npicture = "../../etc/passwd"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\n',
+      'version = 1\n[[layer]]\nkind = "bitmap"\npicture = "../../etc/passwd"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\n',
       /passwd/,
     ],
-    [`version = 2\n${'[[layer]]\nkind = "constant"\nfriction_n = 0.3\n'.repeat(2000)}`, /the board takes 64/],
+    [`version = 1\n${'[[layer]]\nkind = "constant"\nfriction_n = 0.3\n'.repeat(2000)}`, /the board takes 64/],
   ]) {
     await page.evaluate((text) => (studioPage.editor.text = text), text);
     await assertSays(page, expected);
@@ -96,14 +96,14 @@ test("layers of other files and with copies have their places, switches and gain
   assert.deepEqual(line, ["keys.toml", "[[layer]]"]);
   await page.locator("#panel-layers .layer", { hasText: "wood" }).locator("text=Make live").click();
   await page.getByLabel("wood on").waitFor();
-  assert.match(await page.evaluate(() => globalThis.studioPage.editor.text), /^version = 2\ninclude/);
+  assert.match(await page.evaluate(() => globalThis.studioPage.editor.text), /^version = 1\ninclude/);
   assert.deepEqual(errors, []);
   await close();
 });
 
 test("a scene that a board refuses plays as a draft, and is called so", async () => {
   const { page, errors, close } = await openStudio();
-  const heavy = 'version = 2\n[[layer]]\nkind = "constant"\nfriction_n = 0.9\n';
+  const heavy = 'version = 1\n[[layer]]\nkind = "constant"\nfriction_n = 0.9\n';
   await page.evaluate((text) => played(text), heavy);
   assert.match(await page.locator("#check").textContent(), /1 mistake; draft/);
   assert.match(await page.locator("#problems li.error").textContent(), /line 4.*newton|line 4.* N/s);
@@ -137,7 +137,7 @@ test("the line that a person writes stays in sight when the list of mistakes ope
   const { page, errors, close } = await openStudio();
   await page.setViewportSize({ width: 1366, height: 657 });
   const lines = Array.from({ length: 40 }, (_, at) => `# line ${at + 1}`);
-  const text = `${lines.join("\n")}\nversion = 2\n`;
+  const text = `${lines.join("\n")}\nversion = 1\n`;
   await page.evaluate((text) => played(text), text);
   await page.evaluate(() => studioPage.editor.goTo(undefined, 1));
   const isSeen = () => {

@@ -14,7 +14,7 @@ const parse = (text) => structuredClone(parseTables(text));
 const folder = new URL("../../../scenes/", import.meta.url);
 const gallery = fs.readdirSync(folder).filter((name) => name.endsWith(".toml"));
 const FORMS = `# 🖐 a head
-version = 2 # two
+version = 1 # two
 
 [ defaults ]
 y_mm=40
@@ -44,7 +44,7 @@ burst = {}
 [layer.region]
 x_mm = -0.5#close`;
 const texts = [FORMS, ...gallery.map((name) => fs.readFileSync(new URL(name, folder), "utf8"))];
-const ARRAY = `version = 2
+const ARRAY = `version = 1
 layer = [
   { kind = "constant", friction_n = 0.3 }, # one
   { kind = "stream", region.x_mm = 1 },
@@ -53,7 +53,7 @@ layer = [
 texts.push(ARRAY);
 
 /** Forms that only a hand writes: words of tables in a string, hexadecimal, a table out of order, comments inside. */
-const ODD = `version = 2
+const ODD = `version = 1
 
 [[layer]]
 kind = "rings"
@@ -211,7 +211,7 @@ test("the last element of an array is taken out, and the comment of the one befo
 });
 
 test("a table that stands between those of a layer stays", () => {
-  const head = "version = 2\n\n";
+  const head = "version = 1\n\n";
   const design = "# the design\n[design]\nwidth_px = 10 # wide\nheight_px = 20\n\n";
   const layer = '[[layer]]\nkind = "constant"\n\n';
   const text = `${head}${layer}${design}# where\n[layer.region]\nx_px = 1\n\n${layer}`;

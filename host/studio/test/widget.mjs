@@ -80,7 +80,7 @@ test("widgets show their scenes, play, change, and go, and the page loads nothin
     assert.equal(await page.locator(second).getAttribute(name), widgets[1].scene[name] ?? widgets[1][name] ?? null);
   }
 
-  const draft = { text: 'version = 2\n[[layer]]\nkind = "constant"\nfriction_n = 9', files: {}, finger: null, screen: null };
+  const draft = { text: 'version = 1\n[[layer]]\nkind = "constant"\nfriction_n = 9', files: {}, finger: null, screen: null };
   await page.evaluate((draft) => models[0].set("scene", draft), draft);
   assert.match(await lineOf(page, first), /draft/);
   await page.evaluate(() => removers[0]());

@@ -40,7 +40,7 @@ test("another scene has a history of its own, and the changed one before can be 
   await openEmpty(page);
   await page.waitForFunction(() => document.getElementById("scene-name").value === "untitled");
   assert.ok(await page.isDisabled("#undo"), "undo does not lead into the scene before");
-  assert.match(await page.evaluate(() => studioPage.editor.text), /^version = 2\n\n# Edit adds layers/);
+  assert.match(await page.evaluate(() => studioPage.editor.text), /^version = 1\n\n# Edit adds layers/);
   // The way back stays while nobody works on the new scene.
   await page.mouse.move(5, 400);
   await page.evaluate(() => wait(120_000));

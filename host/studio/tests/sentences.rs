@@ -34,7 +34,7 @@ fn the_report_is_that_of_the_command() {
 
 #[test]
 fn a_mistake_has_its_sentence_and_its_place() {
-    let text = "version = 2\n\n[[layer]]\nkind = \"gratin\"\nperiod_mm = 2\n";
+    let text = "version = 1\n\n[[layer]]\nkind = \"gratin\"\nperiod_mm = 2\n";
     let files = [("a.toml".to_owned(), text.as_bytes().to_vec())].into();
     let answer = check(&Request { entry: "a.toml".to_owned(), files, ..Request::default() });
     let folder = tempfile::tempdir().unwrap();
@@ -74,10 +74,10 @@ const PAD: &str = "kind = \"constant\"\nfriction_fraction = 0.3\n";
 #[test]
 fn layers_have_their_files_lines_and_numbers() {
     let keys = format!(
-        "version = 2\n\n[[ layer ]] # spaces\nname = \"key\"\nlive = true\ngain = 0.5\n{PAD}\
+        "version = 1\n\n[[ layer ]] # spaces\nname = \"key\"\nlive = true\ngain = 0.5\n{PAD}\
          repeat = {{ columns = 3, dx_mm = 10 }}\n\n  [layer.region]\n  x_mm = 5\n  y_mm = 6\n  width_mm = 7\n  height_mm = 8\n\n"
     );
-    let scene = format!("include = [\"parts/keys.toml\"]\nversion = 2\n\n[[layer]]\n{PAD}[drive]\nsaturate = true\n");
+    let scene = format!("include = [\"parts/keys.toml\"]\nversion = 1\n\n[[layer]]\n{PAD}[drive]\nsaturate = true\n");
     let answer = check(&request(&scene, &[("parts/keys.toml", &keys)]));
     assert_eq!(answer["ok"], true, "{answer}");
     let layers = answer["layers"].as_array().unwrap();
@@ -105,15 +105,15 @@ fn layers_have_their_files_lines_and_numbers() {
 
 #[test]
 fn a_mistake_in_an_included_file_names_it() {
-    let answer = check(&request("version = 2\ninclude = [\"a.toml\"]\n", &[("a.toml", "version = 2\n\ngratin = 2\n")]));
+    let answer = check(&request("version = 1\ninclude = [\"a.toml\"]\n", &[("a.toml", "version = 1\n\ngratin = 2\n")]));
     let problem = &answer["problems"][0];
     assert_eq!((&problem["file"], &problem["line"]), (&json!("a.toml"), &json!(3)), "{answer}");
 }
 
 #[test]
 fn the_used_files_are_those_that_the_compiler_reads() {
-    let keys = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = '../wood.jpg'\nx_mm = 1\ny_mm = 1\nwidth_mm = 9\n";
-    let scene = "version = 2\ninclude = [\"parts/keys.toml\"]\nfinger = \"mine.toml\"\nscreen = \"example\"\n";
+    let keys = "version = 1\n[[layer]]\nkind = \"bitmap\"\npicture = '../wood.jpg'\nx_mm = 1\ny_mm = 1\nwidth_mm = 9\n";
+    let scene = "version = 1\ninclude = [\"parts/keys.toml\"]\nfinger = \"mine.toml\"\nscreen = \"example\"\n";
     let whole = request(scene, &[("parts/keys.toml", keys), ("unused.toml", "")]);
     let names = |request: &Request| used_files(request).unwrap();
     assert_eq!(names(&whole)["names"], json!(["mine.toml", "parts/keys.toml", "wood.jpg"]));
@@ -125,12 +125,12 @@ fn the_used_files_are_those_that_the_compiler_reads() {
 
 #[test]
 fn a_scene_that_a_board_refuses_is_a_draft() {
-    let layer = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 9\n";
+    let layer = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 9\n";
     let answer = check(&request(layer, &[]));
     assert_eq!((&answer["ok"], &answer["isDraft"]), (&json!(false), &json!(true)), "{answer}");
     assert_eq!(answer["problems"][0]["severity"], "error");
     assert!(answer["report"].as_str().unwrap().contains("draft "), "{answer}");
     assert_eq!(answer["layers"].as_array().unwrap().len(), 1);
-    let unreadable = check(&request("version = 2\n[[layer]]\nkind = \"consant\"\n", &[]));
+    let unreadable = check(&request("version = 1\n[[layer]]\nkind = \"consant\"\n", &[]));
     assert_ne!(unreadable["isDraft"], true, "{unreadable}");
 }

@@ -58,8 +58,8 @@ impl Ceilings {
     /// Version of the layout. It differs, so that a build takes no limits that a build of the other kind stored.
     const fn version(self) -> u32 {
         match self {
-            Self::InForce => 3,
-            Self::Lifted => 4,
+            Self::InForce => 1,
+            Self::Lifted => 2,
         }
     }
 

@@ -8,15 +8,8 @@ use crate::frame::FRAME_MAX_LEN;
 /// Why board and host are incompatible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mismatch {
-    /// The board's protocol is older than the host's.
-    BoardOlder {
-        /// Protocol version of the board: major, minor.
-        board: (u8, u8),
-        /// Version of the board's firmware: major, minor, patch.
-        firmware: (u8, u8, u8),
-    },
-    /// The board's protocol is newer than the host's.
-    BoardNewer {
+    /// The board speaks another major version of the protocol.
+    Protocol {
         /// Protocol version of the board: major, minor.
         board: (u8, u8),
         /// Version of the board's firmware: major, minor, patch.
@@ -35,10 +28,8 @@ impl Hello {
     /// requests.
     pub const fn compatibility(&self) -> Result<(), Mismatch> {
         let (board, firmware) = (self.protocol, self.firmware);
-        if board.0 < PROTOCOL_MAJOR {
-            Err(Mismatch::BoardOlder { board, firmware })
-        } else if board.0 > PROTOCOL_MAJOR {
-            Err(Mismatch::BoardNewer { board, firmware })
+        if board.0 != PROTOCOL_MAJOR {
+            Err(Mismatch::Protocol { board, firmware })
         } else if (self.frame_max_len as usize) < FRAME_MAX_LEN {
             Err(Mismatch::FramesTooShort { max: self.frame_max_len })
         } else {
@@ -50,13 +41,18 @@ impl Hello {
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::BoardOlder { board, firmware } => {
-                speaks(f, board, firmware)?;
-                write!(f, "flash newer firmware, one that speaks protocol {PROTOCOL_MAJOR}")
-            }
-            Self::BoardNewer { board, firmware } => {
-                speaks(f, board, firmware)?;
-                write!(f, "update the frixel command to one that speaks protocol {}", board.0)
+            Self::Protocol { board, firmware } => {
+                write!(
+                    f,
+                    "the board's firmware {}.{}.{} speaks protocol {}.{}, this program speaks \
+                     {PROTOCOL_MAJOR}.{PROTOCOL_MINOR}: ",
+                    firmware.0, firmware.1, firmware.2, board.0, board.1
+                )?;
+                if board.0 < PROTOCOL_MAJOR {
+                    write!(f, "flash newer firmware, one that speaks protocol {PROTOCOL_MAJOR}")
+                } else {
+                    write!(f, "update the frixel command to one that speaks protocol {}", board.0)
+                }
             }
             Self::FramesTooShort { max } => write!(
                 f,
@@ -65,14 +61,6 @@ impl fmt::Display for Mismatch {
             ),
         }
     }
-}
-
-fn speaks(f: &mut fmt::Formatter<'_>, board: (u8, u8), firmware: (u8, u8, u8)) -> fmt::Result {
-    write!(
-        f,
-        "the board's firmware {}.{}.{} speaks protocol {}.{}, this program speaks {PROTOCOL_MAJOR}.{PROTOCOL_MINOR}: ",
-        firmware.0, firmware.1, firmware.2, board.0, board.1
-    )
 }
 
 impl core::error::Error for Mismatch {}

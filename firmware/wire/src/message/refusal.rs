@@ -81,7 +81,7 @@ pub enum Refusal {
     NoStreamLayer,
     /// The estimated cost of the scene's longest tick is above the limit (`frixel_layers::cost`).
     TooCostly {
-        /// Estimated cost of the longest tick, in cycles; in instructions before protocol 1.3.
+        /// Estimated cost of the longest tick, in cycles.
         cycles: u32,
         /// Largest estimate that the board accepts.
         cycles_max: u32,
@@ -92,8 +92,7 @@ pub enum Refusal {
     },
     /// The playing scene declares its layers fixed (`frixel_layers::Header::layers_fixed`).
     LayersFixed,
-    /// The processor's option bytes are not those that the board needs ([`crate::hello::notice::OPTION_BYTES`]). Since
-    /// protocol 1.4.
+    /// The processor's option bytes are not those that the board needs ([`crate::hello::notice::OPTION_BYTES`]).
     OptionBytes,
 }
 
@@ -188,16 +187,14 @@ pub enum ConfigField {
     NoiseLayers,
     /// Number of edge and button layers up to and including this layer.
     ClickLayers,
-    /// The largest electric friction that the scene declares as its target, N. Since protocol 1.3.
+    /// The largest electric friction that the scene declares as its target, N.
     ElectricFrictionMax,
     /// The power of the voltage with which the friction of an empirical law grows, below its first point or between
-    /// two. Since protocol 1.4.
+    /// two.
     LawExponent,
-    /// The voltage of a point of an empirical law, V rms: finite, above zero and above that of the point before. Since
-    /// protocol 1.4.
+    /// The voltage of a point of an empirical law, V rms: finite, above zero and above that of the point before.
     LawPoint,
-    /// The electric friction of a point of an empirical law, or of the law at the largest voltage, N. Since protocol
-    /// 1.4.
+    /// The electric friction of a point of an empirical law, or of the law at the largest voltage, N.
     LawFriction,
 }
 

@@ -22,7 +22,7 @@ pub fn from_host() -> Vec<Payload<'static>> {
     static FULL_CHUNK: [u8; CHUNK_LEN] = [0xa5; CHUNK_LEN];
     static FULL_SAMPLES: [[u8; 2]; SAMPLES_MAX] = [[0x5a, 0xa5]; SAMPLES_MAX];
     let sequences = [0, 1, 127, 128, 300, 16_383, 16_384, 65_535].into_iter().cycle();
-    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 2) }];
+    let mut payloads = vec![Payload::HelloRequest { protocol: (1, 0) }];
     payloads
         .extend(sequences.zip(commands()).map(|(sequence, command)| Payload::Request(Request { sequence, command })));
     payloads.extend([
@@ -32,8 +32,6 @@ pub fn from_host() -> Vec<Payload<'static>> {
         Payload::Samples { first_index: 0, samples: &[[0x00, 0x00]] },
         Payload::Samples { first_index: 70_000, samples: &[[0xff, 0xff], [0x00, 0x80], [0x34, 0x12]] },
         Payload::Samples { first_index: u32::MAX, samples: &FULL_SAMPLES },
-        Payload::HelloRequest { protocol: (1, 3) },
-        Payload::HelloRequest { protocol: (1, 4) },
         Payload::Request(Request { sequence: 9, command: Command::TickTimes }),
     ]);
     payloads
@@ -114,7 +112,7 @@ fn hellos() -> Vec<Hello> {
     hellos.extend((2..=6).map(|number| Hello { reset_cause: ResetCause::from(number), ..hello() }));
     hellos.extend(faults().map(|fault| Hello { last_fault: Some(fault), fault_detail: 0x0a0b_0c0d, ..hello() }));
     hellos.extend(STATES.map(|state| Hello { state, scene_crc32: 0xcbf4_3926, ..hello() }));
-    hellos.extend(notice::SENTENCES.map(|(notices, _)| Hello { protocol: (1, 4), notices, ..hello() }));
+    hellos.extend(notice::SENTENCES.map(|(notices, _)| Hello { notices, ..hello() }));
     hellos
 }
 
@@ -152,14 +150,12 @@ fn messages() -> Vec<FromBoard> {
         fault: Some(fault),
         flags: Flags::default(),
     }));
-    // Since protocol 1.3; appended after the messages that already have golden bytes.
     messages.push(FromBoard::Answer(Answer {
         sequence: 200,
         received_bytes: 200_000,
         state: State::Armed,
         outcome: Err(Refusal::Config(config_refusal(ConfigField::ElectricFrictionMax, ConfigRefusal::WHOLE_SCENE))),
     }));
-    // Since protocol 1.4.
     let measured = TickTimes {
         deadline_cycles: 3_700,
         worst_cycles: 2_131,
@@ -265,7 +261,7 @@ pub fn scene_errors() -> [SceneError; 12] {
     ]
 }
 
-/// The quantities of protocol 1.2, in the order of their numbers; those since then follow in samples of their own.
+/// The first quantities, in the order of their numbers; the others follow in samples of their own.
 fn config_fields() -> impl Iterator<Item = ConfigField> {
     (0..34).map(|number: u8| postcard::from_bytes(&[number]).unwrap())
 }

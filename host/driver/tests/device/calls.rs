@@ -62,7 +62,6 @@ fn a_scene_goes_from_upload_to_play_and_back() {
     );
 }
 
-/// As with a board whose protocol is older than the kind.
 #[test]
 fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
     let stream = Layer::Stream(Stream { low_n: 0.0, high_n: 0.01 });
@@ -76,12 +75,11 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
     for (features, refused) in [(feature::TELEMETRY, true), (feature::STREAM | feature::POLYGON, false)] {
         let mut board = FakeBoard::new();
         board.hello.features = features;
-        board.hello.protocol = (1, 2);
         let mut device = connected(VirtualLine::new(board));
         let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).err();
         let said = error.map(|error| error.to_string());
         assert_eq!(said.is_some(), refused, "{said:?}");
-        assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.2")));
+        assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.0")));
         assert_eq!(line_of(&mut device).board.commands.is_empty(), refused);
     }
 }
@@ -290,18 +288,17 @@ fn damaged_frames_of_the_board_are_counted() {
 }
 
 #[test]
-fn tick_times_are_read_only_from_a_board_that_knows_them() {
+fn tick_times_are_read_only_from_a_board_with_telemetry() {
     let measured = TickTimes { deadline_cycles: 3_700, worst_cycles: 2_131, ..TickTimes::default() };
-    for (protocol, features, board_says, found, is_asked) in [
-        ((1, 4), feature::TELEMETRY, measured, Some(measured), true),
-        ((1, 4), feature::TELEMETRY, TickTimes::default(), None, true),
-        ((1, 3), feature::TELEMETRY, measured, None, false),
-        ((1, 4), 0, measured, None, false),
+    for (features, board_says, found, is_asked) in [
+        (feature::TELEMETRY, measured, Some(measured), true),
+        (feature::TELEMETRY, TickTimes::default(), None, true),
+        (0, measured, None, false),
     ] {
         let mut board = FakeBoard::new();
-        (board.hello.protocol, board.hello.features, board.tick_times) = (protocol, features, board_says);
+        (board.hello.features, board.tick_times) = (features, board_says);
         let mut device = connected(VirtualLine::new(board));
-        assert_eq!(device.tick_times().unwrap(), found, "{protocol:?}");
-        assert_eq!(!line_of(&mut device).board.commands.is_empty(), is_asked, "{protocol:?}");
+        assert_eq!(device.tick_times().unwrap(), found, "{features:#x}");
+        assert_eq!(!line_of(&mut device).board.commands.is_empty(), is_asked, "{features:#x}");
     }
 }

@@ -14,7 +14,7 @@ const STRIPES: &str = "[[layer]]\nkind = \"grating\"\nregion = { x_mm = 40, y_mm
 const WEAVE: &str = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 1\nlow_n = 0.0\nhigh_n = 0.05\n";
 
 fn program(layers: &[&str]) -> Program {
-    let text = format!("version = 2\n{}", layers.concat());
+    let text = format!("version = 1\n{}", layers.concat());
     let rig = RigConfig::default();
     let scene = Scene::parse(&text, "noticed.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
     compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap()

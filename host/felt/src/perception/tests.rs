@@ -112,7 +112,7 @@ fn a_vibration_is_said_to_need_a_sliding_finger() {
 
 /// On the example screen, under the example finger: 250 mN, to which the drive adds up to 130 mN.
 fn on_example(layers: &str) -> Perception {
-    Perception::of(&compiled(&format!("version = 2\n{layers}")), &TouchConfig::REALISTIC)
+    Perception::of(&compiled(&format!("version = 1\n{layers}")), &TouchConfig::REALISTIC)
 }
 
 /// A layer whose friction is in parts of the reach, at a place of 30 by 20 mm.
@@ -413,7 +413,7 @@ fn a_faster_touch_source_plays_smaller_elements() {
                region = { x_mm = 60, y_mm = 40, width_mm = 2.5, height_mm = 2.5 }\n";
     let verdict = |rate_hz| {
         let touch = TouchConfig { rate_hz, ..TouchConfig::REALISTIC };
-        only(&Perception::of(&compiled(&format!("version = 2\n{dot}")), &touch)).verdict
+        only(&Perception::of(&compiled(&format!("version = 1\n{dot}")), &touch)).verdict
     };
     assert_eq!([100.0, 200.0, 500.0].map(verdict), [Verdict::NotFelt, Verdict::Felt, Verdict::Felt]);
 }
@@ -448,7 +448,7 @@ fn many_layers_fit_a_terminal() {
         )
     };
     let layers: String = (0..37).map(layer).collect();
-    let program = compiled(&format!("version = 2\n{layers}"));
+    let program = compiled(&format!("version = 1\n{layers}"));
     let lines = feel::lines(&Perception::of(&program, &TouchConfig::REALISTIC));
     let rows: usize = lines.iter().map(|(_, text)| (19 + text.chars().count()).div_ceil(80)).sum();
     assert!(rows <= 27, "{rows} rows beside those of costs: {lines:#?}");

@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn info_says_each_notice_in_a_sentence_with_its_cure() {
         let mut hello = Hello {
-            protocol: (1, 4),
+            protocol: (1, 0),
             firmware: (0, 1, 0),
             board: BoardKind::NucleoG474re,
             id: [0; 12],

@@ -1,7 +1,6 @@
 //! `frixel scene`: checks or draws a scene before it is played.
 
 mod check;
-mod migrate;
 mod preview;
 mod schema;
 
@@ -17,8 +16,6 @@ pub(super) enum SceneCommand {
     Check(check::CheckArgs),
     /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in millinewtons.
     Preview(preview::PreviewArgs),
-    /// Print a scene of version 1 as version 2, in which screen and finger are apart.
-    Migrate(migrate::MigrateArgs),
     /// Print the JSON schema of the scene file, for editors.
     Schema,
 }
@@ -27,7 +24,6 @@ pub(super) fn run(command: &SceneCommand) -> Result<()> {
     match command {
         SceneCommand::Check(args) => check::run(args),
         SceneCommand::Preview(args) => preview::run(args),
-        SceneCommand::Migrate(args) => migrate::run(args),
         SceneCommand::Schema => schema::run(),
     }
 }

@@ -26,7 +26,7 @@ const STROKE_S: f64 = 3.0;
 /// Rows per second in felt.csv.
 const ROWS_HZ: u32 = 1000;
 /// A scene without friction of its own, from which the contact of a profile is computed.
-const NO_SCENE: &str = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
+const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
 
 pub(super) fn run(args: &SimArgs) -> Result<()> {
     let interrupt = Interrupt::watch()?;

@@ -144,20 +144,6 @@ fn folder_of(scene: &Path) -> SceneFolder {
     SceneFolder(scene.parent().unwrap_or(Path::new("")).to_owned())
 }
 
-/// Reads a scene file of version 1, and returns it as version 2.
-pub(crate) fn migrate(path: &Path) -> Result<String, SceneFileError> {
-    let file = path.display().to_string();
-    let folder = folder_of(path);
-    match input::read(path, input::TOML_MAX_BYTES) {
-        Ok(bytes) => {
-            // Report bytes that are not text in the same way as everywhere.
-            Scene::parse_bytes(&bytes, &file, &folder)?;
-            Ok(frixel_scene::migrate(&String::from_utf8_lossy(&bytes), &file, &folder)?)
-        }
-        Err(source) => Err(SceneFileError::Unreadable { file, source }),
-    }
-}
-
 /// A finger and a screen to be used in place of a scene's own, each by the name of a file or of a bundled profile.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ProfileNames {
@@ -191,12 +177,12 @@ impl ProfileNames {
     /// A scene with this finger and screen.
     pub(crate) fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
-            scene = scene.with_screen(screen(name)?, name)?;
+            scene = scene.with_screen(screen(name)?, name);
         }
         if let Some(name) = &self.finger {
             let names = FingerProfile::bundled_names();
             let finger = profile("finger", name, FingerProfile::bundled, names, FingerProfile::parse)?;
-            scene = scene.with_finger(finger, name)?;
+            scene = scene.with_finger(finger, name);
         }
         Ok(scene)
     }

@@ -56,7 +56,7 @@ fn layers_are_switched_turned_down_and_triggered() {
 #[test]
 fn a_layer_that_starts_off_waits_for_its_trigger_and_stays_as_it_was_switched() {
     let folder = TempDir::new().unwrap();
-    let ground = "version = 2\n[[layer]]\nname = \"ground\"\nkind = \"constant\"\nfriction_n = 0.26\n";
+    let ground = "version = 1\n[[layer]]\nname = \"ground\"\nkind = \"constant\"\nfriction_n = 0.26\n";
     let ping = "[[layer]]\nname = \"ping\"\nkind = \"constant\"\nfriction_n = 0.35\nlive = true\nstart = \"off\"\n";
     fs::write(folder.path().join("scene.toml"), format!("{ground}{ping}")).unwrap();
     let lines = "wait 0.2\ntrigger ping 200\nwait 0.4\nreplace scene.toml\nwait 0.1\nlayer ping on gain 0.9\nwait 0.1\n\
@@ -79,7 +79,7 @@ fn a_layer_that_starts_off_waits_for_its_trigger_and_stays_as_it_was_switched() 
 /// Whatever the time since the board's power-on, the first beat comes with the trigger, and the last one is whole.
 #[test]
 fn a_trigger_plays_its_burst_or_its_pattern_from_the_beginning() {
-    let ping = "version = 2\n[[layer]]\nname = \"ping\"\nlive = true\nstart = \"off\"\n";
+    let ping = "version = 1\n[[layer]]\nname = \"ping\"\nlive = true\nstart = \"off\"\n";
     let burst = "kind = \"vibration\"\nwave = \"square\"\nfrequency_hz = 0.01\nlow_fraction = 0\nhigh_fraction = 0.5\n\
                  burst = { period_ms = 330, on_ms = 80 }\n";
     let pattern = "kind = \"constant\"\nfriction_fraction = 0.5\npattern_ms = [60, 40, 120]\n";

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::emulator;
 
 /// A band on an otherwise plain screen, which the stroke below crosses.
-const BAND: &str = "version = 2\n[[layer]]\nname = \"band\"\nkind = \"constant\"\n\
+const BAND: &str = "version = 1\n[[layer]]\nname = \"band\"\nkind = \"constant\"\n\
                     region = { x_mm = 30, y_mm = 0, width_mm = 6, height_mm = 80 }\nfriction_fraction = 0.9\n";
 
 pub(super) fn play(folder: &Path) -> Command {

@@ -47,14 +47,13 @@ fn no_output_replaces_an_input_by_whatever_link() {
 
 /// The command lines of the trials, in which the input has the name of the output.
 #[test]
-fn fit_play_and_migrate_do_not_replace_what_they_read() {
+fn fit_and_play_do_not_replace_what_they_read() {
     for (file, line) in [
         ("data.csv", "fit data.csv -o data.csv"),
         ("data.csv", "fit data.csv -o ./nowhere/../data.csv"),
         ("D/felt.csv", "play scene.toml --stroke D/felt.csv --out D"),
         ("D/felt.csv", "score scene.toml --stroke D/score.csv --out D"),
         ("D/felt.csv", "sim --stroke D/felt.csv --out D"),
-        ("old.toml", "scene migrate old.toml -o old.toml"),
         ("scene.toml", "scene preview scene.toml --screen D/map.png -o D/map.png"),
         ("screen.toml", "fit data.csv --screen screen.toml -o screen.toml"),
         // The plots beside the profile.

@@ -22,7 +22,7 @@ use tempfile::TempDir;
 
 use crate::processes::repository;
 
-const SCENE: &str = "version = 2\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
+const SCENE: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
                      high_fraction = 0.9\n";
 
 /// What a person answers who finds each stimulus of the default seed, more often than 12 trials and their checks ask.
@@ -38,7 +38,6 @@ impl Folder {
         let points = "variant,radius_m,coating_m,permittivity,friction_coefficient,stiffness_pa_per_m";
         let screen = "width_mm = 120\nheight_mm = 80\n[[coating]]\nthickness_um = 1\npermittivity = 3.9\n";
         folder.write("scene.toml", SCENE);
-        folder.write("old.toml", OLD);
         folder.write("stroke.csv", "t_s,x_mm,y_mm,note\n0,10,20,a\n0.4,40,20,b\n");
         folder.write("screen.toml", screen);
         folder.write("points.csv", &format!("{points},voltage_v\nwf-upper,0.008,1e-5,1,0.5,1.8e7,100\n"));
@@ -120,11 +119,6 @@ fn ran(output: &Output) -> Ran {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     Ran { code: output.status.code(), said, notes: String::from_utf8_lossy(&output.stderr).into_owned() }
 }
-
-/// A scene of version 1.
-const OLD: &str = "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[coating]\nthickness_um = 10\n\
-                   permittivity = 1\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\n\
-                   normal_load_n = 0.5\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
 
 /// A recording of friction that can be fitted.
 fn friction() -> &'static str {

@@ -341,7 +341,7 @@ fn a_recording_that_a_spreadsheet_saved_is_a_recording() {
     let ran = folder.run("model eval --input points.csv --output me.csv");
     assert!(ran.code == Some(1) && ran.notes.contains("is a recording of a person"), "{}", ran.notes);
     assert_eq!(folder.text("me.csv"), recording);
-    folder.write("scene.toml", "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+    folder.write("scene.toml", "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
     let ran = folder.run("play scene.toml --stroke me.csv");
     assert!(ran.code == Some(0) && !ran.notes.contains("ignored column"), "{}", ran.notes);
 }

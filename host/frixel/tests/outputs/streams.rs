@@ -8,12 +8,8 @@ use std::thread;
 use super::{Folder, answered, ran};
 
 /// Commands that write one file, with its name at the end.
-const LINES: [&str; 4] = [
-    "scene migrate old.toml -o ",
-    "model eval --input points.csv --output ",
-    "model invert --input frictions.csv --output ",
-    "fit data.csv -o ",
-];
+const LINES: [&str; 3] =
+    ["model eval --input points.csv --output ", "model invert --input frictions.csv --output ", "fit data.csv -o "];
 
 #[test]
 fn a_dash_and_the_name_of_standard_output_are_standard_output() {

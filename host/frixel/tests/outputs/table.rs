@@ -35,7 +35,7 @@ const fn recording(
 }
 
 /// Every output.
-pub(crate) const OUTPUTS: [Output; 18] = [
+pub(crate) const OUTPUTS: [Output; 17] = [
     Output {
         // It never replaces its scene.
         is_reproducible: true,
@@ -59,7 +59,6 @@ pub(crate) const OUTPUTS: [Output; 18] = [
         "stroke.csv",
         &["OUT.parquet", "OUT/felt.csv", "OUT/summary.json", "OUT/felt.svg", "OUT/scene.png"],
     ),
-    result("scene migrate output", "scene migrate IN -o OUT", "old.toml", &["OUT"]),
     result("scene preview output", "scene preview IN -o OUT.png", "scene.toml", &["OUT.png"]),
     result(
         "score out",
@@ -116,7 +115,7 @@ pub(crate) const OUTPUTS: [Output; 18] = [
 
 /// Every argument that names a file to read, or a port, by the type of a path.
 #[allow(dead_code, reason = "only the test of the command line reads it")]
-pub(crate) const INPUTS: [&str; 21] = [
+pub(crate) const INPUTS: [&str; 20] = [
     "calibrate forces",
     "fit data",
     "model eval input",
@@ -130,7 +129,6 @@ pub(crate) const INPUTS: [&str; 21] = [
     "report bench",
     "report scene",
     "scene check scene",
-    "scene migrate scene",
     "scene preview scene",
     "score scene",
     "sim scenario",

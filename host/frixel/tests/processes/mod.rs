@@ -11,7 +11,7 @@ const NAP: Duration = Duration::from_millis(5);
 /// A minute of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 12_000;
 
-/// All that a scene of version 1 needs but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78
+/// All of a scene but its layers: a screen of 120 mm by 80 mm, 0.25 N of natural friction, 27.78
 /// mN more.
 pub(crate) const HEAD: &str = "\
 version = 1
@@ -20,7 +20,7 @@ version = 1
 width_mm = 120
 height_mm = 80
 
-[coating]
+[screen.coating]
 thickness_um = 10
 permittivity = 1
 
@@ -29,6 +29,7 @@ radius_mm = 8
 stiffness_pa_per_m = 1.8e7
 friction_coefficient = 0.5
 normal_load_n = 0.5
+skin_gap_um = 0
 ";
 
 pub(crate) fn frixel() -> Command {

@@ -144,10 +144,9 @@ impl Protocol {
         let highest = self.voltage_max_v_rms();
         let high_n = REACH * contact.electric_friction_n(highest);
         Ok(format!(
-            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80 }}\ncoating = {{ thickness_um = 10, \
-             permittivity = 1 }}\n\
-             finger = {{ radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5 \
-             }}\n\
+            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80, coating = {{ thickness_um = 10, permittivity = 1 }} }}\n\
+             finger = {{ radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, \
+             skin_gap_um = 0 }}\n\
              drive = {{ voltage_max_v_rms = {highest} }}\n\
              [[layer]]\nname = \"calibration\"\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = {high_n}\n"
         ))

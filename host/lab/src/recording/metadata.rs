@@ -231,9 +231,9 @@ mod tests {
     #[test]
     fn a_file_is_text_or_bytes_or_a_hash() {
         let large = vec![7; EMBEDDED_MAX_BYTES];
-        let files: [(&str, &[u8]); 3] = [("a", b"version = 2\n"), ("b", &[0xff, 0x00]), ("c", &large)];
+        let files: [(&str, &[u8]); 3] = [("a", b"version = 1\n"), ("b", &[0xff, 0x00]), ("c", &large)];
         let files = SourceFile::all(files.map(|(name, bytes)| (name.to_owned(), bytes)));
-        assert_eq!(files["a"], SourceFile::Text("version = 2\n".to_owned()));
+        assert_eq!(files["a"], SourceFile::Text("version = 1\n".to_owned()));
         assert_eq!((&files["b"], files["b"].bytes()), (&SourceFile::Hex("ff00".to_owned()), Some(vec![0xff, 0x00])));
         assert_eq!(files["c"].bytes(), None);
         // The example of FIPS 180-4.
@@ -246,7 +246,7 @@ mod tests {
         let mut grown = GrowingFile::default();
         half.chunks(1000).for_each(|piece| grown.extend(piece));
         let mut metadata = Metadata::default();
-        metadata.add_scene((0.5, "version = 2\n".to_owned(), false), [("a.png".to_owned(), half.as_slice())]);
+        metadata.add_scene((0.5, "version = 1\n".to_owned(), false), [("a.png".to_owned(), half.as_slice())]);
         metadata.add_grown("stream", grown.clone());
         assert_eq!(metadata.later_scenes[0].files["a.png"].bytes().as_ref(), Some(&half));
         assert_eq!(metadata.files["stream"].bytes().as_ref(), Some(&half));

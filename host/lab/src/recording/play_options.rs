@@ -233,15 +233,6 @@ mod tests {
     }
 
     #[test]
-    fn the_options_of_a_recording_that_did_not_have_a_persons_seed_are_read() {
-        let older =
-            r#"{"name":"human","from_m":null,"to_m":null,"speed_m_per_s":null,"times":null,"minimum_jerk":false}"#;
-        let read: StrokeOptions = serde_json::from_str(older).unwrap();
-        assert_eq!(read, human(None, None));
-        assert_eq!(serde_json::to_string(&read).unwrap(), older);
-    }
-
-    #[test]
     fn a_stroke_in_place_or_longer_than_a_day_is_refused() {
         let straight = |to_m, speed_m_per_s| StrokeOptions {
             from_m: Some([0.01, 0.02]),

@@ -76,7 +76,7 @@ impl PreparedPlay {
         let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
         let drawn = |seed| {
             let person = Person::drawn(seed);
-            let contact = person.contact(1e-6 * scene.screen_without_skin()?.coating_gap_um())?;
+            let contact = person.contact(1e-6 * scene.screen().coating_gap_um())?;
             Ok::<_, PreparedPlayError>((person, contact))
         };
         let person = options.finger_seed.map(drawn).transpose()?;

@@ -198,14 +198,14 @@ fn scene(text: &str, named: &FileBytes, options: &PlayOptions, files: &FileBytes
             Some(bytes) => Screen::parse(&String::from_utf8_lossy(bytes), PlayOptions::SCREEN)?,
             None => bundled(Screen::bundled(name), PlayOptions::SCREEN, name)?,
         };
-        scene = scene.with_screen(screen, PlayOptions::SCREEN)?;
+        scene = scene.with_screen(screen, PlayOptions::SCREEN);
     }
     if let Some(name) = &options.finger {
         let finger = match files.get(PlayOptions::FINGER) {
             Some(bytes) => FingerProfile::parse(&String::from_utf8_lossy(bytes), PlayOptions::FINGER)?,
             None => bundled(FingerProfile::bundled(name), PlayOptions::FINGER, name)?,
         };
-        scene = scene.with_finger(finger, PlayOptions::FINGER)?;
+        scene = scene.with_finger(finger, PlayOptions::FINGER);
     }
     Ok(scene)
 }

@@ -34,13 +34,13 @@ fn metadata(is_simulated: bool) -> Metadata {
         ticks_per_row: 40,
         participant: Some("P07".to_owned()),
         play: serde_json::json!({ "seed": u64::MAX, "seconds": 0.1 + 0.2 }),
-        scene: "version = 2\n".to_owned(),
+        scene: "version = 1\n".to_owned(),
         files: SourceFile::all(files.map(|(name, bytes)| (name.to_owned(), bytes))),
         later_scenes: vec![LaterScene {
             t_s: 0.5,
-            scene: "version = 2\n# later\n".to_owned(),
+            scene: "version = 1\n# later\n".to_owned(),
             is_refused: true,
-            files: SourceFile::all([("part.toml".to_owned(), b"version = 2\n".as_slice())]),
+            files: SourceFile::all([("part.toml".to_owned(), b"version = 1\n".as_slice())]),
         }],
         markers: vec![
             Marker { ticks: 0, t_s: 0.0, event: MarkedEvent::SceneBegan },

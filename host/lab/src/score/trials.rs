@@ -79,8 +79,7 @@ impl TrialPlan {
         goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Result<Vec<Trial>, TrialsError> {
         let Some(people) = people else { return Ok(self.trials_while(program, None, goes_on)?) };
-        // A scene of version 1 has no screen without its own finger's skin.
-        let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
+        let coating_gap_um = scene.screen().coating_gap_um();
         let of_person = |person| {
             let finger = TrialFinger::of_person(person, coating_gap_um, is_ideal)?;
             Ok(self.trials_while(program, Some(finger), goes_on)?)

@@ -173,7 +173,7 @@ mod tests {
     fn a_board_that_stops_by_itself_ends_the_play() {
         let config = RigConfig::default();
         let board = &config.board;
-        let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
+        let text = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
         let scene = Scene::parse(text, "constant.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
         let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
         let mut memory = BoardMemory::new();

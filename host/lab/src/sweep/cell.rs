@@ -178,7 +178,7 @@ impl Cell {
             return Err(CellError::OtherVersion { found: self.version.clone() });
         }
         let (scene, rig, program) = self.compiled()?;
-        let coating_gap_um = scene.screen_without_skin()?.coating_gap_um();
+        let coating_gap_um = scene.screen().coating_gap_um();
         let person = self.person;
         let finger = TrialFinger::of_person(person, coating_gap_um, self.ideal)
             .map_err(|source| CellError::Finger { person, source })?;
@@ -218,7 +218,7 @@ impl Cell {
                 Screen::bundled(name).ok_or_else(|| CellError::NotBundled { what: "screen", name: name.clone() })?
             }
         };
-        Ok(scene.with_screen(screen, name)?)
+        Ok(scene.with_screen(screen, name))
     }
 
     fn rig(&self) -> Result<RigConfig, CellError> {

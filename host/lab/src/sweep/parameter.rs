@@ -163,7 +163,7 @@ fn set<'p>(table: &mut dyn TableLike, tables: &[&'p str], field: &'p str, value:
 mod tests {
     use super::*;
 
-    const SCENE: &str = "version = 2\n\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.01 # little\n\n[[layer]]\nkind = \"grating\"\n\
+    const SCENE: &str = "version = 1\n\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.01 # little\n\n[[layer]]\nkind = \"grating\"\n\
                          region = { x_mm = 1, width_mm = 5 }\n";
 
     fn set(path: &str, value: &Value) -> Result<String, String> {

@@ -7,7 +7,7 @@ use super::*;
 
 /// The simulator's board, with a drive that adds some 0.13 N.
 fn program_of(text: &str) -> Program {
-    let text = format!("version = 2\n{text}");
+    let text = format!("version = 1\n{text}");
     let scene = Scene::parse(&text, "live.toml", &BTreeMap::new()).expect("it is a scene");
     compile(&scene, &Board::SIMULATOR.limits, 40_000).expect("it compiles")
 }

@@ -90,7 +90,7 @@ class Scene:
     @staticmethod
     def dict_text(tables: Mapping[str, Any]) -> str:
         """The text of the scene file with these tables."""
-        return _toml.dumps({"version": 2, **mapping("tables", tables)})
+        return _toml.dumps({"version": 1, **mapping("tables", tables)})
 
     @classmethod
     def of(cls, scene: Scene | Mapping[str, Any]) -> Scene:

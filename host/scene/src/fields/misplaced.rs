@@ -39,7 +39,7 @@ struct Home {
 /// A screen has a name, but who gives one to a scene does not mean the screen.
 const NAME: &str = "name";
 /// A scene with every table of the head, and one with the tables inside a layer.
-const TABLES: &str = "version = 2\n[drive]\n[screen]\n[finger]\n[carrier]\n[touch]\n[design]\n\
+const TABLES: &str = "version = 1\n[drive]\n[screen]\n[finger]\n[carrier]\n[touch]\n[design]\n\
     [[layer]]\nkind = \"vibration\"\nregion = {}\nrepeat = {}\nburst = {}\n\
     [[layer]]\nkind = \"constant\"\nregion = { shape = \"polygon\" }\n";
 /// The tables inside a layer.

@@ -1,6 +1,6 @@
 //! Finger profiles: the numbers of a finger on a screen, and how they came about.
 //!
-//! A profile is a TOML file of its own, or the table `[finger]` of a scene of version 2; both have the same fields.
+//! A profile is a TOML file of its own, or the table `[finger]` of a scene; both have the same fields.
 
 mod bundled;
 mod read;

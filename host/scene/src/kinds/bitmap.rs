@@ -43,8 +43,6 @@ const TILED: FieldSpec =
     flag("tiled", false, "`true`: it is repeated in both directions, over the region or the screen");
 /// Finest and coarsest pitch.
 pub(crate) const PITCH_MM: Range = Range::new(0.02, 10.0, " mm");
-/// The pitch of pictures that a scene of version 1 gives none.
-pub(crate) const PITCH_V1_MM: f64 = 0.25;
 const PITCH: FieldSpec = FieldSpec::new(
     "pitch_mm",
     Holds::NumberOrAuto(PITCH_MM),

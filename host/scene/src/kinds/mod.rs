@@ -33,7 +33,7 @@ use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
 
-pub(crate) use bitmap::{Bitmap, Levels, PITCH_MM, PITCH_V1_MM};
+pub(crate) use bitmap::{Bitmap, Levels, PITCH_MM};
 
 /// The fields of a kind of layer, as a person writes them.
 pub(crate) trait Words: Sized {

@@ -36,7 +36,7 @@ pub enum FieldMistake {
         write: String,
     },
     /// A required field is missing.
-    #[error("{table} has no {}", missing(table, field, *.other))]
+    #[error("{table} has no {}", missing(field, *.other))]
     MissingField {
         /// The missing field.
         field: &'static str,
@@ -264,13 +264,9 @@ pub enum FieldMistake {
     },
 }
 
-fn missing(table: &str, field: &str, other: Option<&str>) -> String {
+fn missing(field: &str, other: Option<&str>) -> String {
     match other {
-        _ if field == "version" => "`version`: write `version = 2` at the top".to_owned(),
-        // A scene needs one in version 1 alone.
-        _ if field == "coating" && table == "the scene" => {
-            "`coating`: add it, or write `version = 2`, which new scenes have".to_owned()
-        }
+        _ if field == "version" => "`version`: write `version = 1` at the top".to_owned(),
         _ if field == "kind" => {
             let kinds: Vec<&str> = KindName::ALL.iter().map(|(word, _)| *word).collect();
             format!("`kind`: write one of `{}`", kinds.join("`, `"))

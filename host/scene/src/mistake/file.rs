@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::{SLASH_ADVICE, TILDE_ADVICE};
+use crate::file::VERSION;
 use crate::nearest::Nearest;
 use crate::printable::{Shown, brief};
 
@@ -17,28 +18,11 @@ pub enum FileMistake {
     #[error("this is not TOML: {0}")]
     Syntax(String),
     /// The scene file has another version.
-    #[error(
-        "this scene file has version {}, and this frixel reads versions 1 and 2: use a frixel that knows it",
-        Shown(*.found)
-    )]
+    #[error("this scene file has version {}, and this frixel reads version {VERSION}: use a frixel that knows it", Shown(*.found))]
     Version {
         /// The version, as written.
         found: f64,
     },
-    /// Screen or finger of a scene of version 1 cannot be exchanged.
-    #[error(
-        "the coating of a scene of version 1 contains the finger's skin, so that it cannot be played with another {what}: \
-         `frixel scene migrate {file}` prints it as version 2"
-    )]
-    VersionOneProfile {
-        /// `finger` or `screen`.
-        what: &'static str,
-        /// The scene file.
-        file: String,
-    },
-    /// The scene to be written as version 2 is of version 2.
-    #[error("this scene has version 2 already: there is nothing to migrate")]
-    NothingToMigrate,
     /// No screen or finger of this name is bundled.
     #[error("no {what} \"{}\" is bundled, and the name of a file has an ending such as .toml; {nearest}", brief(.found))]
     UnknownProfile {
@@ -48,28 +32,6 @@ pub enum FileMistake {
         found: String,
         /// The bundled names, and the nearest one.
         nearest: Nearest,
-    },
-    /// A scene of version 1 has a field of version 2.
-    #[error("`{field}` came with version 2: `frixel scene migrate {file}` prints a scene of version 1 as version 2")]
-    SinceVersionTwo {
-        /// The field.
-        field: &'static str,
-        /// The scene file.
-        file: String,
-    },
-    /// An included file has another version.
-    #[error(
-        "{file} includes {included}, which has version {} and not 2: {}",
-        Shown(*.found),
-        version_advice(*.found, .included)
-    )]
-    IncludedVersion {
-        /// The file that includes it.
-        file: String,
-        /// The included file.
-        included: String,
-        /// Its version, as written.
-        found: f64,
     },
     /// There is more of something than is read.
     #[error("there are {found} {what}, and at most {max} are read: {advice}")]
@@ -202,14 +164,6 @@ fn missing_advice(file: &str) -> &'static str {
         SLASH_ADVICE
     } else {
         "paths start from the folder of the file that names it"
-    }
-}
-
-fn version_advice(found: f64, file: &str) -> String {
-    if found.to_bits() == 1.0_f64.to_bits() {
-        format!("`frixel scene migrate {file}` prints it as version 2")
-    } else {
-        "use a frixel that knows it".to_owned()
     }
 }
 

@@ -184,8 +184,7 @@ pub enum FitMistake {
     #[error(
         "at {voltage_v_rms:.1} V rms the contact would have a radius of {contact_mm:.1} mm under a finger of {radius_mm} mm, \
          where the model is not valid: a skin gap is missing, since {gap_um:.2} um between electrode and finger are too few; \
-         give the finger a `skin_gap_um` of some micrometres (in version 1 another slab of [[coating]]), or lower \
-         `voltage_max_v_rms`"
+         give the finger a `skin_gap_um` of some micrometres, or lower `voltage_max_v_rms`"
     )]
     ContactWiderThanFinger {
         /// The largest rms voltage, V.

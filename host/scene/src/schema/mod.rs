@@ -5,18 +5,16 @@ pub(super) mod variant;
 
 use serde_json::{Map, Value, json};
 
-use super::file::describe;
+use super::file::{VERSION, describe};
 use super::grammar::{Holds, KnownField, KnownTable, Range};
 use super::stack::LAYER_FIELDS;
 use super::tables::layer::{KIND, NAME};
 use variant::{Tables, Variant, variants};
 
-/// For each version of the file format, the tables of a scene, empty, so that the parser reads their fields.
-const EMPTY: [(u32, &str); 2] = [
-    (2, "version = 2\nscreen = { coating = [{}] }\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\ndesign = {}\n"),
-    (1, "version = 1\ncoating = [{}]\nscreen = {}\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\n"),
-];
-/// The tables that are the same in all versions.
+/// The tables of a scene, empty, so that the parser reads their fields.
+const EMPTY: &str =
+    "version = 1\nscreen = { coating = [{}] }\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\ndesign = {}\n";
+/// The tables that are the same in all scenes.
 const SHARED: [&str; 4] = ["drive", "carrier", "touch", "design"];
 /// The tables that may complete the layers of a scene, which is then of the schema `shared_layer` for each layer.
 const COMPLETING: [&str; 2] = ["defaults", "include"];
@@ -29,8 +27,7 @@ pub fn json_schema() -> String {
     definitions.insert("defaults".to_owned(), shared_layer(false));
     definitions.insert("region".to_owned(), json!({ "oneOf": regions() }));
     definitions.insert("repeat".to_owned(), repeat());
-    let [(_, newest), _] = EMPTY;
-    for table in describe(newest).iter().filter(|table| SHARED.contains(&table.key)) {
+    for table in describe(EMPTY).iter().filter(|table| SHARED.contains(&table.key)) {
         definitions.insert(table.key.to_owned(), object(table, &Map::new()));
     }
     let schema = json!({
@@ -45,22 +42,17 @@ pub fn json_schema() -> String {
     serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
 }
 
-/// The schemas of a scene: of each version, and of one whose layers may have fields in `[defaults]` or in another file.
-fn scenes() -> Vec<Value> {
-    let [(newest, tables), _] = EMPTY;
-    let mut scenes: Vec<Value> = EMPTY.map(|(version, empty)| scene(version, empty, "layer")).into();
-    let mut shared = scene(newest, tables, "shared_layer");
-    let either = COMPLETING.map(|table| json!({ "required": [table] }));
-    for plain in &mut scenes {
-        if let Some(properties) = plain.pointer_mut("/properties").and_then(Value::as_object_mut) {
-            properties.retain(|name, _| !COMPLETING.contains(&name.as_str()));
-        }
+/// The schemas of a scene: with whole layers, and with layers that may have fields in `[defaults]` or in another file.
+fn scenes() -> [Value; 2] {
+    let [mut whole, mut shared] = ["layer", "shared_layer"].map(scene);
+    if let Some(properties) = whole.pointer_mut("/properties").and_then(Value::as_object_mut) {
+        properties.retain(|name, _| !COMPLETING.contains(&name.as_str()));
     }
+    let either = COMPLETING.map(|table| json!({ "required": [table] }));
     if let Some(shared) = shared.as_object_mut() {
         shared.insert("anyOf".to_owned(), Value::from(either.to_vec()));
     }
-    scenes.push(shared);
-    scenes
+    [whole, shared]
 }
 
 /// A layer, of which any field may be missing, or the fields that layers share.
@@ -77,9 +69,9 @@ fn shared_layer(is_layer: bool) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 
-/// The schema of a scene of one version, whose layers are of the schema `layer`.
-fn scene(version: u32, empty: &str, layer: &str) -> Value {
-    let tables = describe(empty);
+/// The schema of a scene whose layers are of the schema `layer`.
+fn scene(layer: &str) -> Value {
+    let tables = describe(EMPTY);
     let Some(root) = tables.iter().find(|table| table.key.is_empty()) else { return Value::Null };
     let inner = |name: &str| {
         let mut inner = Map::new();
@@ -96,13 +88,11 @@ fn scene(version: u32, empty: &str, layer: &str) -> Value {
             Holds::Table if SHARED.contains(&name) || name == "defaults" => {
                 json!({ "$ref": format!("#/definitions/{name}") })
             }
-            Holds::Table => inner(name),
             Holds::TableOrText if name == "finger" => with_name(fingers()),
             Holds::TableOrText => with_name(vec![inner(name)]),
-            Holds::TableOrTables => one_or_more(&inner(name)),
             Holds::Tables => json!({ "type": "array", "items": { "$ref": format!("#/definitions/{layer}") } }),
             Holds::Texts => value(&KnownField { field: *field, words: Vec::new() }),
-            _ => json!({ "const": version }),
+            _ => json!({ "const": VERSION }),
         };
         properties.insert(name.to_owned(), value);
     }
@@ -122,7 +112,7 @@ fn with_name(mut tables: Vec<Value>) -> Value {
 
 /// The schemas of a finger, one for each set of fields that can occur together.
 fn fingers() -> Vec<Value> {
-    let tables = Tables { before: "version = 2\nfinger = {", after: "}", key: "finger" };
+    let tables = Tables { before: "version = 1\nfinger = {", after: "}", key: "finger" };
     variants(&tables).iter().map(|variant| variant_object(variant, &Map::new())).collect()
 }
 

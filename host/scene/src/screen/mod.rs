@@ -1,6 +1,6 @@
 //! Screens: size, coating, and the drive that the electrode and its insulator bear.
 //!
-//! A screen is a TOML file of its own, or the table `[screen]` of a scene of version 2; both have the same fields.
+//! A screen is a TOML file of its own, or the table `[screen]` of a scene; both have the same fields.
 
 mod read;
 #[cfg(test)]
@@ -9,7 +9,7 @@ mod tests;
 use super::compile_error::CompileError;
 use super::fields::read_text;
 
-pub(super) use read::{read, read_v1};
+pub(super) use read::read;
 
 /// The numbers of a screen.
 ///

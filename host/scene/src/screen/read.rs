@@ -4,7 +4,7 @@ use super::{Screen, Slab};
 use crate::fields::Fields;
 use crate::log::Log;
 use crate::mistake::FieldMistake;
-use crate::tables::{coating, scene, screen};
+use crate::tables::{coating, screen};
 
 /// Largest effective gap that a board takes.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
@@ -16,7 +16,7 @@ pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Screen
     let height_mm = fields.number(log, &screen::HEIGHT_MM);
     let has_coating = fields.has(screen::COATING.name);
     let slabs = fields.tables(log, &screen::COATING).and_then(|slabs| coating_of(slabs, &fields, log));
-    let coating = if has_coating { slabs.map(|(slabs, _)| slabs) } else { Some(vec![Slab::EXAMPLE]) };
+    let coating = if has_coating { slabs } else { Some(vec![Slab::EXAMPLE]) };
     let voltage_max_v_rms = fields.number(log, &screen::VOLTAGE_MAX_V_RMS);
     let voltage_max_v_peak = fields.number(log, &screen::VOLTAGE_MAX_V_PEAK);
     let slew_v_per_us = fields.number(log, &screen::SLEW_V_PER_US);
@@ -32,23 +32,8 @@ pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Screen
     })
 }
 
-/// Reads `[screen]` and `[coating]` of a scene of version 1, whose coating contains the skin. Returns the place of the
-/// coating too.
-pub(in super::super) fn read_v1(scene_fields: &mut Fields, log: &mut Log) -> Option<(Screen, usize)> {
-    let size = scene_fields.table(log, &scene::SCREEN_V1).map(|mut fields| {
-        let width_mm = fields.number(log, &screen::WIDTH_MM);
-        let height_mm = fields.number(log, &screen::HEIGHT_MM);
-        fields.close(log);
-        width_mm.zip(height_mm)
-    });
-    let slabs = scene_fields.tables(log, &scene::COATING_V1);
-    let coating = slabs.and_then(|slabs| coating_of(slabs, scene_fields, log));
-    let ((width_mm, height_mm), (coating, place)) = size.flatten().zip(coating)?;
-    Some((Screen { name: None, width_mm, height_mm, coating, ..Screen::example() }, place))
-}
-
-/// Reads slabs in series. Returns the place of the first one too; an empty list is a mistake of the table around it.
-fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<(Vec<Slab>, usize)> {
+/// Reads slabs in series; an empty list is a mistake of the table around it.
+fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<Vec<Slab>> {
     if slabs.is_empty() {
         log.add(
             around.table_place(),
@@ -70,5 +55,5 @@ fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<(Vec
         let (field, max) = ("thickness_um / permittivity, summed", EFFECTIVE_GAP_MAX_UM);
         log.add(place, FieldMistake::OutOfRange { field, found, min: 0.0, max, unit: " um" });
     }
-    Some((slabs, place))
+    Some(slabs)
 }

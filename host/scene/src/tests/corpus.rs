@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 use frixel_testkit::corpus::{self, Case};
 
 use super::*;
-use crate::{
-    FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Screen, Warning, migrate,
-};
+use crate::{FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Screen, Warning};
 
 /// The files of a case, those that every case finds, and the scene among them.
 struct Inputs {
@@ -27,7 +25,7 @@ impl Inputs {
         let brick = &PICTURES["textures/brick.png"];
         files.insert("textures/icon.png".to_owned(), super::pictures::icon());
         files.insert("textures/cut.png".to_owned(), brick[..brick.len() / 2].to_vec());
-        files.extend((1..=64).map(|number| (format!("parts/{number}.toml"), b"version = 2\n".to_vec())));
+        files.extend((1..=64).map(|number| (format!("parts/{number}.toml"), b"version = 1\n".to_vec())));
         files.extend(case.files.iter().map(|(name, text)| (beside(name), bytes(text))));
         Self { name: name.clone(), text: bytes(text), files }
     }
@@ -40,10 +38,10 @@ impl Inputs {
         let profile = |option: &str| self.files.get(option).map(|text| str::from_utf8(text).expect("a text"));
         let mut scene = scene?;
         if let Some(text) = profile("--finger") {
-            scene = scene.with_finger(FingerProfile::parse(text, "--finger")?, "--finger")?;
+            scene = scene.with_finger(FingerProfile::parse(text, "--finger")?, "--finger");
         }
         if let Some(text) = profile("--screen") {
-            scene = scene.with_screen(Screen::parse(text, "--screen")?, "--screen")?;
+            scene = scene.with_screen(Screen::parse(text, "--screen")?, "--screen");
         }
         Ok(scene)
     }
@@ -76,8 +74,8 @@ macro_rules! variants {
 variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Autonomous Misplaced MissingField WrongType NotATable NotTables
     OutOfRange TooLong UnknownChoice NoDefault NoDesign LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
     Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
-variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version VersionOneProfile NothingToMigrate
-    UnknownProfile SinceVersionTwo IncludedVersion IncludedByItself TooMuch TooManyFiles IncludedTwice IncludedMissing
+variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version
+    UnknownProfile IncludedByItself TooMuch TooManyFiles IncludedTwice IncludedMissing
     IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
 variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong
     PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger BeyondLaw Model);
@@ -122,11 +120,6 @@ fn every_scene_is_answered_as_its_page_says() {
             compiled
         });
         met.lines(&compiled.map_or_else(|error| error.diagnostics, |program| program.diagnostics))
-    });
-    hold("migrate", |case| {
-        let inputs = Inputs::of(case);
-        let text = str::from_utf8(&inputs.text).expect("a text");
-        migrate(text, &inputs.name, &inputs.files).unwrap_or_else(|error| met.lines(&error.diagnostics))
     });
     let all = [FIELD_MISTAKES, FILE_MISTAKES, FIT_MISTAKES, WARNINGS, OPTIMISATIONS].concat();
     let missing: Vec<&str> = all.into_iter().filter(|name| !met.0.contains(name)).collect();

@@ -70,7 +70,7 @@ fn more_volts_that_are_proposed_help() {
     ];
     for (head, drive, high_n, expected) in cases {
         let scene = |limits: &[(String, f64)]| {
-            format!("version = 2\n[drive]\n{}{head}{}", raised(drive, limits), grating.replace("HIGH", high_n))
+            format!("version = 1\n[drive]\n{}{head}{}", raised(drive, limits), grating.replace("HIGH", high_n))
         };
         let refused = sentence(&scene(&[]));
         let limits = proposed(&refused);
@@ -87,7 +87,7 @@ fn more_volts_that_are_proposed_help() {
     }
 }
 
-const BUTTON: &str = "version = 2\n[[layer]]\nname = \"OK\"\nkind = \"button\"\nrim_width_mm = 2\n\
+const BUTTON: &str = "version = 1\n[[layer]]\nname = \"OK\"\nkind = \"button\"\nrim_width_mm = 2\n\
     region = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }\n";
 
 /// Fractions follow the voltage, so that more of it changes nothing; to lower one of the fields that are named helps.
@@ -133,7 +133,7 @@ fn fractions_out_of_reach_are_answered_by_less() {
         let is_sum = refused.contains("together");
         assert_eq!(refused.contains(": lower one of them, or write"), is_sum, "{refused}");
         assert_eq!(mistakes_of(&text.replacen(lowered.0, lowered.1, 1)), Vec::<String>::new(), "{text}");
-        let more_volts = text.replace("version = 2\n", "version = 2\n[drive]\nvoltage_max_v_rms = 200\n");
+        let more_volts = text.replace("version = 1\n", "version = 1\n[drive]\nvoltage_max_v_rms = 200\n");
         assert!(!mistakes_of(&more_volts).is_empty(), "{text}");
     }
 }
@@ -141,7 +141,7 @@ fn fractions_out_of_reach_are_answered_by_less() {
 /// A picture without numbers asks for all that can be reached.
 #[test]
 fn the_field_of_a_picture_to_change_is_named_whatever_its_unit() {
-    let picture = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\n\
+    let picture = "version = 1\n[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\n\
         width_mm = 50\nblack_n = 0.2\n";
     let refused = sentence(picture);
     assert!(refused.starts_with("test.toml:8:11: layer 1 (bitmap) asks for up to 0."), "{refused}");

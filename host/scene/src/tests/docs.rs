@@ -76,9 +76,9 @@ fn known(before: &str, after: &str, key: &str) -> Vec<KnownField> {
 fn documented() -> Vec<(String, Vec<KnownField>)> {
     let mut all = Vec::new();
     for table in ["screen", "finger", "drive", "carrier", "touch", "design"] {
-        all.push((format!("### `[{table}]`"), known(&format!("version = 2\n{table} = {{"), "}", table)));
+        all.push((format!("### `[{table}]`"), known(&format!("version = 1\n{table} = {{"), "}", table)));
     }
-    all.push(("#### `coating`".to_owned(), known("version = 2\nscreen = { coating = [{", "}] }", "coating")));
+    all.push(("#### `coating`".to_owned(), known("version = 1\nscreen = { coating = [{", "}] }", "coating")));
     let is_common = |known: &KnownField| COMMON.iter().any(|common| common.name == known.field.name);
     let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
     all.push(("## Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
@@ -250,7 +250,7 @@ fn numbers_in_the_text_are_right() {
 fn the_table_of_bundled_fingers_is_right() {
     for (number, name) in FingerProfile::bundled_names().enumerate() {
         let Program { reach, header, .. } =
-            compile_text(&format!("version = 2\nfinger = \"{name}\"")).expect("it compiles");
+            compile_text(&format!("version = 1\nfinger = \"{name}\"")).expect("it compiles");
         let steps = libm::log(reach.friction_max_n() / reach.natural_friction_n) / libm::log(1.11);
         let row = format!(
             "| `{name}` | {} N | {:.0} mN | {:.0} mN | {steps:.1}{} |",

@@ -4,9 +4,9 @@ use super::*;
 use crate::reference::Reference;
 use crate::{FileUnavailable, Files, FingerProfile, LayerTitle};
 
-const BUTTONS: &str = "version = 2\n\n[defaults]\nrim_width_mm = 2\nrim_fraction = 0.8\nface_fraction = 0.4\n\n\
+const BUTTONS: &str = "version = 1\n\n[defaults]\nrim_width_mm = 2\nrim_fraction = 0.8\nface_fraction = 0.4\n\n\
     [[layer]]\nname = \"back\"\nkind = \"button\"\nregion = { x_mm = 10, y_mm = 60, width_mm = 30, height_mm = 12 }\n";
-const SHORT: &str = "version = 2\ninclude = [\"common.toml\"]\n";
+const SHORT: &str = "version = 1\ninclude = [\"common.toml\"]\n";
 const FLAT: &str = "[[layer]]\nname = \"flat\"\nkind = \"constant\"\nfriction_fraction = 0.1\n\
     region = { x_mm = 50, y_mm = 0, width_mm = 9, height_mm = 9 }\n";
 
@@ -40,13 +40,13 @@ fn a_scene_of_too_many_layers_is_one_mistake() {
         region = { x_mm = 1, y_mm = 1, width_mm = 9, height_mm = 9 }\n\
         repeat = { columns = 64, rows = 64, dx_mm = 0.1, dy_mm = 0.1 }\n";
     for (layers, found) in [(flat.repeat(30_000), 30_000), (copies.repeat(2), 8_192)] {
-        let error = Scene::parse(&format!("version = 2\n{layers}"), "scene.toml", &BTreeMap::new());
+        let error = Scene::parse(&format!("version = 1\n{layers}"), "scene.toml", &BTreeMap::new());
         let mistakes = error.map_or_else(|error| error.diagnostics, |scene| scene.mistakes().to_vec());
         let [mistake] = &mistakes[..] else { panic!("{}", mistakes.len()) };
         let says = format!("there are {found} layers in this scene, and at most 4096 are read: no board takes ");
         assert!(mistake.message.to_string().starts_with(&says), "{mistake}");
     }
-    let scene = Scene::parse(&format!("version = 2\n{}", flat.repeat(4_096)), "scene.toml", &BTreeMap::new());
+    let scene = Scene::parse(&format!("version = 1\n{}", flat.repeat(4_096)), "scene.toml", &BTreeMap::new());
     assert!(scene.expect("it reads").mistakes().is_empty());
 }
 
@@ -65,7 +65,7 @@ fn names_of_100_000_characters_are_not_echoed_whole() {
         format!("screen = \"{long}.toml\"\n"),
     ];
     for text in texts {
-        let scene = scene(&format!("version = 2\n{text}"), &[]);
+        let scene = scene(&format!("version = 1\n{text}"), &[]);
         let said: Vec<String> = mistakes(&scene).iter().map(|located| located.message.to_string()).collect();
         let lens: Vec<usize> = said.iter().map(String::len).collect();
         let shown: String = text.chars().filter(|character| *character != '\u{e9}').collect();
@@ -76,7 +76,7 @@ fn names_of_100_000_characters_are_not_echoed_whole() {
 
 #[test]
 fn tables_come_from_any_one_of_the_files() {
-    let common = "version = 2\nfinger = \"moist\"\n[drive]\nvoltage_max_v_rms = 100\n";
+    let common = "version = 1\nfinger = \"moist\"\n[drive]\nvoltage_max_v_rms = 100\n";
     let apart = program(&format!("{SHORT}{FLAT}"), &[("common.toml", common)]);
     assert!((apart.reach.natural_friction_n - 0.4).abs() < 1e-6, "{:?}", apart.reach);
     assert_eq!(apart.header.voltage_max_v_rms.to_bits(), 100.0_f32.to_bits());
@@ -84,11 +84,11 @@ fn tables_come_from_any_one_of_the_files() {
 
 #[test]
 fn a_layers_own_field_counts_before_the_default_in_any_unit() {
-    let defaults = "version = 2\n[defaults]\nfriction_n = 0.26\nregion = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n\
+    let defaults = "version = 1\n[defaults]\nfriction_n = 0.26\nregion = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n\
         low_n = 0.0\nwave = \"square\"\n";
     let layers = "[[layer]]\nkind = \"constant\"\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n\
         region = { x_mm = 20, y_mm = 0, width_mm = 9, height_mm = 9 }\n";
-    let written = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+    let written = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
         region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n[[layer]]\nkind = \"constant\"\n\
         friction_fraction = 0.1\nregion = { x_mm = 20, y_mm = 0, width_mm = 9, height_mm = 9 }\n";
     assert_eq!(program(&format!("{defaults}{layers}"), &[]).scene_bytes(), program(written, &[]).scene_bytes());
@@ -100,26 +100,26 @@ fn the_nearest_default_counts_and_of_several_files_the_last_one() {
         let program = program(&format!("{text}[[layer]]\nkind = \"constant\"\n"), files);
         Reference::new(&program).electric_friction_n(0.01, 0.01)
     };
-    let defaults = |friction: &str| format!("version = 2\n[defaults]\nfriction_n = {friction}\n");
+    let defaults = |friction: &str| format!("version = 1\n[defaults]\nfriction_n = {friction}\n");
     let (one, two) = (defaults("0.26"), defaults("0.27"));
     let files = [("a.toml", one.as_str()), ("b.toml", two.as_str())];
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-6, "{found} and not {expected}");
-    close(value("version = 2\ninclude = [\"a.toml\", \"b.toml\"]\n", &files), 0.02);
-    close(value("version = 2\ninclude = [\"b.toml\", \"a.toml\"]\n", &files), 0.01);
-    let own = "version = 2\ninclude = [\"a.toml\", \"b.toml\"]\n[defaults]\nfriction_n = 0.28\n";
+    close(value("version = 1\ninclude = [\"a.toml\", \"b.toml\"]\n", &files), 0.02);
+    close(value("version = 1\ninclude = [\"b.toml\", \"a.toml\"]\n", &files), 0.01);
+    let own = "version = 1\ninclude = [\"a.toml\", \"b.toml\"]\n[defaults]\nfriction_n = 0.28\n";
     close(value(own, &files), 0.03);
 }
 
 #[test]
 fn names_of_files_start_from_the_folder_of_the_file_they_stand_in() {
-    let picture = "version = 2\n[[layer]]\nkind = \"bitmap\"\npicture = \"../textures/brick.png\"\nx_mm = 0\ny_mm = 0\n\
+    let picture = "version = 1\n[[layer]]\nkind = \"bitmap\"\npicture = \"../textures/brick.png\"\nx_mm = 0\ny_mm = 0\n\
         width_mm = 20\n";
-    let found = program("version = 2\ninclude = [\"parts/wall.toml\"]\n", &[("parts/wall.toml", picture)]);
+    let found = program("version = 1\ninclude = [\"parts/wall.toml\"]\n", &[("parts/wall.toml", picture)]);
     assert_eq!(found.bitmaps.len(), 1);
-    let finger = format!("version = 2\nfinger = \"anna.toml\"\n{FLAT}");
+    let finger = format!("version = 1\nfinger = \"anna.toml\"\n{FLAT}");
     let anna = FingerProfile { friction_coefficient: 0.45, ..FingerProfile::example() }.to_toml();
     let files = [("parts/anna.toml", anna.as_str()), ("parts/all.toml", &finger)];
-    let named = program("version = 2\ninclude = [\"./parts/all.toml\"]\n", &files);
+    let named = program("version = 1\ninclude = [\"./parts/all.toml\"]\n", &files);
     assert!((named.reach.natural_friction_n - 0.225).abs() < 1e-6, "{:?}", named.reach);
 }
 
@@ -144,7 +144,7 @@ fn an_included_file_that_cannot_be_read_is_named_with_the_reason() {
 /// The schema knows the fields of `[defaults]` and of layers that they complete.
 #[test]
 fn an_editor_finds_misspelt_defaults() {
-    let text = |defaults: &str, layer: &str| format!("version = 2\n[defaults]\n{defaults}\n[[layer]]\n{layer}\n");
+    let text = |defaults: &str, layer: &str| format!("version = 1\n[defaults]\n{defaults}\n[[layer]]\n{layer}\n");
     for (defaults, layer, right) in [
         ("kind = \"button\"\nrim_width_mm = 2", "rim_n = 0.01\nface_n = 0.0", true),
         ("kind = \"buton\"", "", false),

@@ -17,12 +17,12 @@ fn two_layers_of_one_name_are_pointed_out_with_the_one_that_counts() {
         )
     };
     let twice = format!("{}{}{}", at(0, "a"), at(10, "b"), at(20, "a"));
-    let program = compile_text(&format!("version = 2\n{twice}")).expect("it compiles");
+    let program = compile_text(&format!("version = 1\n{twice}")).expect("it compiles");
     assert_eq!((program.layers.records("a"), program.layers.records("3")), (Ok(vec![0]), Ok(vec![2])));
     let keys = |y_mm: u32| {
         at(0, "key").replace("y_mm = 0", &format!("y_mm = {y_mm}")) + "repeat = { columns = 3, dx_mm = 10 }\n"
     };
-    let copies = compile_text(&format!("version = 2\n{}{}", keys(0), keys(20))).expect("it compiles");
+    let copies = compile_text(&format!("version = 1\n{}{}", keys(0), keys(20))).expect("it compiles");
     let copies: Vec<&Warning> = copies.warnings().collect();
     let [Warning::NameTwice { number, lower, .. }] = copies[..] else { panic!("{copies:?}") };
     assert_eq!((number.as_str(), lower.as_str()), ("2.1", "1.1"));
@@ -36,7 +36,7 @@ fn a_layer_has_one_number() {
     };
     let copies = "region = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\nrepeat = { columns = 3, dx_mm = 10 }\n";
     let text = format!("{}{}{}", layer("", ""), layer("name = \"key\"\n", copies), layer("", copies));
-    let program = compile_text(&format!("version = 2\n{text}{TRACK}live = true\n")).expect("it compiles");
+    let program = compile_text(&format!("version = 1\n{text}{TRACK}live = true\n")).expect("it compiles");
     assert_eq!(program.titles.len(), 8);
     for (record, title) in (0..).zip(&program.titles) {
         assert_eq!(program.layers.records(&title.number().to_string()), Ok(vec![record]), "{title}");
@@ -51,7 +51,7 @@ fn a_layer_has_one_number() {
 /// Both layers have the mistake of the default, and both are absent.
 #[test]
 fn a_layer_with_a_mistake_that_it_shares_is_no_layer() {
-    let text = "version = 2\n[defaults]\ngain = \"loud\"\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.2\n\
+    let text = "version = 1\n[defaults]\ngain = \"loud\"\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.2\n\
         [[layer]]\nkind = \"constant\"\nfriction_fraction = 0.3\n";
     let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).expect("only its layers have mistakes");
     assert_eq!((scene.mistakes().len(), scene.layers.len()), (1, 0));
@@ -60,12 +60,12 @@ fn a_layer_with_a_mistake_that_it_shares_is_no_layer() {
 /// A layer off the design's range has its picture on a screen where it is valid.
 #[test]
 fn a_picture_of_a_layer_that_another_screen_makes_valid_is_played() {
-    let text = "version = 2\n[design]\nwidth_px = 1000\nheight_px = 1000\n[[layer]]\nkind = \"bitmap\"\n\
+    let text = "version = 1\n[design]\nwidth_px = 1000\nheight_px = 1000\n[[layer]]\nkind = \"bitmap\"\n\
         picture = \"textures/brick.png\"\nx_px = 0\ny_px = 0\nwidth_px = 0.05\nheight_mm = 10\n";
     let scene = Scene::parse(text, "test.toml", &*PICTURES).expect("only its layer has a mistake");
     assert_eq!(scene.mistakes().len(), 1, "{:?}", scene.mistakes());
     let screen = crate::Screen { width_mm: 1000.0, height_mm: 500.0, ..crate::Screen::example() };
-    let scene = scene.with_screen(screen, "wide").expect("it is of version 2");
+    let scene = scene.with_screen(screen, "wide");
     assert_eq!(scene.mistakes().len(), 0, "{:?}", scene.mistakes());
     let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
     assert_eq!((program.records.len(), program.bitmaps.len()), (1, 1));
@@ -74,7 +74,7 @@ fn a_picture_of_a_layer_that_another_screen_makes_valid_is_played() {
 /// Current above both limits lowers the voltage of a draft once, to the lower one of the two.
 #[test]
 fn a_draft_keeps_to_the_tighter_limit_of_the_current() {
-    let text = "version = 2\n[carrier]\nfrequency_hz = 5000\n[drive]\nvoltage_max_v_rms = 150\n";
+    let text = "version = 1\n[carrier]\nfrequency_hz = 5000\n[drive]\nvoltage_max_v_rms = 150\n";
     let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).expect("it reads");
     let lowered = |rms: f32, peak: f32| {
         let current_max_a_rms = LIMITS.current_max_a_rms * rms;
@@ -91,7 +91,7 @@ fn a_draft_keeps_to_the_tighter_limit_of_the_current() {
 #[test]
 fn gains_that_lead_out_of_reach_are_known_with_their_range() {
     use crate::LayerSetting;
-    let text = format!("version = 2\n{TRACK}live = true\n{EDGE}live = true\n");
+    let text = format!("version = 1\n{TRACK}live = true\n{EDGE}live = true\n");
     let program = compile_text(&text).expect("it compiles");
     let settings = |track: f32, is_edge_on: bool| {
         [LayerSetting { on: true, gain: track }, LayerSetting { on: is_edge_on, gain: 1.0 }]
@@ -113,7 +113,7 @@ fn gains_that_lead_out_of_reach_are_known_with_their_range() {
 #[test]
 fn a_diagnostic_has_the_number_of_its_layer() {
     let layers_of = |text: &str| {
-        let scene = Scene::parse(&format!("version = 2\n{text}"), "test.toml", &*PICTURES).expect("it reads");
+        let scene = Scene::parse(&format!("version = 1\n{text}"), "test.toml", &*PICTURES).expect("it reads");
         let said =
             compile(&scene, &LIMITS, TICK_HZ).map_or_else(|error| error.diagnostics, |program| program.diagnostics);
         said.iter().map(|diagnostic| (diagnostic.kind, diagnostic.layer)).collect::<Vec<_>>()

@@ -28,8 +28,8 @@ fn header_in_si_units() {
         "[drive]\nvoltage_max_v_rms = 100\nvoltage_max_v_peak = 200\nslew_v_per_us = 2\nhost_timeout_ms = 100\n\
          [carrier]\nshape = \"sine\"\nfrequency_hz = 800\n[touch]\nprediction = false\nleader = \"latest\"",
     );
-    let slabs = "[[coating]]\nthickness_um = 1\npermittivity = 4\n[[coating]]\nthickness_um = 9\npermittivity = 1\n";
-    let text = text.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
+    let slabs = "[[screen.coating]]\nthickness_um = 1\npermittivity = 4\n[[screen.coating]]\nthickness_um = 9\npermittivity = 1\n";
+    let text = text.replace("[screen.coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
     let header = compile_text(&text).expect("it compiles").header;
     for (found, expected) in [
         (header.screen_width_m, 0.12),
@@ -277,7 +277,7 @@ fn one_picture_twice_is_sent_once() {
     let layer = |x_mm: u32| {
         format!(
             "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = {x_mm}\ny_mm = 0\nwidth_mm = 50\n\
-             black_n = 0\nwhite_n = 0.01\n"
+             pitch_mm = 0.25\nblack_n = 0\nwhite_n = 0.01\n"
         )
     };
     let program = compile_layers(&format!("{}{}", layer(0), layer(60)));
@@ -382,17 +382,6 @@ fn a_live_layer_is_found_whatever_was_left_out_below_it() {
     assert_eq!(program.layers.records("rain"), Ok(vec![1]));
     assert_eq!(program.layers.records("3"), Ok(vec![1]));
     assert!(program.layers.records("rest").unwrap_err().to_string().contains("live = true"));
-}
-
-#[test]
-fn a_board_of_an_older_protocol_gets_no_flag_that_it_does_not_know() {
-    let program = compile_layers("[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n");
-    assert!(program.header.layers_fixed);
-    for (protocol, layers_fixed) in [((1, 1), false), ((1, 2), true), ((2, 0), true)] {
-        let bytes = program.scene_bytes_for(protocol);
-        let scene = WireScene::parse(&bytes).unwrap();
-        assert_eq!(scene.header().layers_fixed, layers_fixed, "{protocol:?}");
-    }
 }
 
 /// A real board bounds the voltage at each carrier, for a finger on a bridged or thin coating.

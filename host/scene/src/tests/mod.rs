@@ -37,7 +37,7 @@ version = 1
 width_mm = 120
 height_mm = 110
 
-[coating]
+[screen.coating]
 thickness_um = 10
 permittivity = 1
 
@@ -46,7 +46,7 @@ radius_mm = 8
 stiffness_pa_per_m = 1.8e7
 friction_coefficient = 0.5
 normal_load_n = 0.5
-
+skin_gap_um = 0
 # layers follow
 
 ";

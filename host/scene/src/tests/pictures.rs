@@ -3,7 +3,7 @@
 use super::*;
 use crate::pool;
 
-const SHORT: &str = "version = 2\n";
+const SHORT: &str = "version = 1\n";
 
 /// A layer with a picture at the left border.
 fn layer(picture: &str, y_mm: u32, width_mm: u32, rest: &str) -> String {
@@ -101,19 +101,6 @@ fn pictures_share_the_pool() {
     let seen = program(&layer("brick.png", 0, 80, cut));
     assert_eq!(sizes(&seen), [(129, 129)]);
     check_note(&seen, "a sample for each pixel, 0.1563 mm");
-}
-
-#[test]
-fn a_scene_of_version_one_keeps_its_pitch() {
-    let head = HEAD.replace("# layers follow\n", "");
-    let layer = layer("leather.png", 0, 60, "white_n = 0.01\nblack_n = 0");
-    let plain = compile_text(&format!("{head}{layer}")).expect("it compiles");
-    let written = compile_text(&format!("{head}{layer}pitch_mm = 0.25\n")).expect("it compiles");
-    assert_eq!(sizes(&plain), [(240, 240)]);
-    assert_eq!(plain.scene_bytes(), written.scene_bytes());
-    let migrated = crate::migrate(&format!("{head}{layer}"), "test.toml", &*PICTURES).expect("it is migrated");
-    assert!(migrated.contains("pitch_mm = 0.25"), "{migrated}");
-    assert_eq!(sizes(&compile_text(&migrated).expect("it compiles")), sizes(&plain));
 }
 
 #[test]

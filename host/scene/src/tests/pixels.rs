@@ -4,7 +4,7 @@ use super::*;
 use crate::Screen;
 
 const DESIGN: &str =
-    "version = 2\nscreen = { width_mm = 60, height_mm = 120 }\ndesign = { width_px = 600, height_px = 1200 }\n";
+    "version = 1\nscreen = { width_mm = 60, height_mm = 120 }\ndesign = { width_px = 600, height_px = 1200 }\n";
 
 fn scene(text: &str) -> Result<Scene, CompileError> {
     let scene = Scene::parse(text, "test.toml", &*PICTURES);
@@ -42,10 +42,9 @@ fn pixels_are_parts_of_the_screen() {
 fn on_another_screen_pixels_move_and_millimetres_stay() {
     let layers = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\nregion = { x_px = 60, y_mm = 12, width_px = 300, height_px = 240 }\n";
     let large = Screen { width_mm: 120.0, height_mm: 180.0, ..Screen::example() };
-    let scene =
-        scene(&format!("{DESIGN}{layers}")).expect("it reads").with_screen(large, "large").expect("it reads again");
+    let scene = scene(&format!("{DESIGN}{layers}")).expect("it reads").with_screen(large, "large");
     let program = compile::compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
-    let written = "version = 2\nscreen = { width_mm = 120, height_mm = 180 }\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
+    let written = "version = 1\nscreen = { width_mm = 120, height_mm = 180 }\n[[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n\
         region = { x_mm = 12, y_mm = 12, width_mm = 60, height_mm = 36 }\n";
     assert_eq!(program.records[0].region, program_of(written).records[0].region);
     assert_eq!(

@@ -2,13 +2,13 @@
 #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use super::*;
-use crate::{Elasticity, Evidence, FingerProfile, Origin, Screen, Warning, migrate};
+use crate::{Elasticity, Evidence, FingerProfile, Origin, Screen, Warning};
 use frixel_layers::Header;
 use frixel_model::{Carrier, Waveform};
 use frixel_wire::hello::feature;
 
-/// All of a scene of version 2 but its layers: the example screen and finger.
-const SHORT: &str = "version = 2\n";
+/// All of a scene but its layers: the example screen and finger.
+const SHORT: &str = "version = 1\n";
 const LAYER: &str = "[[layer]]\nkind = \"constant\"\nfriction_n = 0.3\n";
 /// Mixed coefficients of friction tell the fingers apart.
 const EMBEDDED: &str = "finger = { friction_coefficient = 0.4, normal_load_n = 0.5, radius_mm = 8, stiffness_pa_per_m = 1.8e7, \
@@ -56,7 +56,7 @@ fn an_option_counts_before_what_the_scene_says_and_that_before_the_example() {
     close(natural_n(parse(&format!("{SHORT}finger = \"dry\""))), 0.175);
     for text in [SHORT, &format!("{SHORT}{EMBEDDED}"), &format!("{SHORT}finger = \"anna.toml\"")] {
         let moist = FingerProfile::bundled("moist").expect("it is bundled");
-        close(natural_n(parse(text).and_then(|scene| scene.with_finger(moist, "moist"))), 0.4);
+        close(natural_n(parse(text).map(|scene| scene.with_finger(moist, "moist"))), 0.4);
     }
 }
 
@@ -137,8 +137,7 @@ fn soft(stress_exponent: f64) -> FingerProfile {
 fn a_soft_finger_plays_on_springs_that_have_its_friction_at_the_largest_voltage() {
     // With a stress exponent of 1/2 a soft finger has one stiffness, and springs are exact.
     let same = Scene::parse(SHORT, "test.toml", &BTreeMap::new()).expect("it reads");
-    let program_of =
-        |stress_exponent| program(&same.clone().with_finger(soft(stress_exponent), "soft").expect("it is taken"));
+    let program_of = |stress_exponent| program(&same.clone().with_finger(soft(stress_exponent), "soft"));
     let exact = program_of(0.5).expect("it compiles");
     let [note] = exact.notes().collect::<Vec<_>>()[..] else { panic!("{:?}", exact.diagnostics) };
     assert!(note.ends_with("differ from the soft finger by at most 0.0 % of the reach"), "{note}");
@@ -165,74 +164,6 @@ fn a_perceptual_profile_reads_in_a_scene() {
     assert!(matches!(scene.finger().evidence, Evidence::Perceptual { .. }));
     let finger = program(&scene).expect("it compiles").finger;
     assert_eq!((finger.origin, finger.newtons_suffix()), (Origin::Perceptual, ", assumed"));
-}
-
-fn migrated(text: &str) -> String {
-    migrate(text, "test.toml", &*PICTURES).expect("it migrates")
-}
-
-#[test]
-fn a_migrated_scene_has_the_same_bytes_for_a_board() {
-    let layer = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.015\n";
-    let inline = "version = 1 # the first\nscreen = { width_mm = 90, height_mm = 60 }\n\
-                  coating = { thickness_um = 12, permittivity = 1.0 }\nfinger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, \
-                  friction_coefficient = 0.5, normal_load_n = 0.5 }\n";
-    let slabs =
-        "[[coating]]\nthickness_um = 1.5\npermittivity = 3.9\n\n[[coating]]\nthickness_um = 9.5\npermittivity = 1\n";
-    let two = HEAD.replace("[coating]\nthickness_um = 10\npermittivity = 1\n", slabs);
-    let solid = HEAD.replace("permittivity = 1\n", "permittivity = 2\n");
-    for text in [HEAD, inline, &two, &solid] {
-        let text = format!("{text}{layer}");
-        let [old, new] = [&text, &migrated(&text)].map(|text| compile_text(text).expect("it compiles"));
-        assert_eq!(old.scene_bytes(), new.scene_bytes(), "{text}");
-    }
-}
-
-#[test]
-fn migration_keeps_comments_and_takes_air_for_skin() {
-    let text = migrated(&format!("# a scene\n{HEAD}[[layer]] # a layer\nkind = \"constant\"\nfriction_n = 0.26\n"));
-    assert_eq!(
-        text,
-        "# a scene\nversion = 2\n\n[screen]\nwidth_mm = 120\nheight_mm = 110\n\
-         coating = { thickness_um = 1, permittivity = 3.9 }\n\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
-         friction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 9.743589743589743\n\n# layers follow\n\n[[layer]] # a \
-         layer\nkind = \"constant\"\nfriction_n = 0.26\n"
-    );
-    let refused = migrate(&text, "test.toml", &*PICTURES).expect_err("it is version 2 already");
-    assert_eq!(refused.to_string(), "test.toml:2:11: this scene has version 2 already: there is nothing to migrate");
-}
-
-/// A gap below that of the example coating cannot hold it.
-#[test]
-fn a_thin_coating_of_version_one_stays_the_coating() {
-    let text = HEAD.replace("thickness_um = 10", "thickness_um = 0.2") + "[drive]\nvoltage_max_v_rms = 2\n";
-    let scene = Scene::parse(&migrated(&text), "test.toml", &*PICTURES).expect("it reads");
-    assert_eq!(scene.finger().skin_gap_um.to_bits(), 0.0_f64.to_bits());
-    assert!((scene.screen().coating_gap_um() - 0.2).abs() < 1e-12);
-}
-
-/// The brick scene of the gallery as it was in version 1. Its numbers reach the board as they stand in the file.
-#[test]
-fn a_scene_of_version_one_plays_as_before() {
-    let program = compile_text(include_str!("data/version-1.toml")).expect("it compiles");
-    let expected = Header {
-        screen_width_m: 0.12,
-        screen_height_m: 0.11,
-        finger_radius_m: 8e-3,
-        stiffness_pa_per_m: 1.8e7,
-        friction_coefficient: 0.5,
-        normal_load_n: 0.5,
-        effective_gap_m: 1e-5,
-        voltage_max_v_rms: 150.0,
-        slew_v_per_s: 5e6,
-        carrier_hz: 1000.0,
-        host_timeout_s: 0.25,
-        ..program.header
-    };
-    assert_eq!(program.header, expected);
-    assert!((program.reach.electric_friction_max_n - 0.02778).abs() < 5e-6, "{:?}", program.reach);
-    assert_eq!(program.finger.origin, Origin::Assumed);
-    assert_eq!(program.records.len(), 1);
 }
 
 const EMPIRICAL: &str = "[finger]\nfriction_coefficient = 0.4\nnormal_load_n = 0.5\norigin = \"empirical\"\n\

@@ -91,12 +91,11 @@ fn every_field_has_a_meaning() {
     let schema: Value = serde_json::from_str(&json_schema()).expect("it is JSON");
     let layers = schema["definitions"]["layer"]["oneOf"].as_array().expect("layers").iter();
     let tables = ["drive", "carrier", "touch"].map(|table| &schema["definitions"][table]);
-    let versions = schema["oneOf"].as_array().expect("versions");
-    let profiles = ["screen", "finger"].map(|table| field(&versions[0], table)["oneOf"].as_array().expect("a list"));
+    let scenes = schema["oneOf"].as_array().expect("scenes");
+    let profiles = ["screen", "finger"].map(|table| field(&scenes[0], table)["oneOf"].as_array().expect("a list"));
     let profiles = profiles.into_iter().flatten().filter(|value| value["type"] == "object");
-    let old = ["screen", "finger"].map(|table| field(&versions[1], table));
     let mut described = 0;
-    for object in layers.chain(tables).chain(profiles).chain(old) {
+    for object in layers.chain(tables).chain(profiles) {
         for (name, field) in object["properties"].as_object().expect("fields") {
             // The kind describes itself, and a reference allows no other keys beside it.
             if name != "kind" && field.get("$ref").is_none() {

@@ -73,7 +73,7 @@ const PLACES = 24;
  * @param {Fields} layer
  */
 export function sceneWith(words, layer) {
-  return `# ${words}\nversion = 2\n\n${tableText(layer)}\n`;
+  return `# ${words}\nversion = 1\n\n${tableText(layer)}\n`;
 }
 
 /**

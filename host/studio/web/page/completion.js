@@ -62,7 +62,7 @@ function found(from, options) {
  * @returns {Completion[]}
  */
 function headers(schema) {
-  const properties = propertiesOf(schema, schema, { version: "2" });
+  const properties = propertiesOf(schema);
   return Object.entries(properties)
     .filter(([, property]) => kindOf(schema, property) !== "plain")
     .map(([name, property]) => (kindOf(schema, property) === "array" ? `[[${name}]]` : `[${name}]`))
@@ -146,7 +146,7 @@ function withNeeds(schema, alternatives, present) {
  */
 function tableAt(schema, { doc, line, before }) {
   const block = blockAt(doc, line);
-  const root = propertiesOf(schema, schema, { version: "2" });
+  const root = propertiesOf(schema);
   const outer = block.header ? (root[block.header]?.schemas ?? []) : [schema];
   const inline = /(\w+)\s*=\s*\{[^}]*$/.exec(before);
   const alternatives = inline ? (merged(schema, outer, {})[inline[1]]?.schemas ?? []) : outer;
@@ -181,13 +181,9 @@ function pairs(text) {
   return Object.fromEntries(found.map(([, name, value]) => [name, value.replace(/^"|"$/g, "").trim()]));
 }
 
-/**
- * @param {Schema} root
- * @param {Schema} schema
- * @param {Record<string, string>} present
- */
-function propertiesOf(root, schema, present) {
-  return merged(root, [schema], present);
+/** @param {Schema} schema */
+function propertiesOf(schema) {
+  return merged(schema, [schema], {});
 }
 
 /**
@@ -274,6 +270,6 @@ function kindOf(root, { schemas }) {
  * @param {Record<string, string>} words
  */
 export function layerFields(schema, words) {
-  const { layer } = propertiesOf(schema, schema, { version: "2" });
+  const { layer } = propertiesOf(schema);
   return merged(schema, layer.schemas, words);
 }

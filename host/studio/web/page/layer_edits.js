@@ -17,7 +17,6 @@ import { TomlText, replaced } from "./toml_text.js";
 const COPY_MM = 5;
 /** Number of a layer that no check has seen yet. */
 export const UNCHECKED = 0;
-const OLD_VERSION = "Scenes of version 1 are edited in their text.";
 
 export class LayerEdits {
   #editor;
@@ -32,10 +31,9 @@ export class LayerEdits {
     this.#layers = layers;
   }
 
-  /** Throws a sentence where layers cannot come and go now, or do so in the text alone. */
+  /** Throws a sentence where layers cannot come and go now. */
   assertPossible() {
     if (!this.#layers.isCurrent) throw new Error(TEXT_CHANGED);
-    if (new TomlText(this.#editor.text).value(["version"]) !== 2) throw new Error(OLD_VERSION);
   }
 
   /**

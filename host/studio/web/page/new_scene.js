@@ -10,7 +10,7 @@ import { drawScene } from "./scene_picture.js";
 
 /** Longer side of a scene's picture, pixels. */
 const LONG_SIDE_PX = 240;
-const EMPTY = `version = 2
+const EMPTY = `version = 1
 
 # Edit adds layers, and so does the Gallery; or type [[layer]], then Ctrl+Space for what a layer can have.
 `;

@@ -182,7 +182,6 @@ export class PlaceReader {
    * @param {boolean} hasOtherDefaults
    */
   whyNot(hasOtherDefaults) {
-    if (this.toml.value(["version"]) !== 2) return "Scenes of version 1 are edited in their text.";
     const isPlaced = PLACED.includes(this.#kind) && this.#kind !== "bitmap";
     const hasAll = (this.layer.boxMm === null || this.hasRegion) && (!isPlaced || this.anchors.length === 2);
     if (!hasAll && hasOtherDefaults) return FROM_OTHER_DEFAULTS;

@@ -78,7 +78,7 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     // What the scene's finger has at 150 V, a little less, so that rounding stays within reach.
     let asked_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
     let scene = format!(
-        "version = 2\ndrive = {{ voltage_max_v_rms = 150 }}\n[[layer]]\nname = \"steady\"\nkind = \"constant\"\n\
+        "version = 1\ndrive = {{ voltage_max_v_rms = 150 }}\n[[layer]]\nname = \"steady\"\nkind = \"constant\"\n\
          above = \"natural\"\nfriction_n = {asked_n}\n"
     );
     let scene = Scene::parse(&scene, "steady", &BTreeMap::new()).unwrap();

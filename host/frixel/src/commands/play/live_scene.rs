@@ -201,10 +201,10 @@ mod tests {
     use super::*;
 
     /// A scene with a part of its own: the same friction everywhere.
-    const SCENE: &str = "version = 2\ninclude = [\"part.toml\"]\n";
+    const SCENE: &str = "version = 1\ninclude = [\"part.toml\"]\n";
 
     fn part(friction_n: f64) -> String {
-        format!("version = 2\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction_n}\n")
+        format!("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction_n}\n")
     }
 
     /// A simulated board that plays `scene.toml`, watched as at a port: the play does not wait for the compiler.

@@ -310,7 +310,7 @@ mod tests {
 
     fn program(layer: &str) -> Program {
         let text =
-            format!("version = 2\n[[layer]]\nname = \"{layer}\"\nkind = \"constant\"\nfriction_fraction = 0.5\n");
+            format!("version = 1\n[[layer]]\nname = \"{layer}\"\nkind = \"constant\"\nfriction_fraction = 0.5\n");
         let scene = Scene::parse(&text, "test.toml", &BTreeMap::new()).unwrap();
         let board = RigConfig::default().board;
         compile(&scene, &board.limits, board.tick_hz).unwrap()

@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn only_a_simulator_plays_beyond_what_a_finger_was_measured_at() {
-        let text = "version = 2\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n[finger]\n\
+        let text = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n[finger]\n\
                     friction_coefficient = 0.5\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
                     skin_gap_um = 4.74\norigin = \"measured\"\ndate = \"2026-11-22\"\nmethod = \"load cell\"\n\
                     screen = \"example\"\nfriction_coefficient_interval = [0.49, 0.51]\n\

@@ -27,11 +27,10 @@ struct DrawnPerson {
 }
 
 impl SimulatedWorld {
-    /// Reads the options. A person cannot be drawn for a scene of version 1, whose coating contains the skin of its own
-    /// finger.
+    /// Reads the options.
     pub(super) fn new(args: &PlayArgs, scene: &Scene) -> Result<Self> {
         let draw = |seed: u64| -> Result<DrawnPerson> {
-            let coating_gap_m = 1e-6 * scene.screen_without_skin()?.coating_gap_um();
+            let coating_gap_m = 1e-6 * scene.screen().coating_gap_um();
             let person = Person::drawn(seed);
             let contact = person.contact(coating_gap_m).map_err(of_finger)?;
             Ok(DrawnPerson { seed, person, contact })

@@ -22,9 +22,9 @@ fn head(drawn: &DrawnFinger) -> String {
     let (radius_mm, gap_um, load_n) = (1e3 * radius_m, 1e6 * drawn.gap_m, drawn.load_n);
     format!(
         "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n\
-         [coating]\nthickness_um = {gap_um}\npermittivity = 1\n\
+         [screen.coating]\nthickness_um = {gap_um}\npermittivity = 1\n\
          [finger]\nradius_mm = {radius_mm}\nstiffness_pa_per_m = {stiffness_pa_per_m:e}\n\
-         friction_coefficient = {friction_coefficient}\nnormal_load_n = {load_n}\n"
+         friction_coefficient = {friction_coefficient}\nnormal_load_n = {load_n}\nskin_gap_um = 0\n"
     )
 }
 /// Layers are placed on a lattice, so that no two are in the same cell of the board's grid.
@@ -319,7 +319,7 @@ mod tests {
     #[test]
     fn the_driver_sends_as_much() {
         let files = pictures().expect("a picture");
-        let head = "version = 2\n";
+        let head = "version = 1\n";
         let texts = [gratings(head, 1), gratings(head, 64), polygons(head, 42, 3)];
         for text in texts.into_iter().chain([head.to_owned(), picture(head, 50), picture(head, 250)]) {
             let program = compiled(&text, &files).expect("it compiles");

@@ -25,7 +25,7 @@ from ._folder import ExperimentError, Folder, sha256
 from ._methods import Method
 from ._psychometric import Task, checked_level, checked_task
 
-FORMAT = 2
+FORMAT = 1
 KEPT_MAX_BYTES = 256 << 20
 """Most bytes of the simulator's recordings that wait for the same play in the same run."""
 _LOG = logging.getLogger("frixel.experiment")
