@@ -21,7 +21,7 @@ mod bootstrap;
 pub mod calibration;
 pub mod default_stroke;
 pub mod fit;
-mod hash;
+pub mod hash;
 pub mod input;
 pub mod model_csv;
 pub mod recording;

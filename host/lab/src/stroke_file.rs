@@ -13,7 +13,7 @@ const Y: Column = Column::new("y_mm", "mm from the top edge of the screen").conv
 /// The normal load, which may be left out.
 const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::Newtons);
 /// Columns of a play that a stroke does not need.
-const OF_A_PLAY: [&str; 9] = [
+const OF_A_PLAY: [&str; 10] = [
     "speed_mm_s",
     "wanted_n",
     "asked_n",
@@ -23,6 +23,7 @@ const OF_A_PLAY: [&str; 9] = [
     "voltage_v_rms",
     "dac_code",
     "flags",
+    "participant",
 ];
 /// First time above which times are those of another clock than the stroke's: uptime, or Unix time.
 const START_MAX_S: f64 = 10.0;

@@ -25,6 +25,7 @@ use std::borrow::Cow;
 use std::io::{self, Chain, Cursor, Read};
 
 use csv::{ByteRecord, Reader, ReaderBuilder};
+use encoding_rs::mem::decode_latin1;
 
 use crate::input::{ROWS_MAX, at_most, check_header};
 use frixel_scene::NAME_MAX_CHARS;
@@ -295,7 +296,7 @@ impl<R: Read> Table<R> {
 /// The beginning of a cell of the header. What is not UTF-8 is Latin-1, in which older programs write the `µ` of a
 /// unit.
 fn name(cell: &[u8]) -> String {
-    let text = str::from_utf8(cell).map_or_else(|_| cell.iter().copied().map(char::from).collect(), str::to_owned);
+    let text = str::from_utf8(cell).map_or_else(|_| decode_latin1(cell), Cow::Borrowed);
     text.trim().chars().take(NAME_MAX_CHARS).collect()
 }
 

@@ -9,6 +9,7 @@ use frixel_hil_sim::StrokeError;
 use frixel_model::ParameterError;
 use frixel_play::PlayError;
 
+pub(crate) use crate::output_file::writing;
 use crate::scene_file::check_path;
 
 /// Puts what an error is about in front of it, for use in `map_err`.
@@ -19,12 +20,6 @@ pub(crate) fn at<E: Display>(subject: impl Display) -> impl FnOnce(E) -> anyhow:
 /// Converts an error of reading `path`, for use in `map_err`.
 pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> anyhow::Error {
     move |error| anyhow!("{} cannot be read ({error}): {}", path.display(), check_path(path, "check the path"))
-}
-
-/// Converts an error of writing `path`, for use in `map_err`.
-pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> anyhow::Error {
-    let advice = check_path(path, "check the folder and its free space");
-    move |error| anyhow!("{} cannot be written ({error}): {advice}", path.display())
 }
 
 /// Why a play on the board named by `--port` ended early.

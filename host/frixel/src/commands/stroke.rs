@@ -12,7 +12,7 @@ use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::Shown;
 
 use super::argument::{above_zero_to, number};
-use super::terminal::{note, note_understood};
+use super::terminal::{note, note_interrupted, note_understood};
 
 /// Time between two positions of a stroke that are checked, s.
 const CHECK_PERIOD_S: f64 = 1e-3;
@@ -103,6 +103,7 @@ fn too_long(name: &str, seconds: f64) -> anyhow::Error {
 
 pub(super) fn from_file(path: &Path) -> Result<Stroke> {
     let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
+    note_interrupted(path, &bytes);
     let file = StrokeFile::read(bytes.as_slice()).map_err(at(path.display()))?;
     let StrokeFile { stroke, ignored_columns, understood } = file;
     note_understood(path, understood.as_deref());

@@ -19,7 +19,7 @@ use super::error::{at, writing};
 use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
-use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, commit_all};
+use crate::output_file::{Busy, Inputs, OutputFile, OutputFolder, commit_all};
 use crate::scene_file::gathered;
 
 /// Time between two tries to write a file that another process writes, and the longest time for all of them.
@@ -114,8 +114,8 @@ fn write_shared(file: &OutputFile, text: &str) -> Result<()> {
             return Ok(());
         }
         match file.write(text.as_bytes()) {
-            Err(OutputFileError::Busy { .. }) if begin.elapsed() < WAIT_MAX => thread::sleep(WAIT),
-            written => return Ok(written?),
+            Err(error) if error.is::<Busy>() && begin.elapsed() < WAIT_MAX => thread::sleep(WAIT),
+            written => return written,
         }
     }
 }

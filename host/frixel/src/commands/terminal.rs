@@ -7,6 +7,7 @@ use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
 use super::error::writing;
+use crate::output::is_of_interrupted_play;
 use crate::output_file::OutputFile;
 use anyhow::Result;
 use frixel_scene::{Program, printable_lines};
@@ -41,6 +42,16 @@ pub(super) fn note_understood(table: &Path, understood: Option<&str>) {
     if let Some(understood) = understood {
         let name = if table == Path::new("-") { "standard input".into() } else { table.display().to_string() };
         note(format_args!("{name}: {understood}"));
+    }
+}
+
+/// Says on standard error that a file of a play is not the one that the play's summary was written with.
+pub(super) fn note_interrupted(file: &Path, bytes: &[u8]) {
+    if is_of_interrupted_play(file, bytes) {
+        let file = file.display();
+        note(format_args!(
+            "{file}: of an interrupted play, or written since: it is not the file that summary.json was written with"
+        ));
     }
 }
 

@@ -5,10 +5,11 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::marker::PhantomData;
 
+use anyhow::Result;
 use frixel_felt::recorder::{FeltRow, FlagNames};
 
 use super::decimals::Decimals;
-use crate::output_file::{FileWriter, OutputFileError};
+use crate::output_file::FileWriter;
 use crate::rigs::BoardEvent;
 use frixel_lab::calibration::ForceRow;
 
@@ -25,6 +26,8 @@ pub(crate) trait CsvRow {
 #[derive(Debug)]
 pub(crate) struct CsvFile<R> {
     writer: FileWriter,
+    /// Code of the participant, in a last column, if the rows are of a person.
+    participant: Option<String>,
     rows: PhantomData<R>,
 }
 
@@ -53,20 +56,33 @@ pub(crate) struct EventRow {
 
 impl<R: CsvRow> CsvFile<R> {
     /// Writes the header row into a file.
-    pub(crate) fn new(writer: FileWriter) -> Result<Self, OutputFileError> {
-        let mut csv = Self { writer, rows: PhantomData };
-        csv.write_line(R::HEADER)?;
+    pub(crate) fn new(writer: FileWriter) -> Result<Self> {
+        Self::begun(writer, None)
+    }
+
+    /// As [`Self::new`], for what a person did on a board: a column `participant` says so, also without a code.
+    pub(crate) fn of_person(writer: FileWriter, code: Option<&str>) -> Result<Self> {
+        Self::begun(writer, Some(code.unwrap_or_default().to_owned()))
+    }
+
+    fn begun(writer: FileWriter, participant: Option<String>) -> Result<Self> {
+        let mut csv = Self { writer, participant, rows: PhantomData };
+        let last = csv.participant.as_ref().map_or("", |_| ",participant");
+        csv.write_line(format_args!("{}{last}", R::HEADER))?;
         csv.flush()?;
         Ok(csv)
     }
 
     /// Writes one row.
-    pub(crate) fn write(&mut self, row: &R) -> Result<(), OutputFileError> {
-        self.write_line(Cells(row))
+    pub(crate) fn write(&mut self, row: &R) -> Result<()> {
+        match &self.participant {
+            None => self.write_line(Cells(row)),
+            Some(code) => self.write_line(format!("{},{code}", Cells(row))),
+        }
     }
 
     /// Writes the buffered rows to the file.
-    pub(crate) fn flush(&mut self) -> Result<(), OutputFileError> {
+    pub(crate) fn flush(&mut self) -> Result<()> {
         self.writer.flush().map_err(|source| self.writer.error(source))
     }
 
@@ -75,7 +91,7 @@ impl<R: CsvRow> CsvFile<R> {
         self.writer
     }
 
-    fn write_line(&mut self, line: impl Display) -> Result<(), OutputFileError> {
+    fn write_line(&mut self, line: impl Display) -> Result<()> {
         writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))
     }
 }

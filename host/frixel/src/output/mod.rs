@@ -38,7 +38,7 @@ pub(crate) use felt_log::FeltLog;
 pub(crate) use felt_svg::draw_felt_svg;
 pub(crate) use fit_svg::draw_fit_svg;
 pub use preview_png::draw_preview_png;
-pub(crate) use report::{Effects, Report, WorldReport, draft_line};
+pub(crate) use report::{Effects, Report, WorldReport, draft_line, is_of_interrupted_play};
 pub(crate) use scene_png::draw_scene_png;
 pub(crate) use score_svg::draw_score_svg;
 pub(crate) use span::TracedLayer;

@@ -1,12 +1,17 @@
 //! The results of a run, for programs and for people.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
 use frixel_driver::{Counters, StreamStatus};
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
+use frixel_lab::hash::sha256;
 use frixel_scene::{LayerTitle, Origin, Reach, TouchSource, fold_copies};
+
+use crate::input;
 
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -78,6 +83,17 @@ pub(crate) struct Report {
     pub untouched_layers: Vec<LayerTitle>,
     /// When that scene replaced the one before, s; `null` if the first scene played to the end.
     pub replaced_at_s: Option<f64>,
+    /// SHA-256 of each other file of the play, by its name; only in `summary.json`.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: BTreeMap<String, String>,
+}
+
+/// Whether a file of a play is another one than the summary beside it was written with.
+pub(crate) fn is_of_interrupted_play(file: &Path, bytes: &[u8]) -> bool {
+    let summary = input::read(&file.with_file_name("summary.json"), input::TOML_MAX_BYTES).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    summary["files"][&*name].as_str().is_some_and(|hash| hash != sha256(bytes))
 }
 
 /// The world that was simulated beside a board.
@@ -166,6 +182,7 @@ impl Report {
             stream_gaps: None,
             untouched_layers: Vec::new(),
             replaced_at_s: None,
+            files: BTreeMap::new(),
         }
     }
 

@@ -7,35 +7,49 @@
 //! | a log that others read while it grows | `OutputFile::create_live` | under its own name, in whole rows |
 //!
 //! - No output replaces an input of the same command ([`Inputs`]), by whatever links it is named.
-//! - No output replaces a recording of a person, unless the user says so.
-//! - A file has its name only when it is whole: it is renamed when everything is on the disk.
-//! - Files that belong together are renamed together (`commit_all`), so that none of an earlier run stands beside one
-//!   of a later run.
+//! - No output replaces a recording of a person, unless the user says so. Its content tells what it is.
+//! - A file gets its name when everything is on the disk, in one step: the earlier one stays until then.
+//! - Files that belong together are renamed together (`commit_all`); the last one may have the hashes of the others.
 //! - A folder has one writer at a time ([`OutputFolder`]).
 //!
 //! Standard output, devices and pipes are written directly: they have no content that could be lost.
 
-mod error;
-mod folder;
 mod identity;
 mod recording;
+#[cfg(test)]
+mod tests;
 mod writer;
 
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 
-pub use error::OutputFileError;
-pub use folder::OutputFolder;
-pub(crate) use recording::{Recording, is_play_of_person, is_recording};
-pub(crate) use writer::{FileWriter, commit_all};
+use anyhow::{Result, anyhow, bail};
+use tempfile::NamedTempFile;
 
-use identity::{is_same_file, is_standard_input, is_standard_output};
+pub(crate) use recording::{Recording, is_recording};
+pub(crate) use writer::{Busy, FileWriter, commit_all};
+
+use crate::scene_file::check_path;
+use identity::{is_open_at, is_same_file};
+use writer::open_locked;
 
 /// The name for standard output.
 const STANDARD_OUTPUT: &str = "-";
-/// Longest chain of symbolic links that is followed, as on Linux.
-const LINKS_MAX: usize = 40;
+/// The file whose lock says that a process writes into its folder.
+const LOCK: &str = ".frixel-lock";
+
+/// Converts an error of writing `path`, for use in `map_err`.
+pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> anyhow::Error {
+    let advice = check_path(path, "check the folder and its free space");
+    move |error| anyhow!("{} cannot be written ({error}): {advice}", path.display())
+}
+
+/// What to do about a name that cannot be used.
+fn another(option: &str) -> String {
+    let name = if option == "--out" { "folder" } else { "name" };
+    format!("give another {name} to {option}")
+}
 
 /// The files that a command reads, which it does not overwrite. Standard input is always one of them.
 #[derive(Clone, Debug, Default)]
@@ -48,16 +62,37 @@ impl Inputs {
     }
 
     /// Rejects an output that would overwrite one of the files.
-    pub(crate) fn check(&self, output: &OutputFile) -> Result<(), OutputFileError> {
+    pub(crate) fn check(&self, output: &OutputFile) -> Result<()> {
+        let another = another(output.option);
         match output.written_paths().iter().find(|path| self.has(path)) {
-            Some(path) => Err(OutputFileError::Input { path: path.clone(), option: output.option }),
+            Some(path) => bail!("{} is an input as well, and would be overwritten: {another}", path.display()),
             None => Ok(()),
         }
     }
 
     fn has(&self, path: &Path) -> bool {
         fs::metadata(path).is_ok_and(|metadata| metadata.is_file())
-            && (is_standard_input(path) || self.0.iter().any(|input| is_same_file(input, path)))
+            && (is_open_at(stdin(), path) || self.0.iter().any(|input| is_same_file(input, path)))
+    }
+}
+
+/// A folder into which this process alone writes, until the value is dropped or the process ends.
+#[derive(Debug)]
+pub struct OutputFolder {
+    /// Locked while it is open, and removed then.
+    _lock: NamedTempFile,
+}
+
+impl OutputFolder {
+    /// Creates the folder if necessary, and locks it.
+    pub fn open(path: &Path) -> Result<Self> {
+        fs::create_dir_all(path).map_err(writing(path))?;
+        match open_locked(path, &path.join(LOCK)) {
+            Err(error) if error.is::<Busy>() => {
+                bail!("another frixel writes into {}: wait for it, or give another folder to --out", path.display())
+            }
+            locked => Ok(Self { _lock: locked? }),
+        }
     }
 }
 
@@ -73,7 +108,7 @@ enum Place {
 
 impl Place {
     fn of(path: &Path) -> io::Result<Self> {
-        if path == Path::new(STANDARD_OUTPUT) || is_standard_output(path) {
+        if path == Path::new(STANDARD_OUTPUT) || is_open_at(stdout(), path) {
             return Ok(Self::StandardOutput);
         }
         let is_open_file = path.starts_with("/dev/fd") || path.starts_with("/proc");
@@ -90,21 +125,19 @@ impl Place {
     }
 }
 
-/// The file that a name that leads to none would create.
+/// The file that a name that leads to none would create. A link that leads to none yet is followed.
 fn without_links(path: &Path) -> PathBuf {
-    let mut path = path.to_owned();
-    for _ in 0..LINKS_MAX {
-        let Ok(target) = fs::read_link(&path) else { break };
-        path = path.parent().unwrap_or(Path::new("")).join(target);
-    }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if let Ok(target) = fs::read_link(path) {
+        return folder.join(target);
+    }
     match (folder.canonicalize(), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
-        _ => path,
+        _ => path.to_owned(),
     }
 }
 
-/// A result that is about to be written, where it overwrites no input and no recording of a person.
+/// A file that is about to be written, where it overwrites no input.
 #[derive(Clone, Debug)]
 pub(crate) struct OutputFile {
     path: PathBuf,
@@ -113,28 +146,27 @@ pub(crate) struct OutputFile {
 }
 
 impl OutputFile {
-    /// A file by the name that the user gave to `option`; `-` is standard output.
-    pub(crate) fn new(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self, OutputFileError> {
-        let output = Self::of_person(path, option, inputs)?;
-        match &output.place {
-            Place::File(file) if is_recording(file) => {
-                Err(OutputFileError::OverRecording { path: output.path.clone(), option })
-            }
-            _ => Ok(output),
+    /// A result by the name that the user gave to `option`; `-` is standard output. Rejects a name that has a recording
+    /// of a person.
+    pub(crate) fn new(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self> {
+        let output = Self::replacing(path, option, inputs)?;
+        if output.file().is_some_and(is_recording) {
+            let another = another(option);
+            bail!("{} is a recording of a person, which no result replaces: {another}", path.display());
         }
+        Ok(output)
     }
 
     /// As [`Self::new`], for a file that may replace a recording of a person.
-    fn of_person(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self, OutputFileError> {
-        let place = Place::of(path).map_err(|source| OutputFileError::write(path, source))?;
+    pub(crate) fn replacing(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self> {
+        let place = Place::of(path).map_err(writing(path))?;
         let output = Self { path: path.to_owned(), option, place };
         inputs.check(&output)?;
-        match &output.place {
-            Place::File(file) if fs::metadata(file).is_ok_and(|metadata| metadata.permissions().readonly()) => {
-                Err(OutputFileError::Protected { path: output.path.clone(), option })
-            }
-            _ => Ok(output),
+        let earlier = output.file().and_then(|file| fs::metadata(file).ok());
+        if earlier.is_some_and(|earlier| earlier.permissions().readonly()) {
+            bail!("{} is write-protected: {}, or allow writing it", path.display(), another(option));
         }
+        Ok(output)
     }
 
     /// The path, as the user gave it.
@@ -152,19 +184,20 @@ impl OutputFile {
         self.file().is_some()
     }
 
-    /// Whether there is a file already.
-    pub(crate) fn exists(&self) -> bool {
-        self.file().is_some_and(Path::exists)
+    /// Rejects an output that would overwrite another one of the same command.
+    pub(crate) fn check_apart_from(&self, other: &Self) -> Result<()> {
+        let is_same = |(file, other): (&Path, &Path)| file == other || is_same_file(file, other);
+        if self.file().zip(other.file()).is_some_and(is_same) {
+            bail!("{} would be written twice: {}", self.path.display(), another(self.option));
+        }
+        Ok(())
     }
 
-    /// Rejects an output that would overwrite another one of the same command.
-    pub(crate) fn check_apart_from(&self, other: &Self) -> Result<(), OutputFileError> {
-        let is_same = match (&self.place, &other.place) {
-            (Place::File(file), Place::File(other)) => file == other || is_same_file(file, other),
-            _ => false,
-        };
-        if is_same {
-            return Err(OutputFileError::Twice { path: self.path.clone(), option: self.option });
+    /// Rejects an output that has a file already.
+    pub(crate) fn check_new(&self) -> Result<()> {
+        if self.file().is_some_and(Path::exists) {
+            let (path, another) = (self.path.display(), another(self.option));
+            bail!("{path} is there already, and a recording is not replaced: {another}, or add --overwrite");
         }
         Ok(())
     }
@@ -187,7 +220,7 @@ impl OutputFile {
     }
 
     /// Starts to write the file. It is whole, or as it was before, until [`FileWriter::commit`].
-    pub(crate) fn create(&self) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn create(&self) -> Result<FileWriter> {
         match &self.place {
             Place::StandardOutput => Ok(FileWriter::standard_output()),
             Place::Stream => FileWriter::stream(&self.path),
@@ -197,20 +230,17 @@ impl OutputFile {
 
     /// Starts to write a log that others read while it grows. It replaces an earlier file at once, and always has whole
     /// rows.
-    pub(crate) fn create_live(&self) -> Result<FileWriter, OutputFileError> {
-        match &self.place {
-            Place::File(file) => FileWriter::live(&self.path, file),
-            _ => self.create(),
-        }
+    pub(crate) fn create_live(&self) -> Result<FileWriter> {
+        self.create()?.live()
     }
 
     /// Writes the whole file.
-    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), OutputFileError> {
+    pub(crate) fn write(&self, bytes: &[u8]) -> Result<()> {
         self.filled(bytes)?.commit()
     }
 
     /// As [`Self::write`], before the commit.
-    pub(crate) fn filled(&self, bytes: &[u8]) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn filled(&self, bytes: &[u8]) -> Result<FileWriter> {
         let mut writer = self.create()?;
         match writer.write_all(bytes) {
             Err(source) => Err(writer.error(source)),
@@ -219,13 +249,11 @@ impl OutputFile {
     }
 
     /// Writes the whole file unless there is one already, and returns whether it did.
-    pub(crate) fn write_new(&self, bytes: &[u8]) -> Result<bool, OutputFileError> {
-        if self.exists() {
+    pub(crate) fn write_new(&self, bytes: &[u8]) -> Result<bool> {
+        if self.file().is_some_and(Path::exists) {
             return Ok(false);
         }
-        let mut writer = self.filled(bytes)?;
-        writer.keep_earlier();
-        writer.commit().map(|()| true)
+        self.write(bytes).map(|()| true)
     }
 }
 

@@ -4,19 +4,23 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::writer::PARQUET;
-use super::{FileWriter, Inputs, OutputFile, OutputFileError, partial_beside};
+use anyhow::{Result, bail};
+
+use super::writer::{PARQUET, has_rows};
+use super::{FileWriter, Inputs, OutputFile, partial_beside};
 use crate::input;
 
 /// Bytes of the beginning of a file that say what it is.
 const HEAD: u64 = 4096;
 /// Largest footer of a Parquet file that is read.
 const FOOTER_MAX_BYTES: u64 = 64 << 20;
-/// The columns of a recorded stroke, and of a recording of friction.
+/// The columns of a recorded stroke, the one that a person's play adds to it, and those of a recording of friction.
 const STROKE_COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
+const PARTICIPANT: &str = "participant";
 const FRICTION_COLUMNS: [&str; 3] = ["voltage_v_rms", "normal_force_n", "friction_n"];
-/// The line of a profile that rests on what a person felt.
+/// The line of a profile that rests on what a person felt, and a part of the summary of a person's play.
 const PERCEPTUAL: &str = "origin = \"perceptual\"";
+const OF_A_PERSON: &str = "\"simulated\":false";
 
 /// A recording that is about to be made. Its rows go to `FILE.partial`, which becomes `FILE` at the end.
 #[derive(Clone, Debug)]
@@ -35,10 +39,10 @@ impl Recording {
         inputs: &Inputs,
         overwrites: bool,
         advice: &'static str,
-    ) -> Result<Self, OutputFileError> {
-        let output = OutputFile::of_person(path, option, inputs)?;
-        if output.exists() && !overwrites {
-            return Err(OutputFileError::Exists { path: path.to_owned(), option });
+    ) -> Result<Self> {
+        let output = OutputFile::replacing(path, option, inputs)?;
+        if !overwrites {
+            output.check_new()?;
         }
         Ok(Self::of(output, overwrites, advice))
     }
@@ -60,9 +64,8 @@ impl Recording {
 
     /// Whether a recording that was cut off has left rows.
     pub(crate) fn is_cut_off(&self) -> bool {
-        let Some(file) = self.output.file() else { return false };
-        input::read(&partial_beside(file), input::CSV_MAX_BYTES)
-            .is_ok_and(|bytes| has_rows(&String::from_utf8_lossy(&bytes)))
+        let read = |file| input::read(&partial_beside(file), input::CSV_MAX_BYTES);
+        self.output.file().is_some_and(|file| read(file).is_ok_and(|bytes| has_rows(&bytes)))
     }
 
     /// Removes the rows of a recording that is whole.
@@ -80,58 +83,37 @@ impl Recording {
 
     /// Begins a recording. Fails if an earlier one was cut off, unless that may be overwritten: its rows then stay
     /// until the first ones of this recording.
-    pub(crate) fn start(&self) -> Result<FileWriter, OutputFileError> {
+    pub(crate) fn start(&self) -> Result<FileWriter> {
         let Some(file) = self.output.file() else { return self.output.create() };
-        if is_of_another_program(&partial_beside(file)) && !self.overwrites {
-            return Err(OutputFileError::Foreign { partial: self.partial() });
+        let (name, advice) = (self.partial(), self.advice);
+        let name = name.display();
+        let (writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
+        match earlier {
+            Some(_) if self.overwrites => Ok(writer),
+            Some(rows) if has_rows(rows.as_bytes()) => {
+                bail!("{name} has the rows of a recording that was cut off: {advice}, or record anew with --overwrite")
+            }
+            Some(_) => bail!("{name} is in the way, and no recording left it: rename it, or record with --overwrite"),
+            None => Ok(writer),
         }
-        let (mut writer, earlier) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
-        if has_rows(&earlier) && !self.overwrites {
-            return Err(OutputFileError::CutOff { partial: self.partial(), advice: self.advice });
-        }
-        writer.begin_anew();
-        if !self.overwrites {
-            writer.keep_earlier();
-        }
-        Ok(writer)
     }
 
     /// Goes on with a recording that was cut off, and returns its whole rows, header included.
-    pub(crate) fn resume(&self) -> Result<(FileWriter, String), OutputFileError> {
-        let nothing = || OutputFileError::NothingCutOff { partial: self.partial() };
-        let Some(file) = self.output.file() else { return Err(nothing()) };
-        let partial = partial_beside(file);
-        if !partial.exists() {
-            return Err(nothing());
+    pub(crate) fn resume(&self) -> Result<(FileWriter, String)> {
+        if let Some(file) = self.output.file().filter(|file| partial_beside(file).exists()) {
+            let (mut writer, rows) = FileWriter::recording(self.output.path(), file, &partial_beside(file))?;
+            if let Some(rows) = rows.filter(|rows| has_rows(rows.as_bytes())) {
+                writer.go_on(&rows)?;
+                return Ok((writer, rows));
+            }
         }
-        let (mut writer, rows) = FileWriter::recording(self.output.path(), file, &partial)?;
-        writer.cut()?;
-        if has_rows(&rows) { Ok((writer, rows)) } else { Err(nothing()) }
+        let name = self.partial();
+        bail!("there is no {} with rows of a recording that was cut off: leave --finish out", name.display())
     }
 }
 
-/// Whether the play in a folder is of a person's finger on a board that is not a simulator, by its `summary.json`.
-pub(crate) fn is_play_of_person(folder: &Path) -> bool {
-    let summary = input::read(&folder.join("summary.json"), input::TOML_MAX_BYTES).unwrap_or_default();
-    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
-    summary.get("simulated") == Some(&serde_json::Value::Bool(false))
-}
-
-/// Whether a file is nothing that a recording leaves without a row: nothing at all, or the names of columns.
-fn is_of_another_program(partial: &Path) -> bool {
-    let Ok(head) = input::read_head(partial, HEAD) else { return false };
-    let is_of_name = |byte: &u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"_,".contains(byte);
-    let names = head.strip_suffix(b"\n").unwrap_or(&head);
-    !has_rows(&String::from_utf8_lossy(&head)) && !names.iter().all(is_of_name)
-}
-
-/// Whether there is a row below the header. A Parquet file that was begun has one: it is written in whole row groups.
-fn has_rows(text: &str) -> bool {
-    text.as_bytes().starts_with(PARQUET) || text.bytes().filter(|byte| *byte == b'\n').count() > 1
-}
-
-/// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit`
-/// reads it, or a profile of `frixel threshold`; or by its metadata, if it is a Parquet file.
+/// Whether a file is a recording of a person, by its content: a stroke of `frixel record`, friction as `frixel fit`
+/// reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file of a play.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let Ok(head) = input::read_head(path, HEAD) else { return false };
     if head.starts_with(PARQUET) {
@@ -143,9 +125,12 @@ pub(crate) fn is_recording(path: &Path) -> bool {
     let columns: BTreeSet<&str> =
         text.lines().next().unwrap_or_default().split([',', ';']).map(|cell| cell.trim_matches(['"', ' '])).collect();
     let has = |names: [&str; 3]| names.iter().all(|name| columns.contains(name));
-    let is_stroke =
-        has(STROKE_COLUMNS) && columns.iter().all(|name| [&STROKE_COLUMNS[..], &["force_n"]].concat().contains(name));
-    is_stroke || has(FRICTION_COLUMNS) || text.lines().any(|line| line.trim() == PERCEPTUAL)
+    let is_stroke = || columns.iter().all(|name| STROKE_COLUMNS.contains(name) || *name == "force_n");
+    let is_of_person = has(STROKE_COLUMNS) && (is_stroke() || columns.contains(PARTICIPANT));
+    is_of_person
+        || has(FRICTION_COLUMNS)
+        || text.lines().any(|line| line.trim() == PERCEPTUAL)
+        || (text.starts_with('{') && text.contains(OF_A_PERSON))
 }
 
 /// The footer of a Parquet file, its length and last bytes included.
@@ -154,47 +139,4 @@ fn footer(path: &Path) -> io::Result<Vec<u8>> {
     let [a, b, c, d, ..] = end[..] else { return Ok(end) };
     let len = 8 + u64::from(u32::from_le_bytes([a, b, c, d]));
     input::read_tail(path, len.min(FOOTER_MAX_BYTES))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A summary that was a link to a device without end took all memory.
-    #[cfg(unix)]
-    #[test]
-    fn a_device_in_place_of_a_file_is_not_read() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        let link = |name: &str| std::os::unix::fs::symlink("/dev/zero", path(name)).unwrap();
-        link("summary.json");
-        assert!(!is_play_of_person(folder.path()));
-        link("felt.csv");
-        assert!(!is_recording(&path("felt.csv")));
-        link("rows.csv.partial");
-        let recording = Recording::new(&path("rows.csv"), "-o", &Inputs::default(), false, "").unwrap();
-        assert!(!recording.is_cut_off());
-        assert!(recording.start().is_err() && recording.resume().is_err());
-        std::fs::remove_file(path("rows.csv.partial")).unwrap();
-        std::fs::File::create(path("rows.csv.partial")).unwrap().set_len(8 << 30).unwrap();
-        let error = recording.resume().unwrap_err().to_string();
-        assert!(error.contains("it has 8589934592 bytes, and at most 536870912 are read"), "{error}");
-    }
-
-    #[test]
-    fn a_file_of_another_program_is_not_taken_for_an_empty_recording() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows.csv");
-        let start = |overwrites| Recording::new(&path, "-o", &Inputs::default(), overwrites, "").unwrap().start();
-        for foreign in ["A letter.", "A letter.\n", "t_s;x_mm", "\0\u{1}"] {
-            std::fs::write(partial_beside(&path), foreign).unwrap();
-            assert!(matches!(start(false), Err(OutputFileError::Foreign { .. })), "{foreign:?}");
-            assert_eq!(std::fs::read_to_string(partial_beside(&path)).unwrap(), foreign);
-            assert!(start(true).is_ok());
-        }
-        for own in ["", "t_s,x_", "t_s,x_mm,y_mm\n"] {
-            std::fs::write(partial_beside(&path), own).unwrap();
-            assert!(start(false).is_ok(), "{own:?}");
-        }
-    }
 }

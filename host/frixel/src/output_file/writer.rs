@@ -1,18 +1,29 @@
 //! Writing of a file that has its name only when it is whole.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write, stdout};
+use std::mem;
 use std::path::{Path, PathBuf};
 
-use super::identity::is_file_at;
-use super::{OutputFile, OutputFileError};
+use anyhow::{Result, anyhow};
+use frixel_lab::hash::hex;
+use sha2::{Digest, Sha256};
+use tempfile::{NamedTempFile, PersistError, TempPath};
+use thiserror::Error;
+
+use super::identity::is_open_at;
+use super::{OutputFile, writing};
 use crate::input::{Bounded, CSV_MAX_BYTES};
 
 /// Bytes that are collected before they are written, in whole lines.
 const CHUNK: usize = 64 * 1024;
-
 /// The first bytes of a Parquet file.
 pub(super) const PARQUET: &[u8] = b"PAR1";
+
+/// Another process writes the file.
+#[derive(Debug, Error)]
+#[error("{} is being written by another frixel: wait for it, or give another name", .0.display())]
+pub(crate) struct Busy(PathBuf);
 
 /// A file that is being written. It has its name after [`Self::commit`]; dropped before, a result is as it was, and a
 /// recording is left as `FILE.partial` if it has a row.
@@ -22,6 +33,7 @@ pub(crate) struct FileWriter {
     sink: Sink,
     /// Bytes that are not written yet.
     pending: Vec<u8>,
+    hash: Sha256,
 }
 
 #[derive(Debug)]
@@ -29,136 +41,79 @@ enum Sink {
     StandardOutput,
     Stream(File),
     File(NewFile),
-}
-
-/// What becomes of a file that is not committed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Unfinished {
-    /// It is removed.
-    Removed,
-    /// It stays if it has a row below its header.
-    KeepsRows,
-    /// It has its name already, and stays.
-    IsNamed,
+    Committed,
 }
 
 #[derive(Debug)]
 struct NewFile {
-    file: File,
-    /// Where the bytes go until the commit.
-    written: PathBuf,
+    file: NamedTempFile,
     destination: PathBuf,
+    /// Whether rows stay if there is no commit.
+    keeps_rows: bool,
+    /// Whether no file has the name: one that comes meanwhile keeps it.
+    is_new: bool,
+    /// What is there, without a part of a row.
     len: u64,
-    lines: u64,
-    /// Whether it is a Parquet file, whose rows are no lines: every write is a whole row group of one.
-    is_parquet: bool,
+    has_rows: bool,
     /// Why bytes are missing at the end. Nothing is written behind a gap.
     failed: Option<ErrorKind>,
-    unfinished: Unfinished,
-    /// The first write replaces what is there.
-    begins_anew: bool,
-    /// A file that has the name already keeps it.
-    is_new: bool,
 }
 
 impl FileWriter {
+    fn new(path: &Path, sink: Sink) -> Self {
+        Self { path: path.to_owned(), sink, pending: Vec::new(), hash: Sha256::new() }
+    }
+
     pub(super) fn standard_output() -> Self {
-        Self { path: "standard output".into(), sink: Sink::StandardOutput, pending: Vec::new() }
+        Self::new("standard output".as_ref(), Sink::StandardOutput)
     }
 
-    pub(super) fn stream(path: &Path) -> Result<Self, OutputFileError> {
-        let file = OpenOptions::new().append(true).open(path);
-        let file = file.map_err(|source| OutputFileError::write(path, source))?;
-        Ok(Self { path: path.to_owned(), sink: Sink::Stream(file), pending: Vec::new() })
+    pub(super) fn stream(path: &Path) -> Result<Self> {
+        let file = File::options().append(true).open(path).map_err(writing(path))?;
+        Ok(Self::new(path, Sink::Stream(file)))
     }
 
-    pub(super) fn result(path: &Path, destination: &Path, written: &Path) -> Result<Self, OutputFileError> {
+    pub(super) fn result(path: &Path, destination: &Path, written: &Path) -> Result<Self> {
         let file = open_locked(path, written)?;
-        let mut writer = Self::new(path, destination, written, file, Unfinished::Removed);
-        writer.clear()?;
-        Ok(writer)
+        // A process that was killed may have left it.
+        file.as_file().set_len(0).map_err(writing(path))?;
+        Ok(Self::new(path, Sink::File(NewFile::new(file, destination))))
     }
 
-    pub(super) fn live(path: &Path, destination: &Path) -> Result<Self, OutputFileError> {
-        let removed = match fs::remove_file(destination) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
-            _ => Ok(()),
-        };
-        let file = removed.and_then(|()| OpenOptions::new().write(true).create_new(true).open(destination));
-        let file = file.map_err(|source| OutputFileError::write(path, source))?;
-        Ok(Self::new(path, destination, destination, file, Unfinished::IsNamed))
+    /// Gives the file its name already, while it has nothing.
+    pub(super) fn live(mut self) -> Result<Self> {
+        if let Sink::File(mut new) = mem::replace(&mut self.sink, Sink::Committed) {
+            let file = new.file.persist(&new.destination).map_err(|failed| writing(&self.path)(failed.error))?;
+            let name = TempPath::try_from_path(&new.destination).map_err(writing(&self.path))?;
+            new.file = NamedTempFile::from_parts(file, name);
+            new.file.disable_cleanup(true);
+            self.sink = Sink::File(NewFile { keeps_rows: true, ..new });
+        }
+        Ok(self)
     }
 
-    /// A recording that goes on behind the whole rows of `written`, which are returned.
-    pub(super) fn recording(
-        path: &Path,
-        destination: &Path,
-        written: &Path,
-    ) -> Result<(Self, String), OutputFileError> {
-        let failed = |source| OutputFileError::write(written, source);
+    /// A recording, and the whole rows of the file that an earlier one has left, which stays until this one has a row.
+    pub(super) fn recording(path: &Path, destination: &Path, written: &Path) -> Result<(Self, Option<String>)> {
         let mut file = open_locked(path, written)?;
         let mut bytes = Vec::new();
-        let len = file.metadata().map_err(failed)?.len();
-        let bounded = Bounded::of_file(&mut file, len, CSV_MAX_BYTES).map_err(io::Error::from);
-        bounded.and_then(|mut file| file.read_to_end(&mut bytes)).map_err(failed)?;
-        let mut writer = Self::new(path, destination, written, file, Unfinished::KeepsRows);
+        let len = file.as_file().metadata().map_err(writing(written))?.len();
+        file.disable_cleanup(len > 0);
+        let bounded = Bounded::of_file(file.as_file_mut(), len, CSV_MAX_BYTES).map_err(io::Error::from);
+        bounded.and_then(|mut file| file.read_to_end(&mut bytes)).map_err(writing(written))?;
         if !bytes.starts_with(PARQUET) {
             // A process that was killed may have left a part of a row.
             bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1));
         }
-        if let Sink::File(new) = &mut writer.sink {
-            new.len = bytes.len() as u64;
-            new.lines = count_lines(&bytes);
-        }
-        Ok((writer, String::from_utf8_lossy(&bytes).into_owned()))
+        let new = NewFile { keeps_rows: true, ..NewFile::new(file, destination) };
+        let earlier = (len > 0).then(|| String::from_utf8_lossy(&bytes).into_owned());
+        Ok((Self::new(path, Sink::File(new)), earlier))
     }
 
-    /// Removes everything that was written, by this process or by one before.
-    pub(crate) fn clear(&mut self) -> Result<(), OutputFileError> {
-        self.pending.clear();
-        if let Sink::File(new) = &mut self.sink {
-            (new.len, new.lines) = (0, 0);
-        }
-        self.cut()
-    }
-
-    /// Lets the first write replace the rows of a process before: without one, they stay.
-    pub(super) fn begin_anew(&mut self) {
-        if let Sink::File(new) = &mut self.sink {
-            new.begins_anew = true;
-        }
-    }
-
-    /// Lets a file that has the name at the commit keep it: the commit then fails with [`OutputFileError::Rename`].
-    pub(super) fn keep_earlier(&mut self) {
-        if let Sink::File(new) = &mut self.sink {
-            new.is_new = true;
-        }
-    }
-
-    /// Removes the part of a row at the end.
-    pub(super) fn cut(&mut self) -> Result<(), OutputFileError> {
+    /// Goes on behind `rows`, which are those that [`Self::recording`] has returned.
+    pub(super) fn go_on(&mut self, rows: &str) -> Result<()> {
         let Sink::File(new) = &mut self.sink else { return Ok(()) };
-        let cut = new.file.set_len(new.len).and_then(|()| new.file.seek(SeekFrom::Start(new.len)));
-        cut.map(drop).map_err(|source| self.error(source))
-    }
-
-    fn new(path: &Path, destination: &Path, written: &Path, file: File, unfinished: Unfinished) -> Self {
-        let (written, destination) = (written.to_owned(), destination.to_owned());
-        let (begins_anew, is_new) = (false, false);
-        let new = NewFile {
-            file,
-            written,
-            destination,
-            len: 0,
-            lines: 0,
-            is_parquet: false,
-            failed: None,
-            unfinished,
-            begins_anew,
-            is_new,
-        };
-        Self { path: path.to_owned(), sink: Sink::File(new), pending: Vec::new() }
+        (new.len, new.has_rows) = (rows.len() as u64, true);
+        new.cut().map_err(|source| self.error(source))
     }
 
     /// The path, as the user gave it.
@@ -167,28 +122,39 @@ impl FileWriter {
     }
 
     /// Writes what is pending, and gives the file its name.
-    pub(crate) fn commit(mut self) -> Result<(), OutputFileError> {
+    pub(crate) fn commit(mut self) -> Result<()> {
         self.complete()?;
         self.rename()
     }
 
+    /// Writes what is pending, and returns the SHA-256 of all that this process has written.
+    pub(crate) fn sha256(&mut self) -> Result<String> {
+        self.flush().map_err(|source| self.error(source))?;
+        Ok(hex(&self.hash.clone().finalize()))
+    }
+
     /// The error of this file for one of the operating system.
-    pub(crate) fn error(&self, source: io::Error) -> OutputFileError {
+    pub(crate) fn error(&self, error: io::Error) -> anyhow::Error {
         match &self.sink {
-            Sink::File(new) if new.is_kept() => OutputFileError::Rows { path: new.written.clone(), source },
-            Sink::File(_) => OutputFileError::Cut { path: self.path.clone(), source },
-            _ => OutputFileError::write(&self.path, source),
+            Sink::File(new) if new.keeps_rows && new.has_rows => anyhow!(
+                "{} cannot be written any further ({error}), and has the rows until then: check the free space of its \
+                 folder",
+                new.file.path().display()
+            ),
+            Sink::File(_) => anyhow!(
+                "{} cannot be written to its end ({error}): no cut file is left; check the free space of its folder",
+                self.path.display()
+            ),
+            _ => writing(&self.path)(error),
         }
     }
 
     /// Writes what is pending, and waits until the disk has everything.
-    fn complete(&mut self) -> Result<(), OutputFileError> {
+    fn complete(&mut self) -> Result<()> {
         self.flush().map_err(|source| self.error(source))?;
-        let Sink::File(new) = &mut self.sink else { return Ok(()) };
-        if let Some(kind) = new.failed {
-            return Err(self.error(kind.into()));
-        }
-        match new.file.sync_all() {
+        let Sink::File(new) = &self.sink else { return Ok(()) };
+        let synced = new.failed.map_or(Ok(()), |kind| Err(kind.into())).and_then(|()| new.file.as_file().sync_all());
+        match synced {
             // Not every file system can.
             Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
                 Err(self.error(error))
@@ -197,30 +163,28 @@ impl FileWriter {
         }
     }
 
-    fn rename(&mut self) -> Result<(), OutputFileError> {
-        let Sink::File(new) = &mut self.sink else { return Ok(()) };
-        if new.unfinished == Unfinished::IsNamed {
-            return Ok(());
-        }
+    fn rename(mut self) -> Result<()> {
+        let Sink::File(new) = mem::replace(&mut self.sink, Sink::Committed) else { return Ok(()) };
         if let Ok(earlier) = fs::metadata(&new.destination) {
             // A file that replaces another one has its permissions, where the file system knows them.
-            let _ = new.file.set_permissions(earlier.permissions());
+            let _ = new.file.as_file().set_permissions(earlier.permissions());
         }
-        // The file is whole: from here on it stays under whichever name it has.
-        new.unfinished = Unfinished::IsNamed;
-        let renamed = if new.is_new {
-            rename_new(&new.written, &new.destination)
-        } else {
-            fs::rename(&new.written, &new.destination)
-        };
-        renamed.map_err(|source| OutputFileError::Rename {
-            path: self.path.clone(),
-            written: new.written.clone(),
-            source,
+        let NewFile { file, destination, is_new, .. } = new;
+        let renamed = if is_new { file.persist_noclobber(&destination) } else { file.persist(&destination) };
+        renamed.map(drop).map_err(|PersistError { error, mut file }| {
+            // It is whole, and stays under the name that it has.
+            file.disable_cleanup(true);
+            anyhow!(
+                "{} cannot be replaced ({error}); the new one is whole, in {}: close the program that has the old one \
+                 open, and rename the new one",
+                self.path.display(),
+                file.path().display()
+            )
         })
     }
 
     fn write_out(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.hash.update(bytes);
         match &mut self.sink {
             Sink::StandardOutput => {
                 let mut output = stdout().lock();
@@ -228,198 +192,129 @@ impl FileWriter {
             }
             Sink::Stream(file) => file.write_all(bytes),
             Sink::File(new) => new.write(bytes),
+            Sink::Committed => Ok(()),
         }
     }
 }
 
 impl Write for FileWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if !matches!(self.sink, Sink::File(_)) {
-            return self.write_out(bytes).map(|()| bytes.len());
-        }
         self.pending.extend_from_slice(bytes);
-        if self.pending.len() >= CHUNK {
+        if self.pending.len() >= CHUNK || !matches!(self.sink, Sink::File(_)) {
             let end = self.pending.iter().rposition(|byte| *byte == b'\n').map_or(self.pending.len(), |at| at + 1);
             let rest = self.pending.split_off(end);
-            let lines = std::mem::replace(&mut self.pending, rest);
+            let lines = mem::replace(&mut self.pending, rest);
             self.write_out(&lines)?;
         }
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        let pending = std::mem::take(&mut self.pending);
-        if pending.is_empty() { Ok(()) } else { self.write_out(&pending) }
+        let pending = mem::take(&mut self.pending);
+        if pending.is_empty() {
+            return Ok(());
+        }
+        if matches!(&self.sink, Sink::File(new) if new.waits_for_row(&pending)) {
+            self.pending = pending;
+            return Ok(());
+        }
+        self.write_out(&pending)
     }
 }
 
 impl Drop for FileWriter {
     fn drop(&mut self) {
-        if matches!(&self.sink, Sink::File(new) if new.unfinished == Unfinished::KeepsRows) {
+        if matches!(&self.sink, Sink::File(new) if new.keeps_rows) {
             let _ = self.flush();
         }
     }
 }
 
 impl NewFile {
+    fn new(file: NamedTempFile, destination: &Path) -> Self {
+        let (destination, is_new) = (destination.to_owned(), !destination.exists());
+        Self { file, destination, keeps_rows: false, is_new, len: 0, has_rows: false, failed: None }
+    }
+
+    /// Whether these bytes are no row yet, for which the rows of an earlier recording are not given up.
+    fn waits_for_row(&self, bytes: &[u8]) -> bool {
+        self.keeps_rows && self.len == 0 && self.file.path() != self.destination && !has_rows(bytes)
+    }
+
     /// Writes bytes, or none of them: a file that keeps its rows has no part of one.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         if let Some(kind) = self.failed {
             return Err(kind.into());
         }
-        if std::mem::take(&mut self.begins_anew) {
-            (self.len, self.lines) = (0, 0);
-            self.file.set_len(0).and_then(|()| self.file.seek(SeekFrom::Start(0)))?;
-        }
         if self.len == 0 {
-            self.is_parquet = bytes.starts_with(PARQUET);
+            self.cut()?;
         }
-        if let Err(error) = self.file.write_all(bytes) {
+        if let Err(error) = self.file.as_file_mut().write_all(bytes) {
             self.failed = Some(error.kind());
-            let _ = self.file.set_len(self.len).and_then(|()| self.file.seek(SeekFrom::Start(self.len)));
+            let _ = self.cut();
             return Err(error);
         }
+        self.has_rows |= self.len > 0 || has_rows(bytes);
         self.len += bytes.len() as u64;
-        self.lines += count_lines(bytes);
+        if self.keeps_rows && self.has_rows {
+            self.file.disable_cleanup(true);
+        }
         Ok(())
     }
 
-    fn is_kept(&self) -> bool {
-        match self.unfinished {
-            Unfinished::Removed => false,
-            Unfinished::KeepsRows => self.lines > 1 || (self.is_parquet && self.len > 0),
-            Unfinished::IsNamed => true,
-        }
+    /// Removes what is behind the whole rows.
+    fn cut(&mut self) -> io::Result<()> {
+        let file = self.file.as_file_mut();
+        file.set_len(self.len)?;
+        file.seek(SeekFrom::Start(self.len)).map(drop)
     }
 }
 
-impl Drop for NewFile {
-    fn drop(&mut self) {
-        if !self.is_kept() {
-            // Nothing can be done about a file that cannot be removed.
-            let _ = fs::remove_file(&self.written);
-        }
-    }
+/// Whether there is a row below the header. A Parquet file that was begun has one: it is written in whole row groups.
+pub(super) fn has_rows(bytes: &[u8]) -> bool {
+    bytes.starts_with(PARQUET) || bytes.iter().filter(|byte| **byte == b'\n').count() > 1
 }
 
-/// Gives several files that belong together their names. The earlier ones, and `stale` ones that are not written this
-/// time, are removed before: whatever ends the process, no file of an earlier run stands beside one of this run.
-pub(crate) fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Result<(), OutputFileError> {
-    for file in &mut files {
-        file.complete()?;
-    }
-    let destinations = files.iter().filter_map(|file| match &file.sink {
-        Sink::File(new) => Some(new.destination.as_path()),
-        _ => None,
-    });
-    // The first is replaced in one step.
-    let earlier: Vec<&Path> = stale.iter().filter_map(OutputFile::file).chain(destinations.skip(1)).collect();
-    for path in earlier {
+/// Gives several files that belong together their names, in this order, once all of them are on the disk; then removes
+/// the `stale` ones, which are not written this time.
+pub(crate) fn commit_all(mut files: Vec<FileWriter>, stale: &[OutputFile]) -> Result<()> {
+    files.iter_mut().try_for_each(FileWriter::complete)?;
+    files.into_iter().try_for_each(FileWriter::rename)?;
+    for path in stale.iter().filter_map(OutputFile::file) {
         match fs::remove_file(path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                return Err(OutputFileError::write(path, error));
-            }
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(writing(path)(error)),
             _ => {}
         }
     }
-    files.iter_mut().try_for_each(FileWriter::rename)
-}
-
-/// Renames a file, unless another one has the name already. That is looked at in one step with the renaming, except on
-/// file systems without hard links.
-fn rename_new(written: &Path, destination: &Path) -> io::Result<()> {
-    match fs::hard_link(written, destination) {
-        Ok(()) => fs::remove_file(written),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(error),
-        Err(_) if destination.exists() => Err(ErrorKind::AlreadyExists.into()),
-        Err(_) => fs::rename(written, destination),
-    }
-}
-
-fn count_lines(bytes: &[u8]) -> u64 {
-    bytes.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n")).count() as u64
+    Ok(())
 }
 
 /// Opens the file that will become the file at `path`, for this process alone.
-pub(super) fn open_locked(path: &Path, written: &Path) -> Result<File, OutputFileError> {
-    let failed = |source| OutputFileError::write(path, source);
+pub(super) fn open_locked(path: &Path, written: &Path) -> Result<NamedTempFile> {
     if fs::symlink_metadata(written).is_ok_and(|metadata| !metadata.is_file()) {
-        let source = io::Error::new(ErrorKind::AlreadyExists, format!("{} is in the way", written.display()));
-        return Err(failed(source));
+        let in_the_way = io::Error::new(ErrorKind::AlreadyExists, format!("{} is in the way", written.display()));
+        return Err(writing(path)(in_the_way));
     }
     loop {
-        let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(written);
-        let file = options.map_err(failed)?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => return Err(OutputFileError::Busy { path: path.to_owned() }),
-            // Not every file system has locks.
-            Ok(()) | Err(TryLockError::Error(_)) => {}
+        let file = File::options().read(true).write(true).create(true).truncate(false).open(written);
+        let file = file.map_err(writing(path))?;
+        // Not every file system has locks.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(Busy(path.to_owned()).into());
         }
         // The process that held the lock may have renamed or removed the file before it ended.
-        if is_file_at(&file, written) {
-            return Ok(file);
+        if !cfg!(unix) || is_open_at(&file, written) {
+            let name = TempPath::try_from_path(written).map_err(writing(path))?;
+            return Ok(NamedTempFile::from_parts(file, name));
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{Inputs, Recording};
-    use super::*;
-
-    /// Whatever ends the renaming, no file of the run before stands beside one of this run.
-    #[test]
-    fn a_set_that_is_renamed_in_part_has_no_file_of_an_earlier_run() {
-        let folder = tempfile::tempdir().unwrap();
-        let names = ["a", "b", "c", "stale"];
-        let outputs = names.map(|name| {
-            let path = folder.path().join(name);
-            fs::write(&path, "earlier").unwrap();
-            OutputFile::new(&path, "--out", &Inputs::default()).unwrap()
-        });
-        let [a, b, c, stale] = outputs;
-        let files = [&a, &b, &c].map(|output| output.filled(b"of this run").unwrap()).into();
-        fs::remove_file(folder.path().join(".b.frixel-tmp")).unwrap();
-        assert!(matches!(commit_all(files, &[stale]), Err(OutputFileError::Rename { .. })));
-        let read = |name: &str| fs::read_to_string(folder.path().join(name)).ok();
-        assert_eq!(read("a").as_deref(), Some("of this run"));
-        assert_eq!(["b", "c", "stale"].map(read), [None, None, None]);
-    }
-
-    /// A file that another process gives the name between the look and the commit.
-    #[test]
-    fn a_new_file_replaces_none_that_came_meanwhile() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows.csv");
-        let output = OutputFile::new(&path, "-o", &Inputs::default()).unwrap();
-        let recording = Recording::new(&path, "-o", &Inputs::default(), false, "").unwrap();
-        for rows in ["a result\n", "a,recording\n1,2\n"] {
-            let mut writer =
-                if rows.starts_with("a result") { output.create().unwrap() } else { recording.start().unwrap() };
-            writer.keep_earlier();
-            writer.write_all(rows.as_bytes()).unwrap();
-            fs::write(&path, "came meanwhile").unwrap();
-            let Err(OutputFileError::Rename { written, .. }) = writer.commit() else { panic!("it is replaced") };
-            assert_eq!(fs::read_to_string(&path).unwrap(), "came meanwhile");
-            assert_eq!(fs::read_to_string(written).unwrap(), rows);
-            fs::remove_file(&path).unwrap();
-        }
-    }
-
-    /// Nothing is written behind a gap: rows that are missing in the middle would not be noticed.
-    #[test]
-    fn a_file_with_a_gap_takes_no_more_and_gets_no_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows");
-        let mut file = OutputFile::new(&path, "-o", &Inputs::default()).unwrap().filled(b"one\n").unwrap();
-        file.flush().unwrap();
-        let Sink::File(new) = &mut file.sink else { panic!("a file") };
-        let whole = std::mem::replace(&mut new.file, File::open(&new.written).unwrap());
-        assert!(file.write_all(b"two\n").and_then(|()| file.flush()).is_err(), "it is open for reading only");
-        let Sink::File(new) = &mut file.sink else { panic!("a file") };
-        new.file = whole;
-        assert!(file.write_all(b"three\n").and_then(|()| file.flush()).is_err());
-        assert!(file.commit().is_err() && !path.exists());
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+impl FileWriter {
+    /// Puts another open file in the place of this one, and returns it.
+    pub(super) fn replace_file(&mut self, file: File) -> File {
+        let Sink::File(new) = &mut self.sink else { return file };
+        std::mem::replace(new.file.as_file_mut(), file)
     }
 }

@@ -8,7 +8,6 @@ use frixel_model::{InverseError, ParameterError, StateError, TableError};
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
-use crate::output_file::OutputFileError;
 use frixel_scene::CompileError;
 
 /// Why a report could not be written.
@@ -16,7 +15,7 @@ use frixel_scene::CompileError;
 pub enum ReportError {
     /// A file could not be written.
     #[error(transparent)]
-    Output(#[from] OutputFileError),
+    Output(#[from] anyhow::Error),
     /// The picture of the scenes that are measured could not be encoded.
     #[error("the picture of a scene: {0}")]
     Picture(#[from] png::EncodingError),

@@ -36,7 +36,7 @@ pub(crate) use pace::Dropped;
 pub use pico::PicoStream;
 pub(crate) use port::PortLink;
 #[cfg(unix)]
-pub use server::{Server, ServerError};
+pub use server::Server;
 
 use frixel_driver::Link;
 use frixel_felt::recorder::Recorder;

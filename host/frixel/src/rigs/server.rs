@@ -4,36 +4,18 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use anyhow::{Result, anyhow};
 use frixel_hil_sim::{PseudoTerminal, Rig};
-use thiserror::Error;
 
 use super::pace::{Dropped, Pace};
 use super::server_log::ServerLog;
-use crate::output_file::{Inputs, OutputFileError};
+use crate::output_file::Inputs;
 
 /// Time that the server sleeps between two readings of the clock.
 const NAP: Duration = Duration::from_millis(1);
 /// Most reads of 4 KiB between two batches of ticks. This is more than a terminal buffers, and bounds the loop when a
 /// client writes as fast as the server reads.
 const READS_MAX: usize = 16;
-/// Why a virtual board stopped.
-#[derive(Debug, Error)]
-pub enum ServerError {
-    /// The pseudo-terminal could not be created.
-    #[error("no pseudo-terminal for the virtual board: {0}; this needs a Unix system with /dev/pts")]
-    Terminal(#[from] io::Error),
-    /// Reading or writing the pseudo-terminal failed.
-    #[error("the virtual board's pseudo-terminal {path} broke: {source}")]
-    Line {
-        /// Path of the terminal.
-        path: String,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// A file could not be written.
-    #[error(transparent)]
-    Output(#[from] OutputFileError),
-}
 
 /// A virtual board on a pseudo-terminal.
 pub struct Server {
@@ -46,9 +28,12 @@ pub struct Server {
 impl Server {
     /// Creates `felt.csv`, with a row every `ticks_per_row` ticks, `forces.csv` and `events.csv` in `folder`, where
     /// they overwrite none of the inputs; then creates the pseudo-terminal.
-    pub fn open(folder: &Path, inputs: &Inputs, tick_hz: u32, ticks_per_row: u32) -> Result<Self, ServerError> {
+    pub fn open(folder: &Path, inputs: &Inputs, tick_hz: u32, ticks_per_row: u32) -> Result<Self> {
         let log = ServerLog::create(folder, inputs, tick_hz, ticks_per_row)?;
-        Ok(Self { terminal: PseudoTerminal::open()?, unwritten: Vec::new(), log })
+        let terminal = PseudoTerminal::open().map_err(|error| {
+            anyhow!("no pseudo-terminal for the virtual board: {error}; this needs a Unix system with /dev/pts")
+        })?;
+        Ok(Self { terminal, unwritten: Vec::new(), log })
     }
 
     /// Path of the terminal that a client opens.
@@ -59,12 +44,13 @@ impl Server {
     /// Runs `rig` at the pace of the wall clock until `interrupted` returns true. The finger starts its stroke at once.
     /// Ticks and events are written to the files. Returns the time that was dropped, because the server was too far
     /// behind the wall clock to catch up.
-    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<Dropped, ServerError> {
+    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<Dropped> {
         let tick_period_s = 1.0 / f64::from(rig.tick_hz());
         rig.world_mut().start_stroke();
         let (begin, mut pace) = (Instant::now(), Pace::default());
         while !interrupted() {
-            self.exchange(rig).map_err(|source| ServerError::Line { path: self.path().to_owned(), source })?;
+            self.exchange(rig)
+                .map_err(|error| anyhow!("the virtual board's pseudo-terminal {} broke: {error}", self.path()))?;
             let virtual_s = rig.tick() as f64 * tick_period_s;
             let batch = pace.next(begin.elapsed().as_secs_f64(), virtual_s);
             if batch.dropped_s > 0.0 {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use anyhow::Result;
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
 use frixel_lab::calibration::ForceSensor;
@@ -9,7 +10,7 @@ use frixel_wire::fault::State;
 
 use super::{BoardEvent, EventKind, EventLog};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
-use crate::output_file::{Inputs, OutputFile, OutputFileError, OutputFolder, is_play_of_person};
+use crate::output_file::{Inputs, OutputFile, OutputFolder};
 
 /// The option that names the folder.
 const OPTION: &str = "--out";
@@ -36,18 +37,10 @@ pub(super) struct ServerLog {
 
 impl ServerLog {
     /// Creates the three files in `folder`, where they overwrite none of the inputs. Creates the folder if necessary.
-    pub(super) fn create(
-        folder: &Path,
-        inputs: &Inputs,
-        tick_hz: u32,
-        ticks_per_row: u32,
-    ) -> Result<Self, OutputFileError> {
+    pub(super) fn create(folder: &Path, inputs: &Inputs, tick_hz: u32, ticks_per_row: u32) -> Result<Self> {
         let output = |name: &str| OutputFile::new(&folder.join(name), OPTION, inputs);
-        let [felt, forces, events] = [output("felt.csv")?, output("forces.csv")?, output("events.csv")?];
         let locked = OutputFolder::open(folder)?;
-        if is_play_of_person(folder) {
-            return Err(OutputFileError::OverRecording { path: felt.path().to_owned(), option: OPTION });
-        }
+        let [felt, forces, events] = [output("felt.csv")?, output("forces.csv")?, output("events.csv")?];
         let mut recorder = Recorder::without_reference(tick_hz, ticks_per_row);
         recorder.start(0);
         Ok(Self {
@@ -66,7 +59,7 @@ impl ServerLog {
     }
 
     /// Records one tick of `rig`.
-    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<(), OutputFileError> {
+    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<()> {
         let (frames, _) = rig.frame_counts();
         if frames != self.frames {
             self.frames = frames;
@@ -91,14 +84,14 @@ impl ServerLog {
     }
 
     /// Writes that this board has dropped time, after `t_s` seconds.
-    pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<(), OutputFileError> {
+    pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<()> {
         let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
         let event = BoardEvent { t_s, kind: EventKind::TimeDropped };
         self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: Some(dropped_s) })
     }
 
     /// Writes the buffered rows to the files.
-    pub(super) fn flush(&mut self) -> Result<(), OutputFileError> {
+    pub(super) fn flush(&mut self) -> Result<()> {
         self.felt_csv.flush()?;
         self.forces_csv.flush()?;
         self.events_csv.flush()
@@ -113,10 +106,10 @@ mod tests {
     fn a_virtual_board_does_not_replace_what_a_finger_did_on_a_board() {
         let folder = tempfile::tempdir().unwrap();
         let felt = folder.path().join("felt.csv");
-        std::fs::write(&felt, "rows").unwrap();
-        std::fs::write(folder.path().join("summary.json"), "{\"simulated\": false}").unwrap();
+        let rows = "t_s,x_mm,y_mm,speed_mm_s,participant\n";
+        std::fs::write(&felt, rows).unwrap();
         let error = ServerLog::create(folder.path(), &Inputs::default(), 40_000, 40).err().unwrap().to_string();
         assert!(error.contains("felt.csv is a recording of a person") && error.contains("--out"), "{error}");
-        assert_eq!(std::fs::read_to_string(felt).unwrap(), "rows");
+        assert_eq!(std::fs::read_to_string(felt).unwrap(), rows);
     }
 }

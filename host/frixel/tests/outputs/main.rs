@@ -1,33 +1,24 @@
-//! Nothing of the user's is ever lost: what commands write, over every output of every command.
+//! Nothing of the user's is ever lost: what commands write, over every output of every command. The rules themselves
+//! are tested where they are kept, in `src/output_file/tests.rs`.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod folders;
-mod full_disk;
-mod inputs;
-mod kills;
 mod recordings;
+mod results;
 mod source;
-mod streams;
 mod table;
 
 use std::fs;
-use std::io::Write;
+use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
-use std::sync::OnceLock;
+use std::process::{Child, Command, Output, Stdio};
 
-use table::OUTPUTS;
 use tempfile::TempDir;
 
-use crate::processes::repository;
+use crate::processes::{frixel, repository};
 
 const SCENE: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
                      high_fraction = 0.9\n";
-
-/// What a person answers who finds each stimulus of the default seed, more often than 12 trials and their checks ask.
-const ANSWERS: &str = "2\n1\n1\n2\n2\n1\n1\n1\n2\n2\n1\n2\n2\n1\n1\n\
-                       1\n2\n2\n1\n2\n2\n1\n1\n2\n2\n2\n2\n2\n1\n2\n";
 
 /// A folder with an input of every kind.
 struct Folder(TempDir);
@@ -36,16 +27,14 @@ impl Folder {
     fn new() -> Self {
         let folder = Self(TempDir::new().unwrap());
         let points = "variant,radius_m,coating_m,permittivity,friction_coefficient,stiffness_pa_per_m";
-        let screen = "width_mm = 120\nheight_mm = 80\n[[coating]]\nthickness_um = 1\npermittivity = 3.9\n";
         folder.write("scene.toml", SCENE);
         folder.write("stroke.csv", "t_s,x_mm,y_mm,note\n0,10,20,a\n0.4,40,20,b\n");
-        folder.write("screen.toml", screen);
         folder.write("points.csv", &format!("{points},voltage_v\nwf-upper,0.008,1e-5,1,0.5,1.8e7,100\n"));
         folder.write("frictions.csv", &format!("{points},electric_friction_n\nwf-upper,0.008,1e-5,1,0.5,1.8e7,0.01\n"));
-        folder.write("forces.csv", "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n");
-        folder.write("bench.json", "{}");
         folder.write("plan.toml", "scenes = [\"scene.toml\"]\npeople = 1\nstrokes = 1\nseeds = 1\nseconds = 0.5\n");
-        folder.write("data.csv", friction());
+        let means = (0..4).map(|step| format!("{},0.5,{},0.001\n", 50 * step, 0.25 + 0.0125 * f64::from(step * step)));
+        let header = "voltage_v_rms,normal_force_n,friction_n,friction_se_n\n".to_owned();
+        folder.write("data.csv", &(header + &means.collect::<String>()));
         fs::copy(repository().join("scenes/textures/brick.png"), folder.path("picture.png")).unwrap();
         folder
     }
@@ -55,27 +44,19 @@ impl Folder {
     }
 
     fn write(&self, name: &str, text: &str) {
-        if let Some(folder) = self.path(name).parent() {
-            fs::create_dir_all(folder).unwrap();
-        }
+        fs::create_dir_all(self.path(name).parent().unwrap()).unwrap();
         fs::write(self.path(name), text).unwrap();
     }
 
-    fn read(&self, name: &str) -> Option<Vec<u8>> {
-        fs::read(self.path(name)).ok()
-    }
-
     fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.path(name)).unwrap()
+        String::from_utf8_lossy(&fs::read(self.path(name)).unwrap()).into_owned()
     }
 
     /// Names of all files, hidden ones included.
     fn names(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        let mut folders = vec![self.0.path().to_owned()];
+        let (mut names, mut folders) = (Vec::new(), vec![self.0.path().to_owned()]);
         while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
+            for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
                 if path.is_dir() {
                     folders.push(path);
                 } else {
@@ -87,16 +68,16 @@ impl Folder {
         names
     }
 
-    /// A command in this folder that is answered from standard input.
+    /// A command in this folder.
     fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+        let mut command = frixel();
         command.args(line.split_whitespace()).current_dir(self.0.path());
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
 
     fn run(&self, line: &str) -> Ran {
-        answered(&mut self.command(line))
+        Ran::of(&self.command(line).output().unwrap())
     }
 }
 
@@ -107,57 +88,36 @@ struct Ran {
     notes: String,
 }
 
-/// Runs a command with [`ANSWERS`].
-fn answered(command: &mut Command) -> Ran {
-    let mut child = command.spawn().unwrap();
-    // A command that has ended already reads nothing.
-    let _ = child.stdin.take().unwrap().write_all(ANSWERS.as_bytes());
-    ran(&child.wait_with_output().unwrap())
+impl Ran {
+    fn of(output: &Output) -> Self {
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        Self { code: output.status.code(), said: text(&output.stdout), notes: text(&output.stderr) }
+    }
+
+    /// Whether the command failed with these words.
+    fn refused(&self, words: &str) -> bool {
+        self.code == Some(1) && self.notes.contains(words)
+    }
 }
 
-fn ran(output: &Output) -> Ran {
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    Ran { code: output.status.code(), said, notes: String::from_utf8_lossy(&output.stderr).into_owned() }
+/// `frixel sim`, until it is dropped.
+struct VirtualBoard {
+    process: Child,
+    port: String,
 }
 
-/// A recording of friction that can be fitted.
-fn friction() -> &'static str {
-    static RECORDING: OnceLock<String> = OnceLock::new();
-    RECORDING.get_or_init(|| {
-        let folder = TempDir::new().unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-        command.args(["calibrate", "--strokes", "9", "-o", "data.csv"]).current_dir(folder.path());
-        let output = command.output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        fs::read_to_string(folder.path().join("data.csv")).unwrap()
-    })
+impl VirtualBoard {
+    fn start(folder: &Folder, line: &str) -> Self {
+        let mut process = folder.command(line).stderr(Stdio::null()).spawn().unwrap();
+        let mut port = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut port).unwrap();
+        Self { process, port: port.trim().strip_prefix("port: ").unwrap().to_owned() }
+    }
 }
 
-/// Every output whose command line ends by itself and writes the same each time.
-fn reproducible() -> impl Iterator<Item = &'static table::Output> {
-    OUTPUTS.iter().filter(|output| output.is_reproducible && output.argument != "calibrate output")
-}
-
-/// The command line of an output to `out`, from `input`.
-fn line(output: &table::Output, input: &str, out: &str) -> String {
-    output.run.replace("IN", input).replace("OUT", out)
-}
-
-#[test]
-fn every_command_line_of_the_table_writes_what_it_says() {
-    for output in reproducible() {
-        let folder = Folder::new();
-        let ran = folder.run(&line(output, output.input, "out"));
-        assert_eq!(ran.code, Some(0), "{}: {}", output.argument, ran.notes);
-        let mut expected = Folder::new().names();
-        expected.extend(output.written.iter().map(|name| name.replace("OUT", "out")));
-        if output.argument == "demo out" {
-            expected.extend(["out/brick.toml".to_owned(), "out/textures/brick.png".to_owned()]);
-        }
-        expected.sort();
-        let mut left = folder.names();
-        // The cells of a sweep are called by what they play.
-        left.retain(|name| !name.starts_with("out/cells/"));
-        assert_eq!(left, expected, "{}: nothing else is left", output.argument);
+impl Drop for VirtualBoard {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
     }
 }

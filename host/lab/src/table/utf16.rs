@@ -1,6 +1,8 @@
 //! Text as UTF-8, whether a file has it as UTF-8 or, as spreadsheets save "Unicode text", as UTF-16.
 
-use std::io::{self, Read};
+use std::io::{self, Chain, Cursor, Read};
+
+use encoding_rs::{Decoder, Encoding, UTF_16BE, UTF_16LE};
 
 /// Number of bytes that are read of the input at once.
 const CHUNK: usize = 8192;
@@ -22,6 +24,13 @@ impl ByteOrder {
             [first, 0, ..] if first != 0 => Some(Self::LittleEndian),
             [0, second, ..] if second != 0 => Some(Self::BigEndian),
             _ => None,
+        }
+    }
+
+    fn encoding(self) -> &'static Encoding {
+        match self {
+            Self::LittleEndian => UTF_16LE,
+            Self::BigEndian => UTF_16BE,
         }
     }
 
@@ -47,15 +56,14 @@ pub(super) fn end_of_lines(bytes: &[u8]) -> usize {
 
 /// An input whose text comes out as UTF-8. What is no UTF-16 becomes the replacement character; UTF-8 is not checked.
 pub(super) struct Utf8<R> {
-    input: R,
+    input: Chain<Cursor<Vec<u8>>, R>,
     order: Option<ByteOrder>,
-    /// Text that has been read and not yet asked for.
-    text: Vec<u8>,
+    /// `None` for UTF-8.
+    decoder: Option<Decoder>,
+    /// Text that has been decoded, and how much of it was given.
+    text: String,
     given: usize,
-    /// The first byte of a unit whose second is still to come.
-    byte: Option<u8>,
-    /// The first unit of a pair whose second is still to come.
-    surrogate: Option<u16>,
+    is_over: bool,
 }
 
 impl<R: Read> Utf8<R> {
@@ -64,70 +72,30 @@ impl<R: Read> Utf8<R> {
         let mut start = Vec::new();
         input.by_ref().take(2).read_to_end(&mut start)?;
         let order = ByteOrder::of(&start);
-        let mut decoded = Self { input, order, text: Vec::new(), given: 0, byte: None, surrogate: None };
-        decoded.add(&start);
-        Ok(decoded)
+        let decoder = order.map(|order| order.encoding().new_decoder_without_bom_handling());
+        let input = Cursor::new(start).chain(input);
+        Ok(Self { input, order, decoder, text: String::new(), given: 0, is_over: false })
     }
 
     /// The byte order if the input is UTF-16.
     pub(super) fn order(&self) -> Option<ByteOrder> {
         self.order
     }
-
-    fn add(&mut self, bytes: &[u8]) {
-        let Some(order) = self.order else {
-            self.text.extend_from_slice(bytes);
-            return;
-        };
-        let bytes = self.byte.take().into_iter().chain(bytes.iter().copied()).collect::<Vec<u8>>();
-        let (pairs, rest) = bytes.as_chunks::<2>();
-        self.byte = rest.first().copied();
-        let mut units: Vec<u16> = self.surrogate.take().into_iter().collect();
-        units.extend(pairs.iter().map(|pair| order.unit(*pair)));
-        self.surrogate = units.pop_if(|last| (0xd800..0xdc00).contains(last));
-        self.decode(units);
-    }
-
-    fn decode(&mut self, units: impl IntoIterator<Item = u16>) {
-        for found in char::decode_utf16(units) {
-            let found = found.unwrap_or(char::REPLACEMENT_CHARACTER);
-            self.text.extend_from_slice(found.encode_utf8(&mut [0; 4]).as_bytes());
-        }
-    }
-
-    /// The end of the input: half a character has no second half.
-    fn end(&mut self) {
-        if self.byte.take().is_some() || self.surrogate.is_some() {
-            self.surrogate = None;
-            self.decode([0xd800]);
-        }
-    }
 }
 
 impl<R: Read> Read for Utf8<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        while self.given == self.text.len() {
+        let Some(decoder) = &mut self.decoder else { return self.input.read(buffer) };
+        while self.given == self.text.len() && !self.is_over {
             self.text.clear();
             self.given = 0;
-            if self.order.is_none() {
-                return self.input.read(buffer);
-            }
             let mut chunk = [0; CHUNK];
             let count = self.input.read(&mut chunk)?;
-            if count == 0 {
-                self.end();
-                if self.text.is_empty() {
-                    return Ok(0);
-                }
-            } else {
-                self.add(chunk.get(..count).unwrap_or_default());
-            }
+            self.is_over = count == 0;
+            self.text.reserve(decoder.max_utf8_buffer_length(count).unwrap_or_default());
+            let _ = decoder.decode_to_string(chunk.get(..count).unwrap_or_default(), &mut self.text, self.is_over);
         }
-        let ready = self.text.get(self.given..).unwrap_or_default();
-        let count = ready.len().min(buffer.len());
-        for (into, from) in buffer.iter_mut().zip(ready) {
-            *into = *from;
-        }
+        let count = self.text.as_bytes().get(self.given..).unwrap_or_default().read(buffer)?;
         self.given += count;
         Ok(count)
     }

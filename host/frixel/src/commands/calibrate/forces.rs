@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::commands::error::{at, reading};
 use crate::input::{self, Bounded};
-use crate::output_file::{FileWriter, Inputs, OutputFileError, Recording};
+use crate::output_file::{FileWriter, Inputs, Recording};
 use anyhow::Result;
 use frixel_lab::calibration::{ForceRow, read_forces};
 use frixel_lab::table::Reading;
@@ -17,7 +17,7 @@ use super::super::terminal::note_understood;
 use super::{CUT_OFF, CalibrateArgs};
 
 /// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
-pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording, OutputFileError> {
+pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording> {
     let mut path = args.output.clone().into_os_string();
     path.push(".forces");
     Recording::new(path.as_ref(), "-o", &Inputs::new(&args.forces), true, CUT_OFF)

@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 
 use crate::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
-use crate::output_file::{
-    FileWriter, Inputs, OutputFile, OutputFileError, OutputFolder, Recording, commit_all, is_play_of_person,
-};
+use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFolder, Recording, commit_all, is_recording};
 use crate::scene_file::SceneFiles;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use frixel_felt::recorder::{FeltRow, Marker};
 use frixel_lab::recording::Metadata;
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
@@ -46,7 +44,9 @@ impl PlayFiles {
         let (svg, other_svg) = if is_felt { ("felt.svg", "commanded.svg") } else { ("commanded.svg", "felt.svg") };
         let others = [args.stroke.file(), args.stream.file(), args.with_log.as_deref(), args.touch.file()];
         let inputs = Inputs::new(scene.paths().chain(others.into_iter().flatten()));
-        let file = |name: &str| OutputFile::new(&args.out.join(name), OPTION, &inputs);
+        Self::check_earlier(args)?;
+        let new = if args.overwrite { OutputFile::replacing } else { OutputFile::new };
+        let file = |name: &str| new(&args.out.join(name), OPTION, &inputs);
         let files = Self {
             felt: file("felt.csv")?,
             summary: file("summary.json")?,
@@ -62,15 +62,18 @@ impl PlayFiles {
             }
         }
         let record = record.map(|record| anyhow::Ok((record, Sources::new(args, scene)?))).transpose()?;
-        let files = Self { record, ..files };
-        Self::check_earlier(args)?;
-        Ok(files)
+        Ok(Self { record, ..files })
     }
 
     /// Rejects a play that would replace what a person's finger did on a board.
     fn check_earlier(args: &PlayArgs) -> Result<()> {
-        if !args.overwrite && is_play_of_person(&args.out) {
-            return Err(OutputFileError::OverPlay { path: args.out.clone(), option: OPTION }.into());
+        let is_of_person = |name| is_recording(&args.out.join(name));
+        if !args.overwrite && (is_of_person("felt.csv") || is_of_person("summary.json")) {
+            bail!(
+                "{} has what a finger did on a board, which no other play replaces: give another folder to {OPTION}, \
+                 or add --overwrite",
+                args.out.display()
+            );
         }
         Ok(())
     }
@@ -81,7 +84,7 @@ impl PlayFiles {
         for file in [&self.felt, &self.summary, &self.svg, &self.other_svg, &self.png] {
             inputs.check(file)?;
         }
-        self.record.iter().try_for_each(|(record, _)| Ok(inputs.check(record)?))
+        self.record.iter().try_for_each(|(record, _)| inputs.check(record))
     }
 
     /// What the recording of `--record` is made from.
@@ -90,11 +93,11 @@ impl PlayFiles {
     }
 
     /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
-    fn start(&self, is_simulated: bool, overwrites: bool) -> Result<FileWriter> {
+    fn start(&self, is_simulated: bool, args: &PlayArgs) -> Result<FeltCsv> {
         if is_simulated {
-            return Ok(self.felt.create()?);
+            return FeltCsv::new(self.felt.create()?);
         }
-        Ok(self.recording(overwrites).start()?)
+        FeltCsv::of_person(self.recording(args.overwrite).start()?, args.participant.as_deref())
     }
 
     /// `felt.csv` as a recording of a person.
@@ -141,7 +144,7 @@ impl Outputs {
         let folder = OutputFolder::open(&args.out)?;
         // The play that wrote into the folder until now may have been of a person.
         PlayFiles::check_earlier(args)?;
-        let csv = FeltCsv::new(files.start(is_simulated, args.overwrite)?)?;
+        let csv = files.start(is_simulated, args)?;
         let create = |((output, _), metadata): (&(OutputFile, Sources), Metadata)| {
             RecordFile::start(output, metadata, args.overwrite)
         };
@@ -183,7 +186,7 @@ impl Outputs {
             self.csv.write(row)?;
             self.trace.push(row, *layer);
         }
-        Ok(self.csv.flush()?)
+        self.csv.flush()
     }
 
     /// Notes which layers the finger touches. Returns the topmost one.
@@ -248,10 +251,9 @@ impl Outputs {
         self.touched.untouched().filter_map(|layer| self.touched.title(layer)).cloned().collect()
     }
 
-    /// Completes `felt.csv` and the file of `--record`, writes `summary.json`, and draws `felt.svg`, or `commanded.svg`
-    /// for a board at a port, and `scene.png`. Returns the paths of the files. If one of the others fails, `felt.csv`
-    /// stands alone; what a person's finger did stays in `felt.csv.partial`, because without the summary nothing says
-    /// that it is of a person.
+    /// Completes `felt.csv` and the file of `--record`, draws `felt.svg`, or `commanded.svg` for a board at a port, and
+    /// `scene.png`, and writes `summary.json`, which has their hashes. Returns the paths of the files. If one of them
+    /// cannot be written, all are as they were before, and what a person's finger did is in `felt.csv.partial`.
     pub(super) fn finish(
         mut self,
         program: &Program,
@@ -260,38 +262,34 @@ impl Outputs {
     ) -> Result<Vec<PathBuf>> {
         let (rows, joined) = self.log.take().map_or((Vec::new(), Ok(())), LogJoin::finish);
         let joined = self.put(&rows, markers).and(joined);
-        let record = self.record.take().map(|record| record.finish(markers, interrupted)).transpose();
-        let others = joined.and_then(|()| Ok((self.write_others(program, report)?, record?)));
-        let Self { files, csv, is_simulated, .. } = self;
-        match others {
-            Ok((others, record)) => {
-                let written = [csv.into_writer()].into_iter().chain(others).chain(record).collect();
-                commit_all(written, std::slice::from_ref(&files.other_svg))?;
-                Ok(files.paths())
-            }
-            Err(error) if !is_simulated => {
-                drop(csv);
-                Err(cut_off(&files.recording(false), error))
-            }
-            Err(error) => {
-                let PlayFiles { summary, svg, other_svg, png, record, .. } = files;
-                let others = [summary, svg, other_svg, png].into_iter().chain(record.map(|(record, _)| record));
-                commit_all(vec![csv.into_writer()], &others.collect::<Vec<_>>())?;
-                Err(error)
-            }
+        let (files, is_simulated) = (self.files.clone(), self.is_simulated);
+        let written = self.write_all(program, report, (markers, interrupted));
+        let committed = written.and_then(|written| commit_all(written, std::slice::from_ref(&files.other_svg)));
+        match committed.and(joined) {
+            Ok(()) => Ok(files.paths()),
+            Err(error) if is_simulated => Err(error),
+            Err(error) => Err(cut_off(&files.recording(false), error)),
         }
     }
 
-    /// Writes the files beside `felt.csv`, which have no names yet.
-    fn write_others(&self, program: &Program, report: &Report) -> Result<[FileWriter; 3]> {
-        // The speed of the simulation is another one each time, and equal plays give equal files.
-        let reproducible = Report { realtime_factor: None, ..report.clone() };
-        let subject = Subject { name: self.title.clone(), simulated: self.is_simulated, draft: report.draft };
-        let summary = reproducible.to_json() + "\n";
+    /// Writes all files, which have no names yet, the summary last.
+    fn write_all(self, program: &Program, report: &Report, marked: (&[Marker], bool)) -> Result<Vec<FileWriter>> {
+        let subject = Subject { name: self.title, simulated: self.is_simulated, draft: report.draft };
         let svg = draw_felt_svg(&subject, &self.trace, &program.reach)?;
         let png = draw_scene_png(&subject, program, &self.trace)?;
-        let PlayFiles { summary: summary_file, svg: svg_file, png: png_file, .. } = &self.files;
-        Ok([summary_file.filled(summary.as_bytes())?, svg_file.filled(svg.as_bytes())?, png_file.filled(&png)?])
+        let PlayFiles { summary, svg: svg_file, png: png_file, .. } = &self.files;
+        let record = self.record.map(|record| record.finish(marked.0, marked.1)).transpose()?;
+        let others = [self.csv.into_writer(), svg_file.filled(svg.as_bytes())?, png_file.filled(&png)?];
+        let mut written: Vec<FileWriter> = others.into_iter().chain(record).collect();
+        let named = |file: &mut FileWriter| {
+            let name = file.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+            Ok((name, file.sha256()?))
+        };
+        let files = written.iter_mut().map(named).collect::<Result<_>>()?;
+        // The speed of the simulation is another one each time, and equal plays give equal files.
+        let reproducible = Report { realtime_factor: None, files, ..report.clone() };
+        written.push(summary.filled((reproducible.to_json() + "\n").as_bytes())?);
+        Ok(written)
     }
 }
 
@@ -332,7 +330,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let args = PlayArgs::ideal("a.toml".as_ref(), folder.path());
         let files = files(&args);
-        fs::write(folder.path().join("summary.json"), "{\"simulated\": false}").unwrap();
+        fs::write(folder.path().join("summary.json"), "{\"simulated\":false}").unwrap();
         let error = Outputs::create(&args, files, true, &program("plate"), None).err().unwrap().to_string();
         assert!(error.contains("which no other play replaces"), "{error}");
     }
@@ -340,8 +338,8 @@ mod tests {
     #[test]
     fn what_a_person_did_stays_as_a_recording_where_the_other_files_fail() {
         let folder = tempfile::tempdir().unwrap();
-        let (out, log) = (folder.path().to_owned(), Some(folder.path().join("no-log.csv")));
-        let args = PlayArgs { with_log: log, ..PlayArgs::ideal("a.toml".as_ref(), &out) };
+        let args = PlayArgs::ideal("a.toml".as_ref(), folder.path());
+        fs::create_dir(folder.path().join(".scene.png.frixel-tmp")).unwrap();
         let plate = program("plate");
         let mut outputs = Outputs::create(&args, files(&args), false, &plate, None).unwrap();
         outputs.write(&[FeltRow { x_mm: Some(60.0), y_mm: Some(40.0), ..FeltRow::default() }], &[], 0.0).unwrap();

@@ -10,7 +10,7 @@ use frixel_lab::recording::{
 };
 
 use crate::commands::error::at;
-use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFileError, Recording};
+use crate::output_file::{FileWriter, Inputs, OutputFile, Recording};
 use crate::scene_file::SceneFiles;
 
 use super::super::parquet;
@@ -30,10 +30,8 @@ pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFi
         let path = path.display();
         bail!("{path} is no Parquet file by its name: give --record a name that ends in .parquet");
     }
-    if args.overwrite {
-        return Ok(Some(Recording::new(path, OPTION, inputs, true, CUT_OFF)?.output().clone()));
-    }
-    Ok(Some(OutputFile::new(path, OPTION, inputs)?))
+    let new = if args.overwrite { OutputFile::replacing } else { OutputFile::new };
+    new(path, OPTION, inputs).map(Some)
 }
 
 /// Writes rows as Parquet while a scene plays.
@@ -55,8 +53,8 @@ impl RecordFile {
         let (file, rows_per_group) = if metadata.is_simulated {
             (output.create()?, ROWS_PER_GROUP)
         } else {
-            if output.exists() && !overwrites {
-                return Err(OutputFileError::Exists { path: output.path().to_owned(), option: OPTION }.into());
+            if !overwrites {
+                output.check_new()?;
             }
             let rows_hz = metadata.tick_hz / metadata.ticks_per_row.max(1);
             (recording(output, overwrites).start()?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
@@ -123,7 +121,7 @@ impl RecordFile {
             parquet.end(metadata).map_err(at(file.path().display()))?;
         }
         let bytes = std::mem::take(parquet.get_mut());
-        file.write_all(&bytes).and_then(|()| file.flush()).map_err(|source| file.error(source).into())
+        file.write_all(&bytes).and_then(|()| file.flush()).map_err(|source| file.error(source))
     }
 }
 

@@ -10,7 +10,7 @@ use frixel_lab::recording::Recording;
 use crate::commands::error::{at, reading};
 use crate::input;
 
-use super::super::terminal::print_line;
+use super::super::terminal::{note_interrupted, print_line};
 use super::note;
 
 #[derive(Debug, Args)]
@@ -23,6 +23,7 @@ pub(in crate::commands) struct ReplayArgs {
 pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let path = &args.recording;
     let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
+    note_interrupted(path, &bytes);
     let recorded = Recording::read_parquet(bytes).map_err(at(path.display()))?;
     if recorded.is_cut_off {
         note(format_args!("{}: it ends in a part of a row group, which is left out", path.display()));

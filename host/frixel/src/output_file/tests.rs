@@ -1,0 +1,220 @@
+//! Tests of the files that commands write.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::*;
+
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// The output of this name, where there is an earlier file if it has a text.
+    fn output(&self, name: &str, earlier: &str) -> OutputFile {
+        if !earlier.is_empty() {
+            fs::write(self.path(name), earlier).unwrap();
+        }
+        OutputFile::new(&self.path(name), "-o", &Inputs::default()).unwrap()
+    }
+
+    fn text(&self, name: &str) -> Option<String> {
+        fs::read_to_string(self.path(name)).ok()
+    }
+
+    fn count(&self) -> usize {
+        fs::read_dir(self.0.path()).unwrap().count()
+    }
+}
+
+fn recording(path: &Path, overwrites: bool) -> Recording {
+    Recording::new(path, "-o", &Inputs::default(), overwrites, "keep them").unwrap()
+}
+
+/// Whatever ends the renaming, every name has a whole file: the last one has not been replaced yet.
+#[test]
+fn a_set_that_is_renamed_in_part_has_lost_no_file() {
+    let folder = Folder::new();
+    let outputs = ["a", "b", "summary", "stale"].map(|name| folder.output(name, "earlier"));
+    let files = outputs.iter().take(3).map(|output| output.filled(b"of this run").unwrap()).collect();
+    fs::remove_file(folder.path(".b.frixel-tmp")).unwrap();
+    let error = commit_all(files, &outputs[3..]).unwrap_err().to_string();
+    assert!(error.contains("b cannot be replaced ("), "{error}");
+    let now = ["a", "b", "summary", "stale"].map(|name| folder.text(name).unwrap());
+    assert_eq!(now, ["of this run", "earlier", "earlier", "earlier"]);
+    assert_eq!(folder.count(), 4);
+    let files = outputs.iter().take(3).map(|output| output.filled(b"of this run").unwrap()).collect();
+    commit_all(files, &outputs[3..]).unwrap();
+    assert_eq!((folder.text("summary").as_deref(), folder.text("stale")), (Some("of this run"), None));
+}
+
+#[test]
+fn a_file_that_is_dropped_or_whose_process_was_killed_leaves_the_earlier_one() {
+    let folder = Folder::new();
+    let output = folder.output("file", "earlier");
+    fs::write(folder.path(".file.frixel-tmp"), "left by a process that was killed").unwrap();
+    let writer = output.filled(b"new").unwrap();
+    assert!(output.create().unwrap_err().is::<Busy>(), "one process writes a file");
+    drop(writer);
+    assert_eq!((folder.text("file").as_deref(), folder.count()), (Some("earlier"), 1));
+    let mut open = File::open(folder.path("file")).unwrap();
+    let mut writer = output.filled(b"new").unwrap();
+    assert_eq!(writer.sha256().unwrap(), frixel_lab::hash::sha256(b"new"));
+    writer.commit().unwrap();
+    let mut read = String::new();
+    io::Read::read_to_string(&mut open, &mut read).unwrap();
+    assert_eq!((folder.text("file").as_deref(), read.as_str()), (Some("new"), "earlier"));
+    fs::write(folder.path(".file.frixel-tmp"), "left by a process that was killed").unwrap();
+    output.write(b"").unwrap();
+    assert_eq!(folder.text("file").as_deref(), Some(""));
+}
+
+/// A file that another process gives the name between the look and the commit.
+#[test]
+fn a_new_file_replaces_none_that_came_meanwhile() {
+    for is_recording in [false, true] {
+        let folder = Folder::new();
+        let output = folder.output("rows", "");
+        let mut writer = match is_recording {
+            false => output.create().unwrap(),
+            true => recording(&folder.path("rows"), false).start().unwrap(),
+        };
+        writer.write_all(b"a,recording\n1,2\n").unwrap();
+        fs::write(folder.path("rows"), "came meanwhile").unwrap();
+        let error = writer.commit().unwrap_err().to_string();
+        let kept = folder.text(if is_recording { "rows.partial" } else { ".rows.frixel-tmp" });
+        assert!(error.contains("the new one is whole, in "), "{error}");
+        assert_eq!(folder.text("rows").as_deref(), Some("came meanwhile"));
+        assert_eq!(kept.as_deref(), Some("a,recording\n1,2\n"));
+        assert!(!output.write_new(b"another").unwrap());
+    }
+}
+
+/// Nothing is written behind a gap: rows that are missing in the middle would not be noticed.
+#[test]
+fn a_file_with_a_gap_takes_no_more_and_gets_no_name() {
+    let folder = Folder::new();
+    let mut writer = folder.output("rows", "").filled(b"one\n").unwrap();
+    writer.flush().unwrap();
+    let whole = writer.replace_file(File::open(folder.path(".rows.frixel-tmp")).unwrap());
+    assert!(writer.write_all(b"two\n").and_then(|()| writer.flush()).is_err(), "it is open for reading only");
+    writer.replace_file(whole);
+    assert!(writer.write_all(b"three\n").and_then(|()| writer.flush()).is_err());
+    assert!(writer.commit().is_err());
+    assert_eq!(folder.count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_lead_to_inputs_and_outputs() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+    let folder = Folder::new();
+    let path = |name: &str| folder.path(name);
+    fs::create_dir(path("kept")).unwrap();
+    fs::write(path("kept/file"), "earlier").unwrap();
+    fs::set_permissions(path("kept/file"), fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("kept/file", path("link")).unwrap();
+    symlink("link", path("link-to-link")).unwrap();
+    symlink("kept/new", path("new-link")).unwrap();
+    fs::hard_link(path("kept/file"), path("hard")).unwrap();
+    let inputs = Inputs::new([path("kept/../kept/file")]);
+    for name in ["link", "link-to-link", "hard", "kept/file"] {
+        let error = OutputFile::new(&path(name), "--out", &inputs).unwrap_err().to_string();
+        assert!(
+            error.contains("is an input as well, and would be overwritten: give another folder to --out"),
+            "{error}"
+        );
+        let other = folder.output("kept/file", "");
+        assert!(folder.output(name, "").check_apart_from(&other).is_err(), "{name}");
+    }
+    fs::write(path("kept/file.partial"), "rows").unwrap();
+    assert!(OutputFile::new(&path("link"), "-o", &Inputs::new([path("kept/file.partial")])).is_err());
+    for (link, file) in [("link-to-link", "kept/file"), ("new-link", "kept/new")] {
+        folder.output(link, "").write(b"new").unwrap();
+        assert_eq!(folder.text(file).as_deref(), Some("new"));
+        assert!(fs::symlink_metadata(path(link)).unwrap().is_symlink());
+    }
+    assert_eq!(fs::metadata(path("kept/file")).unwrap().mode() & 0o777, 0o640);
+    fs::write(path("plain"), "").unwrap();
+    assert_eq!(fs::metadata(path("kept/new")).unwrap().mode(), fs::metadata(path("plain")).unwrap().mode());
+}
+
+#[test]
+fn a_recording_of_a_person_is_known_by_its_content() {
+    let folder = Folder::new();
+    let is_known = |text: &str| {
+        fs::write(folder.path("any name"), text).unwrap();
+        let refused = OutputFile::new(&folder.path("any name"), "-o", &Inputs::default()).is_err();
+        assert_eq!(refused, is_recording(&folder.path("any name")));
+        refused
+    };
+    assert!(is_known("t_s,x_mm,y_mm\n0,1,2\n"), "a stroke");
+    assert!(is_known("\u{feff}\"t_s\";\"x_mm\";\"y_mm\"\r\n0,0;1,0;2,0\r\n"), "as a spreadsheet saves it");
+    assert!(is_known("time_s,stroke,voltage_v_rms,normal_force_n,friction_n\n"), "friction");
+    assert!(is_known("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags,participant\n"), "a play of a person");
+    assert!(is_known("{\"rig\":\"board\",\"simulated\":false}\n"), "its summary");
+    assert!(is_known("[finger]\norigin = \"perceptual\"\n"), "what a person felt");
+    assert!(!is_known("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags\n"), "a simulated play");
+    assert!(!is_known("{\"rig\":\"sim\",\"simulated\":true}\n") && !is_known("PAR1") && !is_known(""));
+}
+
+#[test]
+fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
+    let folder = Folder::new();
+    let path = folder.path("rows.csv");
+    let partial = || folder.text("rows.csv.partial");
+    for (earlier, says) in [
+        ("t_s,x_mm\n0,1\n", "has the rows of a recording that was cut off: keep them, or record anew"),
+        ("A letter.", "is in the way, and no recording left it"),
+    ] {
+        fs::write(folder.path("rows.csv.partial"), earlier).unwrap();
+        let error = recording(&path, false).start().unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+        let mut writer = recording(&path, true).start().unwrap();
+        writer.write_all(b"t_s,x_mm\n").and_then(|()| writer.flush()).unwrap();
+        assert_eq!(partial().as_deref(), Some(earlier), "a header is no row");
+        drop(writer);
+        assert_eq!(partial().as_deref(), Some(earlier));
+    }
+    assert!(recording(&path, false).resume().is_err(), "a letter is not finished");
+    assert_eq!(partial().as_deref(), Some("A letter."));
+    let mut writer = recording(&path, true).start().unwrap();
+    writer.write_all(b"t_s,x_mm\n0,2\n").unwrap();
+    drop(writer);
+    fs::write(folder.path("rows.csv.partial"), partial().unwrap() + "9.12").unwrap();
+    let (mut writer, rows) = recording(&path, false).resume().unwrap();
+    assert_eq!(rows, "t_s,x_mm\n0,2\n");
+    writer.write_all(b"1,2\n").unwrap();
+    writer.commit().unwrap();
+    assert_eq!((folder.text("rows.csv").as_deref(), folder.count()), (Some("t_s,x_mm\n0,2\n1,2\n"), 1));
+    let mut writer = recording(&path, true).start().unwrap();
+    writer.write_all(b"t_s,x_mm\n").unwrap();
+    drop(writer);
+    assert_eq!(folder.count(), 1, "what never had a row leaves nothing");
+}
+
+/// A file that was a link to a device without end took all memory.
+#[cfg(unix)]
+#[test]
+fn a_device_in_place_of_a_file_is_not_read() {
+    let folder = Folder::new();
+    let link = |name: &str| std::os::unix::fs::symlink("/dev/zero", folder.path(name)).unwrap();
+    link("felt.csv");
+    assert!(!is_recording(&folder.path("felt.csv")));
+    link("rows.csv.partial");
+    let rows = recording(&folder.path("rows.csv"), false);
+    assert!(!rows.is_cut_off() && rows.start().is_err() && rows.resume().is_err());
+    fs::remove_file(folder.path("rows.csv.partial")).unwrap();
+    File::create(folder.path("rows.csv.partial")).unwrap().set_len(8 << 30).unwrap();
+    let error = rows.resume().unwrap_err().to_string();
+    assert!(error.contains("it has 8589934592 bytes, and at most 536870912 are read"), "{error}");
+}
