@@ -25,7 +25,6 @@ use frixel_lab::score::TrialsError;
 use frixel_lab::simulation::RehearsalError;
 use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::sweep::{CellError, PlanError, StudyError};
-use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
@@ -141,23 +140,8 @@ pub(crate) enum CommandError {
         "--finger-seed draws the finger of --port sim only; the finger on {port} is its own: leave --finger-seed out"
     )]
     FingerOnBoard { port: String },
-    #[error("the answers ended at trial {trial}: answer each trial with 1 or 2 and Enter")]
-    NoAnswer { trial: usize },
-    #[error("{count} answers to trial {trial} were neither 1 nor 2: answer each trial with 1 or 2 and Enter")]
-    WrongAnswers { trial: usize, count: u32 },
-    #[error(
-        "{} of {} answers are right, which is no better than guessing, so that there is no threshold: check that the \
-         electrode is driven, and press less hard", .0.right, .0.trials
-    )]
-    Guessed(Guessed),
-    #[error("--observer answers in place of a person, and feels no board on {port}: leave --port out")]
-    ObserverOnBoard { port: String },
-    #[error("the noise cannot be made ({0})")]
-    Noise(hound::Error),
     #[error("{source}; what was recorded until then is in {}: {advice}", partial.display())]
     RecordingCutOff { source: Box<CommandError>, partial: PathBuf, advice: &'static str },
-    #[error("{}: {reason}: give the options of the session that was cut off, or begin a new one with --overwrite", partial.display())]
-    OtherSession { partial: PathBuf, reason: String },
     #[error(
         "{} is no recorded stroke, which has t_s,x_mm,y_mm ({found}): correct or delete the row, or record anew with \
          --overwrite", partial.display()

@@ -46,9 +46,9 @@ pub(super) fn voltage(text: &str) -> Result<f64, String> {
     number(text, above_zero_to(VOLTAGE_MAX_V_RMS), "a voltage above 0, at most 150 V rms")
 }
 
-/// Adds to an error that ended a recording where its rows are, if it has any and the error does not say so itself.
+/// Adds to an error that ended a recording where its rows are, if it has any.
 pub(super) fn cut_off(recording: &Recording, error: CommandError) -> CommandError {
-    if recording.is_cut_off() && !matches!(error, CommandError::OtherSession { .. }) {
+    if recording.is_cut_off() {
         let (partial, advice) = (recording.partial(), recording.advice());
         return CommandError::RecordingCutOff { source: error.into(), partial, advice };
     }

@@ -131,7 +131,7 @@ fn has_rows(text: &str) -> bool {
 }
 
 /// Whether a file is a recording of a person, by its header: a stroke of `frixel record`, friction as `frixel fit`
-/// reads it, or a profile of `frixel threshold`; or by its metadata, if it is a Parquet file.
+/// reads it, or a profile of `frixel.experiment`; or by its metadata, if it is a Parquet file.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let Ok(head) = input::read_head(path, HEAD) else { return false };
     if head.starts_with(PARQUET) {

@@ -1,7 +1,6 @@
-//! Recordings of people: a stroke, friction under a drive, and the answers about a threshold.
+//! Recordings of people: a stroke, and friction under a drive.
 
 use std::fs;
-use std::io::Write;
 use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
@@ -9,7 +8,7 @@ use std::time::Duration;
 use frixel_lab::recording::Recording;
 
 use super::folders::{VirtualBoard, until};
-use super::{ANSWERS, Folder, Ran};
+use super::{Folder, Ran};
 
 /// A finger that never comes down within a test.
 const NO_FINGER: &str = "t_s,x_mm,y_mm\n0,,\n10000,10,20\n10001,20,20\n";
@@ -35,12 +34,11 @@ fn run_in_time(folder: &Folder, line: &str) -> Ran {
 }
 
 /// Starts a command and kills it once `partial` has so many lines. Its standard input stays open.
-fn kill_at(folder: &Folder, line: &str, partial: &str, lines: usize, input: &str) {
+fn kill_at(folder: &Folder, line: &str, partial: &str, lines: usize) {
     for _ in 0..TRIES_MAX {
         let mut command = folder.command(&format!("{line} --overwrite"));
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        let mut answers = child.stdin.take().unwrap();
-        answers.write_all(input.as_bytes()).unwrap();
+        let _open = child.stdin.take();
         let mut ended = false;
         let count = || folder.read(partial).map_or(0, |bytes| String::from_utf8_lossy(&bytes).lines().count());
         until(partial, || {
@@ -78,11 +76,9 @@ fn record_without_a_finger_keeps_the_earlier_recording() {
 fn no_recording_is_replaced_without_overwrite() {
     let folder = Folder::new();
     let board = VirtualBoard::start(&folder, "sim --out board --from 10,20 --to 90,20");
-    for line in [
-        format!("record --port {} --seconds 0.5 -o mine", board.port),
-        "calibrate --strokes 9 -o mine".to_owned(),
-        "threshold --port sim --trials 12 -o mine".to_owned(),
-    ] {
+    for line in
+        [format!("record --port {} --seconds 0.5 -o mine", board.port), "calibrate --strokes 9 -o mine".to_owned()]
+    {
         folder.write("mine", "mine");
         let ran = folder.run(&line);
         let says = "mine is there already, and a recording is not replaced";
@@ -100,7 +96,7 @@ fn a_killed_record_leaves_its_rows_which_the_next_one_names_and_finishes() {
     let folder = Folder::new();
     let board = VirtualBoard::start(&folder, "sim --out board --from 10,20 --to 90,20");
     let line = format!("record --port {} -o me.csv", board.port);
-    kill_at(&folder, &line, "me.csv.partial", 100, "");
+    kill_at(&folder, &line, "me.csv.partial", 100);
     assert!(folder.read("me.csv").is_none());
     let rows = folder.text("me.csv.partial");
     assert!(rows.ends_with('\n') && rows.lines().all(|row| row.split(',').count() == 3), "whole rows");
@@ -135,7 +131,7 @@ fn a_recorded_stroke_is_parquet_by_its_name_also_after_a_kill() {
     assert_eq!((metadata.rig.as_str(), metadata.is_simulated, metadata.tick_hz), ("board", true, 40_000));
     assert_eq!((metadata.participant.as_deref(), metadata.board.kind.as_str()), (Some("P07"), "simulator"));
 
-    kill_at(&folder, &line, "me.parquet.partial", 100, "");
+    kill_at(&folder, &line, "me.parquet.partial", 100);
     let rows = folder.text("me.parquet.partial");
     drop(board);
     let ran = folder.run("record --finish --overwrite -o me.parquet");
@@ -202,7 +198,7 @@ fn a_second_recorder_of_a_file_is_told_of_the_first() {
 fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
     let folder = Folder::new();
     let rows = "t_s,x_mm,y_mm\n0.000000,1.0000,2.0000\n0.005000,1.1000,2.0000\n";
-    for line in ["record --port nowhere", "threshold --port nowhere", "calibrate --port nowhere --forces forces.csv"] {
+    for line in ["record --port nowhere", "calibrate --port nowhere --forces forces.csv"] {
         folder.write("cut.csv.partial", rows);
         let ran = folder.run(&format!("{line} -o cut.csv --overwrite"));
         assert_eq!(ran.code, Some(1), "{}", ran.notes);
@@ -233,7 +229,7 @@ fn a_killed_calibration_is_finished_with_its_forces() {
     let board = VirtualBoard::start(&folder, STROKES);
     let line = format!("calibrate --strokes 12 --port {} -o data.csv --forces", board.port);
     fs::remove_file(folder.path("data.csv")).unwrap();
-    kill_at(&folder, &format!("{line} board/forces.csv"), "data.csv.partial", 12_000, "");
+    kill_at(&folder, &format!("{line} board/forces.csv"), "data.csv.partial", 12_000);
     let ran = folder.run(&format!("{line} board/forces.csv"));
     let says =
         "data.csv.partial has the rows of a recording that was cut off: add --finish, and the --forces of that run";
@@ -254,38 +250,6 @@ fn a_killed_calibration_is_finished_with_its_forces() {
         folder.text("data.csv").lines().skip(1).filter_map(|row| row.split(',').nth(1).map(str::to_owned)).collect();
     assert!(strokes.len() > 3, "{strokes:?}");
     assert!(folder.read("data.csv.partial").is_none());
-}
-
-#[test]
-fn a_killed_threshold_session_goes_on_after_its_last_answer() {
-    let folder = Folder::new();
-    let line = "threshold --port sim --trials 12 -o person.toml";
-    let whole = folder.run(line);
-    assert_eq!(whole.code, Some(0), "{}", whole.notes);
-    let profile = folder.text("person.toml");
-    fs::remove_file(folder.path("person.toml")).unwrap();
-
-    // Five answers, a digit and a line feed each.
-    let (first, rest) = ANSWERS.split_at(10);
-    kill_at(&folder, line, "person.toml.partial", 6, first);
-    let ran = folder.run(line);
-    assert!(ran.code == Some(1) && ran.notes.contains("add --finish to go on with it"), "{}", ran.notes);
-    let other = folder.run(&format!("{line} --finish --voltage 100"));
-    assert!(other.code == Some(1) && other.notes.contains("give the options of the session"), "{}", other.notes);
-    assert!(!other.notes.contains("add --finish"), "it is there already: {}", other.notes);
-    let answers = folder.text("person.toml.partial");
-    let simulated = folder.run("threshold --observer 3 --trials 12 -o person.toml --finish");
-    let says = "row 2, column observer: expected 3, found person";
-    assert!(simulated.code == Some(1) && simulated.notes.contains(says), "{}", simulated.notes);
-    assert_eq!(folder.text("person.toml.partial"), answers, "no simulated answer is among those of a person");
-
-    let mut command = folder.command(&format!("{line} --finish"));
-    let mut child = command.spawn().unwrap();
-    child.stdin.take().unwrap().write_all(rest.as_bytes()).unwrap();
-    let said = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
-    assert!(said.contains("trial 6 of 12") && !said.contains("trial 5 of 12"), "{said}");
-    assert_eq!(folder.text("person.toml"), profile, "as if it had not been cut off");
-    assert!(folder.read("person.toml.partial").is_none());
 }
 
 /// What a person's finger did on a board is in the files of a play as well.

@@ -35,7 +35,7 @@ const fn recording(
 }
 
 /// Every output.
-pub(crate) const OUTPUTS: [Output; 18] = [
+pub(crate) const OUTPUTS: [Output; 16] = [
     Output {
         // It never replaces its scene.
         is_reproducible: true,
@@ -102,8 +102,6 @@ pub(crate) const OUTPUTS: [Output; 18] = [
         ..result("selftest output", "selftest --port nowhere --wires -o OUT", "", &["OUT"])
     },
     recording("calibrate output", "calibrate --strokes 9 --forces IN -o OUT", "forces.csv", &["OUT"]),
-    recording("threshold output", "threshold --port sim --trials 12 --screen IN -o OUT", "screen.toml", &["OUT"]),
-    result("threshold noise", "threshold --noise OUT", "", &["OUT"]),
     result("model eval output", "model eval --input IN --output OUT", "points.csv", &["OUT"]),
     result("model invert output", "model invert --input IN --output OUT", "frictions.csv", &["OUT"]),
     result("fit output", "fit IN -o OUT.toml", "data.csv", &["OUT.toml", "OUT.svg"]),
