@@ -20,7 +20,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 12] = [
+const PARTS: [Part; 11] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -41,14 +41,8 @@ const PARTS: [Part; 12] = [
         run: fit,
     },
     Part {
-        name: "thresholds",
-        what: "thresholds of 1,000 simulated observers, and of 1,000 who guess",
-        needs: &[],
-        run: thresholds,
-    },
-    Part {
         name: "experiments",
-        what: "calibration and thresholds on a virtual board in real time; on an idle machine",
+        what: "calibration on a virtual board in real time; on an idle machine",
         needs: &[],
         run: experiments,
     },
@@ -131,10 +125,6 @@ fn people() -> Result<(), String> {
 
 fn fit() -> Result<(), String> {
     ignored("fits through the commands", &["--release", "--package", "frixel", "--lib"], &["calibrate::coverage"])
-}
-
-fn thresholds() -> Result<(), String> {
-    ignored("thresholds of 1,000 observers", &["--release", "--package", "frixel-lab", "--lib"], &["threshold::"])
 }
 
 fn experiments() -> Result<(), String> {

@@ -3,9 +3,8 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
 use frixel_hil_sim::Person;
 use frixel_lab::fit::{self, Settings, Summary};
@@ -154,50 +153,4 @@ fn a_board_at_a_port_needs_forces() {
     fs::write(folder.path().join("forces.csv"), "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n").unwrap();
     let said = fail(folder.path(), &["calibrate", "-o", "data.csv", "--forces", "forces.csv"]);
     assert!(said.contains("start the sensor before the board"), "{said}");
-}
-
-#[test]
-fn a_threshold_is_found_by_answers_and_is_no_force() {
-    let folder = TempDir::new().unwrap();
-    let run = |answers: &str, more: &[&str]| {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
-            .args(["threshold", "--trials", "12", "-o", "person.toml"])
-            .args(more)
-            .current_dir(folder.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
-        child.wait_with_output().unwrap()
-    };
-    let short = run("1\n2\n", &["--port", "sim"]);
-    let said = String::from_utf8(short.stderr).unwrap();
-    assert!(said.contains("the answers ended at trial 3") && said.contains("is in person.toml.partial"), "{said}");
-    let guessed = run(&"1\nperhaps\n2\n".repeat(21), &["--port", "sim", "--overwrite"]);
-    let said = String::from_utf8(guessed.stderr).unwrap();
-    assert!(guessed.status.code() == Some(1) && said.contains("is no better than guessing"), "{said}");
-    assert!(!said.contains("--finish") && fs::read_dir(folder.path()).unwrap().next().is_none(), "{said}");
-    let board = run("", &["--observer", "7", "--port", "nowhere"]);
-    let said = String::from_utf8(board.stderr).unwrap();
-    assert!(said.contains("feels no board on nowhere: leave --port out"), "{said}");
-
-    let output = run("", &["--observer", "7"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains("trial 12 of 12") && said.contains("check 1") && said.contains("gives no newtons"), "{said}");
-    let truth = said.lines().find_map(|line| line.trim().strip_prefix("the observer     has a threshold of "));
-    let truth_v_rms: f64 = truth.unwrap().trim_end_matches(" V rms").parse().unwrap();
-    let text = fs::read_to_string(folder.path().join("person.toml")).unwrap();
-    let profile = FingerProfile::parse(&text, "person.toml").unwrap();
-    let Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms: [low, high], experiment } = profile.evidence
-    else {
-        panic!("{text}")
-    };
-    assert!(low < threshold_v_rms && threshold_v_rms < high && high <= 150.0, "{text}");
-    assert!((low..=high).contains(&truth_v_rms), "{text}");
-    assert!(experiment.method.ends_with("simulated observer 7"), "{text}");
-    succeed(folder.path(), &["threshold", "--port", "sim", "--noise", "noise.wav"]);
-    assert!(fs::metadata(folder.path().join("noise.wav")).unwrap().len() > 5_000_000);
 }

@@ -2,7 +2,6 @@
 //!
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.
-//! - [`threshold`]: what a person just feels, from a staircase of answers.
 //! - [`default_stroke`]: the stroke of a play that names none.
 //! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
 //! - [`scenario`]: what happens to a board while a scene plays, on any rig, and what has to be seen of it.
@@ -32,4 +31,3 @@ mod statistics;
 pub mod stroke_file;
 pub mod sweep;
 pub mod table;
-pub mod threshold;

@@ -30,7 +30,6 @@ mod stroke;
 mod studio;
 mod sweep;
 mod terminal;
-mod threshold;
 mod waiting;
 
 use std::path::PathBuf;
@@ -93,8 +92,6 @@ enum Command {
     Model(model::ModelCommand),
     /// Record a finger's friction while a board switches its drive on and off, for `frixel fit`.
     Calibrate(calibrate::CalibrateArgs),
-    /// Find what a person just feels, without a force sensor: a staircase of trials, answered by key.
-    Threshold(threshold::ThresholdArgs),
     /// Fit a finger's profile to measured friction.
     Fit(fit::FitArgs),
     /// Compute the current through a finger on an intact, a scratched and a bridged coating, and the voltages that keep
@@ -172,7 +169,6 @@ impl Cli {
             Some(Command::Completions(args)) => completions::run(&args),
             Some(Command::Model(command)) => model::run(&command),
             Some(Command::Calibrate(args)) => calibrate::run(&args),
-            Some(Command::Threshold(args)) => threshold::run(&args),
             Some(Command::Fit(args)) => fit::run(&args),
             Some(Command::Safety(args)) => safety::run(&args),
             Some(Command::Report(args)) => report::run(&args),
@@ -180,15 +176,19 @@ impl Cli {
     }
 }
 
-/// The error of an invalid command line. A command that is part of another one is answered by its whole name:
-/// `frixel scene check` for `frixel check`.
+/// What finds a detection threshold.
+const IN_PYTHON: &str = "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python";
+
+/// The error of an invalid command line. A command that is part of another one is answered by its whole name,
+/// `frixel scene check` for `frixel check`, and a threshold by the Python module.
 pub(crate) fn with_nested_tip(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
     let found = found.clone();
     let cli = Cli::command();
     let has_it = |group: &&clap::Command| group.get_subcommands().any(|command| command.get_name() == found);
-    if let Some(group) = cli.get_subcommands().find(has_it) {
-        let tip = format!("write `frixel {} {found}`", group.get_name());
+    let group = cli.get_subcommands().find(has_it);
+    let tip = group.map(|group| format!("write `frixel {} {found}`", group.get_name()));
+    if let Some(tip) = tip.or_else(|| (found == "threshold").then(|| IN_PYTHON.to_owned())) {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         error.remove(ContextKind::SuggestedSubcommand);
     }

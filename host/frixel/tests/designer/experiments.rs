@@ -1,4 +1,4 @@
-//! `frixel calibrate` and `frixel threshold` on the port of a virtual board, whose pace is that of the wall clock.
+//! `frixel calibrate` on the port of a virtual board, whose pace is that of the wall clock.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -8,7 +8,7 @@ use std::thread::{self, sleep};
 use std::time::Duration;
 
 use frixel_hil_sim::Person;
-use frixel_scene::{Evidence, FingerProfile};
+use frixel_scene::FingerProfile;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -194,101 +194,4 @@ fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
         let output = frixel(folder.path(), &[&["calibrate", "-o", "d.csv"], &arguments[..]].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
-}
-
-#[test]
-fn a_threshold_is_asked_for_at_a_port() {
-    let folder = TempDir::new().unwrap();
-    let board = VirtualBoard::start(folder.path(), &STROKES);
-    let threshold = ["threshold", "--trials", "12"];
-    let port = [&threshold[..], &["--port", &board.port]].concat();
-    for (arguments, words) in [
-        (["-o", "nowhere/p.toml"], "nowhere/p.toml cannot be written"),
-        (["--screen", "nowhere.toml"], "nowhere.toml cannot be read"),
-    ] {
-        assert!(fail(folder.path(), &[&port[..], &arguments].concat()).contains(words), "{words}");
-    }
-    let said = fail(folder.path(), &[&threshold[..], &["--port", "nowhere"]].concat());
-    assert!(said.contains("there is no port nowhere"), "{said}");
-    // Two trials, of twelve that would take 41 s, and the answers end.
-    let (tries, (said, notes)) = (1..=TRIES_MAX as usize)
-        .map(|tries| {
-            let mut command = command(folder.path(), &port);
-            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-            let mut child = command.spawn().unwrap();
-            // A command that has ended already reads no answers.
-            let _ = child.stdin.take().unwrap().write_all(b"1\nperhaps\n2\n");
-            let output = child.wait_with_output().unwrap();
-            assert_eq!(output.status.code(), Some(1));
-            (tries, (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap()))
-        })
-        .find(|(_, (_, notes))| !was_too_late(notes))
-        .unwrap();
-    assert!(notes.contains("the answers ended at trial 3"), "{notes}");
-    assert!(said.contains("trial 2 of 12: 1 >>>>>>>> 2 <<<<<<<<  1 or 2?"), "{said}");
-    // In each try the board drives in one of the two strokes of each trial.
-    let rows = fs::read_to_string(folder.path().join("board/felt.csv")).unwrap();
-    let driven =
-        rows.lines().skip(1).filter(|row| row.split(',').nth(7).unwrap().parse::<f64>().unwrap() > 1.0).count();
-    assert!((1_000..5_000 * tries).contains(&driven), "{driven} rows of a millisecond in {tries} tries");
-}
-
-/// What a person answers who finds each stimulus of the default seed, more often than 12 trials and their checks ask.
-const ANSWERS: &str = "21122111221221112212211222221221211";
-
-/// A person who always says 1 is right in half of the trials, which is what not feeling anything gives.
-#[test]
-#[ignore = "two minutes of real time on an idle machine: cargo xtask soak experiments"]
-fn a_guesser_has_no_threshold_at_a_port() {
-    let folder = TempDir::new().unwrap();
-    let board = VirtualBoard::start(folder.path(), &STROKES);
-    let threshold = ["threshold", "--trials", "12", "-o", "person.toml", "--overwrite", "--port", &board.port];
-    let notes = answered(folder.path(), &threshold, "1").unwrap_err();
-    assert!(notes.contains("is no better than guessing"), "{notes}");
-    assert!(!folder.path().join("person.toml").exists());
-}
-
-/// Runs a command with these digits as answers, a line each and again from the first on. Returns what it said, or its
-/// notes if it failed.
-fn answered(folder: &Path, arguments: &[&str], digits: &str) -> Result<String, String> {
-    let answers: String = digits.chars().cycle().take(60).flat_map(|digit| [digit, '\n']).collect();
-    let tried = (0..TRIES_MAX).find_map(|_| {
-        let mut command = command(folder, arguments);
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().unwrap();
-        // A command that has ended already reads no answers.
-        let _ = child.stdin.take().unwrap().write_all(answers.as_bytes());
-        let output = child.wait_with_output().unwrap();
-        let notes = String::from_utf8(output.stderr).unwrap();
-        let said = String::from_utf8(output.stdout).unwrap();
-        (!was_too_late(&notes)).then_some(if output.status.success() { Ok(said) } else { Err(notes) })
-    });
-    tried.unwrap()
-}
-
-#[test]
-#[ignore = "a minute of real time on an idle machine: cargo xtask soak experiments"]
-fn a_threshold_is_found_at_a_port() {
-    let folder = TempDir::new().unwrap();
-    let board = VirtualBoard::start(folder.path(), &STROKES);
-    let threshold = ["threshold", "--trials", "12", "-o", "person.toml", "--overwrite", "--port", &board.port];
-    let said = answered(folder.path(), &threshold, ANSWERS).unwrap();
-    assert!(said.contains("trial 12 of 12: ") && !said.contains("trial 13"), "{said}");
-    for line in ["  threshold        ", "  highest          150 V rms is ", "  wrote            person.toml"] {
-        assert!(said.contains(line), "{line}: {said}");
-    }
-    let text = fs::read_to_string(folder.path().join("person.toml")).unwrap();
-    let profile = FingerProfile::parse(&text, "person.toml").unwrap();
-    let Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms: [low, high], experiment } = profile.evidence
-    else {
-        panic!("{text}");
-    };
-    assert!(low < threshold_v_rms && threshold_v_rms < high && high <= 150.0, "{text}");
-    // Below the threshold that was expected before the first answer, 20 dB below the largest friction.
-    assert!(threshold_v_rms < 45.0, "{threshold_v_rms} V");
-    assert!(experiment.method.contains("12 trials"), "{text}");
-    let rows = fs::read_to_string(folder.path().join("board/felt.csv")).unwrap();
-    let driven = |row: &&str| row.split(',').nth(7).unwrap().parse::<f64>().is_ok_and(|volts| volts > 1.0);
-    let driven = rows.lines().skip(1).filter(driven).count();
-    assert!(driven > 12 * 1_000, "{driven} rows of a millisecond");
 }

@@ -132,12 +132,6 @@ impl Protocol {
         Ok(self.voltages().into_iter().map(sample).collect())
     }
 
-    /// The voltage that a part of the largest sample drives, in volts rms.
-    pub fn voltage_of_share_v_rms(&self, share: f64) -> Result<f64, ParameterError> {
-        let contact = Contact::new(&BOARD_FINGER, BOARD_GAP_M)?.under_load(BOARD_LOAD_N)?;
-        Ok(contact.voltage_v_rms(share * contact.electric_friction_n(self.voltage_max_v_rms())))
-    }
-
     /// The scene that plays the samples: a stream over the whole screen.
     pub fn scene(&self) -> Result<String, ParameterError> {
         let contact = Contact::new(&BOARD_FINGER, BOARD_GAP_M)?.under_load(BOARD_LOAD_N)?;

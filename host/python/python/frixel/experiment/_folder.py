@@ -152,15 +152,19 @@ class Folder:
         return {RECORDINGS: {}, **earlier}
 
     def _write_manifest(self, manifest: dict[str, Any]) -> None:
-        path = self._path / "manifest.json"
-        partial = path.with_suffix(".partial")
-        try:
-            partial.write_text(json.dumps(manifest, indent=2) + "\n", encoding="utf-8")
-            _commit(partial, path)
-        except OSError as error:
-            partial.unlink(missing_ok=True)
-            raise _unwritable("the manifest", error, "check the free space, and run the session again") from error
+        write_text(self._path / "manifest.json", json.dumps(manifest, indent=2) + "\n", "the manifest")
         self._manifest = manifest
+
+
+def write_text(path: Path, text: str, what: str) -> None:
+    """Writes a file, `what` in messages, that has its name once the disk has all of it."""
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        partial.write_text(text, encoding="utf-8")
+        _commit(partial, path)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise _unwritable(what, error, "check the free space, and run the session again") from error
 
 
 def sha256(content: bytes) -> str:

@@ -1,0 +1,119 @@
+"""What a detection experiment plays, and the finger profile that its threshold gives.
+
+In each trial the finger makes two strokes, one with the stimulus: friction that swings at 160 Hz, near which fingers
+feel best (Vardar 2016, doi:10.1007/978-3-319-42321-0_18). A level is the amplitude of its electric friction, as a share
+of the largest. How many newtons that is on a person's finger is not known, so the result is a voltage.
+"""
+
+from __future__ import annotations
+
+import datetime
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .. import model
+from .._arguments import number, refusal
+from .._arguments import text as checked_text
+from ..profiles import Finger
+from ..scene import Scene
+from ._estimate import Answers, Estimate, estimate
+from ._psychometric import TWO_ALTERNATIVES, Array, Grid
+
+STROKE_S = 1.6
+"""Duration of each of the two strokes, s."""
+STIMULUS_HZ = 160.0
+FADE_S = 0.2
+"""Fade of the stimulus at either end of a stroke, s, so that no click gives it away."""
+SAMPLE_HZ = 4000
+VOLTAGE_MAX_V_RMS = 150.0
+REACH = 0.999
+"""Part of the highest voltage's friction that is asked for, so that rounding stays within reach."""
+NORMAL_LOAD_N = 0.5
+GAP_UM = 10.0
+CONTACT = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=1e-6 * GAP_UM)
+"""The finger that the board computes voltages with. Any will do, because only the voltages count."""
+EXAMPLE = {
+    "friction_coefficient": 0.5,
+    "normal_load_n": NORMAL_LOAD_N,
+    "radius_mm": 8.0,
+    "stiffness_pa_per_m": 1.8e7,
+    "skin_gap_um": 4.74,
+}
+"""The numbers of the bundled finger `example`, which a perceptual profile keeps."""
+LEVELS = [float(level) for level in np.geomspace(1e-3, 1.0, 31)]
+GRID = Grid(np.geomspace(2e-4, 2.0, 93), np.geomspace(0.8, 5.0, 7), np.array([0.0, 0.01, 0.03]))
+"""Answers are a function of friction's amplitude with a slope of about 3.5 (Watson and Pelli 1983), or less."""
+
+
+def scene(voltage_v_rms: float) -> Scene:
+    """The scene of the experiment: a stream over the whole screen, up to a voltage."""
+    high_n = float(model.eval(CONTACT, voltage_v_rms, NORMAL_LOAD_N).electric_friction_n)
+    return Scene.from_dict(
+        {
+            "screen": {"width_mm": 120.0, "height_mm": 80.0, "coating": [{"thickness_um": 1.0, "permittivity": 1.0}]},
+            "finger": {**EXAMPLE, "skin_gap_um": GAP_UM - 1.0},
+            "drive": {"voltage_max_v_rms": voltage_v_rms},
+            "layer": [{"kind": "stream", "above": "natural", "low_n": 0.0, "high_n": REACH * high_n}],
+        }
+    )
+
+
+def samples(level: float) -> Array:
+    """A stroke with the stimulus, at `SAMPLE_HZ`, for the stream of `scene`; at level 0 one without."""
+    time_s = np.arange(round(STROKE_S * SAMPLE_HZ)) / SAMPLE_HZ
+    fade = np.minimum(np.minimum(time_s, STROKE_S - time_s) / FADE_S, 1.0)
+    return np.asarray(level * fade * (0.5 - 0.5 * np.cos(2 * math.pi * STIMULUS_HZ * time_s)), dtype=np.float64)
+
+
+def voltage_of(level: ArrayLike, voltage_v_rms: float) -> Array:
+    """The voltage at the peaks of a stimulus, V rms, of an experiment up to `voltage_v_rms`."""
+    largest_n = model.eval(CONTACT, voltage_v_rms, NORMAL_LOAD_N).electric_friction_n
+    shares = np.minimum(np.asarray(level, dtype=np.float64), 1.0)
+    return model.invert(CONTACT, shares * largest_n, NORMAL_LOAD_N, electric=True)
+
+
+def detection(answers: Answers) -> Estimate:
+    """The threshold of the answers, as a share of the largest amplitude."""
+    return estimate(answers, TWO_ALTERNATIVES, GRID)
+
+
+def perceptual_finger(
+    threshold_v_rms: float,
+    interval_v_rms: tuple[float, float],
+    *,
+    method: str,
+    screen: str = "example",
+    date: datetime.date | None = None,
+) -> Finger:
+    """The profile of a finger whose detection threshold is known, and no force (`docs/scene.md`, `[finger]`).
+
+    Parameters
+    ----------
+    threshold_v_rms, interval_v_rms
+        Rms voltage at the threshold, and its 95 % interval, V.
+    method, screen, date
+        How, on which screen, and when it was found; the day is today unless it is given.
+
+    >>> perceptual_finger(22, (19, 26), method="QUEST+, 60 trials").text.splitlines()[5]
+    'origin = "perceptual"'
+    """
+    found = number("threshold_v_rms", threshold_v_rms, 0.0, 1000.0)
+    try:
+        low, high = (number("interval_v_rms", value, 0.0, 1000.0) for value in interval_v_rms)
+    except (TypeError, ValueError) as error:
+        raise refusal("interval_v_rms", "two voltages, the lower one first", interval_v_rms) from error
+    if not low <= found <= high:
+        raise refusal("interval_v_rms", "two voltages around the threshold", interval_v_rms)
+    if not (date is None or isinstance(date, datetime.date)):
+        raise refusal("date", "a datetime.date", date)
+    evidence = {
+        "origin": "perceptual",
+        "date": (date or datetime.datetime.now().astimezone().date()).isoformat(),
+        "method": checked_text("method", method),
+        "screen": checked_text("screen", screen),
+        "threshold_v_rms": found,
+        "threshold_interval_v_rms": [low, high],
+    }
+    return Finger.from_dict({**EXAMPLE, **evidence})
