@@ -11,7 +11,7 @@ use frixel_model::{Contact, Finger, FixedTable, LoadedContact, TableBuilder, U0F
 
 const EMULATOR: &str = "qemu-system-arm";
 const TARGET: &str = "thumbv7m-none-eabi";
-const IMAGE: &str = "table-cortex-m3";
+const IMAGE: &str = "integer-table";
 
 const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
 const GAP_M: f64 = 1e-5;
@@ -38,9 +38,10 @@ fn is_available() -> bool {
 
 /// What the image writes for a table under this load.
 fn on_the_cortex_m3(load_n: f64) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware").join(IMAGE);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/bench");
     let build = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .args(["build", "--release", "--locked", "--quiet", "--target-dir", "../target"])
+        .args(["build", "--release", "--locked", "--quiet", "--bin", IMAGE, "--target", TARGET])
+        .args(["--target-dir", "../target"])
         .current_dir(&folder)
         .output()
         .unwrap();

@@ -143,7 +143,7 @@ pub(crate) struct Image {
 /// The image whose series resistance a build may name.
 const NUCLEO: &str = "firmware/board-nucleo-g474re";
 
-pub(crate) const IMAGES: [Image; 5] = [
+pub(crate) const IMAGES: [Image; 4] = [
     Image {
         folder: NUCLEO,
         more: &[
@@ -164,7 +164,6 @@ pub(crate) const IMAGES: [Image; 5] = [
     },
     Image { folder: "firmware/board-mps2-an386", more: &[&["--target", M33]] },
     Image { folder: "firmware/bench", more: &[&["--target", M33]] },
-    Image { folder: "firmware/table-cortex-m3", more: &[] },
 ];
 
 /// Checks format and lints of every image, and builds it.

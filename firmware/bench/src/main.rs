@@ -13,19 +13,16 @@ mod host;
 mod inverse;
 mod layers;
 mod programs;
+mod semihosting;
 mod tick;
-
-use core::panic::PanicInfo;
 
 use cortex_m::Peripherals;
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprintln, nr, syscall1};
+use cortex_m_semihosting::debug;
 
 use count::Counter;
 use programs::Seeds;
-
-/// Room for the emulator's command line.
-const COMMAND_LINE_MAX_LEN: usize = 256;
+use semihosting::{COMMAND_LINE_MAX_LEN, command_line};
 
 #[entry]
 fn main() -> ! {
@@ -45,21 +42,4 @@ fn main() -> ! {
         debug::exit(debug::EXIT_SUCCESS);
     }
     panic!("semihosting exit returned")
-}
-
-/// Returns the command line that the emulator passes to the image; empty when there is none.
-fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
-    let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
-    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification
-    // takes them; it writes no more than that, and the length of the text into the block.
-    let failed = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) } != 0;
-    let [_, len] = block;
-    if failed { &[] } else { buffer.get(..len).unwrap_or_default() }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(debug::EXIT_FAILURE);
-    loop {}
 }

@@ -32,7 +32,7 @@ impl<'a> Image<'a> {
     /// was built before.
     pub(super) fn build(core: &'a Core, breach: bool) -> Result<Self, String> {
         let mut command = cargo_in("firmware/bench");
-        command.args(["build", "--release", "--locked", "--quiet", "--target", core.target]);
+        command.args(["build", "--release", "--locked", "--quiet", "--bin", "bench", "--target", core.target]);
         command.args(["--target-dir", IMAGES_TARGET_FOLDER]);
         if breach {
             command.args(["--features", "breach"]);

@@ -11,17 +11,17 @@
 #![no_std]
 #![no_main]
 
-use core::panic::PanicInfo;
+mod semihosting;
+
 use core::str;
 
 // Its critical section.
 use cortex_m as _;
 use cortex_m_rt::entry;
-use cortex_m_semihosting::{debug, hprint, hprintln, nr, syscall1};
+use cortex_m_semihosting::{debug, hprint, hprintln};
 use frixel_model::{Contact, Finger, FixedTable, TableBuilder, U0F32};
+use semihosting::{COMMAND_LINE_MAX_LEN, command_line};
 
-/// Room for the emulator's command line.
-const COMMAND_LINE_MAX_LEN: usize = 256;
 /// Rows that a table may need.
 const ROWS: usize = 512;
 
@@ -63,21 +63,4 @@ fn parse(line: &[u8]) -> Option<([f64; 8], usize)> {
     }
     let step = usize::from_str_radix(words.next()?, 16).ok()?;
     Some((numbers, step))
-}
-
-/// The words that the emulator was given for the image; empty when there are none.
-fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
-    let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
-    // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification
-    // takes them; it writes no more than that, and the length of the text into the block.
-    let failed = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) } != 0;
-    let [_, len] = block;
-    if failed { &[] } else { buffer.get(..len).unwrap_or_default() }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(debug::EXIT_FAILURE);
-    loop {}
 }
