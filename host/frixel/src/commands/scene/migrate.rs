@@ -20,5 +20,5 @@ pub(super) fn run(args: &MigrateArgs) -> Result<()> {
     let (_, files) = scene_file::load_with_files(&args.scene);
     let output = args.output.as_deref().unwrap_or(Path::new("-"));
     let output = OutputFile::new(output, "-o", &Inputs::new(files.paths()))?;
-    Ok(output.write(scene_file::migrate(&args.scene)?.as_bytes())?)
+    output.write(scene_file::migrate(&args.scene)?.as_bytes())
 }

@@ -92,7 +92,7 @@ impl Answers {
     fn write(&mut self, line: &str) -> Result<()> {
         let Some(writer) = &mut self.writer else { return Ok(()) };
         let written = writer.write_all(line.as_bytes()).and_then(|()| writer.flush());
-        Ok(written.map_err(|source| writer.error(source))?)
+        written.map_err(|source| writer.error(source))
     }
 }
 
