@@ -56,5 +56,5 @@ fn create(path: &Path, bytes: &[u8]) -> Result<bool> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(writing(folder))?;
     }
-    Ok(OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)?)
+    OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)
 }

@@ -81,7 +81,7 @@ pub(super) fn run(command: &ModelCommand) -> Result<()> {
             note_understood(args.input.as_deref().unwrap_or(Path::new("-")), summary.understood.as_deref());
             return judge(&summary);
         }
-        Err(CsvError::Write(error)) if output.is_file() => return Err(writer.error(error).into()),
+        Err(CsvError::Write(error)) if output.is_file() => return Err(writer.error(error)),
         // Ignore a closed standard output.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(source) => {

@@ -30,5 +30,5 @@ pub(super) fn write(output: &OutputFile, csv: &[u8], fields: Vec<Field>, metadat
     let recording = Recording::of_csv(metadata, csv, fields).map_err(at(&path))?;
     let mut bytes = Vec::new();
     recording.write_parquet(&mut bytes).map_err(at(&path))?;
-    Ok(output.write(&bytes)?)
+    output.write(&bytes)
 }

@@ -180,10 +180,10 @@ impl Rows {
     }
 
     fn write(&mut self, line: impl Display) -> Result<()> {
-        Ok(writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))?)
+        writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))
     }
 
     fn flush(&mut self) -> Result<()> {
-        Ok(self.writer.flush().map_err(|source| self.writer.error(source))?)
+        self.writer.flush().map_err(|source| self.writer.error(source))
     }
 }

@@ -84,9 +84,10 @@ fn a_new_file_replaces_none_that_came_meanwhile() {
     for is_recording in [false, true] {
         let folder = Folder::new();
         let output = folder.output("rows", "");
-        let mut writer = match is_recording {
-            false => output.create().unwrap(),
-            true => recording(&folder.path("rows"), false).start().unwrap(),
+        let mut writer = if is_recording {
+            recording(&folder.path("rows"), false).start().unwrap()
+        } else {
+            output.create().unwrap()
         };
         writer.write_all(b"a,recording\n1,2\n").unwrap();
         fs::write(folder.path("rows"), "came meanwhile").unwrap();

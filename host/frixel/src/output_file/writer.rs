@@ -272,7 +272,7 @@ impl NewFile {
 
 /// Whether there is a row below the header. A Parquet file that was begun has one: it is written in whole row groups.
 pub(super) fn has_rows(bytes: &[u8]) -> bool {
-    bytes.starts_with(PARQUET) || bytes.iter().filter(|byte| **byte == b'\n').count() > 1
+    bytes.starts_with(PARQUET) || bytes.split(|byte| *byte == b'\n').count() > 2
 }
 
 /// Gives several files that belong together their names, in this order, once all of them are on the disk; then removes

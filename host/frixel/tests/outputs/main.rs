@@ -32,9 +32,9 @@ impl Folder {
         folder.write("points.csv", &format!("{points},voltage_v\nwf-upper,0.008,1e-5,1,0.5,1.8e7,100\n"));
         folder.write("frictions.csv", &format!("{points},electric_friction_n\nwf-upper,0.008,1e-5,1,0.5,1.8e7,0.01\n"));
         folder.write("plan.toml", "scenes = [\"scene.toml\"]\npeople = 1\nstrokes = 1\nseeds = 1\nseconds = 0.5\n");
-        let means = (0..4).map(|step| format!("{},0.5,{},0.001\n", 50 * step, 0.25 + 0.0125 * f64::from(step * step)));
-        let header = "voltage_v_rms,normal_force_n,friction_n,friction_se_n\n".to_owned();
-        folder.write("data.csv", &(header + &means.collect::<String>()));
+        let row = |volts: f64| format!("{volts},0.5,{},0.001\n", 0.25 + 5e-6 * volts * volts);
+        let header = "voltage_v_rms,normal_force_n,friction_n,friction_se_n\n";
+        folder.write("data.csv", &(header.to_owned() + &[0.0, 50.0, 100.0, 150.0].map(row).concat()));
         fs::copy(repository().join("scenes/textures/brick.png"), folder.path("picture.png")).unwrap();
         folder
     }

@@ -75,7 +75,9 @@ fn a_play_on_a_full_disk_leaves_the_earlier_one_as_it_was() {
     assert_eq!(play_with_blocks(&folder, 1 << 20).code, Some(0));
     let sizes = names.iter().map(|name| fs::metadata(folder.path(name)).unwrap().len());
     let largest = sizes.max().unwrap();
-    names.iter().for_each(|name| folder.write(name, "of an earlier play"));
+    for name in &names {
+        folder.write(name, "of an earlier play");
+    }
     let before = folder.names();
     for blocks in [0, 1, 8, (largest - 1) / 512] {
         let ran = play_with_blocks(&folder, blocks);

@@ -114,7 +114,8 @@ impl PlayFiles {
 
 /// Writes `felt.csv` while the scene plays, and the pictures at the end.
 pub(super) struct Outputs {
-    _folder: OutputFolder,
+    /// Locked until the files have their names.
+    folder: Option<OutputFolder>,
     files: PlayFiles,
     title: String,
     csv: FeltCsv,
@@ -152,7 +153,7 @@ impl Outputs {
         let log = args.with_log.as_deref().map(LogJoin::new);
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
         Ok(Self {
-            _folder: folder,
+            folder: Some(folder),
             files,
             title,
             csv,
@@ -262,7 +263,7 @@ impl Outputs {
     ) -> Result<Vec<PathBuf>> {
         let (rows, joined) = self.log.take().map_or((Vec::new(), Ok(())), LogJoin::finish);
         let joined = self.put(&rows, markers).and(joined);
-        let (files, is_simulated) = (self.files.clone(), self.is_simulated);
+        let (files, is_simulated, _locked) = (self.files.clone(), self.is_simulated, self.folder.take());
         let written = self.write_all(program, report, (markers, interrupted));
         let committed = written.and_then(|written| commit_all(written, std::slice::from_ref(&files.other_svg)));
         match committed.and(joined) {
