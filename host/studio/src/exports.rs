@@ -17,6 +17,7 @@ use crate::answer;
 use crate::felt::COLUMNS;
 use crate::host::{self, Host, stream_mut};
 use crate::host_error::HostError;
+use crate::layer_text;
 use crate::link_stream::LinkStream;
 use crate::map::MAP_HEAD;
 use crate::pointer::PointerSample;
@@ -90,6 +91,18 @@ pub extern "C" fn layouts() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn used_files() -> i32 {
     respond(|| crate::used_files(&request()?))
+}
+
+/// The values of the input, which is a text of TOML, and the lines of its layers: `layer_text.rs` says how.
+#[unsafe(no_mangle)]
+pub extern "C" fn read_text() -> i32 {
+    respond_bytes(|| Ok(layer_text::read(&line())?.into_bytes()))
+}
+
+/// Edits a text, as `layer_text.rs` says; the answer is the new text.
+#[unsafe(no_mangle)]
+pub extern "C" fn edit_text() -> i32 {
+    respond_bytes(|| Ok(layer_text::edit(&line())?.into_bytes()))
 }
 
 /// [`crate::seeded_hash`], as `hash` in hexadecimal digits.

@@ -5,6 +5,7 @@ use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_play::PlayError;
 use thiserror::Error;
 
+use crate::layer_text::TextError;
 use crate::program::ProgramError;
 
 /// Why a request of the page was not carried out.
@@ -40,6 +41,9 @@ pub enum HostError {
         /// The compiler's warning.
         warning: String,
     },
+    /// A text cannot be read or edited.
+    #[error(transparent)]
+    Text(#[from] TextError),
     /// There is no board.
     #[error("no board is connected: connect one, or use the simulator")]
     NoBoard,

@@ -21,6 +21,7 @@ pub mod exports;
 mod felt;
 mod host;
 mod host_error;
+mod layer_text;
 mod layers;
 mod link_stream;
 mod map;

@@ -5,7 +5,6 @@ import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { cleanUp } from "./harness.mjs";
 import { openStudio } from "./page.mjs";
-import { pageModule } from "./page_module.mjs";
 
 after(cleanUp);
 
@@ -73,7 +72,7 @@ region = { x_mm = 10, y_mm = 50, width_mm = 20, height_mm = 20 }
 /** Runs in the page: moves and resizes each layer of the scenes, and returns what the compiler says of it. */
 async function changeAll(more) {
   const module = async (name) => import(await studio.moduleUrl(`page/${name}.js`));
-  const [{ TomlText, replaced }, { placeOf, bounds }] = [await module("toml_text"), await module("place")];
+  const [{ TomlText }, { placeOf, bounds }] = [await module("toml_text"), await module("place")];
   const names = studio.names("scenes/").filter((name) => /^scenes\/[^/]+\.toml$/.test(name));
   const gallery = await Promise.all(names.map(async (name) => [name, await studio.text(name)]));
   const textures = Object.fromEntries(
@@ -93,7 +92,7 @@ async function changeAll(more) {
       const about = { name: `${name} ${layer.name}`, isWhole: place.isWholeScreen };
       found.push({ ...about, what: "place", expected: list(bounds(place.box, place.copies)), actual: layer.boxMm });
       const make = async (what, changes, expected) => {
-        const after = await check(replaced(text, toml.replacements(changes)));
+        const after = await check(toml.with(changes));
         const { boxMm } = after.layers.find(({ index }) => index === layer.index);
         const others = ({ layers }) =>
           JSON.stringify(layers.filter(({ index }) => index !== layer.index).map((each) => each.boxMm));
@@ -134,15 +133,18 @@ test("the place of a layer in its text is the compiler's, also after it was move
   assert.deepEqual(errors, []);
 });
 
-/** The place of a layer of a file, on a screen of 120 by 80 mm. */
-async function placeIn(text, boxMm, kind = "constant") {
-  const [{ TomlText, replaced }, { placeOf }] = [await pageModule("toml_text.js"), await pageModule("place.js")];
+/** Runs in the page: the place of a layer of a file, on a screen of 120 by 80 mm, and the text once it has moved. */
+async function placeIn({ text, boxMm, kind = "constant", byMm = 0 }) {
+  const module = async (name) => import(await studio.moduleUrl(`page/${name}.js`));
+  const [{ TomlText }, { placeOf }] = [await module("toml_text"), await module("place")];
   const toml = new TomlText(text);
-  const place = placeOf(toml, 0, { kind, boxMm }, { widthMm: 120, heightMm: 80 }, false);
-  return { place, moved: (...by) => replaced(text, toml.replacements(place.move(...by))) };
+  const { move, whyNotMoved, whyNotResized, box, copies } =
+    placeOf(toml, 0, { kind, boxMm }, { widthMm: 120, heightMm: 80 }, false);
+  return { whyNotMoved, whyNotResized, box, copies, moved: whyNotMoved ? text : toml.with(move(byMm, 0)) };
 }
 
 test("a layer that counts in pixels of a design in another file is not changed", async () => {
+  const { page } = await openStudio();
   for (const [fields, kind] of [
     ["region = { x_mm = 10, y_mm = 10, width_px = 100, height_mm = 20 }"],
     ["region = { x_mm = 10, y_mm = 10, width_mm = 20, height_px = 100 }"],
@@ -150,7 +152,8 @@ test("a layer that counts in pixels of a design in another file is not changed",
     ["x_mm = 10\ny_mm = 10\nwidth_px = 100", "bitmap"],
     ['region = { shape = "polygon", points_px = [[0, 0], [1, 0], [0, 1]] }'],
   ]) {
-    const { place } = await placeIn(`version = 1\n[[layer]]\n${fields}\n`, [10, 11, 12, 13], kind);
+    const text = `version = 1\n[[layer]]\n${fields}\n`;
+    const place = await page.evaluate(placeIn, { text, boxMm: [10, 11, 12, 13], kind });
     assert.match(place.whyNotMoved, /pixels of a design in another file/, fields);
     assert.match(place.whyNotResized, /pixels of a design in another file/, fields);
     assert.deepEqual([place.box, place.copies], [{ x: 10, y: 11, width: 12, height: 13 }, [[0, 0]]], fields);
@@ -161,9 +164,10 @@ test("pixels stay whole, unless one has a part or a step is finer", async () => 
   // A pixel is 0.4 mm.
   const text = (x) => `version = 1\n[design]\nwidth_px = 300\nheight_px = 200
 [[layer]]\nregion = { x_px = ${x}, y_px = 10, width_px = 10, height_px = 10 }\n`;
-  const xAfter = async (x, dxMm) => {
-    const { moved } = await placeIn(text(x), [10, 4, 4, 4]);
-    return /x_px = ([\d.]+)/.exec(moved(dxMm, 0))[1];
+  const { page } = await openStudio();
+  const xAfter = async (x, byMm) => {
+    const { moved } = await page.evaluate(placeIn, { text: text(x), boxMm: [10, 4, 4, 4], byMm });
+    return /x_px = ([\d.]+)/.exec(moved)[1];
   };
   assert.equal(await xAfter("30", 1), "33");
   assert.equal(await xAfter("30", 0.1), "30.25");
@@ -171,20 +175,24 @@ test("pixels stay whole, unless one has a part or a step is finer", async () => 
   assert.equal(await xAfter("30.5", 0.4), "31.5");
 });
 
-test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
-  const { EditedLayers } = await pageModule("edited_layers.js");
+/** Runs in the page: why a layer of a file with an include cannot be moved, with these other files. */
+async function whyNotMoved(more) {
+  const { EditedLayers } = await import(await studio.moduleUrl("page/edited_layers.js"));
   const text = 'version = 1\ninclude = ["parts/b.toml"]\n[[layer]]\nkind = "constant"\n';
-  const bytes = (content) => new TextEncoder().encode(content);
-  const whyNot = (more) => {
-    const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });
-    const layer = { index: 0, name: "constant", kind: "constant", from: [3, 1], boxMm: [10, 10, 20, 20] };
-    const screen = { widthMm: 120, heightMm: 80 };
-    assert.ok(layers.take({ layers: [layer], screen }, { "a.toml": text, ...more }, "a.toml"));
-    return layers.all[0].place.whyNotMoved;
-  };
+  const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });
+  const layer = { index: 0, name: "constant", kind: "constant", from: [3, 1], boxMm: [10, 10, 20, 20] };
+  const bytes = Object.entries(more).map(([name, content]) => [name, new TextEncoder().encode(content)]);
+  const files = { "a.toml": text, ...Object.fromEntries(bytes) };
+  layers.take({ layers: [layer], screen: { widthMm: 120, heightMm: 80 } }, files, "a.toml");
+  return layers.all[0].place.whyNotMoved;
+}
+
+test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
+  const { page } = await openStudio();
+  const why = (more) => page.evaluate(whyNotMoved, more);
   const defaults = "[defaults.region]\nx_mm = 10\n";
-  assert.match(whyNot({ "parts/b.toml": bytes(defaults) }), /defaults. of an included file/);
-  const further = { "parts/b.toml": 'include = ["../c.toml"]\n', "c.toml": bytes(defaults) };
-  assert.match(whyNot(further), /defaults. of an included file/);
-  assert.doesNotMatch(whyNot({ "parts/b.toml": "", "c.toml": defaults }), /defaults. of an included file/);
+  assert.match(await why({ "parts/b.toml": defaults }), /defaults. of an included file/);
+  const further = { "parts/b.toml": 'include = ["../c.toml"]\n', "c.toml": defaults };
+  assert.match(await why(further), /defaults. of an included file/);
+  assert.doesNotMatch(await why({ "parts/b.toml": "", "c.toml": defaults }), /defaults. of an included file/);
 });

@@ -11,4 +11,3 @@ export { setDiagnostics, lintGutter, lintKeymap } from "@codemirror/lint";
 export { toml } from "@codemirror/legacy-modes/mode/toml";
 export { tags } from "@lezer/highlight";
 export { deflateSync, inflateSync, zipSync, unzipSync, strToU8, strFromU8 } from "fflate";
-export { parseTOML } from "toml-eslint-parser";

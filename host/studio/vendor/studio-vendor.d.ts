@@ -5,4 +5,3 @@ export type { Completion, CompletionContext, CompletionResult } from "@codemirro
 export type { Diagnostic } from "@codemirror/lint";
 export type { ChangeSet, ChangeSpec, Extension, StateCommand, Text } from "@codemirror/state";
 export type { UnzipFileInfo } from "fflate";
-export type { AST } from "toml-eslint-parser";

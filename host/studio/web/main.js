@@ -38,6 +38,7 @@ import { guardSliders } from "./page/slider_touch.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
+import { editWith } from "./page/toml_text.js";
 import { makeView } from "./page/view.js";
 import { Works } from "./page/works.js";
 
@@ -51,6 +52,7 @@ const FIRST_SCENE = "brick";
 async function start() {
   const laid = { map: makeMap(), numbers: new Numbers() };
   const engine = await createEngine();
+  editWith(await engine.instance());
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   followPresses();

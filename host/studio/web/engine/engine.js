@@ -160,6 +160,18 @@ export class Engine {
   }
 
   /**
+   * An instance of the module in the page itself, for what cannot wait for a worker.
+   * @returns {Promise<T.Instance>}
+   */
+  async instance() {
+    const source = [await studio.text("engine/wasm.js"), "export { Engine };"];
+    const url = URL.createObjectURL(new Blob([source.join("\n")], { type: "text/javascript" }));
+    const instances = await import(url);
+    URL.revokeObjectURL(url);
+    return instances.Engine.start(undefined, this.#module);
+  }
+
+  /**
    * @param {T.Files} files
    * @param {string} entry
    * @param {T.Profiles} profiles

@@ -8,6 +8,11 @@ export type Profiles = { finger?: string; screen?: string; touch?: string };
 export type PlayOptions = { withoutPrediction?: boolean };
 /** What identifies a scene for the engine. */
 export type Scene = { files: Files; entry: string } & Profiles & PlayOptions;
+/** An instance of the module. Answers come at once. */
+export type Instance = {
+  call: (name: string, input: Uint8Array<ArrayBuffer>) => any;
+  callForBytes: (name: string, input: Uint8Array<ArrayBuffer>) => ArrayBuffer;
+};
 export type MapSize = { widthPx: number; heightPx: number };
 /** A scene, and the numbers that some requests have besides. */
 export type Request = Scene & Partial<MapSize> & { speedMmPerS?: number; seed?: number; durationMs?: number };

@@ -51,9 +51,12 @@ class Engine {
     this.layouts = this.call("layouts");
   }
 
-  /** @param {Link} link */
-  static async start(link = NO_LINK) {
-    const { exports } = await WebAssembly.instantiate(compiled, { link });
+  /**
+   * @param {Link} link
+   * @param {WebAssembly.Module} module
+   */
+  static async start(link = NO_LINK, module = compiled) {
+    const { exports } = await WebAssembly.instantiate(module, { link });
     const { memory, ...functions } = exports;
     return new Engine(/** @type {WebAssembly.Memory} */ (memory), /** @type {Record<string, Export>} */ (functions));
   }

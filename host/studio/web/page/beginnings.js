@@ -1,11 +1,11 @@
 // What a scene of one's own, or a layer that is added to it, begins with.
 // @ts-check
 
-import { tableText } from "./toml_text.js";
+import { TomlText } from "./toml_text.js";
 
 /** @import { Screen } from "../engine/types" */
 /** @import { Box } from "./place.js" */
-/** @import { Value } from "./toml_reading.js" */
+/** @import { Value } from "./toml_text.js" */
 /**
  * A kind of layer to begin with: what a button calls it, what a finger meets, the layer as New opens it, on a screen of
  * 120 by 80 mm, and lengths that are shorter in a smaller box.
@@ -73,7 +73,7 @@ const PLACES = 24;
  * @param {Fields} layer
  */
 export function sceneWith(words, layer) {
-  return `# ${words}\nversion = 1\n\n${tableText(layer)}\n`;
+  return new TomlText(`# ${words}\nversion = 1\n`).withLayer(layer);
 }
 
 /**

@@ -75,10 +75,10 @@ export class HandGrip {
   change(changes, box) {
     const from = this.begin();
     if (!from?.toml || !this.#held) return;
-    const replacements = from.toml.replacements(changes);
-    if (replacements.length === 0 && !this.#player.isHeld) return;
+    const text = from.toml.with(changes);
+    if (text === from.toml.text && !this.#player.isHeld) return;
     this.#player.hold();
-    this.#held.held.make(replacements);
+    this.#held.held.make(text);
     this.#layers.reread(from, box);
     this.onSay("");
     this.onChange();

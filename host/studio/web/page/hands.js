@@ -263,8 +263,8 @@ export class Hands {
     const { selected } = this;
     if (!selected || !editor.has(selected.layer.file)) return;
     this.grip.end();
-    const [first] = selected.at === undefined ? selected.layer.from : (selected.toml?.layerLines(selected.at) ?? [1]);
-    editor.goTo(selected.layer.file, first);
+    const { layer, at, toml } = selected;
+    editor.goTo(layer.file, at === undefined || !toml ? layer.from[0] : toml.lineOf(at));
   }
 
   /**

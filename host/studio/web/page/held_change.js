@@ -4,7 +4,6 @@
 import { Annotation, Transaction, isolateHistory } from "../vendor/studio-vendor.js";
 
 /** @import { ChangeSet, EditorView } from "../vendor/studio-vendor.js" */
-/** @import { Replacement } from "./toml_text.js" */
 
 /** Marks changes that belong to the step of undo before. */
 const continuesStep = Annotation.define();
@@ -46,13 +45,13 @@ export class HeldChange {
   }
 
   /**
-   * Makes these replacements of the text before, in place of those that were made last. Returns whether the text has
-   * them: the editor takes no text that is too long.
-   * @param {Replacement[]} replacements
+   * Makes this text of the one before, in place of what was made last. Returns whether the text is this one: the editor
+   * takes none that is too long.
+   * @param {string} text
    */
-  make(replacements) {
+  make(text) {
     if (this.isOver) return false;
-    const next = this.#start.changes(replacements);
+    const next = this.#start.changes(difference(this.#start.doc.toString(), text));
     const changes = this.#made.invert(this.#start.doc).compose(next);
     if (changes.empty) return true;
     // The history joins changes of one time: the hand may rest as long as it likes.
@@ -80,4 +79,18 @@ export class HeldChange {
     this.#view.scrollDOM.scrollTop = scrollTop;
     this.#onRestored();
   }
+}
+
+/**
+ * The one replacement that makes a text of another.
+ * @param {string} before
+ * @param {string} after
+ */
+function difference(before, after) {
+  const shorter = Math.min(before.length, after.length);
+  let from = 0;
+  while (from < shorter && before[from] === after[from]) from += 1;
+  let same = 0;
+  while (same < shorter - from && before.at(-1 - same) === after.at(-1 - same)) same += 1;
+  return { from, to: before.length - same, insert: after.slice(from, after.length - same) };
 }

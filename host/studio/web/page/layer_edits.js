@@ -4,14 +4,13 @@
 import { addedLayer, freeLayerName, pictureLayer } from "./beginnings.js";
 import { TEXT_CHANGED } from "./hand_grip.js";
 import { bounds, clamp, placeOf } from "./place.js";
-import { TomlText, replaced } from "./toml_text.js";
+import { TomlText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
 /** @import { Beginning, Fields } from "./beginnings.js" */
 /** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
 /** @import { Editor } from "./editor.js" */
 /** @import { Box } from "./place.js" */
-/** @import { Replacement } from "./toml_text.js" */
 
 /** How far a copy lies from its layer, along both sides, mm. */
 const COPY_MM = 5;
@@ -66,7 +65,7 @@ export class LayerEdits {
     const name = freeLayerName(String(fields.name), this.#names());
     const layers = toml.value(["layer"]);
     const at = Array.isArray(layers) ? layers.length : 0;
-    this.#make(undefined, [toml.addition({ ...fields, name })]);
+    this.#make(undefined, toml.withLayer({ ...fields, name }));
     return this.#layers.insert(newLayer(name, String(fields.kind), boxMm), at);
   }
 
@@ -76,9 +75,7 @@ export class LayerEdits {
    */
   duplicate({ layer, toml, at, place }) {
     if (!toml || at === undefined) throw new Error(place.whyNotMoved);
-    const insertion = toml.copy(at);
-    const text = replaced(toml.text, [insertion]);
-    const copied = new TomlText(text);
+    const copied = new TomlText(toml.withCopy(at));
     const own = copied.value(["layer", at + 1, "name"]);
     const name = typeof own === "string" ? freeLayerName(own, this.#names()) : layer.name;
     const { screen } = this.#layers;
@@ -89,10 +86,7 @@ export class LayerEdits {
     const dy = isMoved ? aside(all.y, screen.heightMm - all.y - all.height) : 0;
     const changes = isMoved ? to.move(dx, dy) : [];
     if (typeof own === "string") changes.push({ path: ["layer", at + 1, "name"], value: name, decimals: 0 });
-    const made = replaced(text, copied.replacements(changes));
-    const { from, insert } = insertion;
-    const end = from + insert.length + made.length - text.length;
-    this.#make(layer.file, [{ from, to: from, insert: made.slice(from, end) }]);
+    this.#make(layer.file, copied.with(changes));
     const [x, y, width, height] = layer.boxMm ?? [0, 0, 0, 0];
     const boxMm = layer.boxMm && /** @type {Layer["boxMm"]} */ ([x + dx, y + dy, width, height]);
     return this.#layers.insert({ ...layer, index: UNCHECKED, name, boxMm }, at + 1);
@@ -106,24 +100,24 @@ export class LayerEdits {
     const { toml, at, layer, place } = edited;
     if (!toml || at === undefined) throw new Error(place.whyNotMoved);
     if (this.#names().includes(name)) throw new Error(`Another layer is called ${name}.`);
-    this.#make(layer.file, toml.replacements([{ path: ["layer", at, "name"], value: name, decimals: 0 }]));
+    this.#make(layer.file, toml.with([{ path: ["layer", at, "name"], value: name, decimals: 0 }]));
     return this.#layers.rename(edited, name);
   }
 
   /** @param {EditedLayer} edited */
   remove(edited) {
     if (!edited.toml || edited.at === undefined) throw new Error(edited.place.whyNotMoved);
-    this.#make(edited.layer.file, edited.toml.removals(edited.at));
+    this.#make(edited.layer.file, edited.toml.without(edited.at));
     this.#layers.remove(edited);
   }
 
   /**
    * @param {string | undefined} file
-   * @param {Replacement[]} replacements
+   * @param {string} text
    */
-  #make(file, replacements) {
+  #make(file, text) {
     const held = this.#editor.hold(file);
-    const isMade = held.make(replacements);
+    const isMade = held.make(text);
     held.end();
     if (!isMade) throw new Error("The text has no room for this layer.");
   }

@@ -6,8 +6,7 @@ import { layerFields } from "./completion.js";
 /** @import { Reach, Screen } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { Path } from "./toml_reading.js" */
-/** @import { TomlText } from "./toml_text.js" */
+/** @import { Path, TomlText } from "./toml_text.js" */
 /** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
 /**
  * A number of a layer, and what it means in a few words. `least` and `most` are the ends of a slider, `limit` the most

@@ -4,7 +4,7 @@
 import { pictureLayer } from "./beginnings.js";
 import { byId, element, shortName } from "./dom.js";
 import { isPicture } from "./project.js";
-import { tableText } from "./toml_text.js";
+import { TomlText } from "./toml_text.js";
 
 /** @import { Project } from "./project.js" */
 
@@ -44,7 +44,7 @@ function row(name, bytes, project, onAdd, onRemove) {
   const add = element("button", {}, "Add as a layer");
   add.onclick = () => {
     const { naturalWidth, naturalHeight } = image;
-    onAdd(tableText(pictureLayer(name, naturalWidth / naturalHeight || 1, project.screen)));
+    onAdd(new TomlText("").withLayer(pictureLayer(name, naturalWidth / naturalHeight || 1, project.screen)));
   };
   const remove = element("button", { onclick: () => onRemove(name), "aria-label": `Remove ${name}` }, "Remove");
   return element(

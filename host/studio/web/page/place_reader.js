@@ -3,8 +3,7 @@
 
 /** @import { Layer, Screen } from "../engine/types" */
 /** @import { Box, Side } from "./place.js" */
-/** @import { Path, Value } from "./toml_reading.js" */
-/** @import { TomlText } from "./toml_text.js" */
+/** @import { Path, TomlText, Value } from "./toml_text.js" */
 /** @typedef {{ path: Path, mm: number, pixelMm: number }} Length */
 
 /** Kinds that have a place besides their region. */
