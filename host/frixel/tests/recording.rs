@@ -202,6 +202,19 @@ fn every_line_of_a_play_is_carried_out_again() {
     }
 }
 
+#[test]
+fn a_recording_too_long_to_be_read_back_is_refused_before_it_is_played() {
+    let folder = folder();
+    let line = ["play", "scene.toml", "--seconds", "600", "--csv-hz", "40000", "--record", "a.parquet"];
+    let output = run(folder.path(), &line);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let sentence = "frixel: a.parquet: it would have 24000000 rows of 12 columns, and at most 5592405 are read back: record \
+                    for a shorter time, or fewer rows a second";
+    assert_eq!(said.lines().last(), Some(sentence));
+    assert!(!folder.path().join("frixel-out").exists());
+}
+
 /// A scene with a stream layer.
 const STREAMED: &str = "version = 1\n[[layer]]\nname = \"voice\"\nkind = \"stream\"\nlow_n = 0.01\nhigh_n = 0.09\n\
                         live = true\n";

@@ -1,9 +1,16 @@
 //! What is read of a file, and how much at most, by whatever opens it: the command, the page and Python.
 
+#[cfg(not(target_arch = "wasm32"))]
+mod file;
+
 use std::io::{self, Read};
 
 use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use file::{open, read, read_named};
+pub use frixel_scene::TEXT_MAX_BYTES as TOML_MAX_BYTES;
 
 /// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
 pub const PICTURE_MAX_BYTES: u64 = 64 << 20;

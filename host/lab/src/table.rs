@@ -28,7 +28,7 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 use encoding_rs::mem::decode_latin1;
 
 use crate::input::{ROWS_MAX, at_most, check_header};
-use frixel_scene::NAME_MAX_CHARS;
+use frixel_scene::brief;
 
 use crate::recording::{MAGIC, Recording};
 
@@ -47,8 +47,6 @@ use utf16::Utf8;
 const LIKENESS: f64 = 0.6;
 /// What programs write into a cell whose value they do not know.
 const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
-/// Number of characters of a cell that a message quotes.
-const QUOTED_CHARS: usize = 40;
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 /// Bytes from which it is found how a table is written; its header lies in them.
 const HEAD_BYTES: u64 = 64 << 10;
@@ -297,7 +295,7 @@ impl<R: Read> Table<R> {
 /// unit.
 fn name(cell: &[u8]) -> String {
     let text = str::from_utf8(cell).map_or_else(|_| decode_latin1(cell), Cow::Borrowed);
-    text.trim().chars().take(NAME_MAX_CHARS).collect()
+    brief(text.trim()).into_owned()
 }
 
 /// A row of a table.
@@ -335,12 +333,7 @@ impl<'t> Row<'t> {
 
     /// The beginning of a cell, for a message.
     pub fn quoted(&self, place: Place) -> String {
-        let text = self.text(place);
-        let mut quoted: String = text.chars().take(QUOTED_CHARS).collect();
-        if quoted.len() < text.len() {
-            quoted.push_str("...");
-        }
-        quoted
+        brief(&self.text(place)).into_owned()
     }
 
     /// The number in a cell, which is finite, in the unit of the caller.
@@ -415,6 +408,7 @@ mod tests {
         assert_eq!(numbers("a,b\r\n\r\n1,2\r\n \t \r\n3,4"), [3, 5]);
         assert_eq!(numbers("\n# made by hand\na,b\n\n1,2\n\n\n# and\n3,4\n\n"), [5, 9]);
         assert_eq!(numbers("a,b\n\"1\n\",2\n3,\"\n\n4\"\n5,6\n"), [2, 4, 7]);
+        assert_eq!(numbers("% made by hand\na,b\n1,2\n% and\n3,4\n"), [3, 5]);
         assert_eq!(numbers("a,b\n"), Vec::<u64>::new());
         assert_eq!(numbers(""), Vec::<u64>::new());
     }
@@ -449,6 +443,18 @@ mod tests {
         let quoted = "voltage_v_rms,friction_n\n\"150,5\",\"0,25\"\n0,\"1,25\"\n";
         let said = "numbers have decimal commas";
         assert_eq!(read(quoted.as_bytes()).unwrap(), (numbers, Some(said.to_owned())));
+    }
+
+    /// How a table is written is found from its first 64 KiB, and comments are skipped wherever they stand.
+    #[test]
+    fn a_comment_is_skipped_wherever_it_stands() {
+        for sign in ["#", "%"] {
+            let rows = 30_000;
+            let text = format!("a b\n{}{sign} pause, 3 s\n5 6\n", "1 2\n".repeat(rows));
+            let mut expected: Vec<u64> = (2..=rows as u64 + 1).collect();
+            expected.push(rows as u64 + 3);
+            assert_eq!(numbers(&text), expected, "{sign}");
+        }
     }
 
     #[test]

@@ -151,7 +151,7 @@ fn rows_that_were_copied_are_refused() {
         ..row
     });
     let said = fit_of(rows.iter().cloned().chain(copy).collect()).unwrap_err().to_string();
-    assert!(said.starts_with("rows 16802 to 16809 have the numbers of rows 2 to 9: delete the copy"), "{said}");
+    assert!(said.starts_with("rows 16802 to 33601 have the numbers of rows 2 to 16801: delete the copy"), "{said}");
 }
 
 fn fit_of_text(text: &str) -> (Result<Fit, FitError>, String) {
@@ -166,6 +166,22 @@ fn an_unknown_speed_is_none() {
     let (unknown, _) = fit_of_text(&text);
     let (without, _) = fit_of_text(&text.replace(",nan\n", "\n").replace(",speed_mm_s", ""));
     assert_eq!(right(unknown), right(without));
+}
+
+/// A time that is unknown leaves its row out, and no more.
+#[test]
+fn a_row_without_a_time_is_left_out_and_many_are_refused() {
+    let without = |every: usize| {
+        let mut rows = untared(|_, _| [0.15, 0.06]);
+        rows.iter_mut().skip(777).step_by(every).for_each(|row| row.time_s = None);
+        fit_of(rows)
+    };
+    let said = right(without(50_000));
+    assert!(said.contains("note: 1 row without a time left out") && said.contains("zero was taken from"), "{said}");
+    let said = right(without(1000));
+    assert!(said.contains("note: 41 rows without a time left out") && said.contains("zero was taken from"), "{said}");
+    let said = without(9).unwrap_err().to_string();
+    assert!(said.starts_with("4447 of 40800 rows have no time, row 479 the first"), "{said}");
 }
 
 #[test]

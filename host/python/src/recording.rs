@@ -7,7 +7,8 @@ use std::path::PathBuf;
 
 use frixel_felt::recorder::Marker;
 use frixel_lab::recording::{
-    Column, Field, Kind, LaterScene, Metadata, PlayOptions, Recording, SourceFile, Values, play_fields as fields,
+    Column, Field, Kind, LaterScene, Metadata, PlayOptions, Recording, SourceFile, Values, check_length,
+    play_fields as fields,
 };
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -100,6 +101,7 @@ pub(crate) fn write_parquet(
     let files = SourceFile::all(own.chain(of_scene)).into_iter().chain(hashed).collect();
     let metadata = Metadata { scene, files, later_scenes, markers, participant, ..metadata };
     let recording = Recording { metadata, columns: taken, is_cut_off: false };
+    check_length(recording.rows() as u64, recording.columns.len()).map_err(|error| failed(&error))?;
     let file = File::create(&path).map_err(|error| failed(&error))?;
     let written = py.detach(|| recording.write_parquet(BufWriter::new(file)));
     written.map_err(|error| failed(&error))

@@ -9,14 +9,13 @@ use std::path::{Path, PathBuf};
 use frixel_felt::check::SceneCheck;
 use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
-use frixel_lab::input::{PICTURE_MAX_BYTES, is_same_name};
+use frixel_lab::input::{is_same_name, read_named};
 use frixel_lab::simulation::board_costs;
 use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use super::error::{raised, scene_error};
-use super::input;
 use super::profile::ProfileText;
 
 /// Pictures and profiles by the names that a scene has for them.
@@ -201,8 +200,7 @@ fn read_in(folder: &Path, name: &str) -> Result<Vec<u8>, FileUnavailable> {
     let same = files.iter().find(|other| is_same_name(other, own)).map(|same| searched.join(same));
     let there = if path.exists() { Some(&path) } else { same.as_ref() };
     if let Some(path) = there {
-        return input::read_at_most(path, PICTURE_MAX_BYTES)
-            .map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
+        return read_named(path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
     }
     files.sort();
     Err(FileUnavailable::Missing { place: searched.display().to_string(), files })

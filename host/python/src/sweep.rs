@@ -5,6 +5,7 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use frixel_lab::input::{TOML_MAX_BYTES, read};
 use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, json};
 use frixel_scene::Scene as ParsedScene;
 use pyo3::prelude::*;
@@ -12,7 +13,6 @@ use pyo3::types::PyBytes;
 use rayon::ThreadPoolBuilder;
 
 use super::error::{parameter_error, raised, scene_error};
-use super::input;
 use super::scene::{NamedFiles, ReadFiles};
 use super::signals::interruptible;
 
@@ -57,7 +57,7 @@ pub(crate) fn sweep_cells(
 /// A scene file with the files that it names.
 fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
     let path = folder.join(name);
-    let bytes = input::read(&path).map_err(|error| {
+    let bytes = read(&path, TOML_MAX_BYTES).map_err(|error| {
         unreadable(format_args!("the scene {} cannot be read ({error}): check the path", path.display()))
     })?;
     let files = ReadFiles::new(path.parent().map(Path::to_owned), NamedFiles::new());
@@ -71,7 +71,7 @@ fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
 fn text_in(folder: &Path, what: &str, name: &str) -> Result<String, Raised> {
     let path = folder.join(name);
     let advice = "give its file, from the plan's folder, or a bundled one";
-    input::read(&path)
+    read(&path, TOML_MAX_BYTES)
         .and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other))
         .map_err(|error| unreadable(format_args!("{what} {}: {error}; {advice}", path.display())))
 }

@@ -231,9 +231,8 @@ impl Files for SceneFolder {
             return Err(FileUnavailable::Unreadable { reason: "it is a folder".to_owned() });
         }
         if path.exists() {
-            let max_bytes = if is_toml(&path) { input::TOML_MAX_BYTES } else { input::PICTURE_MAX_BYTES };
-            return input::read(&path, max_bytes)
-                .map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
+            let unreadable = |error: io::Error| FileUnavailable::Unreadable { reason: error.to_string() };
+            return input::read_named(&path).map_err(unreadable);
         }
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -242,10 +241,6 @@ impl Files for SceneFolder {
         let place = if folder == Path::new(".") { "this folder".to_owned() } else { folder.display().to_string() };
         Err(FileUnavailable::Missing { place, files: files_in(folder) })
     }
-}
-
-fn is_toml(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
 /// The path of a file or folder that is there: itself, or one whose parts are written in other characters for the same

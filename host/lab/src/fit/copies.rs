@@ -1,30 +1,30 @@
 //! Rows that stand in a recording twice, as of a file that was appended to itself: they would narrow the intervals.
 
-use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use super::error::FitError;
 use super::table::Row;
 
-/// Number of consecutive rows that are compared. The noise of a sensor does not repeat them by chance.
-pub(super) const ROWS: usize = 8;
+/// Rows that return are a copy if they follow each other as improbably as eight rows that stand nowhere else.
+const SUCCESSIONS: f64 = 7.0;
 
-/// Fails if consecutive rows of different measurements return later, whatever their time and stroke.
+/// Fails if consecutive rows return later, whatever their time and stroke, and chance does not explain it.
 pub(super) fn check(rows: &[Row]) -> Result<(), FitError> {
-    let mut seen = HashMap::<u64, usize>::new();
-    for (first, window) in rows.windows(ROWS).enumerate() {
-        let hash = hash(window);
-        if let Some(before) = seen.get(&hash).and_then(|index| rows.get(*index..index + ROWS))
-            && window.iter().zip(before).all(|(one, other)| measured(one) == measured(other))
-            && are_different(window)
-            && let ([row, ..], [of, ..]) = (window, before)
-        {
-            return Err(FitError::RowsTwice { row: row.number, of: of.number });
+    // A sensor that is read faster than it measures repeats its rows.
+    let runs: Vec<&[Row]> = rows.chunk_by(|one, next| measured(one) == measured(next)).collect();
+    let singles = Windows::new(runs.len(), |at| runs.get(at).and_then(|run| run.first()).map(measured));
+    let mut windows = Windows::new(runs.len().saturating_sub(1), |at| (singles.first(at), singles.first(at + 1)));
+    let bits = information(&singles, &windows);
+    let needed = SUCCESSIONS * (runs.len() as f64).log2();
+    let mut length = 2;
+    while windows.has_copies() {
+        let is_improbable = |at: usize| Some(bits.get(at + length - 1)? - bits.get(at)? >= needed);
+        if let Some((at, of)) = windows.copies().find(|(at, _)| is_improbable(*at).unwrap_or_default()) {
+            // The first run of a copy may be a part of that which was copied.
+            let row = |run: usize| runs.iter().take(run + 1).map(|run| run.len()).sum();
+            return Err(copied(rows, row(at), row(of)));
         }
-        // Windows side by side are enough: a copy of them is found wherever it begins.
-        if first.is_multiple_of(ROWS) {
-            seen.entry(hash).or_insert(first);
-        }
+        let count = runs.len().saturating_sub(2 * length - 1);
+        windows = Windows::new(count, |at| (windows.first(at), windows.first(at + length)));
+        length *= 2;
     }
     Ok(())
 }
@@ -33,15 +33,170 @@ fn measured(row: &Row) -> [u64; 3] {
     [row.voltage_v_rms, row.normal_force_n, row.friction_n].map(f64::to_bits)
 }
 
-fn hash(rows: &[Row]) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    for row in rows {
-        measured(row).hash(&mut hasher);
-    }
-    hasher.finish()
+/// Windows of consecutive runs, one at each run, and which of them are equal.
+struct Windows {
+    /// For each window, the first one that is equal.
+    firsts: Vec<usize>,
+    /// Number of windows that are equal to each, itself included.
+    counts: Vec<usize>,
 }
 
-/// Whether no two of the rows are alike. A sensor that rests, or has no noise, repeats itself.
-fn are_different(rows: &[Row]) -> bool {
-    rows.iter().enumerate().all(|(index, row)| rows.iter().take(index).all(|other| measured(row) != measured(other)))
+impl Windows {
+    /// Windows with equal keys are equal.
+    fn new<K: Ord>(count: usize, key: impl Fn(usize) -> K) -> Self {
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|at| key(*at));
+        let (mut firsts, mut counts) = (vec![0; count], vec![0; count]);
+        for equal in order.chunk_by(|one, next| key(*one) == key(*next)) {
+            for at in equal {
+                if let (Some(first), Some(number)) = (firsts.get_mut(*at), counts.get_mut(*at)) {
+                    (*first, *number) = (equal.first().copied().unwrap_or_default(), equal.len());
+                }
+            }
+        }
+        Self { firsts, counts }
+    }
+
+    fn first(&self, at: usize) -> usize {
+        self.firsts.get(at).copied().unwrap_or_default()
+    }
+
+    /// Number of equal windows beside this one and one copy of it.
+    fn others(&self, at: usize) -> f64 {
+        self.counts.get(at).map_or(0, |count| count.saturating_sub(2)) as f64
+    }
+
+    /// The windows that stand earlier as well, each with its first place.
+    fn copies(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.firsts.iter().copied().enumerate().filter(|(at, first)| at != first)
+    }
+
+    fn has_copies(&self) -> bool {
+        self.copies().next().is_some()
+    }
+}
+
+/// Information in the successions of runs up to each run, in bits, as the rest of the recording shows their frequencies:
+/// none where a run always follows another, as in a signal without noise.
+fn information(singles: &Windows, pairs: &Windows) -> Vec<f64> {
+    let count = singles.firsts.len();
+    let mut bits = 0.0;
+    let of_succession = |at: usize| {
+        let probability = (singles.others(at + 1) + 0.5) / count as f64;
+        -((pairs.others(at) + probability) / (singles.others(at) + 1.0)).log2()
+    };
+    let up_to = |run: usize| {
+        bits += if run == 0 { 0.0 } else { of_succession(run - 1) };
+        bits
+    };
+    (0..count).map(up_to).collect()
+}
+
+/// The error of rows around `row` that are those around `of`, with all that are equal.
+fn copied(rows: &[Row], row: usize, of: usize) -> FitError {
+    let is_equal = |(one, other): &(&Row, &Row)| measured(one) == measured(other);
+    let (before, behind) = (rows.split_at(row.min(rows.len())), rows.split_at(of.min(rows.len())));
+    let earlier = before.0.iter().rev().zip(behind.0.iter().rev()).take_while(is_equal).count();
+    let later = before.1.iter().zip(behind.1).take_while(is_equal).count();
+    let numbers = |at: usize| {
+        let copy = rows.get(at - earlier..at + later).unwrap_or_default();
+        [copy.first(), copy.last()].map(|row| row.map_or(0, |row| row.number))
+    };
+    FitError::RowsTwice { rows: numbers(row), of: numbers(of) }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{FitError, Row, check};
+
+    /// What is added to the numbers of rows that are copied.
+    const LATER: u64 = 1_000_000;
+
+    /// Appends a copy of rows.
+    fn append(rows: &mut Vec<Row>, from: usize, count: usize, later_s: f64) {
+        let copy = rows[from..from + count].to_vec().into_iter();
+        rows.extend(copy.map(|row| Row {
+            number: row.number + LATER,
+            time_s: row.time_s.map(|time_s| time_s + later_s),
+            ..row
+        }));
+    }
+
+    /// Rows of a sensor that measures once in some rows, in steps, with noise and under a load that wanders.
+    fn rows(seed: u64, count: usize, held: usize, step_n: f64, noise_n: f64) -> Vec<Row> {
+        let mut state = seed;
+        // A part of SplitMix64, from -0.5 to 0.5.
+        let mut random = || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            (mixed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let (mut load_n, mut measured_n) = (0.5, [0.0; 2]);
+        let mut row = |index: usize| {
+            let voltage_v_rms = if index / 25 % 2 == 0 { 0.0 } else { 150.0 };
+            load_n += 0.002 * random() - 1e-3 * (load_n - 0.5);
+            if index.is_multiple_of(held) {
+                let friction_n = 0.5 * load_n + 0.07 * voltage_v_rms / 150.0;
+                measured_n =
+                    [load_n, friction_n].map(|force_n| ((force_n + noise_n * random()) / step_n).round() * step_n);
+            }
+            let [normal_force_n, friction_n] = measured_n;
+            let (number, time_s) = (index as u64 + 2, Some(1e-3 * index as f64));
+            Row { number, voltage_v_rms, normal_force_n, friction_n, time_s, stroke: None, speed_mm_s: None }
+        };
+        (0..count).map(&mut row).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Fifteen rows hold a window of eight, wherever they begin.
+        #[test]
+        fn rows_that_return_are_named(
+            seed in 0_u64..1_000_000,
+            from in 0_usize..400,
+            count in 15_usize..100,
+            later_s in 0.0_f64..9.0,
+        ) {
+            let mut rows = rows(seed, 500, 1, 1e-9, 0.004);
+            prop_assert!(check(&rows).is_ok());
+            append(&mut rows, from, count, later_s);
+            match check(&rows) {
+                Err(FitError::RowsTwice { rows, of }) => {
+                    let first = from as u64 + 2;
+                    prop_assert_eq!(of, [first, first + count as u64 - 1]);
+                    prop_assert_eq!(rows, of.map(|row| row + LATER));
+                }
+                other => prop_assert!(false, "{other:?}"),
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        /// A sensor that is read faster than it measures, or that has coarse steps, repeats its rows, and a copy of them
+        /// is found all the same.
+        #[test]
+        fn rows_of_a_poor_sensor_that_return_are_named(
+            seed in 0_u64..1_000_000,
+            held in 1_usize..12,
+            step_n in prop::sample::select(vec![1e-9, 1e-4, 1e-3, 5e-3, 0.01, 0.02]),
+            noise_n in 0.001_f64..0.01,
+            from in 0_usize..12_000,
+        ) {
+            let mut rows = rows(seed, 20_000, held, step_n, noise_n);
+            prop_assert!(check(&rows).is_ok(), "{:?}", check(&rows));
+            append(&mut rows, from, 8_000, 60.0);
+            match check(&rows) {
+                // Rows before those that were copied may be equal by chance.
+                Err(FitError::RowsTwice { rows: [_, last], of }) => {
+                    prop_assert!(last == of[1] + LATER && of[1] - of[0] >= 7_999, "{of:?} {last}");
+                }
+                other => prop_assert!(false, "{other:?}"),
+            }
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! Why data are refused: what was found, and what to do about it.
 
+use frixel_scene::brief;
 use thiserror::Error;
 
-use super::copies::ROWS;
 use super::faults::{FaultyStroke, sentence};
 use crate::table::TableError;
 
@@ -68,20 +68,33 @@ pub enum FitError {
     },
     /// Rows stand in the recording twice.
     #[error(
-        "rows {row} to {} have the numbers of rows {of} to {}: delete the copy, or record anew what was not measured twice",
-        row + ROWS as u64 - 1,
-        of + ROWS as u64 - 1
+        "rows {} to {} have the numbers of rows {} to {}: delete the copy, or record anew what was not measured twice",
+        rows[0], rows[1], of[0], of[1]
     )]
     RowsTwice {
-        /// The first row of the copy.
+        /// The first and the last row of the copy.
+        rows: [u64; 2],
+        /// Those of what was copied.
+        of: [u64; 2],
+    },
+    /// Most rows have a time, and many have none.
+    #[error(
+        "{unknown} of {rows} rows have no time, row {row} the first, where a few are left out: give each its time in \
+         column time_s, or leave the column out"
+    )]
+    TimesMissing {
+        /// Rows without a time.
+        unknown: usize,
+        /// Number of rows.
+        rows: usize,
+        /// The first row without a time.
         row: u64,
-        /// The first row of what was copied.
-        of: u64,
     },
     /// A stroke turns, and no times tell what lies around the turn.
     #[error(
-        "row {row}: the finger turns within stroke {stroke}, friction or speed changes its sign there: add a column time_s, \
-         so that what lies around the turn is left out, or give each direction a stroke of its own"
+        "row {row}: the finger turns within stroke {}, friction or speed changes its sign there: add a column time_s, \
+         so that what lies around the turn is left out, or give each direction a stroke of its own",
+        brief(.stroke)
     )]
     TurnWithoutTime {
         /// The first row after the turn.
@@ -161,7 +174,10 @@ pub enum FitError {
         found_n: f64,
     },
     /// Means are not strokes.
-    #[error("--without {stroke}: a table of means has no strokes: delete the row of the mean that is to be left out")]
+    #[error(
+        "--without {}: a table of means has no strokes: delete the row of the mean that is to be left out",
+        brief(.stroke)
+    )]
     MeansWithout {
         /// What was asked for.
         stroke: String,
@@ -236,7 +252,10 @@ pub enum FitError {
     #[error("{}", sentence(.0))]
     FaultyStrokes(Vec<FaultyStroke>),
     /// A stroke that is to be left out does not exist.
-    #[error("--without {stroke}: there is no such stroke; the column stroke has {first} to {last}")]
+    #[error(
+        "--without {}: there is no such stroke; the column stroke has {} to {}",
+        brief(.stroke), brief(.first), brief(.last)
+    )]
     NoSuchStroke {
         /// What was asked for.
         stroke: String,

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use frixel_scene::brief;
+
 use super::error::FitError;
 
 /// Faults that are described; of the others only the strokes are named.
@@ -72,7 +74,7 @@ impl fmt::Display for FaultyStroke {
             Fault::Load { .. } | Fault::Speed { .. } => ":",
             Fault::NoSlip { .. } => "",
         };
-        write!(formatter, "stroke {stroke}{verb} {fault}")
+        write!(formatter, "stroke {}{verb} {fault}", brief(stroke))
     }
 }
 
@@ -105,7 +107,7 @@ impl Faults {
 /// The faults in a sentence: the first of them in words, and all strokes for `--without`.
 pub(super) fn sentence(faulty: &[FaultyStroke]) -> String {
     let described: Vec<String> = faulty.iter().take(DESCRIBED).map(ToString::to_string).collect();
-    let mut names: Vec<&str> = faulty.iter().map(|faulty| faulty.stroke.as_str()).collect();
+    let mut names: Vec<_> = faulty.iter().map(|faulty| brief(&faulty.stroke)).collect();
     // Pieces of one stroke.
     names.dedup();
     let (it, more) = match faulty.len() {

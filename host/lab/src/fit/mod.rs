@@ -189,6 +189,7 @@ impl FittedData {
 
     fn of_recording(rows: Vec<Row>, settings: &Settings) -> Result<Self, FitError> {
         table::check_numbers(&rows)?;
+        let (rows, rows_without_time) = recording::with_times(rows)?;
         let (rows, sensor_zero) = zero::taken_from(rows);
         let mut faults = Faults::default();
         let fitted = Self::of_strokes_without(&mut faults, rows, settings);
@@ -198,7 +199,8 @@ impl FittedData {
             // Those that were left out are missing.
             faults.refuse()?;
         }
-        Ok(Self { preparation: Preparation { left_out: faults.faulty, sensor_zero }, ..fitted? })
+        let preparation = Preparation { left_out: faults.faulty, sensor_zero, rows_without_time };
+        Ok(Self { preparation, ..fitted? })
     }
 
     /// Fits the laws to the strokes without faults; the others are added to `faults`.

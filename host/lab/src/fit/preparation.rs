@@ -1,5 +1,7 @@
 //! What was done to a recording before it was fitted.
 
+use frixel_scene::brief;
+
 use super::{Division, FaultyStroke, SensorZero};
 
 /// What was left out of a recording, and corrected in it.
@@ -9,6 +11,8 @@ pub struct Preparation {
     pub left_out: Vec<FaultyStroke>,
     /// The zero of the force sensor, as rows without contact tell it.
     pub sensor_zero: Option<SensorZero>,
+    /// Number of rows that were left out because their time is unknown, and that of others is known.
+    pub rows_without_time: usize,
 }
 
 impl Preparation {
@@ -27,8 +31,13 @@ impl Preparation {
         if division == Division::Means {
             return Vec::new();
         }
-        let note = |faulty: &FaultyStroke| format!("stroke {} left out: {}", faulty.stroke, faulty.fault);
+        let note = |faulty: &FaultyStroke| format!("stroke {} left out: {}", brief(&faulty.stroke), faulty.fault);
         let mut notes: Vec<String> = self.left_out.iter().map(note).collect();
+        notes.extend(match self.rows_without_time {
+            0 => None,
+            1 => Some("1 row without a time left out".to_owned()),
+            count => Some(format!("{count} rows without a time left out")),
+        });
         notes.push(match self.sensor_zero {
             Some(SensorZero { normal_force_n, friction_n, duration_s }) => format!(
                 "the sensor's zero was taken from {duration_s:.1} s without contact: {normal_force_n:.3} N of load, \

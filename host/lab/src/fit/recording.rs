@@ -25,6 +25,8 @@ const GAP_S: f64 = 0.05;
 const BLOCKS: usize = 24;
 /// Least number of rows in such a block.
 const BLOCK_ROWS: usize = 5;
+/// Part of the rows whose time may be unknown where that of others is known: they are left out.
+const TIMELESS_PART: f64 = 0.1;
 
 /// How the rows were divided into strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +94,19 @@ impl Recording {
     pub(super) fn rows(&self) -> impl Iterator<Item = &Row> + Clone {
         self.strokes.iter().flat_map(|stroke| &stroke.rows)
     }
+}
+
+/// Leaves out the rows whose time is unknown, unless that is unknown of all; returns their number. Fails if they are
+/// many.
+pub(super) fn with_times(mut rows: Vec<Row>) -> Result<(Vec<Row>, usize), FitError> {
+    let (count, is_timeless) = (rows.len(), |row: &&Row| row.time_s.is_none());
+    let unknown = rows.iter().filter(is_timeless).count();
+    let Some(first) = rows.iter().find(is_timeless).filter(|_| unknown < count) else { return Ok((rows, 0)) };
+    if unknown as f64 > TIMELESS_PART * count as f64 {
+        return Err(FitError::TimesMissing { unknown, rows: count, row: first.number });
+    }
+    rows.retain(|row| row.time_s.is_some());
+    Ok((rows, unknown))
 }
 
 fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), FitError> {
@@ -219,10 +234,8 @@ fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, Fault> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::copies;
     use super::super::zero::taken_from;
     use super::{Faults, Recording, Row};
-    use crate::fit::FitError;
 
     /// Rows of a finger that slides one way, a thousand a second, from a time on.
     fn slide(rows: &mut Vec<Row>, count: usize, start_s: f64, sign: f64, speed_mm_s: Option<f64>) {
@@ -317,20 +330,6 @@ mod tests {
                 (row.normal_force_n, row.friction_n) = (row.normal_force_n * load, row.friction_n * load);
             }
             prop_assert_eq!(taken_from(rows.clone()), (rows, None));
-        }
-
-        /// Fifteen rows hold a whole window, wherever they begin.
-        #[test]
-        fn rows_that_return_are_named(from in 0_usize..400, count in 15_usize..100, later_s in 0.0_f64..9.0) {
-            let mut rows = Vec::new();
-            slide(&mut rows, 500, 0.0, 1.0, None);
-            prop_assert!(copies::check(&rows).is_ok());
-            let copy = rows[from..from + count].to_vec();
-            rows.extend(copy.into_iter().map(|row| Row { number: row.number + 1000, time_s: row.time_s.map(|time_s| time_s + later_s), ..row }));
-            match copies::check(&rows) {
-                Err(FitError::RowsTwice { row, of }) => prop_assert_eq!(row, of + 1000),
-                other => prop_assert!(false, "{other:?}"),
-            }
         }
     }
 }

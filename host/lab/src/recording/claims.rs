@@ -19,6 +19,13 @@ const COLUMNS_MAX: u64 = 64;
 const GROUPS_MAX: u64 = 65_536;
 /// Most values of all columns, 1 GiB of them: 93 minutes of a play at 1 kHz.
 const VALUES_MAX: u64 = 64 << 20;
+
+/// Fails if a recording with so many rows and columns is too long to be read back. Asked before it is made.
+pub fn check_length(rows: u64, columns: usize) -> Result<(), RecordingError> {
+    let max = ROWS_MAX.min(VALUES_MAX / columns.max(1) as u64);
+    if rows > max { Err(RecordingError::TooLong { rows, columns, max }) } else { Ok(()) }
+}
+
 /// Most pages of all columns.
 const PAGES_MAX: u64 = 1 << 20;
 /// Largest page, unpacked. Writers end one at 1 MiB.
@@ -260,6 +267,26 @@ mod tests {
         let group = |rows: &i64| [field(3, thrift::I64, &number(*rows)), vec![0]].concat();
         let groups = list(&rows.iter().map(group).collect::<Vec<_>>());
         [count(1, 1), field(1, LIST, &schema), field(2, LIST, &groups), vec![0]].concat()
+    }
+
+    /// What is written can be read.
+    #[test]
+    fn a_recording_is_as_long_as_is_read() {
+        for (columns, max) in [(1, 10_000_000), (6, 10_000_000), (12, 5_592_405), (64, 1_048_576)] {
+            for rows in [max, max + 1] {
+                let read = check_footer(&footer(&vec![0; columns], &[rows as i64]));
+                assert_eq!(
+                    (check_length(rows, columns).is_ok(), read.is_ok()),
+                    (rows == max, rows == max),
+                    "{columns}"
+                );
+            }
+        }
+        assert_eq!(
+            check_length(24_000_000, 12).unwrap_err().to_string(),
+            "it would have 24000000 rows of 12 columns, and at most 5592405 are read back: record for a shorter time, or \
+             fewer rows a second"
+        );
     }
 
     #[test]

@@ -31,6 +31,19 @@ pub enum RecordingError {
     /// More than is read, by what the file says of itself.
     #[error("{0}: give a recording that `frixel play --record` has written")]
     TooMuch(#[from] InputError),
+    /// More rows than are read back.
+    #[error(
+        "it would have {rows} rows of {columns} columns, and at most {max} are read back: record for a shorter time, or \
+         fewer rows a second"
+    )]
+    TooLong {
+        /// Rows of the recording.
+        rows: u64,
+        /// Its columns.
+        columns: usize,
+        /// Most rows that are read.
+        max: u64,
+    },
     /// Columns in columns, or structs in structs of the metadata.
     #[error(
         "its columns have columns in them, and those of a recording are flat: give one that `frixel play --record` has written"

@@ -22,6 +22,7 @@ use std::fmt::{self, Display};
 
 use frixel_felt::recorder::FeltRow;
 
+pub use claims::check_length;
 pub use error::RecordingError;
 pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
 pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile};

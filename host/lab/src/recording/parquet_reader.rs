@@ -94,8 +94,10 @@ fn whole_part(bytes: &Bytes) -> Result<(Bytes, usize), RecordingError> {
         let parsed = ParquetMetaDataReader::new().parse_and_finish(&part);
         parsed.map(|_| (part, start)).map_err(RecordingError::Damaged)
     };
+    // A file that ends as a whole one has lost nothing there: no other footer stands in for one that is damaged.
+    let is_cut = !bytes.ends_with(MAGIC) || bytes.len() < MAGIC.len() + TAIL_BYTES;
     let error = match read(bytes.len()) {
-        Err(RecordingError::Damaged(error)) => error,
+        Err(RecordingError::Damaged(error)) if is_cut => error,
         other => return other,
     };
     let mut end = bytes.len();
@@ -113,11 +115,7 @@ fn whole_part(bytes: &Bytes) -> Result<(Bytes, usize), RecordingError> {
             return Err(RecordingError::Damaged(error));
         }
     }
-    if bytes.ends_with(MAGIC) && bytes.len() > MAGIC.len() + TAIL_BYTES {
-        Err(RecordingError::Damaged(error))
-    } else {
-        Err(RecordingError::Truncated)
-    }
+    Err(RecordingError::Truncated)
 }
 
 fn metadata_of(file: &ParquetMetaData) -> Result<(Metadata, Vec<Field>), RecordingError> {

@@ -13,7 +13,9 @@ use parquet::schema::types::{SchemaDescriptor, Type};
 use serde::Serialize;
 
 use super::seal::{self, Hashed};
-use super::{Column, Field, Kind, Metadata, ROWS_PER_GROUP, Recording, RecordingError, Values, arrow_schema};
+use super::{
+    Column, Field, Kind, Metadata, ROWS_PER_GROUP, Recording, RecordingError, Values, arrow_schema, check_length,
+};
 
 /// Number of the format, in the metadata `frixel.format`.
 pub(super) const FORMAT: u32 = 1;
@@ -31,6 +33,7 @@ const KEY_PANDAS: &str = "PANDAS_ATTRS";
 impl Recording {
     /// Writes the recording as a Parquet file.
     pub fn write_parquet<W: Write + Send>(&self, to: W) -> Result<(), RecordingError> {
+        check_length(self.rows() as u64, self.columns.len())?;
         let fields = self.columns.iter().map(|column| column.field.clone()).collect();
         let mut writer = ParquetWriter::new(to, fields)?;
         writer.write_all(&self.columns)?;
@@ -75,9 +78,16 @@ impl<W: Write + Send> ParquetWriter<W> {
         Ok(Self { writer: writer.map_err(RecordingError::Write)?, fields, rows: 0 })
     }
 
-    /// Writes a row group: the values of each column, in the order of the fields, of equal numbers.
+    /// Writes a row group: the values of each column, in the order of the fields, of equal numbers. Fails if the file
+    /// were too long to be read back; what was written so far is not.
     pub fn write(&mut self, columns: &[Values]) -> Result<(), RecordingError> {
-        self.rows += columns.first().map_or(0, Values::len) as i64;
+        let rows = columns.first().map_or(0, Values::len) as i64;
+        check_length((self.rows + rows).unsigned_abs(), self.fields.len())?;
+        self.write_group(columns, rows)
+    }
+
+    fn write_group(&mut self, columns: &[Values], rows: i64) -> Result<(), RecordingError> {
+        self.rows += rows;
         write_group(&mut self.writer, columns).map_err(RecordingError::Write)
     }
 
@@ -85,8 +95,9 @@ impl<W: Write + Send> ParquetWriter<W> {
     fn write_all(&mut self, columns: &[Column]) -> Result<(), RecordingError> {
         let rows = columns.first().map_or(0, |column| column.values.len());
         for from in (0..rows).step_by(ROWS_PER_GROUP) {
-            let part = |column: &Column| column.values.part(from, rows.min(from + ROWS_PER_GROUP));
-            self.write(&columns.iter().map(part).collect::<Vec<_>>())?;
+            let end = rows.min(from + ROWS_PER_GROUP);
+            let part = |column: &Column| column.values.part(from, end);
+            self.write_group(&columns.iter().map(part).collect::<Vec<_>>(), (end - from) as i64)?;
         }
         Ok(())
     }

@@ -174,6 +174,18 @@ fn a_writer_that_is_killed_loses_the_last_row_group() {
     assert!(is_of_person(&bytes) && !is_of_person(&bytes[..first - 1]));
 }
 
+/// A recording without a known end stops where it could not be read back, and what it has so far is whole.
+#[test]
+fn a_recording_that_becomes_too_long_ends_readable() {
+    let field = play_fields().into_iter().find(|field| field.kind == Kind::Integer).unwrap();
+    let mut writer = ParquetWriter::new(Vec::new(), vec![field]).unwrap();
+    writer.write(&[Values::Integers(vec![None; 5])]).unwrap();
+    let error = writer.write(&[Values::Integers(vec![None; 10_000_000])]).unwrap_err().to_string();
+    assert!(error.contains("it would have 10000005 rows of 1 columns, and at most 10000000"), "{error}");
+    writer.end(&metadata(true)).unwrap();
+    assert_eq!(Recording::read_parquet(std::mem::take(writer.get_mut())).unwrap().rows(), 5);
+}
+
 #[test]
 fn what_is_no_recording_is_refused_with_what_to_do() {
     let own = bytes(&recording(10));
@@ -229,15 +241,16 @@ fn a_damaged_file_is_refused() {
     }
 }
 
-/// A file that grows has a whole footer among its last ends, and one with thousands is no such file.
+/// A file that is cut off has a whole footer among its last ends, and one with thousands is no such file. A file that ends
+/// with a footer is not cut off, so that no other one stands in for it.
 #[test]
 fn few_ends_of_a_file_are_tried() {
     let own = bytes(&recording(20));
     let end = [&[0x15; 40][..], &40_u32.to_le_bytes(), parquet_reader::MAGIC].concat();
-    let with = |ends: usize| Recording::read_parquet([own.clone(), end.repeat(ends)].concat());
-    assert!(with(15).unwrap().is_cut_off);
-    for ends in [16, 20_000] {
-        let error = with(ends).unwrap_err().to_string();
+    let with = |ends: usize, rest: &[u8]| Recording::read_parquet([&own, &*end.repeat(ends), rest].concat());
+    assert!(with(15, b"P").unwrap().is_cut_off);
+    for (ends, rest) in [(16, &b"P"[..]), (20_000, b"P"), (1, b""), (15, b"")] {
+        let error = with(ends, rest).unwrap_err().to_string();
         assert!(error.contains("its Parquet cannot be read"), "{error}");
     }
 }

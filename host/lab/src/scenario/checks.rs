@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use frixel_hil_sim::RigTick;
-use frixel_scene::{Expectation, Program, Reach, Scenario, Seen};
+use frixel_scene::{Expectation, Program, Reach, Scenario, Seen, brief};
 use frixel_wire::fault::{Fault, State};
 
 use super::host::Failure;
@@ -284,9 +284,9 @@ impl Check {
             Seen::Friction([least, largest]) => {
                 format!("an electric friction of {least} to {largest} of the largest")
             }
-            Seen::State(state) => format!("the state \"{}\" to be said", brief(state)),
-            Seen::Fault(fault) => format!("\"{}\" to be said", brief(fault)),
-            Seen::Error(words) => format!("a failure with the words \"{words}\""),
+            Seen::State(state) => format!("the state \"{}\" to be said", without_advice(state)),
+            Seen::Fault(fault) => format!("\"{}\" to be said", without_advice(fault)),
+            Seen::Error(words) => format!("a failure with the words \"{}\"", brief(words)),
         }
     }
 }
@@ -294,12 +294,12 @@ impl Check {
 /// What the board has said last, for a sentence.
 fn said(clock: Clock, found: Option<(u64, State, Option<Fault>)>) -> String {
     let Some((tick, state, fault)) = found else { return "the board has said nothing".to_owned() };
-    let fault = fault.map_or_else(String::new, |fault| format!(", {}", brief(&fault)));
-    format!("the board has said \"{}{fault}\" at {:.3} ms", brief(&state), clock.ms(tick))
+    let fault = fault.map_or_else(String::new, |fault| format!(", {}", without_advice(&fault)));
+    format!("the board has said \"{}{fault}\" at {:.3} ms", without_advice(&state), clock.ms(tick))
 }
 
 /// A state or a fault without what to do about it.
-fn brief(said: &impl Display) -> String {
+fn without_advice(said: &impl Display) -> String {
     let text = said.to_string();
     let is_fault = text.starts_with("fault ");
     text.split(if is_fault { ';' } else { ':' }).next().unwrap_or_default().to_owned()

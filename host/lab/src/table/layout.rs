@@ -12,7 +12,7 @@ use super::dialect::is_number;
 use super::unit::is_unit;
 
 /// What a comment starts with; the CSV reader knows the first of them only.
-const COMMENTS: [u8; 2] = [b'#', b'%'];
+pub(super) const COMMENTS: [u8; 2] = [b'#', b'%'];
 /// The separator of columns that any number of blanks separates.
 pub(super) const BLANK: u8 = b' ';
 /// The last column of `LabVIEW`, whose cell rows leave out.
@@ -122,7 +122,7 @@ impl Layout {
         self.units.and_then(|index| self.lines.get(index)).map_or(&[], |line| &line.cells)
     }
 
-    /// Makes comments, which the CSV reader skips, of the lines that are neither header nor row.
+    /// Makes comments, which the CSV reader skips, of the lines above the header and of the units.
     pub(super) fn mark(&self, head: &mut [u8]) {
         let Some(header) = self.lines.get(self.header) else { return };
         let mut begins = true;
@@ -133,13 +133,13 @@ impl Layout {
             }
             begins = ends;
         }
-        for (index, line) in self.lines.iter().enumerate().skip(self.header) {
-            let text = head.get_mut(line.start..).unwrap_or_default().iter_mut();
-            if index == self.header && line.is_comment {
-                text.take_while(|byte| COMMENTS.contains(byte)).for_each(|byte| *byte = BLANK);
-            } else if line.is_comment || self.units == Some(index) {
-                text.take(1).for_each(|byte| *byte = b'#');
-            }
+        let names = head.get_mut(header.start..).unwrap_or_default();
+        if header.is_comment {
+            names.iter_mut().take_while(|byte| COMMENTS.contains(byte)).for_each(|byte| *byte = BLANK);
+        }
+        let units = self.units.and_then(|index| self.lines.get(index));
+        if let Some(first) = units.and_then(|units| head.get_mut(units.start)) {
+            *first = b'#';
         }
     }
 

@@ -1,9 +1,11 @@
-//! Which line of an input a byte stands in.
+//! Which line of an input a byte stands in, and one sign for comments.
 
 use std::collections::VecDeque;
 use std::io::{self, Read};
 
-/// An input that remembers where the lines end that it has read ahead.
+use super::layout::COMMENTS;
+
+/// An input that remembers where the lines end that it has read ahead, and has `#` where a comment begins.
 pub(super) struct Lines<R> {
     input: R,
     bytes: u64,
@@ -11,11 +13,13 @@ pub(super) struct Lines<R> {
     ahead: VecDeque<u64>,
     /// Number of the line feeds before those.
     before: u64,
+    /// Whether the next byte begins a line.
+    begins: bool,
 }
 
 impl<R> Lines<R> {
     pub(super) fn new(input: R) -> Self {
-        Self { input, bytes: 0, ahead: VecDeque::new(), before: 0 }
+        Self { input, bytes: 0, ahead: VecDeque::new(), before: 0, begins: true }
     }
 
     /// The last line of a row that ends before byte `end`, its line feed included if the row has taken it. Rows are
@@ -34,8 +38,15 @@ impl<R> Lines<R> {
 impl<R: Read> Read for Lines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.input.read(buffer)?;
-        let read = buffer.get(..count).unwrap_or_default();
-        self.ahead.extend((self.bytes..).zip(read).filter(|(_, byte)| **byte == b'\n').map(|(place, _)| place));
+        for (place, byte) in (self.bytes..).zip(buffer.iter_mut().take(count)) {
+            if self.begins && COMMENTS.contains(byte) {
+                *byte = b'#';
+            }
+            self.begins = matches!(byte, b'\n' | b'\r');
+            if *byte == b'\n' {
+                self.ahead.push_back(place);
+            }
+        }
         self.bytes += count as u64;
         Ok(count)
     }

@@ -59,7 +59,8 @@ class _Profile:
         SceneError
             The file cannot be read, or has mistakes.
         """
-        return cls(read_bytes(path, f"this {cls.kind}", SceneError).decode(errors="replace"), name_of(path))
+        text = read_bytes(path, f"this {cls.kind}", SceneError, is_toml=True)
+        return cls(text.decode(errors="replace"), name_of(path))
 
     @classmethod
     def parse(cls, text: str) -> Self:

@@ -62,7 +62,7 @@ class Scene:
         SceneError
             The file cannot be read, or it has mistakes: all of them, each with line and column.
         """
-        text = read_bytes(path, "this scene file", SceneError)
+        text = read_bytes(path, "this scene file", SceneError, is_toml=True)
         return cls(text, name_of(path), folder=str(Path(path).parent))
 
     @classmethod

@@ -65,7 +65,7 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
         return _frixel.sweep_cells(text, "<plan>", "", sources)
     path = checked_path("plan", plan)
     try:
-        text = read_bytes(path, "this plan", ParameterError).decode()
+        text = read_bytes(path, "this plan", ParameterError, is_toml=True).decode()
     except UnicodeDecodeError as error:
         raise ParameterError(f"{path}: this plan cannot be read ({error}): give a text in UTF-8") from error
     return _frixel.sweep_cells(text, name_of(path), str(path.parent), {})

@@ -8,6 +8,7 @@ use crate::output::Report;
 use crate::rigs::RecordedLink;
 use anyhow::{Result, bail};
 use frixel_driver::Device;
+use frixel_lab::recording::{check_length, play_fields};
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
 
@@ -30,6 +31,9 @@ pub(super) fn follow<L: RecordedLink>(
 ) -> Result<Played> {
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     check_log(args, is_simulated)?;
+    if let (Some(path), Some(rows)) = (&args.record, plan.rows()) {
+        check_length(rows, play_fields().len()).map_err(CommandError::recording(path))?;
+    }
     let metadata = files.sources().map(|sources| metadata(args, sources, &plan, &device, is_simulated));
     let outputs = Outputs::create(args, files, is_simulated, &plan.program, metadata)?;
     let recorder = plan.recorder()?;

@@ -170,6 +170,12 @@ impl Plan {
         Duration::try_from_secs_f64(self.seconds()).unwrap_or(Duration::MAX)
     }
 
+    /// Rows of the play; `None` for a play without an end.
+    pub(super) fn rows(&self) -> Option<u64> {
+        let rows = self.seconds? * f64::from(self.tick_hz) / f64::from(self.ticks_per_row);
+        Some(rows.ceil() as u64)
+    }
+
     /// Creates the recorder of the play. In virtual time, it ends after exactly the ticks of the play.
     pub(super) fn recorder(&self) -> Result<Recorder> {
         let ticks = (self.seconds() * f64::from(self.tick_hz)).round() as u64;
