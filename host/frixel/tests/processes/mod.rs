@@ -19,7 +19,6 @@ version = 1
 [screen]
 width_mm = 120
 height_mm = 80
-
 [screen.coating]
 thickness_um = 10
 permittivity = 1
