@@ -7,9 +7,11 @@ normal number of f32 too. `condition` is the sum of the relative changes of the 
 import csv
 import random
 import struct
+import sys
 from pathlib import Path
 
 import paper
+import stability
 from mpmath import mp, mpf, pi, sqrt
 
 OUT = Path(__file__).resolve().parent.parent / "tests" / "fixtures"
@@ -402,6 +404,7 @@ def main():
     write("shear.csv", shear, list(shear[0]))
     pull_off = pull_off_rows()
     write("pull_off.csv", pull_off, list(pull_off[0]))
+    write("stability.csv", list(stability.rows(sys.modules[__name__])), stability.COLUMNS)
 
 
 if __name__ == "__main__":

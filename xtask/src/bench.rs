@@ -53,6 +53,7 @@ pub(crate) fn bench() -> Result<Figures, String> {
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut paths = vec![folder.join("bench.json")];
     if std::env::var_os("FRIXEL_BLESS").is_some() {
+        size::measure_features(&mut figures)?;
         paths.push(root().join(COMMITTED));
     }
     let json = figures.json(&source_date()?)?;

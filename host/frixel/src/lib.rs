@@ -6,7 +6,7 @@ mod commands;
 mod input;
 pub mod output;
 pub mod output_file;
-pub mod report;
+mod report;
 pub mod rigs;
 pub mod scene_file;
 pub mod stream;

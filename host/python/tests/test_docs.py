@@ -72,7 +72,15 @@ def test_other_programs_see_and_keep_what_a_recording_says(
 
 
 @pytest.mark.parametrize(
-    "name", ["frixel._tables", "frixel.simulator", "frixel.profiles", "frixel.scoring", "frixel.sweep"]
+    "name",
+    [
+        "frixel._tables",
+        "frixel.experiment._detection",
+        "frixel.simulator",
+        "frixel.profiles",
+        "frixel.scoring",
+        "frixel.sweep",
+    ],
 )
 def test_the_examples_in_docstrings_are_true(name: str) -> None:
     failed, attempted = doctest.testmod(importlib.import_module(name))
@@ -99,7 +107,7 @@ def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
     text = "".join(output.text for output in shown if output.output_type == "stream")
     pictures = {kind for output in shown if "data" in output for kind in output.data}
     if path.stem == "figures_and_fit":
-        assert sum("image/png" in output.get("data", {}) for output in shown) == 2
+        assert sum("image/png" in output.get("data", {}) for output in shown) == 4
         assert "friction map" in str(shown[-1].data["text/html"])
     else:
         lines = [line for line in text.splitlines() if line.startswith("observer ")]

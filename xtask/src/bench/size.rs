@@ -61,7 +61,7 @@ const PERIPHERALS: u64 = 0x4000_0000;
 pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
     for (name, board, builds) in &PICOS {
         for build in builds {
-            let path = image(board, build)?;
+            let path = image(board, build.name, build.features)?;
             let (flash, ram) = sizes(&path)?;
             figures.put(format!("{name}.flash_{}", build.name), flash);
             figures.put(format!("{name}.ram_{}", build.name), ram);
@@ -71,7 +71,7 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
     }
     if root().join(G474.0).is_dir() {
         for build in &G474_BUILDS {
-            let path = image(&G474, build)?;
+            let path = image(&G474, build.name, build.features)?;
             let (flash, ram) = sizes(&path)?;
             figures.put(format!("g474.flash_{}", build.name), flash);
             figures.put(format!("g474.ram_{}", build.name), ram);
@@ -81,18 +81,41 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
             measure_stack(figures, format!("g474.stack_{}", build.name), &functions, &EXCEPTIONS);
         }
     }
-    let functions = Functions::read(&image(&AN386, &FULL)?)?;
+    let functions = Functions::read(&image(&AN386, FULL.name, FULL.features)?)?;
     measure_stack(figures, "an386.stack".to_owned(), &functions, &AN386_EXCEPTIONS);
     Ok(())
 }
 
+/// Measures the NUCLEO's image without the features that scenes and hosts ask for, and with each one alone: what the
+/// report of a scene adds up.
+pub(super) fn measure_features(figures: &mut Figures) -> Result<(), String> {
+    let manifest = root().join(G474.0).join("Cargo.toml");
+    let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", manifest.display());
+    let text = fs::read_to_string(&manifest).map_err(|error| explain(&error))?;
+    let table: toml::Table = toml::from_str(&text).map_err(|error| explain(&error))?;
+    let features = table.get("features").and_then(toml::Value::as_table).into_iter().flatten();
+    let is_of_scenes = |name: &str, enabled: &toml::Value| {
+        enabled.as_array().is_some_and(|all| all.contains(&format!("frixel-session/{name}").into()))
+    };
+    let mut measure = |name: String, features: &[&str]| {
+        let (flash, _) = sizes(&image(&G474, &name, &[&["--no-default-features"], features].concat())?)?;
+        figures.put(format!("g474.flash_{name}"), flash);
+        Ok::<_, String>(())
+    };
+    measure("none".to_owned(), &[])?;
+    for (feature, _) in features.filter(|(name, enabled)| is_of_scenes(name, enabled)) {
+        measure(format!("{}_only", feature.replace('-', "_")), &["--features", feature])?;
+    }
+    Ok(())
+}
+
 /// Builds an image. The next build of the same image takes its place.
-fn image(Board(folder, image, target): &Board, build: &Build) -> Result<PathBuf, String> {
+fn image(Board(folder, image, target): &Board, name: &str, features: &[&str]) -> Result<PathBuf, String> {
     let mut command = cargo_in(folder);
     command
         .args(["build", "--release", "--locked", "--quiet", "--target", target, "--target-dir", IMAGES_TARGET_FOLDER])
-        .args(build.features);
-    run(&format!("image of {folder} for {target}, {}", build.name), &mut command)?;
+        .args(features);
+    run(&format!("image of {folder} for {target}, {name}"), &mut command)?;
     Ok(root().join(folder).join(IMAGES_TARGET_FOLDER).join(target).join("release").join(image))
 }
 

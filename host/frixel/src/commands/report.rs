@@ -6,17 +6,18 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::RigConfig;
-use frixel_scene::{Scene, compile};
+use frixel_scene::{Scene, compile_draft};
 
 use super::demo;
 use super::profiles::ProfileArgs;
 use super::terminal::print_line;
 use crate::output_file::Inputs;
-use crate::report::Subject;
+use crate::report::{Subject, write};
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
-    /// The scene whose finger is drawn, and of which the report says what is left out. Without it, the bundled bricks.
+    /// The scene whose finger is measured, and of which the report says what is left out. Without it, the bundled
+    /// bricks.
     scene: Option<PathBuf>,
     #[command(flatten)]
     profiles: ProfileArgs,
@@ -39,11 +40,11 @@ pub(super) fn run(args: &ReportArgs) -> Result<()> {
         let scene = Scene::parse(demo::SCENE, "brick.toml", &files)?;
         ("the bundled scene of bricks".to_owned(), names.applied_to(scene)?, Vec::new())
     };
-    let rig = RigConfig::default();
-    let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
+    let board = RigConfig::default().board;
+    let program = compile_draft(&scene, &board.limits, board.tick_hz);
     let inputs = Inputs::new(files.iter().chain(&args.bench));
-    let subject = Subject { name: &name, program: &program };
-    for file in crate::report::write(&args.out, &subject, args.bench.as_deref(), &inputs)? {
+    let subject = Subject { name: &name, scene: &scene, program };
+    for file in write(&args.out, &subject, args.bench.as_deref(), &inputs)? {
         print_line(format_args!("  {:<16} {}", "wrote", file.display()))?;
     }
     Ok(())

@@ -40,30 +40,14 @@ impl Counts {
         Ok(Self { date, counts: counts.collect::<Result<_, Error>>()? })
     }
 
-    /// How and when the counts were made, in words that follow "instructions".
+    /// How and when the counts were made.
     pub(super) fn origin(&self) -> String {
-        let Self { date, .. } = self;
-        let of = if date.is_empty() { String::new() } else { format!(", source of {date}") };
+        let of = if self.date.is_empty() { String::new() } else { format!(", source of {}", self.date) };
         format!("counted by cargo xtask bench in an emulator{of}")
     }
 
     /// A number by its whole name.
     pub(super) fn get(&self, name: &str) -> Option<f64> {
         self.counts.get(name).copied()
-    }
-
-    /// Largest number of instructions of one call on a core.
-    pub(super) fn instructions(&self, core: &str, what: &str) -> Option<f64> {
-        self.get(&format!("{core}.{what}"))
-    }
-
-    /// Mean number of instructions over all calls.
-    pub(super) fn mean(&self, core: &str, what: &str) -> Option<f64> {
-        self.get(&format!("{core}.{what}_mean"))
-    }
-
-    /// Estimated cycles of the call with the most instructions.
-    pub(super) fn cycles(&self, core: &str, what: &str) -> Option<f64> {
-        self.get(&format!("{core}.{what}_cycles"))
     }
 }

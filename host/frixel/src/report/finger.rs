@@ -1,12 +1,11 @@
-//! The finger that figures are drawn for: that of the scene, on its screen, or the example finger where that of the
+//! The finger whose run times are measured: that of the scene on its screen, or the example finger where that of the
 //! scene has no contact model.
 
 use frixel_lab::calibration::example_finger;
 use frixel_model::{Contact, Finger, ParameterError, Real};
-use frixel_scene::{FingerProfile, Program, Screen};
+use frixel_scene::{Elasticity, FingerProfile, Screen};
 
-/// Voltage at which the friction of the example finger is stated, in volts rms.
-const EXAMPLE_V_RMS: f64 = 150.0;
+use super::Subject;
 
 /// A finger with a contact model.
 pub(super) struct DrawnFinger {
@@ -15,68 +14,42 @@ pub(super) struct DrawnFinger {
     pub(super) gap_m: f64,
     /// Normal load, in newtons.
     pub(super) load_n: f64,
-    /// Last sentences of the caption of a figure about this finger.
-    pub(super) caption: String,
-    /// Why it is not the finger of the scene.
-    pub(super) instead: Option<String>,
+    /// Its numbers, and if it is not that of the scene, why.
+    pub(super) words: String,
 }
 
 impl DrawnFinger {
-    /// The finger that a program is compiled for, by the board's numbers; the example finger in place of one without a
-    /// contact model.
-    pub(super) fn of(program: &Program) -> Result<Self, ParameterError> {
-        if program.header.law.is_some() {
-            return Self::instead_of(&program.finger.title);
-        }
-        let header = &program.header;
-        let finger = Finger {
-            radius_m: header.finger_radius_m.into(),
-            stiffness_pa_per_m: header.stiffness_pa_per_m.into(),
-            friction_coefficient: header.friction_coefficient.into(),
+    /// A soft finger is on the springs that it has at its load and the scene's highest voltage.
+    pub(super) fn of(subject: &Subject) -> Self {
+        let (profile, screen) = (subject.scene.finger(), subject.scene.screen());
+        let stiffness_pa_per_m = match (&profile.elasticity, &subject.program) {
+            (Elasticity::WinklerFuss { stiffness_pa_per_m }, _) => *stiffness_pa_per_m,
+            (Elasticity::Soft { .. }, Ok(program)) => program.header.stiffness_pa_per_m.into(),
+            _ => {
+                let stiffness_pa_per_m = example_finger().stiffness_pa_per_m;
+                let example = Self::new(&FingerProfile::example(), &Screen::example(), stiffness_pa_per_m);
+                let words = format!("the example finger, as that of the scene has no contact model: {}", example.words);
+                return Self { words, ..example };
+            }
         };
-        let name = format!("{}, {}", program.finger.title, program.finger.origin.word());
-        let (gap_m, load_n) = (f64::from(header.effective_gap_m), f64::from(header.normal_load_n));
-        Self::named(&name, finger, gap_m, load_n, program.reach.voltage_max_v_rms)
+        let drawn = Self::new(profile, screen, stiffness_pa_per_m);
+        Self { words: format!("that of the scene, {}: {}", profile.evidence.origin().word(), drawn.words), ..drawn }
     }
 
-    /// The example finger on the example screen.
-    fn instead_of(title: &str) -> Result<Self, ParameterError> {
-        let example = FingerProfile::example();
-        let gap_m = 1e-6 * (example.skin_gap_um + Screen::example().coating_gap_um());
-        let drawn =
-            Self::named("the example finger, assumed", example_finger(), gap_m, example.normal_load_n, EXAMPLE_V_RMS)?;
-        let instead = format!("{title} is empirical and has no contact model: these are of the example finger.");
-        Ok(Self {
-            caption: format!("{} {title} is empirical and has no contact model.", drawn.caption),
-            instead: Some(instead),
-            ..drawn
-        })
-    }
-
-    fn named(
-        name: &str,
-        finger: Finger<f64>,
-        gap_m: f64,
-        load_n: f64,
-        voltage_v_rms: f64,
-    ) -> Result<Self, ParameterError> {
-        let electric_n = Contact::new(&finger, gap_m)?.under_load(load_n)?.electric_friction_n(voltage_v_rms);
-        let caption = format!(
-            "Drawn for {name}: R = {:.3} mm, k = {:.3} MPa/m, µ = {:.3}, on an effective gap of {:.3} µm ({:.0} mN of \
-             friction without voltage under {load_n:.3} N, and {:.0} mN more at {voltage_v_rms:.0} V rms).",
-            1e3 * finger.radius_m,
-            1e-6 * finger.stiffness_pa_per_m,
-            finger.friction_coefficient,
-            1e6 * gap_m,
-            1e3 * finger.friction_coefficient * load_n,
-            1e3 * electric_n,
+    fn new(profile: &FingerProfile, screen: &Screen, stiffness_pa_per_m: f64) -> Self {
+        let FingerProfile { radius_mm, friction_coefficient, normal_load_n: load_n, skin_gap_um, .. } = *profile;
+        let gap_um = screen.coating_gap_um() + skin_gap_um;
+        let words = format!(
+            "R = {radius_mm} mm, k = {stiffness_pa_per_m:.3e} Pa/m, µ = {friction_coefficient}, g = {gap_um:.3} µm, \
+             F_N = {load_n} N"
         );
-        Ok(Self { finger, gap_m, load_n, caption, instead: None })
+        let finger = Finger { radius_m: 1e-3 * radius_mm, stiffness_pa_per_m, friction_coefficient };
+        Self { finger, gap_m: 1e-6 * gap_um, load_n, words }
     }
 
-    /// The finger on its gap, in either precision.
-    pub(super) fn contact<T: Real>(&self) -> Result<Contact<T>, ParameterError> {
-        let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = self.finger;
+    /// The contact of a finger like this one of another stiffness, in either precision.
+    pub(super) fn contact<T: Real>(&self, stiffness_pa_per_m: f64) -> Result<Contact<T>, ParameterError> {
+        let Finger { radius_m, friction_coefficient, .. } = self.finger;
         let finger = Finger {
             radius_m: T::from_f64(radius_m),
             stiffness_pa_per_m: T::from_f64(stiffness_pa_per_m),

@@ -1,43 +1,45 @@
-//! The report of `frixel report`: the model's error, the cost of its inversion, and what a scene costs and leaves out.
+//! `frixel report`: three questions on the first screen of a page, each with a small table and its plot. What is the
+//! error against the run time? How stable is the model in stiff and extreme cases? What does a scene leave out?
 //!
-//! [`write()`] creates a [`Page`] in a folder: a self-contained `index.html`, which begins with the answers, with the
-//! numbers behind each picture as CSV files beside it.
+//! [`write()`] creates a folder with a self-contained `index.html` and the numbers behind each plot as CSV.
 
 mod counts;
 mod error;
-mod figure;
-mod figures;
 mod finger;
 mod methods;
 mod page;
-mod reference;
-mod wire;
+mod run_time;
+mod scene;
+mod stability;
+mod timing;
 
 use std::path::{Path, PathBuf};
 
-pub use error::ReportError;
-pub use figure::{Data, Figure, Value};
-pub use page::{Answer, Page};
+pub(crate) use error::ReportError;
 
-use counts::Counts;
-use frixel_scene::Program;
+use frixel_scene::{CompileError, Program, Scene};
 
 use crate::output_file::{Inputs, OutputFolder};
+use counts::Counts;
+use finger::DrawnFinger;
+use page::Page;
 
 /// The scene that a report is about.
-#[derive(Clone, Copy, Debug)]
-pub struct Subject<'s> {
+#[derive(Debug)]
+pub(crate) struct Subject<'s> {
     /// Name of the scene, for a person.
     pub name: &'s str,
-    /// The scene, compiled for the simulated board. Its finger is the one that figures are drawn for.
-    pub program: &'s Program,
+    /// The scene.
+    pub scene: &'s Scene,
+    /// The scene, compiled as a draft for the simulated board, or why it cannot be.
+    pub program: Result<Program, CompileError>,
 }
 
 /// Writes the report into a folder, creating it if necessary, and returns the paths of the files.
 ///
-/// `bench` is a file of instruction counts written by `cargo xtask bench`, in place of those of this version. `inputs`
-/// are the files that were read. The run times are measured anew; everything else is equal in every run.
-pub fn write(
+/// `bench` is a file of counts written by `cargo xtask bench`, in place of those of this version. `inputs` are the
+/// files that were read. The run times are measured anew; everything else is equal in every run.
+pub(crate) fn write(
     folder: &Path,
     subject: &Subject,
     bench: Option<&Path>,
@@ -45,7 +47,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let counts = bench.map_or_else(Counts::committed, Counts::read)?;
     let _locked = OutputFolder::open(folder)?;
-    let (answers, figures) = figures::all(subject, &counts)?;
-    let title = "The contact model, its error and its cost";
-    Page { title, maker: "frixel report", answers: &answers, figures: &figures }.write(folder, inputs)
+    let drawn = DrawnFinger::of(subject);
+    let sections = [run_time::section(&drawn, &counts)?, stability::section()?, scene::section(subject, &counts)];
+    Page { finger: &drawn.words, counts: &counts.origin(), sections: &sections }.write(folder, inputs)
 }

@@ -1,119 +1,141 @@
-//! `index.html`: the figures with their captions, on one self-contained page.
+//! `index.html`: three questions side by side, each with its plot and its table, and what they mean below.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use frixel_chart::{Chart, Panel};
+
 use super::error::ReportError;
-use super::figure::Figure;
 use crate::output_file::{Inputs, OutputFile, commit_all};
 
 const STYLE: &str = "\
-body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 1040px; margin: 2rem auto; \
-padding: 0 20px; }
-h1 { margin-bottom: 0; } h2 { margin: 3rem 0 0.5rem; font-size: 1.3rem; }
-figure { margin: 0; } figure svg { width: 100%; height: auto; } figcaption { max-width: 62rem; }
-figcaption p { margin: 0.5rem 0; } table { border-collapse: collapse; margin: 1rem 0; } th, td { border-top: 1px solid #ccc; \
-padding: 0.5rem 0.8rem 0.5rem 0; text-align: left; vertical-align: top; } th { width: 10rem; } td p { margin: 0 0 0.3rem; } \
-nav li { margin: 0.15rem 0; } a { color: #0072b2; }
+body { font: 15px/1.4 system-ui, sans-serif; color: #1a1a1a; background: #fff; margin: 1rem auto; max-width: 1500px; \
+padding: 0 16px; } h1 { font-size: 1.2rem; margin: 0; } h2 { font-size: 1.05rem; margin: 0 0 0.3rem; } p { margin: 0.4rem 0; }
+main { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 1.5rem; margin: 0.6rem 0; }
+svg { width: 100%; height: auto; } table { border-collapse: collapse; font-size: 0.75rem; width: 100%; }
+th, td { border-top: 1px solid #ccc; padding: 0.1rem 0.4rem 0.1rem 0; text-align: left; vertical-align: top; }
+footer { max-width: 62rem; } a { color: #0072b2; }
 ";
+/// Width of a plot and its height without the legend, in pixels: a third of a screen.
+const WIDTH: u32 = 560;
+const HEIGHT: u32 = 330;
 
-/// The answer to a question, in numbers, at the top of a page.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
-    /// What is asked, in a few words.
-    pub question: &'static str,
-    /// The answer with its worst points, a sentence or a few each.
-    pub sentences: Vec<String>,
-    /// Name of the figure that shows it.
-    pub figure: &'static str,
+/// A question with its answer.
+pub(super) struct Section {
+    /// Name of the CSV file, without its extension, and of the anchor.
+    pub(super) name: &'static str,
+    pub(super) question: &'static str,
+    pub(super) panel: Panel,
+    /// The table; its first row is the header.
+    pub(super) table: Vec<Vec<String>>,
+    /// What a reader needs to know beside the table, a paragraph each.
+    pub(super) notes: Vec<String>,
+    /// The numbers behind the plot; the first row is the header.
+    pub(super) rows: Vec<Vec<String>>,
 }
 
-/// A page of figures.
-#[derive(Clone, Copy, Debug)]
-pub struct Page<'p> {
-    /// Title of the page.
-    pub title: &'p str,
-    /// The program that makes it, as it is called.
-    pub maker: &'p str,
-    /// What the figures say, in numbers.
-    pub answers: &'p [Answer],
-    /// The figures, in order.
-    pub figures: &'p [Figure],
+impl Section {
+    fn csv(&self) -> Result<Vec<u8>, ReportError> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in &self.rows {
+            writer.write_record(row)?;
+        }
+        Ok(writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))?)
+    }
+
+    fn svg(&self) -> Result<String, ReportError> {
+        let panel = Panel { height: HEIGHT, ..self.panel.clone() };
+        let chart = Chart { width: WIDTH, ..Chart::new(vec![panel], 1) };
+        let drawn = chart.svg().map_err(|error| ReportError::Drawing { name: self.name, reason: error.to_string() })?;
+        let label = format!("<svg role=\"img\" aria-label=\"{}\" ", escaped(self.question));
+        Ok(drawn.trim_end().replacen("<svg ", &label, 1))
+    }
+}
+
+/// A page of questions.
+pub(super) struct Page<'p> {
+    /// The finger whose run times were measured, in words.
+    pub(super) finger: &'p str,
+    /// Where the counts come from.
+    pub(super) counts: &'p str,
+    pub(super) sections: &'p [Section],
 }
 
 impl Page<'_> {
-    /// Writes `index.html` and the numbers behind each figure into a folder, and returns the paths of the files.
-    /// `inputs` are the files that were read, which are not overwritten.
-    pub fn write(&self, folder: &Path, inputs: &Inputs) -> Result<Vec<PathBuf>, ReportError> {
-        let mut paths = Vec::new();
-        let mut files = Vec::new();
+    /// Writes `index.html` and the numbers behind each plot into a folder, and returns the paths of the files. `inputs`
+    /// are the files that were read, which are not overwritten.
+    pub(super) fn write(&self, folder: &Path, inputs: &Inputs) -> Result<Vec<PathBuf>, ReportError> {
+        let (mut paths, mut files) = (Vec::new(), Vec::new());
         let mut put = |name: &str, bytes: &[u8]| {
             let path = folder.join(name);
             files.push(OutputFile::new(&path, "--out", inputs)?.filled(bytes)?);
-            Ok::<PathBuf, ReportError>(path)
+            paths.push(path);
+            Ok::<_, ReportError>(())
         };
-        let mut drawn = Vec::new();
-        for figure in self.figures {
-            let drawing = |reason: String| ReportError::Drawing { name: figure.name, reason };
-            drawn.push((figure, figure.chart.svg().map_err(|error| drawing(error.to_string()))?));
-            paths.push(put(&format!("{}.csv", figure.name), &figure.csv)?);
+        put("index.html", self.html()?.as_bytes())?;
+        for section in self.sections {
+            put(&format!("{}.csv", section.name), &section.csv()?)?;
         }
-        paths.insert(0, put("index.html", self.html(&drawn).as_bytes())?);
         commit_all(files, &[])?;
         Ok(paths)
     }
 
-    /// The answers as a table, each with a link to its figure.
-    fn answers_html(&self) -> String {
-        let mut table = String::new();
-        for Answer { question, sentences, figure } in self.answers {
-            // Writing to a string cannot fail.
-            let _ = write!(table, "<tr><th>{}</th><td>", escaped(question));
-            for sentence in sentences {
-                let _ = write!(table, "<p>{}</p>", escaped(sentence));
-            }
-            let _ = writeln!(table, "</td><td><a href=\"#{figure}\">figure</a></td></tr>");
-        }
-        if table.is_empty() { table } else { format!("<table>\n{table}</table>\n") }
-    }
-
-    /// The page with all figures that were drawn.
-    fn html(&self, figures: &[(&Figure, String)]) -> String {
-        let Self { title, maker, .. } = self;
-        let mut page = String::new();
-        // Writing to a string cannot fail.
-        let _ = write!(
-            page,
+    fn html(&self) -> Result<String, ReportError> {
+        let mut page = format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{title} (frixel)</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-             <h1>{title}</h1>\n{}\
-             <p>Made by <code>{maker}</code>, version {}. Equation and figure numbers are those of Argatov and Borodich, \
-             <i>A macro model for electroadhesive contact of a soft finger with a touchscreen</i>. The numbers behind each picture \
-             stand in a CSV file beside this page.</p>\n<nav>\n<ol>\n",
-            self.answers_html(),
+             <title>The contact model, its error and its cost (frixel)</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+             <h1>The contact model, its error and its cost</h1>\n<main>\n"
+        );
+        // Writing to a string cannot fail.
+        for section in self.sections {
+            let Section { name, question, .. } = section;
+            let _ = writeln!(page, "<section id=\"{name}\">\n<h2>{}</h2>\n{}", escaped(question), section.svg()?);
+            let _ = writeln!(page, "<table>");
+            for (number, row) in section.table.iter().enumerate() {
+                let tag = if number == 0 { "th" } else { "td" };
+                let cells: String = row.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
+                let _ = writeln!(page, "<tr>{cells}</tr>");
+            }
+            let _ = writeln!(page, "</table>\n<p><a href=\"{name}.csv\">{name}.csv</a></p>\n</section>");
+        }
+        let _ = writeln!(page, "</main>\n<footer>");
+        for section in self.sections {
+            let _ = writeln!(page, "<h2>{}</h2>", escaped(section.question));
+            for note in &section.notes {
+                let _ = writeln!(page, "<p>{}</p>", escaped(note));
+            }
+        }
+        let _ = writeln!(
+            page,
+            "<h2>Sources</h2>\n<p>The finger is {}. Instructions and bytes of flash were {}. Equation numbers are those of Argatov \
+             and Borodich, <i>A macro model for electroadhesive contact of a soft finger with a touchscreen</i>. Made by \
+             <code>frixel report</code>, version {}.</p>\n</footer>\n</body>\n</html>",
+            escaped(self.finger),
+            escaped(self.counts),
             env!("CARGO_PKG_VERSION")
         );
-        for (figure, _) in figures {
-            let _ = writeln!(page, "<li><a href=\"#{}\">{}</a></li>", figure.name, escaped(&figure.title));
-        }
-        page.push_str("</ol>\n</nav>\n");
-        for (figure, svg) in figures {
-            let (name, title) = (figure.name, escaped(&figure.title));
-            let _ = write!(page, "<h2 id=\"{name}\">{title}</h2>\n<figure>\n{}\n<figcaption>\n", labelled(svg, &title));
-            for paragraph in &figure.caption {
-                let _ = writeln!(page, "<p>{}</p>", escaped(paragraph));
-            }
-            let _ = write!(page, "<p><a href=\"{name}.csv\">{name}.csv</a></p>\n</figcaption>\n</figure>\n");
-        }
-        page.push_str("</body>\n</html>\n");
-        page
+        Ok(page)
     }
 }
 
-/// Adds a title to a picture, for screen readers.
-fn labelled(svg: &str, title: &str) -> String {
-    svg.trim_end().replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{title}\" "), 1)
+/// A number for a CSV file, with enough digits to be read back exactly; not-a-number is an empty cell.
+pub(super) fn cell(number: f64) -> String {
+    match number {
+        number if !number.is_finite() => String::new(),
+        number if number.total_cmp(&0.0).is_eq() || (1e-4..1e6).contains(&number.abs()) => number.to_string(),
+        number => format!("{number:e}"),
+    }
+}
+
+/// An error for a person.
+pub(super) fn digits(error: f64) -> String {
+    if error.is_finite() { format!("{error:.1e}") } else { "no answer".to_owned() }
+}
+
+/// Cells between bars.
+pub(super) fn row(cells: &str) -> Vec<String> {
+    cells.split('|').map(str::to_owned).collect()
 }
 
 fn escaped(text: &str) -> String {

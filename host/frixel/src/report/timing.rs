@@ -8,33 +8,9 @@ use std::time::Instant;
 const ROUNDS: usize = 24;
 
 /// A number type whose calls can be chained, so that each call depends on the result of the one before.
-pub(super) trait Sample: Copy + Default {
-    /// Returns `self + last * nothing`, where `nothing` is zero but hidden from the compiler. The value is `self`, and
-    /// it depends on the previous result.
-    fn behind(self, last: Self, nothing: Self) -> Self;
-}
+pub(super) trait Sample: Copy + Default + Add<Output = Self> + Mul<Output = Self> {}
 
-fn chained<T: Add<Output = T> + Mul<Output = T>>(this: T, last: T, nothing: T) -> T {
-    this + last * nothing
-}
-
-impl Sample for f64 {
-    fn behind(self, last: Self, nothing: Self) -> Self {
-        chained(self, last, nothing)
-    }
-}
-
-impl Sample for f32 {
-    fn behind(self, last: Self, nothing: Self) -> Self {
-        chained(self, last, nothing)
-    }
-}
-
-impl Sample for u32 {
-    fn behind(self, last: Self, nothing: Self) -> Self {
-        self.wrapping_add(last.wrapping_mul(nothing))
-    }
-}
+impl<T: Copy + Default + Add<Output = T> + Mul<Output = T>> Sample for T {}
 
 /// Seconds per call when each call waits for the result of the one before, as in a control loop. The time of the
 /// chain itself is subtracted.
@@ -45,10 +21,11 @@ pub(super) fn seconds_per_call<T: Sample>(inputs: &[T], call: impl Fn(T) -> T) -
 }
 
 fn shortest<T: Sample>(inputs: &[T], call: impl Fn(T) -> T) -> f64 {
+    // Zero, which the compiler does not know.
     let nothing = black_box(T::default());
     let round = |_| {
         let start = Instant::now();
-        let last = inputs.iter().fold(T::default(), |last, x| call(black_box(*x).behind(last, nothing)));
+        let last = inputs.iter().fold(T::default(), |last, x| call(black_box(*x) + last * nothing));
         black_box(last);
         start.elapsed().as_secs_f64()
     };

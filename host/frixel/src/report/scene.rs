@@ -1,0 +1,126 @@
+//! What a scene needs of the board, and what is left out.
+
+use frixel_chart::{Axis, Line, Look, Mark, PALETTE, Panel};
+use frixel_felt::check::BoardCosts;
+use frixel_hil_sim::RigConfig;
+use frixel_layers::cost::{LayerCosts, cycles};
+use frixel_layers::{feature_names, layer_set};
+use frixel_model::InverseTable;
+use frixel_scene::{Program, TargetRange};
+use frixel_wire::hello::feature;
+
+use super::Subject;
+use super::counts::Counts;
+use super::page::{Section, row};
+
+/// What a scene needs of something that there is for every scene: what, its unit, needed, whole.
+type Part = (&'static str, &'static str, f64, f64);
+
+pub(super) fn section(subject: &Subject, counts: &Counts) -> Section {
+    let Subject { name, program, .. } = subject;
+    let (parts, notes) = match program {
+        Ok(program) => (parts(program, counts), notes(name, program, counts)),
+        Err(error) => (Vec::new(), vec![format!("{name} cannot be compiled: {error}")]),
+    };
+    let mut table = vec![row("of the board|this scene|left out|of")];
+    let mut rows = vec![row("what|unit|needed|whole")];
+    for (what, unit, needed, whole) in &parts {
+        let amount = |number: f64| format!("{number:.0} {unit}");
+        table.push(vec![(*what).to_owned(), amount(*needed), amount((whole - needed).max(0.0)), amount(*whole)]);
+        rows.push(vec![(*what).to_owned(), (*unit).to_owned(), needed.to_string(), whole.to_string()]);
+    }
+    let mut panel = Panel::new(
+        "",
+        Axis::linear("needed, percent of what there is", 0.0..100.0),
+        Axis::linear("", 0.0..parts.len().max(1) as f64).with_labels(0.0),
+    );
+    for ((what, _, needed, whole), line) in parts.iter().zip(0_u8..) {
+        let (y, percent) = (parts.len() as f64 - 0.7 - f64::from(line), 100.0 * (needed / whole.max(1e-9)).min(1.0));
+        let look = Look { colour: PALETTE[2], line: Line::Solid, mark: Mark::Square };
+        panel.add("", look, vec![(0.0, y), (percent, y)]);
+        panel.notes.push((2.0, y + 0.35, format!("{what}: {percent:.0} %")));
+    }
+    Section { name: "scene", question: "What the scene leaves out", panel, table, notes, rows }
+}
+
+fn parts(program: &Program, counts: &Counts) -> Vec<Part> {
+    let rig = RigConfig::default();
+    let (limits, costs) = (&rig.board.limits, BoardCosts::of(program, &rig, 0));
+    let worst = program.worst_tick(limits.core).cycles(limits.core);
+    let (reach, asked) = (&program.reach, TargetRange::of(program));
+    let pictures: usize = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
+    let electric_n = (asked.most_n.min(reach.friction_max_n()) - reach.natural_friction_n).max(0.0);
+    let table = [costs.table_rows, costs.table_rows_whole].map(|rows| (InverseTable::ROW_BYTES * rows) as f64);
+    let mut parts: Vec<Part> = vec![
+        ("tick, if all layers were under the finger", "cycles", worst.into(), every_layer(program).into()),
+        ("tick, of what a board accepts", "cycles", worst.into(), limits.tick_cycles_max.into()),
+        ("inverse table", "bytes", table[0], table[1]),
+        ("pictures", "bytes", pictures as f64, limits.bitmap_pool_bytes.into()),
+        ("electric friction", "mN", 1e3 * electric_n, 1e3 * reach.electric_friction_max_n),
+    ];
+    let image = image_bytes(program, counts).zip(counts.get("g474.flash_full"));
+    parts.extend(image.map(|(needed, whole)| ("image, flash", "bytes", needed, whole)));
+    parts
+}
+
+/// Estimated cycles of a tick that evaluates every layer, as it would without the grid.
+fn every_layer(program: &Program) -> u32 {
+    let core = RigConfig::default().board.limits.core;
+    let mut costs = LayerCosts::new(&program.header, core);
+    for (number, record) in (0..).zip(&program.records) {
+        costs.add(number, record, &program.points, core);
+    }
+    cycles(core, costs.of_tick(layer_set(0..program.records.len())))
+}
+
+/// The Cargo features of an image that plays the program.
+fn features(program: &Program) -> Vec<&'static str> {
+    // `frixel play` subscribes to telemetry.
+    let needed = program.features() | feature::TELEMETRY;
+    feature_names().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| name).collect()
+}
+
+/// Bytes of flash of the NUCLEO's image with these features: the image without any, and what each adds to it alone.
+fn image_bytes(program: &Program, counts: &Counts) -> Option<f64> {
+    let bytes = |build: &str| counts.get(&format!("g474.flash_{build}"));
+    let none = bytes("none")?;
+    let added =
+        features(program).into_iter().map(|name| Some(bytes(&format!("{}_only", name.replace('-', "_")))? - none));
+    Some(none + added.sum::<Option<f64>>()?)
+}
+
+fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
+    let omitted: Vec<String> = program.optimisations().map(ToString::to_string).collect();
+    let omitted = if omitted.is_empty() { "nothing of its file is left out".to_owned() } else { omitted.join("; ") };
+    let (reach, asked) = (&program.reach, TargetRange::of(program));
+    let mut notes = vec![format!("Layers of {name} that are played: {}; {omitted}.", program.records.len())];
+    let refused: Vec<String> = program.refusals().map(ToString::to_string).collect();
+    if !refused.is_empty() {
+        notes.push(format!("This is a draft, clamped: a board refuses it. {}", refused.join("; ")));
+    }
+    notes.push(format!(
+        "Reach of {}, {}: {:.4} to {:.4} mN at {:.0} V rms; the scene asks for {:.1} to {:.1} mN.",
+        program.finger.title,
+        program.finger.origin.word(),
+        1e3 * reach.natural_friction_n,
+        1e3 * reach.friction_max_n(),
+        reach.voltage_max_v_rms,
+        1e3 * asked.least_n,
+        1e3 * asked.most_n
+    ));
+    notes.push(
+        "The first line is what the grid saves: a tick evaluates the layers near the finger only. Cycles are estimated \
+         from instructions by class for a Cortex-M4F. Rows of the table that the scene cannot ask for are not computed."
+            .to_owned(),
+    );
+    let image = match image_bytes(program, counts) {
+        Some(bytes) => format!("about {bytes:.0} bytes, the sum of what each adds to an image without any"),
+        None => {
+            let [least, most] = ["grating_only", "full"].map(|build| counts.get(&format!("g474.flash_{build}")));
+            let shown = |bytes: Option<f64>| bytes.map_or("unknown".to_owned(), |bytes| bytes.to_string());
+            format!("from {} bytes with one kind of layer to {} with everything", shown(least), shown(most))
+        }
+    };
+    notes.push(format!("The smallest image that plays it has the features {}: {image}.", features(program).join(", ")));
+    notes
+}
