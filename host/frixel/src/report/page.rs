@@ -94,8 +94,8 @@ impl Page<'_> {
             let _ = writeln!(page, "<table>");
             for (number, row) in section.table.iter().enumerate() {
                 let tag = if number == 0 { "th" } else { "td" };
-                let cells: String = row.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
-                let _ = writeln!(page, "<tr>{cells}</tr>");
+                let cells: Vec<String> = row.iter().map(|cell| escaped(cell)).collect();
+                let _ = writeln!(page, "<tr><{tag}>{}</{tag}></tr>", cells.join(&format!("</{tag}><{tag}>")));
             }
             let _ = writeln!(page, "</table>\n<p><a href=\"{name}.csv\">{name}.csv</a></p>\n</section>");
         }

@@ -113,13 +113,12 @@ fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
          from instructions by class for a Cortex-M4F. Rows of the table that the scene cannot ask for are not computed."
             .to_owned(),
     );
-    let image = match image_bytes(program, counts) {
-        Some(bytes) => format!("about {bytes:.0} bytes, the sum of what each adds to an image without any"),
-        None => {
-            let [least, most] = ["grating_only", "full"].map(|build| counts.get(&format!("g474.flash_{build}")));
-            let shown = |bytes: Option<f64>| bytes.map_or("unknown".to_owned(), |bytes| bytes.to_string());
-            format!("from {} bytes with one kind of layer to {} with everything", shown(least), shown(most))
-        }
+    let image = if let Some(bytes) = image_bytes(program, counts) {
+        format!("about {bytes:.0} bytes, the sum of what each adds to an image without any")
+    } else {
+        let shown = |build| counts.get(build).map_or("unknown".to_owned(), |bytes| bytes.to_string());
+        let [least, most] = ["g474.flash_grating_only", "g474.flash_full"].map(shown);
+        format!("from {least} bytes with one kind of layer to {most} with everything")
     };
     notes.push(format!("The smallest image that plays it has the features {}: {image}.", features(program).join(", ")));
     notes

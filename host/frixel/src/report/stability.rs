@@ -167,8 +167,10 @@ impl Point {
     }
 }
 
-/// The rows of the table: what they are about, and which points belong to them.
-const GROUPS: [(&str, fn(&Point) -> bool); 7] = [
+/// A row of the table: what it is about, and which points belong to it.
+type Group = (&'static str, fn(&Point) -> bool);
+
+const GROUPS: [Group; 7] = [
     ("no load", |point| point.row.finger == Case::Springs && is_load(point, 0.0)),
     ("0.5 N", |point| point.row.finger == Case::Springs && is_load(point, 0.5)),
     ("2 N", |point| point.row.finger == Case::Springs && is_load(point, 2.0)),
