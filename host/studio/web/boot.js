@@ -76,8 +76,8 @@ function boot(packed, entry, folder) {
   }
 
   const policy =
-    "if this document has a content security policy, it must allow script-src blob: 'wasm-unsafe-eval' and " +
-    "worker-src blob: (docs/studio.md)";
+    "if this document has a content security policy, it must allow script-src blob: 'wasm-unsafe-eval', " +
+    "worker-src blob:, and connect-src for scenes and pictures beside it (docs/studio.md)";
 
   globalThis.studio = { bytes, text, names, moduleUrl, policy };
   moduleUrl(entry)

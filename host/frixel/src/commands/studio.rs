@@ -1,11 +1,12 @@
 //! `frixel studio`: opens the studio in the browser.
 
 use std::env;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
@@ -20,6 +21,25 @@ const BUILT_PAGE: &str = "studio/frixel-studio.html";
 const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
+/// There is no page, and no checkout that could have one.
+const NO_PAGE: &str =
+    "no page is given, and this folder is in no checkout of frixel, which could build one: give --page FILE.html";
+/// Folders of a checkout that the page is made from.
+const SOURCES: [&str; 11] = [
+    "firmware",
+    "hil-sim",
+    "host/driver",
+    "host/felt",
+    "host/play",
+    "host/scene",
+    "host/studio/src",
+    "host/studio/vendor",
+    "host/studio/web",
+    "model",
+    "scenes",
+];
+/// Folders that builds write into, which are as new as the last build.
+const NO_SOURCES: [&str; 2] = ["target", "node_modules"];
 
 #[derive(Debug, Args)]
 pub(super) struct StudioArgs {
@@ -45,15 +65,17 @@ pub(super) fn run(args: &StudioArgs) -> Result<()> {
     Ok(())
 }
 
-/// The absolute path of the page that was given, or of the one that the checkout around the current folder has or
-/// builds.
+/// The absolute path of the page that was given, or of the one that the checkout around the current folder has built.
 fn page(args: &StudioArgs) -> Result<PathBuf> {
     if args.port.is_some() {
         bail!("choose the port in the page, in Chromium or Firefox: leave out --port");
     }
     let page = match &args.page {
         Some(page) => page.clone(),
-        None => page_of_checkout()?,
+        None => {
+            let here = env::current_dir().context(NO_PAGE)?;
+            page_of_checkout(&here, env::var_os("CARGO_TARGET_DIR"))?
+        }
     };
     let path = input::open(&page, u64::MAX).and_then(|_| fs::canonicalize(&page));
     let page = page.display();
@@ -62,31 +84,35 @@ fn page(args: &StudioArgs) -> Result<PathBuf> {
     })
 }
 
-fn page_of_checkout() -> Result<PathBuf> {
-    let here = env::current_dir().unwrap_or_default();
+/// The page of the checkout around a folder, whose build artefacts are in `target`, if that is not the usual folder.
+fn page_of_checkout(here: &Path, target: Option<OsString>) -> Result<PathBuf> {
     let mut folders = here.ancestors();
-    let checkout = folders.find(|folder| folder.join(SIGN_OF_A_CHECKOUT).is_file()).context(
-        "no page is given, and this folder is in no checkout of frixel that could build it: give --page FILE.html",
-    )?;
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| checkout.join(TARGET), PathBuf::from);
-    let built = target.join(BUILT_PAGE);
-    if built.is_file() { Ok(built) } else { build(checkout) }
+    let checkout = folders.find(|folder| folder.join(SIGN_OF_A_CHECKOUT).is_file()).context(NO_PAGE)?;
+    let page = checkout.join(target.unwrap_or_else(|| TARGET.into())).join(BUILT_PAGE);
+    let built = fs::metadata(&page).and_then(|page| page.modified()).map_err(|_| {
+        anyhow!(
+            "{} is not there: run `cargo xtask studio` in {}, which builds it; it needs the target \
+             wasm32-unknown-unknown (`rustup target add wasm32-unknown-unknown`), and takes some minutes the first time",
+            page.display(),
+            checkout.display()
+        )
+    })?;
+    if SOURCES.iter().any(|folder| has_newer(&checkout.join(folder), built)) {
+        note(format_args!("frixel: this page is older than its sources: `cargo xtask studio` builds it anew"));
+    }
+    Ok(page)
 }
 
-/// Builds the page in a checkout, and returns its path.
-fn build(checkout: &Path) -> Result<PathBuf> {
-    let failed = |reason: String| anyhow!("the page could not be built: `cargo xtask studio` {reason}");
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.current_dir(checkout).args(["xtask", "studio"]).stderr(Stdio::inherit());
-    let output = command.output().map_err(|error| failed(format!("could not be started ({error})")))?;
-    if !output.status.success() {
-        return Err(failed(format!("failed ({})", output.status)));
-    }
-    // The path is the last line of standard output; the progress goes to standard error.
-    let printed = String::from_utf8_lossy(&output.stdout);
-    let path = printed.lines().last().ok_or_else(|| failed("printed no path".to_owned()))?;
-    Ok(PathBuf::from(path))
+/// Whether a folder has a file, in whatever folder below, that was changed after a time.
+fn has_newer(folder: &Path, time: SystemTime) -> bool {
+    let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.any(|entry| match entry.metadata() {
+        Ok(found) if found.is_dir() => {
+            !NO_SOURCES.iter().any(|name| entry.file_name() == *name) && has_newer(&entry.path(), time)
+        }
+        Ok(found) => found.modified().is_ok_and(|modified| modified > time),
+        Err(_) => false,
+    })
 }
 
 /// Opens a page in the first browser of `BROWSER` that starts, or else in that of the desktop.
@@ -125,6 +151,8 @@ fn start(words: &[String]) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     #[test]
@@ -152,5 +180,30 @@ mod tests {
         let nowhere = StudioArgs { page: Some("nowhere.html".into()), no_browser: true, port: None };
         let error = page(&nowhere).unwrap_err().to_string();
         assert!(error.contains("nowhere.html cannot be read (") && error.contains("`cargo xtask studio`"), "{error}");
+    }
+
+    #[test]
+    fn a_checkout_has_its_page_in_the_folder_of_build_artefacts_or_says_how_to_build_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkout = folder.path();
+        let within = checkout.join("docs");
+        assert!(matches!(page_of_checkout(checkout, None), Err(StudioError::NoPage)));
+        let sign = checkout.join(SIGN_OF_A_CHECKOUT);
+        for file in [&sign, &within.join("a.md")] {
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, "").unwrap();
+        }
+        let error = page_of_checkout(&within, None).unwrap_err().to_string();
+        assert!(error.contains("`cargo xtask studio`") && error.contains("rustup target add"), "{error}");
+        for (target, expected) in [(None, TARGET), (Some("made".into()), "made")] {
+            let page = checkout.join(expected).join(BUILT_PAGE);
+            fs::create_dir_all(page.parent().unwrap()).unwrap();
+            fs::write(&page, "").unwrap();
+            assert_eq!(page_of_checkout(&within, target).unwrap(), page);
+        }
+        let after = |seconds| SystemTime::UNIX_EPOCH + Duration::from_secs(seconds);
+        fs::File::options().write(true).open(&sign).unwrap().set_modified(after(100)).unwrap();
+        let sources = checkout.join("host");
+        assert!(has_newer(&sources, after(99)) && !has_newer(&sources, after(100)));
     }
 }
