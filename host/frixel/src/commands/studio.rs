@@ -187,7 +187,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let checkout = folder.path();
         let within = checkout.join("docs");
-        assert!(matches!(page_of_checkout(checkout, None), Err(StudioError::NoPage)));
+        assert_eq!(page_of_checkout(checkout, None).unwrap_err().to_string(), NO_PAGE);
         let sign = checkout.join(SIGN_OF_A_CHECKOUT);
         for file in [&sign, &within.join("a.md")] {
             fs::create_dir_all(file.parent().unwrap()).unwrap();

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use frixel_model::ParameterError;
 use thiserror::Error;
 
-
 /// Why a report could not be written.
 #[derive(Debug, Error)]
 pub(crate) enum ReportError {
