@@ -116,8 +116,8 @@ mod tests {
 
     /// Appends a copy of rows.
     fn append(rows: &mut Vec<Row>, from: usize, count: usize, later_s: f64) {
-        let copy = rows[from..from + count].to_vec().into_iter();
-        rows.extend(copy.map(|row| Row {
+        let copy = rows[from..from + count].to_vec();
+        rows.extend(copy.into_iter().map(|row| Row {
             number: row.number + LATER,
             time_s: row.time_s.map(|time_s| time_s + later_s),
             ..row
@@ -135,7 +135,7 @@ mod tests {
         };
         let (mut load_n, mut measured_n) = (0.5, [0.0; 2]);
         let mut row = |index: usize| {
-            let voltage_v_rms = if index / 25 % 2 == 0 { 0.0 } else { 150.0 };
+            let voltage_v_rms = if (index / 25).is_multiple_of(2) { 0.0 } else { 150.0 };
             load_n += 0.002 * random() - 1e-3 * (load_n - 0.5);
             if index.is_multiple_of(held) {
                 let friction_n = 0.5 * load_n + 0.07 * voltage_v_rms / 150.0;
