@@ -15,6 +15,8 @@
 //! assert_eq!(ticker.tick(&Sense::default()), Drive::default());
 //! ```
 //!
+//! `examples/desktop.rs` fills an [`Active`] from a finger and a scene, and plays it.
+//!
 //! A board builds this crate for speed, and all others for size.
 //!
 //! The Cargo features `stream` and `sine-carrier` enable what a scene may use. The documentation of `frixel-session`
