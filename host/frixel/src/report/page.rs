@@ -90,8 +90,8 @@ impl Page<'_> {
         // Writing to a string cannot fail.
         for section in self.sections {
             let Section { name, question, .. } = section;
-            let _ = writeln!(page, "<section id=\"{name}\">\n<h2>{}</h2>\n{}", escaped(question), section.svg()?);
-            let _ = writeln!(page, "<table>");
+            let _ =
+                writeln!(page, "<section id=\"{name}\">\n<h2>{}</h2>\n{}\n<table>", escaped(question), section.svg()?);
             for (number, row) in section.table.iter().enumerate() {
                 let tag = if number == 0 { "th" } else { "td" };
                 let cells: Vec<String> = row.iter().map(|cell| escaped(cell)).collect();

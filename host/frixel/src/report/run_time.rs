@@ -77,8 +77,7 @@ pub(super) fn section(drawn: &DrawnFinger, counts: &Counts) -> Result<Section, R
             Some(format!("{}, {cycles}", counts.get(&format!("m4f.{what}"))?))
         });
         let title = if size.is_empty() { name.to_owned() } else { format!("{name}, {size}") };
-        let nanoseconds = format!("{:.0}", 1e9 * method.seconds);
-        table.push(vec![title, digits(method.error), nanoseconds, cost.unwrap_or_default()]);
+        table.push(vec![title, digits(method.error), format!("{:.0}", 1e9 * method.seconds), cost.unwrap_or_default()]);
     }
     let mut rows = vec![row(
         "method|size|largest_relative_error|worst_at|measured_run_time_over_f64_closed_form|measured_nanoseconds",
