@@ -100,12 +100,11 @@ fn page(args: &StudioArgs) -> Result<PathBuf, StudioError> {
     if args.port.is_some() {
         return Err(StudioError::Port);
     }
-    let page = match &args.page {
-        Some(page) => page.clone(),
-        None => {
-            let here = env::current_dir().map_err(|_| StudioError::NoPage)?;
-            page_of_checkout(&here, env::var_os("CARGO_TARGET_DIR"))?
-        }
+    let page = if let Some(page) = &args.page {
+        page.clone()
+    } else {
+        let here = env::current_dir().map_err(|_| StudioError::NoPage)?;
+        page_of_checkout(&here, env::var_os("CARGO_TARGET_DIR"))?
     };
     let path = input::open(&page, u64::MAX).and_then(|_| fs::canonicalize(&page));
     path.map_err(|source| StudioError::Page { path: page.display().to_string(), source })
