@@ -70,12 +70,10 @@ fn page(args: &StudioArgs) -> Result<PathBuf> {
     if args.port.is_some() {
         bail!("choose the port in the page, in Chromium or Firefox: leave out --port");
     }
-    let page = match &args.page {
-        Some(page) => page.clone(),
-        None => {
-            let here = env::current_dir().context(NO_PAGE)?;
-            page_of_checkout(&here, env::var_os("CARGO_TARGET_DIR"))?
-        }
+    let page = if let Some(page) = &args.page {
+        page.clone()
+    } else {
+        page_of_checkout(&env::current_dir().context(NO_PAGE)?, env::var_os("CARGO_TARGET_DIR"))?
     };
     let path = input::open(&page, u64::MAX).and_then(|_| fs::canonicalize(&page));
     let page = page.display();

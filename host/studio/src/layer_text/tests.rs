@@ -112,7 +112,7 @@ fn a_number_is_changed_where_it_stands_and_nothing_else() {
             let mut paths = Vec::new();
             numbers(&mut expected, &[], &mut paths);
             let (path, number) = paths.swap_remove(at);
-            let is_same = *number == value.parse::<f64>().unwrap();
+            let is_same = Ok(*number) == value.parse();
             *number = value.parse().unwrap();
             let after = set(&text, &path.clone().into(), value);
             assert_eq!(parsed(&after), expected, "{path:?} = {value}");
@@ -253,5 +253,5 @@ fn what_cannot_be_edited_is_an_error() {
     assert_eq!(no_table.to_string(), "the text has no table layer.0.repeat: write it first");
     assert!(matches!(error("", json!({ "turn": 1 })), TextError::Request));
     assert!(matches!(error("", json!({ "copy": "one" })), TextError::Request));
-    assert!(matches!(edit("set\0a = 1\0a\0002"), Err(TextError::Request)));
+    assert!(matches!(edit("set\0a = 1\0a\0b"), Err(TextError::Request)));
 }
