@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::commands::error::of_play;
+use crate::commands::error::{at, of_play};
 use crate::output::Report;
 use crate::rigs::RecordedLink;
 use anyhow::{Result, bail};
@@ -32,7 +32,7 @@ pub(super) fn follow<L: RecordedLink>(
     let is_simulated = plan.target.is_virtual_time() || device.hello().board.is_simulated();
     check_log(args, is_simulated)?;
     if let (Some(path), Some(rows)) = (&args.record, plan.rows()) {
-        check_length(rows, play_fields().len()).map_err(CommandError::recording(path))?;
+        check_length(rows, play_fields().len()).map_err(at(path.display()))?;
     }
     let metadata = files.sources().map(|sources| metadata(args, sources, &plan, &device, is_simulated));
     let outputs = Outputs::create(args, files, is_simulated, &plan.program, metadata)?;
