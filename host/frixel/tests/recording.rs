@@ -362,9 +362,12 @@ fn a_calibration_is_parquet_by_its_name_and_fits_the_same() {
 #[test]
 fn an_interrupted_recording_is_whole_and_plays_again() {
     let lines = "wait 0.05\nlayer wall gain 0.5\n";
-    for (what, input) in [("", ""), ("--csv-hz 40000", ""), ("--csv-hz 40000 --control", lines)] {
+    // Nearly as long as a recording may be.
+    for (seconds, what, input) in
+        [(5000, "", ""), (130, "--csv-hz 40000", ""), (130, "--csv-hz 40000 --control", lines)]
+    {
         let folder = folder();
-        let line = format!("play scene.toml --seconds 86400 --record a.parquet --seed 3 {what}");
+        let line = format!("play scene.toml --seconds {seconds} --record a.parquet --seed 3 {what}");
         let mut command = frixel();
         command.args(line.trim_end().split(' ')).current_dir(folder.path());
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
@@ -372,6 +375,7 @@ fn an_interrupted_recording_is_whole_and_plays_again() {
         process.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
         let rows = folder.path().join("frixel-out/.felt.csv.frixel-tmp");
         while fs::metadata(&rows).map_or(0, |file| file.len()) < 100_000 {
+            assert_eq!(process.try_wait().unwrap(), None, "the play ended before it was interrupted");
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         let pid = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
