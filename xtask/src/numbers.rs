@@ -12,7 +12,7 @@ use crate::command::root;
 const PAGE: &str = "docs/inside/numbers.md";
 /// Lines before and behind what is generated.
 const BEGIN: &str = "<!-- `cargo xtask numbers` writes this part -->\n";
-const END: &str = "<!-- end of that part -->\n";
+const END: &str = "<!-- end -->\n";
 
 /// A table: its heading, the heading of its first column, further columns (heading, prefix of the figures' names,
 /// suffix), and rows (text, the rest of the figures' names).

@@ -7,6 +7,9 @@ use std::{env, fs, thread};
 /// The environment variable that has tests write their golden files anew.
 const BLESS: &str = "FRIXEL_BLESS";
 
+/// The line behind a part of a page that a test makes.
+const PART_END: &str = "<!-- end -->";
+
 /// Whether golden files are to be written anew.
 pub fn is_blessing() -> bool {
     env::var_os(BLESS).is_some()
@@ -28,6 +31,24 @@ pub fn hold(path: &Path, text: &str) {
         let difference = first_difference(&held, text);
         panic!("{} is not what this test makes. {difference}\n{}", path.display(), how_to_bless());
     }
+}
+
+/// As [`hold`], for the part of a page between the line that begins with `mark` and the line `<!-- end -->`.
+///
+/// # Panics
+///
+/// Also if the page cannot be read or has no such lines.
+#[track_caller]
+pub fn hold_part(path: &Path, mark: &str, part: &str) {
+    let page = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let split = || {
+        let (before, rest) = page.split_at(page.find(mark)?);
+        let (line, rest) = rest.split_once('\n')?;
+        let (_, after) = rest.split_at(rest.find(PART_END)?);
+        Some(format!("{before}{line}\n\n{part}\n{after}"))
+    };
+    let text = split().unwrap_or_else(|| panic!("{} has no lines `{mark}` and `{PART_END}`", path.display()));
+    hold(path, &text);
 }
 
 /// The first line in which two texts differ.

@@ -45,11 +45,7 @@ fn the_page_says_which_scenes_the_picos_take() {
         });
         let _ = writeln!(table, "| {name} | {} |", cells.join(" | "));
     }
-    let mut page = fs::read_to_string(repository().join("docs/pico.md")).unwrap();
-    let start = page.find("<!-- scenes -->\n").unwrap() + "<!-- scenes -->\n".len();
-    let end = start + page[start..].find("<!-- end -->").unwrap();
-    page.replace_range(start..end, &format!("\n{table}\n"));
-    golden::hold(&repository().join("docs/pico.md"), &page);
+    golden::hold_part(&repository().join("docs/pico.md"), "<!-- scenes", &table);
 }
 
 /// The scene that the page of bring-up names drives the NUCLEO above the voltage from which its monitor is held against

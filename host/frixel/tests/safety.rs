@@ -227,18 +227,10 @@ fn gallery() -> String {
     text
 }
 
-/// A page with a table written anew behind its mark.
-fn with_table(page: &str, mark: &str, table: &str) -> String {
-    let start = page.find(mark).unwrap();
-    let start = start + page[start..].find('\n').unwrap() + 1;
-    let end = start + page[start..].find("<!-- end -->").unwrap();
-    format!("{}\n{table}\n{}", &page[..start], &page[end..])
-}
-
 #[test]
 fn the_pages_say_what_is_felt_within_the_limits() {
-    golden::hold(&repository().join("docs/safety.md"), &with_table(PAGE, "<!-- fingers", &fingers()));
-    golden::hold(&repository().join("docs/first-board.md"), &with_table(FIRST_BOARD, "<!-- gallery", &gallery()));
+    golden::hold_part(&repository().join("docs/safety.md"), "<!-- fingers", &fingers());
+    golden::hold_part(&repository().join("docs/first-board.md"), "<!-- gallery", &gallery());
 }
 
 /// The page's other numbers are printed by its command.

@@ -1,17 +1,16 @@
 //! What a bad line leaves of an upload and of a stream: nothing that arrives damaged is accepted, and what cannot get
 //! through ends with a sentence. The test of three seconds holds the table of `docs/scenarios.md`, and `FRIXEL_BLESS=1
 //! cargo test -p frixel-lab --test main goodput` writes it; `cargo xtask soak faults` streams for longer.
-#![allow(clippy::disallowed_methods, reason = "the tests read the documentation")]
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
 use frixel_driver::{Bitmap, ByteStream, Device, LinkClosed, PollingLink, StreamSettings, StreamStatus, Upload};
 use frixel_hil_sim::{BoardMemory, LineNoise, NoiseConfig, Rig, RigConfig, Stroke};
 use frixel_scene::{Program, Scene, compile};
+use frixel_testkit::golden;
 use frixel_wire::frame::Decoder;
 use frixel_wire::scene::bitmap_crc32;
 use rayon::prelude::*;
@@ -219,20 +218,10 @@ fn table(rows: &[Row], stream_s: f64) -> String {
 #[test]
 fn nothing_damaged_is_accepted_and_what_does_not_get_through_ends_with_a_sentence() {
     const STREAM_S: f64 = 3.0;
-    const BEGIN: &str = "<!-- goodput -->\n";
-    const END: &str = "<!-- end -->\n";
     let rows = rows(STREAM_S);
     check(&rows, STREAM_S);
-    let table = table(&rows, STREAM_S);
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios.md");
-    let text = fs::read_to_string(&file).unwrap();
-    let (before, rest) = text.split_once(BEGIN).unwrap();
-    let (found, after) = rest.split_once(END).unwrap();
-    if std::env::var_os("FRIXEL_BLESS").is_some() {
-        fs::write(&file, format!("{before}{BEGIN}\n{table}\n{END}{after}")).unwrap();
-    } else {
-        assert_eq!(found.trim(), table.trim(), "FRIXEL_BLESS=1 cargo test -p frixel-lab --test main goodput");
-    }
+    golden::hold_part(&file, "<!-- goodput", &table(&rows, STREAM_S));
 }
 
 #[test]
