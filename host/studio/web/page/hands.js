@@ -111,8 +111,7 @@ export class Hands {
   }
 
   /**
-   * Takes the layers of a scene that was checked. Where their texts cannot be read here, the scene plays all the same,
-   * and is not edited on the map.
+   * Takes the layers of a scene that was checked.
    * @param {Checked} check
    * @param {Files} files That were checked.
    */
@@ -126,13 +125,7 @@ export class Hands {
       this.#draw(false);
       return;
     }
-    try {
-      this.#take(check, files);
-      this.#mode.whyNot = "";
-    } catch (error) {
-      this.#mode.whyNot = `This scene is edited in its text, not on the map: ${sentenceOf(error)}.`;
-      if (this.isEditing) this.setEditing(true);
-    }
+    this.#take(check, files);
   }
 
   /**
@@ -154,10 +147,7 @@ export class Hands {
     const before = this.selected;
     if (!this.#layers.take(check, files, project.entry)) return;
     const { key, beginsEdit } = this.#selection.follow(before, this.isEditing);
-    if (beginsEdit && !this.isEditing) {
-      this.#mode.whyNot = "";
-      this.setEditing(true);
-    }
+    if (beginsEdit && !this.isEditing) this.setEditing(true);
     this.#reselect(key);
     // What was said was about the layers before.
     this.say(this.selected?.at === undefined ? (this.selected?.place.whyNotMoved ?? "") : "");

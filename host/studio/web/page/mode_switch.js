@@ -2,14 +2,11 @@
 // @ts-check
 
 import { byId, element } from "./dom.js";
-import { notify } from "./notices.js";
 
 export class ModeSwitch {
   #feel = element("button", { type: "button" }, "Feel");
   #edit = element("button", { type: "button", title: "Add, select, move and resize layers on the map" }, "Edit");
   isEditing = false;
-  /** Why the scene that plays cannot be edited on the map, or "". */
-  whyNot = "";
   /** Another mode begins. */
   onChange = () => {};
 
@@ -24,8 +21,7 @@ export class ModeSwitch {
 
   /** @param {boolean} isEditing */
   set(isEditing) {
-    if (isEditing && this.whyNot) notify(this.whyNot, undefined, { beside: this.#edit });
-    this.isEditing = isEditing && !this.whyNot;
+    this.isEditing = isEditing;
     this.#show();
     this.onChange();
   }
