@@ -11,7 +11,8 @@ use crate::bench::{Bench, HOST_TIMEOUT_TICKS, program};
 use crate::cable::Cable;
 use crate::emulator;
 
-/// Ticks of the millisecond within which a board acts on the host timeout (docs/safety.md). Most runs take 4 at most.
+/// Ticks of the millisecond within which a board acts on the host timeout (docs/safety.md). The last frame is heard
+/// after 2 to 6: a turn of the main loop takes one or two, and a sign of life waits for one order of the finger.
 const HEARD_WITHIN_TICKS: u32 = 40;
 
 #[test]
@@ -63,7 +64,7 @@ fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
     let last_driven = records.iter().rev().find(|record| record.drive != Drive::default()).unwrap();
     let ticks = last_driven.tick - last_byte;
     assert!(ticks <= HOST_TIMEOUT_TICKS + HEARD_WITHIN_TICKS, "driven for {ticks} ticks after the last byte");
-    assert!(ticks >= HOST_TIMEOUT_TICKS - HEARD_WITHIN_TICKS, "driven for {ticks} ticks only");
+    assert!(ticks >= HOST_TIMEOUT_TICKS, "driven for {ticks} ticks only");
 
     let hello = *Device::connect(Cable::plug(&bench.board)).unwrap().hello();
     assert_eq!((hello.state, hello.last_fault), (State::Disarmed, None));
