@@ -1,4 +1,4 @@
-//! `cargo xtask ci`: the checks that must pass before a change is merged.
+//! `cargo xtask ci`: the checks that must pass, beside `cargo test`, before a change is merged.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -10,8 +10,10 @@ use crate::{bench, budgets, fuzz, pico_rig, portability, python, studio_tests};
 
 /// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
-/// Test threads per processor: many tests of the command wait for other processes.
-const TEST_THREADS_PER_PROCESSOR: usize = 2;
+/// Packages whose tests `cargo test` leaves out. Without the two that have none, these are compiled with the same
+/// features as for `cargo test`, and so only once.
+const BESIDE_DEFAULT: [&str; 7] =
+    ["frixel-board", "frixel-drivers", "frixel-exchange", "frixel-fuzz", "frixel-studio", "frixel-testkit", "xtask"];
 /// How long each fuzz target runs.
 const FUZZ_TIME: Duration = Duration::from_mins(2);
 
@@ -91,16 +93,16 @@ fn lints() -> Result<(), String> {
     cargo("lints", ".", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"], &[])
 }
 
+/// The tests that `cargo test` leaves out and that need no other program.
 fn tests() -> Result<(), String> {
-    let threads = TEST_THREADS_PER_PROCESSOR * std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = [("RUST_TEST_THREADS", &*threads.to_string())];
-    cargo("tests", ".", &["test", "--workspace", "--locked"], &threads)
+    let packages = BESIDE_DEFAULT.iter().flat_map(|package| ["--package", package]);
+    cargo("tests", ".", &["test", "--locked"].into_iter().chain(packages).collect::<Vec<_>>(), &[])
 }
 
 /// The test programs named `emulated`, which plain `cargo test` leaves out.
 fn emulators() -> Result<(), String> {
     pico_rig::test_scripts()?;
-    cargo("tests on emulators", ".", &["test", "--workspace", "--locked", "--test", "emulated"], &[])
+    cargo("tests on emulators", ".", &["test", "--locked", "--test", "emulated"], &[])
 }
 
 fn docs() -> Result<(), String> {
@@ -202,7 +204,24 @@ fn cargo(name: &str, folder: &str, arguments: &[&str], variables: &[(&str, &str)
 }
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
+    use crate::command::text_of;
+
+    /// Packages without a test.
+    const WITHOUT_TESTS: [&str; 2] = ["frixel-cortex-m", "frixel-python"];
+
+    #[test]
+    fn every_package_is_tested_here_or_by_cargo_test() {
+        let metadata = text_of(cargo_in(".").args(["metadata", "--locked", "--no-deps", "--format-version", "1"]));
+        let metadata: serde_json::Value = serde_json::from_str(&metadata.unwrap()).unwrap();
+        let defaults = metadata["workspace_default_members"].as_array().unwrap();
+        let packages = metadata["packages"].as_array().unwrap();
+        let beside = packages.iter().filter(|package| !defaults.contains(&package["id"]));
+        let beside: BTreeSet<&str> = beside.map(|package| package["name"].as_str().unwrap()).collect();
+        assert_eq!(beside, BESIDE_DEFAULT.into_iter().chain(WITHOUT_TESTS).collect());
+    }
 
     fn manifest(folder: &str, name: &str) -> toml::Table {
         toml::from_str(&fs::read_to_string(root().join(folder).join(name)).unwrap()).unwrap()
