@@ -55,13 +55,13 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
-    /// What a person should know before playing ([`notice`]), encoded after the limits.
+    /// Notices for a person before a play ([`notice`]), encoded after the limits.
     pub notices: u8,
 }
 
 /// Bits of [`Hello::notices`]: what a person should know of a board before playing.
 pub mod notice {
-    /// The processor's option bytes are not those that the board needs, such as the brown-out level and the start of
+    /// The processor's option bytes are wrong for this board, such as the brown-out level and the start of
     /// the watchdog. The board refuses to arm ([`Refusal::OptionBytes`](crate::message::Refusal::OptionBytes)).
     pub const OPTION_BYTES: u8 = 1;
     /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because they were

@@ -1,4 +1,4 @@
-//! What the command reads: regular files and standard input, each up to a stated size. [`open`] opens each file.
+//! Input of the command: regular files and standard input, each up to a stated size.
 
 use std::io::{self, BufRead, Read, Seek, SeekFrom};
 use std::path::Path;

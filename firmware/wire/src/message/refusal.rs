@@ -92,7 +92,7 @@ pub enum Refusal {
     },
     /// The playing scene declares its layers fixed (`frixel_layers::Header::layers_fixed`).
     LayersFixed,
-    /// The processor's option bytes are not those that the board needs ([`crate::hello::notice::OPTION_BYTES`]).
+    /// The processor's option bytes are wrong for this board ([`crate::hello::notice::OPTION_BYTES`]).
     OptionBytes,
 }
 

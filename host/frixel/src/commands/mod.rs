@@ -176,7 +176,7 @@ impl Cli {
     }
 }
 
-/// What finds a detection threshold.
+/// Tip for a detection threshold, which Python finds.
 const IN_PYTHON: &str = "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python";
 
 /// The error of an invalid command line. A command that is part of another one is answered by its whole name,

@@ -45,7 +45,7 @@ pub(crate) fn writing(path: &Path) -> impl FnOnce(io::Error) -> anyhow::Error {
     move |error| anyhow!("{} cannot be written ({error}): {advice}", path.display())
 }
 
-/// What to do about a name that cannot be used.
+/// Advice for a name that cannot be used.
 fn another(option: &str) -> String {
     let name = if option == "--out" { "folder" } else { "name" };
     format!("give another {name} to {option}")

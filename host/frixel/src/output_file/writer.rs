@@ -52,7 +52,7 @@ struct NewFile {
     keeps_rows: bool,
     /// Whether no file has the name: one that comes meanwhile keeps it.
     is_new: bool,
-    /// What is there, without a part of a row.
+    /// Length of the whole rows in the file, bytes.
     len: u64,
     has_rows: bool,
     /// Why bytes are missing at the end. Nothing is written behind a gap.
@@ -109,7 +109,7 @@ impl FileWriter {
         Ok((Self::new(path, Sink::File(new)), earlier))
     }
 
-    /// Goes on behind `rows`, which are those that [`Self::recording`] has returned.
+    /// Continues after `rows`, which [`Self::recording`] returned.
     pub(super) fn go_on(&mut self, rows: &str) -> Result<()> {
         let Sink::File(new) = &mut self.sink else { return Ok(()) };
         (new.len, new.has_rows) = (rows.len() as u64, true);

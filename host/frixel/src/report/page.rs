@@ -28,7 +28,7 @@ pub(super) struct Section {
     pub(super) panel: Panel,
     /// The table; its first row is the header.
     pub(super) table: Vec<Vec<String>>,
-    /// What a reader needs to know beside the table, a paragraph each.
+    /// Explanations below the tables, one paragraph each.
     pub(super) notes: Vec<String>,
     /// The numbers behind the plot; the first row is the header.
     pub(super) rows: Vec<Vec<String>>,

@@ -1,4 +1,4 @@
-//! What a scene needs of the board, and what is left out.
+//! Resources of the board that a scene uses, and those that it leaves out.
 
 use frixel_chart::{Axis, Line, Look, Mark, PALETTE, Panel};
 use frixel_felt::check::BoardCosts;
@@ -13,7 +13,7 @@ use super::Subject;
 use super::counts::Counts;
 use super::page::{Section, row};
 
-/// What a scene needs of something that there is for every scene: what, its unit, needed, whole.
+/// A resource of the board: its name, its unit, the amount that the scene uses, and the whole.
 type Part = (&'static str, &'static str, f64, f64);
 
 pub(super) fn section(subject: &Subject, counts: &Counts) -> Section {
