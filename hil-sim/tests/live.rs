@@ -33,6 +33,7 @@ fn stripes(crest_n: f32, cycles_per_m_x: f32) -> Record {
         phase_turns: 0.1,
         trough_n: 0.001,
         crest_n,
+        drift_hz: 0.0,
     });
     Record { blend: Blend::Add, ..record(layer) }
 }

@@ -59,6 +59,7 @@ fn stripes(board: Board) -> Journal {
                 phase_turns: 0.3,
                 trough_n: 0.001,
                 crest_n: 0.014,
+                drift_hz: 0.0,
             }),
         };
         // No hello, whose bytes would tell of a changed limit before any drive does.
@@ -115,6 +116,7 @@ fn a_bad_day_is_the_same() {
                 phase_turns: -3.2,
                 trough_n: 0.0,
                 crest_n: 0.006,
+                drift_hz: 0.0,
             }),
             Layer::Bitmap(Bitmap {
                 crc32,
@@ -134,6 +136,7 @@ fn a_bad_day_is_the_same() {
                 phase_turns: 0.0,
                 trough_n: 0.0,
                 crest_n: 0.02,
+                drift_hz: 0.0,
             }),
             Layer::Stream(Stream { low_n: -0.002, high_n: 0.008 }),
         ];
@@ -230,6 +233,7 @@ fn the_law_of_a_finger_is_the_same() {
                     phase_turns: 0.0,
                     trough_n,
                     crest_n,
+                    drift_hz: 0.0,
                 })
             };
             for (trough_n, crest_n) in [(0.0, 2e-4), (1e-4, 0.03), (0.02, 0.1)] {

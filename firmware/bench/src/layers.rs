@@ -24,6 +24,7 @@ pub(crate) const GRATING: Layer = Layer::Grating(Grating {
     phase_turns: 0.2,
     trough_n: 0.0,
     crest_n: 0.026,
+    drift_hz: 0.0,
 });
 
 const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };

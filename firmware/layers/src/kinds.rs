@@ -7,15 +7,13 @@ pub(crate) mod button;
 pub(crate) mod constant;
 #[cfg(feature = "direction")]
 pub(crate) mod direction;
-#[cfg(feature = "drift")]
-pub(crate) mod drift;
 #[cfg(feature = "edge")]
 pub(crate) mod edge;
-#[cfg(any(feature = "grating", feature = "drift"))]
+#[cfg(feature = "grating")]
 pub(crate) mod grating;
 #[cfg(feature = "noise")]
 pub(crate) mod noise;
-#[cfg(any(feature = "rings", feature = "drift"))]
+#[cfg(feature = "rings")]
 pub(crate) mod rings;
 #[cfg(feature = "speed")]
 pub(crate) mod speed;
@@ -182,12 +180,8 @@ kinds! {
     10 => Rings in rings, feature "rings" bit 11;
     /// Spokes around a middle.
     11 => Spokes in spokes, feature "spokes" bit 12;
-    /// Parallel stripes that move.
-    12 => DriftingGrating in drift, feature "drift" bit 14;
-    /// Rings that move outwards.
-    13 => DriftingRings in drift, feature "drift" bit 14;
     /// Friction that depends on the direction of the slide.
-    14 => Direction in direction, feature "direction" bit 15;
+    12 => Direction in direction, feature "direction" bit 14;
 }
 
 // The session answers for streams, too.

@@ -24,12 +24,14 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
 /// How much a phase of this frequency grows in a tick: steps of 2^-32 turns, modulo a turn. The frequency is less than
 /// half of the tick rate, and may be negative.
 #[cfg_attr(
-    not(any(feature = "vibration", feature = "drift")),
+    not(any(feature = "vibration", feature = "grating", feature = "rings")),
     allow(dead_code, reason = "only these change with time")
 )]
 pub(crate) fn steps_per_tick(frequency_hz: f32, tick_hz: u32) -> u32 {
-    let steps = f64::from(frequency_hz) / f64::from(tick_hz) * (1u64 << 32) as f64;
-    (if steps < 0.0 { steps - 0.5 } else { steps + 0.5 }) as i32 as u32
+    // Units of 2^-32 Hz are finer than those of any frequency that is accepted.
+    let turns = (frequency_hz * (1u64 << 32) as f32) as i64;
+    let half = if turns < 0 { -i64::from(tick_hz / 2) } else { i64::from(tick_hz / 2) };
+    ((turns + half) / i64::from(tick_hz)) as u32
 }
 
 /// The refusal of a layer if the scene already has the most layers of its kind that a board accepts.

@@ -247,6 +247,7 @@ fn a_grating_swings_between_trough_and_crest() {
             phase_turns: 0.25,
             trough_n: 0.25,
             crest_n: 1.25,
+            drift_hz: 0.0,
         }));
         for (eighths, height) in expected {
             let y_m = (eighths as f32 / 8.0 - 0.25) / 500.0;
@@ -256,19 +257,17 @@ fn a_grating_swings_between_trough_and_crest() {
 }
 
 /// Around 2^31 and 2^32 ticks, too, the phase is a tick number times the step, and nothing jumps.
-#[cfg(feature = "drift")]
+#[cfg(all(feature = "grating", feature = "rings"))]
 #[test]
 fn what_drifts_is_exact_after_any_number_of_ticks() {
-    use crate::{DriftingGrating, DriftingRings, Grating, Rings, Wave};
+    use crate::{Grating, Rings, Wave};
     let (wave, trough_n, crest_n) = (Wave::Sine, 0.0, 1.0);
-    let grating = Grating { wave, cycles_per_m_x: 100.0, cycles_per_m_y: 0.0, phase_turns: 0.125, trough_n, crest_n };
-    let rings = Rings { wave, x_m: 0.0, y_m: 0.0, cycles_per_m: 100.0, trough_n, crest_n };
     for drift_hz in [2.5_f32, -0.01, 333.3] {
         let steps = (f64::from(drift_hz) / 40_000.0 * 2_f64.powi(32)).round();
-        let kinds = [
-            (Layer::DriftingGrating(DriftingGrating { grating, drift_hz }), 0.125),
-            (Layer::DriftingRings(DriftingRings { rings, drift_hz }), 0.0),
-        ];
+        let (cycles_per_m_x, cycles_per_m_y, phase_turns) = (100.0, 0.0, 0.125);
+        let grating = Grating { wave, cycles_per_m_x, cycles_per_m_y, phase_turns, trough_n, crest_n, drift_hz };
+        let rings = Rings { wave, x_m: 0.0, y_m: 0.0, cycles_per_m: 100.0, trough_n, crest_n, drift_hz };
+        let kinds = [(Layer::Grating(grating), 0.125), (Layer::Rings(rings), 0.0)];
         for (kind, phase_turns) in kinds {
             let mut bench = Bench::new();
             let layer = bench.kind(kind);

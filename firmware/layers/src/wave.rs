@@ -8,12 +8,10 @@ use crate::cost::Cost;
 use crate::kind::measured_cost;
 use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, form, put_form, range};
+use crate::prepare::steps_per_tick;
 
 /// 2^-32: converts a phase in integer steps to turns.
 pub(crate) const TURNS_PER_STEP: f32 = 1.0 / (1u64 << 32) as f32;
-
-/// Bytes of a record that a grating or rings take.
-pub(crate) const GRATING_LEN: usize = 24;
 
 const SINE: u8 = 0;
 const SQUARE: u8 = 1;
@@ -81,6 +79,32 @@ impl Parameter for Wave {
             Self::Square { duty } => range::DUTY.check(*duty, layer),
             Self::Sine | Self::Triangle | Self::Saw => Ok(()),
         }
+    }
+}
+
+/// Phase of a wave that moves: as exact after 2^32 ticks as after one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Phase {
+    /// Phase at tick 0, in turns.
+    turns: f32,
+    /// Steps of 2^-32 turns by which the phase falls, modulo a turn; 0 at rest.
+    steps_per_tick: u32,
+}
+
+impl Phase {
+    /// The phase of a wave that passes a place `drift_hz` times a second.
+    pub(crate) fn new(turns: f32, drift_hz: f32, tick_hz: u32) -> Self {
+        Self { turns, steps_per_tick: steps_per_tick(drift_hz, tick_hz) }
+    }
+
+    #[inline]
+    pub(crate) fn at(&self, tick: u32) -> f32 {
+        if self.steps_per_tick == 0 {
+            return self.turns;
+        }
+        // As a signed number, the phase is between -1/2 and 1/2 turn.
+        let steps = tick.wrapping_mul(self.steps_per_tick) as i32;
+        self.turns - steps as f32 * TURNS_PER_STEP
     }
 }
 

@@ -92,6 +92,7 @@ fn unbounded_parameters_give_no_bound() {
         phase_turns: 0.0,
         trough_n: f32::NEG_INFINITY,
         crest_n: f32::INFINITY,
+        drift_hz: 0.0,
     };
     let endless = record(Layer::Grating(grating));
     assert_eq!(electric_friction_max_n(&HEADER, &[endless], &[]), None);

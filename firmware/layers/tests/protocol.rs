@@ -47,15 +47,8 @@ fn kinds_have_the_numbers_that_the_tables_say() {
         let (number, name) = kind.split_once(' ').unwrap();
         (number.parse().unwrap(), name.split(" (").next().unwrap().to_owned())
     };
-    // `DriftingRings` is "drifting rings".
-    let words = |name: &str| {
-        let lowered = name
-            .chars()
-            .map(|letter| format!("{}{}", if letter.is_uppercase() { " " } else { "" }, letter.to_lowercase()));
-        lowered.collect::<String>().trim().to_owned()
-    };
     let page: Vec<(u8, String)> = listed.map(numbered).collect();
-    let code: Vec<(u8, String)> = kind_names().map(|(number, name)| (number, words(name))).collect();
+    let code: Vec<(u8, String)> = kind_names().map(|(number, name)| (number, name.to_lowercase())).collect();
     assert_eq!(page, code);
     let rows = table("The parameters of each kind are `f32`").into_iter().map(|row| row[0].to_owned());
     assert_eq!(rows.collect::<Vec<_>>(), page.into_iter().map(|(_, name)| name).collect::<Vec<_>>());
@@ -126,7 +119,7 @@ fn numbers_of_records_and_points() {
         ("click: time", range::CLICK_S),
         ("burst: period", range::BURST_S),
         ("vibration: frequency", range::FREQUENCY_HZ),
-        ("drifting grating and rings: waves a second", range::DRIFT_HZ),
+        ("grating, rings: waves a second", range::DRIFT_HZ),
         ("curve: speed", range::SPEED_M_PER_S),
     ];
     for (name, range) in ranges {

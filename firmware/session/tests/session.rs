@@ -563,6 +563,7 @@ proptest! {
             phase_turns: layer[2],
             trough_n: layer[3],
             crest_n: layer[4],
+            drift_hz: 0.0,
         });
         if board.load(&scene(&header, &[record(layer)])).is_ok() {
             board.command(Command::Arm).unwrap();

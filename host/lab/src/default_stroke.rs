@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use frixel_hil_sim::{Point, Stroke, StrokeError};
-use frixel_layers::{Direction, DriftingGrating, Grating, Layer};
+use frixel_layers::{Direction, Grating, Layer};
 use frixel_scene::{LayerMiddle, Program, TouchedLayers};
 
 /// Time for which the finger is lifted before it repeats a stroke, s.
@@ -112,9 +112,7 @@ impl Missed {
 /// both.
 fn axes(layer: &Layer) -> Vec<Axis> {
     match layer {
-        Layer::Grating(grating) | Layer::DriftingGrating(DriftingGrating { grating, .. }) => {
-            vec![across(grating).map_or(Axis::Any, Axis::EitherWay)]
-        }
+        Layer::Grating(grating) => vec![across(grating).map_or(Axis::Any, Axis::EitherWay)],
         Layer::Direction(Direction { angle_turns, .. }) => {
             let (y, x) = libm::sincos(TAU * f64::from(*angle_turns));
             vec![Axis::OneWay((x, y)), Axis::OneWay((-x, -y))]

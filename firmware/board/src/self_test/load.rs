@@ -114,6 +114,7 @@ fn layers() -> [Layer; 6] {
             phase_turns: 0.1,
             trough_n: 0.0,
             crest_n: HIGH_N,
+            drift_hz: 0.0,
         })
     };
     [

@@ -1,4 +1,4 @@
-//! Rings around a middle: `trough + (crest - trough) w(k d)` at the distance `d`, with the wave `w` from 0 to 1.
+//! Rings around a middle: `trough + (crest - trough) w(k d - drift t)` at the distance `d`, with the wave `w` from 0 to 1.
 
 use frixel_wire::message::Refusal;
 
@@ -11,11 +11,11 @@ use crate::point::Point;
 use crate::prepare::Preparation;
 use crate::region::ActiveRegion;
 use crate::square_root::square_root;
-use crate::wave::{CentredWave, Wave};
+use crate::wave::{CentredWave, Phase, Wave};
 
 parameters! {
-    /// Rings: `trough + (crest - trough) w(k d)` at the distance `d` from the middle, with `w` between 0 and 1 and one
-    /// period a turn.
+    /// Rings: `trough + (crest - trough) w(k d - drift t)` at the distance `d` from the middle, with `w` between 0 and 1
+    /// and one period a turn, and the time `t` since power-on.
     pub struct Rings {
         /// Shape of the rings, from the middle outwards.
         wave: Wave = 44,
@@ -29,6 +29,8 @@ parameters! {
         trough_n: f32 = 36 in range::FRICTION_N,
         /// Electric friction where the wave is 1, N.
         crest_n: f32 = 40 in range::FRICTION_N,
+        /// Waves that pass a place in a second, outwards; negative inwards.
+        drift_hz: f32 = 48 in range::DRIFT_HZ,
     }
 }
 
@@ -36,35 +38,40 @@ impl Kind for Rings {
     type Coefficients = RingsCoefficients;
 
     fn cost(&self) -> Cost {
-        self.wave.cost() + const { measured_cost("rings") }
+        let rings = if self.drift_hz == 0.0 {
+            const { measured_cost("rings") }
+        } else {
+            const { measured_cost("drifting_rings") }
+        };
+        self.wave.cost() + rings
     }
 
     fn bounds(&self, _points: &[Point]) -> Interval<f32> {
         Interval::of([self.trough_n, self.crest_n])
     }
 
-    fn prepare(&self, _layer: u8, _preparation: &mut Preparation) -> Result<RingsCoefficients, Refusal> {
+    fn prepare(&self, _layer: u8, preparation: &mut Preparation) -> Result<RingsCoefficients, Refusal> {
         let (wave, zero_turns) = CentredWave::new(self.wave);
         Ok(RingsCoefficients {
             wave,
             x_m: self.x_m,
             y_m: self.y_m,
             cycles_per_m: self.cycles_per_m,
-            zero_turns,
+            phase: Phase::new(zero_turns, self.drift_hz, preparation.tick_hz),
             middle_n: 0.5 * (self.crest_n + self.trough_n),
             swing_n: 0.5 * (self.crest_n - self.trough_n),
         })
     }
 }
 
-/// `middle + swing w(k d + zero)`, with `w` from -1 to 1.
+/// `middle + swing w(k d + phase)`, with `w` from -1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RingsCoefficients {
     wave: CentredWave,
     x_m: f32,
     y_m: f32,
     cycles_per_m: f32,
-    zero_turns: f32,
+    phase: Phase,
     middle_n: f32,
     swing_n: f32,
 }
@@ -75,14 +82,6 @@ impl Evaluate for RingsCoefficients {
         let [x_m, y_m] = context.inputs.place_m;
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let distance_m = square_root(x_m * x_m + y_m * y_m);
-        self.middle_n + self.swing_n * self.wave.at(distance_m * self.cycles_per_m + self.zero_turns)
-    }
-}
-
-#[cfg(feature = "drift")]
-impl super::drift::Shift for RingsCoefficients {
-    #[inline]
-    fn shifted(self, turns: f32) -> Self {
-        Self { zero_turns: self.zero_turns + turns, ..self }
+        self.middle_n + self.swing_n * self.wave.at(distance_m * self.cycles_per_m + self.phase.at(context.inputs.tick))
     }
 }

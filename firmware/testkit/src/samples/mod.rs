@@ -124,6 +124,12 @@ impl Draw<'_> {
         self.random.pick([Wave::Sine, Wave::Square { duty: 0.3 }, Wave::Triangle, Wave::Saw])
     }
 
+    /// Waves a second that pass a place; every other one stands still.
+    pub fn drift_hz(&mut self) -> f32 {
+        let moving = self.random.between(-50.0, 50.0);
+        self.random.pick([0.0, moving])
+    }
+
     /// A place on the screen or beyond its edges by up to a part of its size, m.
     pub fn place_m(&mut self, beyond: f32) -> [f32; 2] {
         [self.header.screen_width_m, self.header.screen_height_m]

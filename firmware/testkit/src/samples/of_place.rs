@@ -32,7 +32,7 @@ const CONSTANT: Sample = Sample {
     }],
 };
 
-const fn grating(wave: Wave) -> Layer {
+const fn grating(wave: Wave, drift_hz: f32) -> Layer {
     Layer::Grating(Grating {
         wave,
         cycles_per_m_x: 500.0,
@@ -40,10 +40,11 @@ const fn grating(wave: Wave) -> Layer {
         phase_turns: 0.25,
         trough_n: 0.002,
         crest_n: 0.02,
+        drift_hz,
     })
 }
 
-const fn grating_to_count(wave: Wave) -> Layer {
+const fn grating_to_count(wave: Wave, drift_hz: f32) -> Layer {
     Layer::Grating(Grating {
         wave,
         cycles_per_m_x: 500.0,
@@ -51,21 +52,23 @@ const fn grating_to_count(wave: Wave) -> Layer {
         phase_turns: 0.2,
         trough_n: 0.0,
         crest_n: 0.026,
+        drift_hz,
     })
 }
 
 const GRATING: Sample = Sample {
     records: &[
-        sample(RECTANGLE, Blend::Add, 0.5, grating(Wave::Sine), &[3..4, 24..44]),
-        sample(Region::Screen, Blend::Add, -1.0, grating(Wave::Square { duty: 0.25 }), &[3..4, 24..48]),
-        sample(ELLIPSE, Blend::Multiply, 1.0, grating(Wave::Triangle), &[3..4, 24..44]),
-        sample(POLYGON, Blend::Max, 1.0, grating(Wave::Saw), &[3..4, 24..44]),
+        sample(RECTANGLE, Blend::Add, 0.5, grating(Wave::Sine, 0.0), &[3..4, 24..44]),
+        sample(Region::Screen, Blend::Add, -1.0, grating(Wave::Square { duty: 0.25 }, -2.5), &[3..4, 24..52]),
+        sample(ELLIPSE, Blend::Multiply, 1.0, grating(Wave::Triangle, 4.0), &[3..4, 24..44, 48..52]),
+        sample(POLYGON, Blend::Max, 1.0, grating(Wave::Saw, 0.0), &[3..4, 24..44]),
     ],
     costs: &[
-        cost("tick_sine_alone", grating_to_count(Wave::Sine)),
-        cost("tick_square_alone", grating_to_count(Wave::Square { duty: 0.5 })),
-        cost("tick_triangle_alone", grating_to_count(Wave::Triangle)),
-        cost("tick_saw_alone", grating_to_count(Wave::Saw)),
+        cost("tick_sine_alone", grating_to_count(Wave::Sine, 0.0)),
+        cost("tick_square_alone", grating_to_count(Wave::Square { duty: 0.5 }, 0.0)),
+        cost("tick_triangle_alone", grating_to_count(Wave::Triangle, 0.0)),
+        cost("tick_saw_alone", grating_to_count(Wave::Saw, 0.0)),
+        cost("tick_drift_over_sine_alone", grating_to_count(Wave::Sine, -2.5)),
     ],
     random: |draw| {
         Layer::Grating(Grating {
@@ -75,6 +78,7 @@ const GRATING: Sample = Sample {
             phase_turns: draw.random.between(-3.0, 3.0),
             trough_n: draw.amounts[0],
             crest_n: draw.amounts[1],
+            drift_hz: draw.drift_hz(),
         })
     },
     #[cfg(feature = "std")]
@@ -210,26 +214,24 @@ const NOISE: Sample = Sample {
     }],
 };
 
-const fn rings(wave: Wave) -> Layer {
-    Layer::Rings(Rings { wave, x_m: 0.05, y_m: 0.03, cycles_per_m: 400.0, trough_n: 0.002, crest_n: 0.02 })
+const fn rings(wave: Wave, drift_hz: f32) -> Layer {
+    Layer::Rings(Rings { wave, x_m: 0.05, y_m: 0.03, cycles_per_m: 400.0, trough_n: 0.002, crest_n: 0.02, drift_hz })
+}
+
+const fn rings_to_count(drift_hz: f32) -> Layer {
+    let (wave, trough_n, crest_n) = (Wave::Sine, 0.0, 0.026);
+    Layer::Rings(Rings { wave, x_m: 0.06, y_m: 0.05, cycles_per_m: 500.0, trough_n, crest_n, drift_hz })
 }
 
 const RINGS: Sample = Sample {
     records: &[
-        sample(ELLIPSE, Blend::Add, 1.0, rings(Wave::Sine), &[3..4, 24..44]),
-        sample(Region::Screen, Blend::Replace, 0.5, rings(Wave::Square { duty: 0.25 }), &[3..4, 24..48]),
+        sample(ELLIPSE, Blend::Add, 1.0, rings(Wave::Sine, 0.0), &[3..4, 24..44]),
+        sample(Region::Screen, Blend::Replace, 0.5, rings(Wave::Square { duty: 0.25 }, 4.0), &[3..4, 24..52]),
     ],
-    costs: &[cost(
-        "tick_rings_over_sine_alone",
-        Layer::Rings(Rings {
-            wave: Wave::Sine,
-            x_m: 0.06,
-            y_m: 0.05,
-            cycles_per_m: 500.0,
-            trough_n: 0.0,
-            crest_n: 0.026,
-        }),
-    )],
+    costs: &[
+        cost("tick_rings_over_sine_alone", rings_to_count(0.0)),
+        cost("tick_drifting_rings_over_sine_alone", rings_to_count(4.0)),
+    ],
     random: |draw| {
         let wave = draw.wave();
         let [x_m, y_m] = draw.place_m(0.2);
@@ -240,6 +242,7 @@ const RINGS: Sample = Sample {
             cycles_per_m: draw.random.between(0.0, 2e3),
             trough_n: draw.amounts[0],
             crest_n: draw.amounts[1],
+            drift_hz: draw.drift_hz(),
         })
     },
     #[cfg(feature = "std")]

@@ -2,16 +2,14 @@
 //! came.
 
 use frixel_layers::{
-    Beat, Blend, Burst, Button, Click, Direction, DriftingGrating, DriftingRings, Edge, Grating, Layer, Point, Region,
-    Rings, Speed, Stream, Vibration, Wave,
+    Beat, Blend, Burst, Button, Click, Direction, Edge, Layer, Point, Region, Speed, Stream, Vibration,
 };
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
 use super::{CostCase, ELLIPSE, POLYGON, RECTANGLE, Sample, cost, sample};
 
 // Their formulas need more than the place: `host/frixel/tests/kinds`.
-pub(super) const SAMPLES: &[Sample] =
-    &[EDGE, BUTTON, VIBRATION, SPEED, STREAM, DRIFTING_GRATING, DRIFTING_RINGS, DIRECTION];
+pub(super) const SAMPLES: &[Sample] = &[EDGE, BUTTON, VIBRATION, SPEED, STREAM, DIRECTION];
 
 const CLICK: Click = Click { height_n: 0.015, decay_s: 0.02 };
 /// Short enough that ticks during the click and ticks after its end are both counted.
@@ -148,67 +146,6 @@ const STREAM: Sample = Sample {
     records: &[sample(RECTANGLE, Blend::Replace, 1.0, Layer::Stream(Stream { low_n: 0.002, high_n: 0.02 }), &[24..32])],
     costs: &[cost("tick_stream_alone", Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 }))],
     random: |draw| Layer::Stream(Stream { low_n: draw.amounts[0], high_n: draw.amounts[1] }),
-    #[cfg(feature = "std")]
-    formulas: &[],
-};
-
-const fn drifting_grating(wave: Wave) -> Layer {
-    let grating = Grating {
-        wave,
-        cycles_per_m_x: 500.0,
-        cycles_per_m_y: -250.0,
-        phase_turns: 0.25,
-        trough_n: 0.002,
-        crest_n: 0.02,
-    };
-    Layer::DriftingGrating(DriftingGrating { grating, drift_hz: -2.5 })
-}
-
-const fn drifting_rings(wave: Wave) -> Layer {
-    let rings = Rings { wave, x_m: 0.05, y_m: 0.03, cycles_per_m: 400.0, trough_n: 0.002, crest_n: 0.02 };
-    Layer::DriftingRings(DriftingRings { rings, drift_hz: 4.0 })
-}
-
-const DRIFTING_GRATING: Sample = Sample {
-    records: &[
-        sample(RECTANGLE, Blend::Add, 0.5, drifting_grating(Wave::Sine), &[3..4, 24..44, 48..52]),
-        sample(Region::Screen, Blend::Max, 1.0, drifting_grating(Wave::Square { duty: 0.25 }), &[3..4, 24..52]),
-    ],
-    costs: &[cost("tick_drift_over_sine_alone", drifting_grating(Wave::Sine))],
-    random: |draw| {
-        let grating = Grating {
-            wave: draw.wave(),
-            cycles_per_m_x: draw.random.between(-2e3, 2e3),
-            cycles_per_m_y: draw.random.between(-2e3, 2e3),
-            phase_turns: draw.random.between(-3.0, 3.0),
-            trough_n: draw.amounts[0],
-            crest_n: draw.amounts[1],
-        };
-        Layer::DriftingGrating(DriftingGrating { grating, drift_hz: draw.random.between(-50.0, 50.0) })
-    },
-    #[cfg(feature = "std")]
-    formulas: &[],
-};
-
-const DRIFTING_RINGS: Sample = Sample {
-    records: &[
-        sample(ELLIPSE, Blend::Add, 1.0, drifting_rings(Wave::Saw), &[3..4, 24..44, 48..52]),
-        sample(POLYGON, Blend::Multiply, 1.0, drifting_rings(Wave::Square { duty: 0.25 }), &[3..4, 24..52]),
-    ],
-    costs: &[cost(
-        "tick_drifting_rings_over_sine_alone",
-        Layer::DriftingRings(DriftingRings {
-            rings: Rings { wave: Wave::Sine, x_m: 0.06, y_m: 0.05, cycles_per_m: 500.0, trough_n: 0.0, crest_n: 0.026 },
-            drift_hz: 4.0,
-        }),
-    )],
-    random: |draw| {
-        let wave = draw.wave();
-        let [x_m, y_m] = draw.place_m(0.2);
-        let cycles_per_m = draw.random.between(0.0, 2e3);
-        let rings = Rings { wave, x_m, y_m, cycles_per_m, trough_n: draw.amounts[0], crest_n: draw.amounts[1] };
-        Layer::DriftingRings(DriftingRings { rings, drift_hz: draw.random.between(-50.0, 50.0) })
-    },
     #[cfg(feature = "std")]
     formulas: &[],
 };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{DriftingGrating, Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
+use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
 
 use super::wave::{self, WaveField};
 use super::{Field, IntoField, Lowered, Words, drift};
@@ -87,27 +87,24 @@ impl Words for Grating {
             _ => (0.0, 0.0),
         };
         let origin_turns = f64::from(cycles_per_m_x) * x_m + f64::from(cycles_per_m_y) * y_m;
-        let grating = Record {
-            wave: self.wave,
-            cycles_per_m_x,
-            cycles_per_m_y,
-            phase_turns: (self.phase_deg / 360.0 - origin_turns).rem_euclid(1.0) as f32,
-            trough_n: lowering.amount(layer, self.amounts.low),
-            crest_n: lowering.amount(layer, self.amounts.high),
-        };
-        let layer = if self.drift_mm_per_s == 0.0 {
-            RecordLayer::Grating(grating)
-        } else {
-            let drift_hz = drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32;
-            RecordLayer::DriftingGrating(DriftingGrating { grating, drift_hz })
-        };
-        Some(layer.into())
+        Some(
+            RecordLayer::Grating(Record {
+                wave: self.wave,
+                cycles_per_m_x,
+                cycles_per_m_y,
+                phase_turns: (self.phase_deg / 360.0 - origin_turns).rem_euclid(1.0) as f32,
+                trough_n: lowering.amount(layer, self.amounts.low),
+                crest_n: lowering.amount(layer, self.amounts.high),
+                drift_hz: drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32,
+            })
+            .into(),
+        )
     }
 }
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(GratingField::new(self, 0.0))
+        Arc::new(GratingField::new(self))
     }
 
     fn without_place(self) -> Self {
@@ -115,16 +112,6 @@ impl IntoField for Record {
         // Of a turned grating, the two differ by rounding.
         let cycles_per_m_x = (100.0 * cycles_per_m).round() as f32 / 100.0;
         Self { phase_turns: 0.0, cycles_per_m_x, cycles_per_m_y: 0.0, ..self }
-    }
-}
-
-impl IntoField for DriftingGrating {
-    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(GratingField::new(&self.grating, f64::from(self.drift_hz)))
-    }
-
-    fn without_place(self) -> Self {
-        Self { grating: self.grating.without_place(), ..self }
     }
 }
 
@@ -139,13 +126,13 @@ struct GratingField {
 }
 
 impl GratingField {
-    fn new(grating: &Record, drift_hz: f64) -> Self {
+    fn new(grating: &Record) -> Self {
         let Record { wave, trough_n, crest_n, .. } = *grating;
         Self {
             cycles_per_m_x: f64::from(grating.cycles_per_m_x),
             cycles_per_m_y: f64::from(grating.cycles_per_m_y),
             phase_turns: f64::from(grating.phase_turns),
-            drift_hz,
+            drift_hz: f64::from(grating.drift_hz),
             wave: WaveField { wave, trough_n: f64::from(trough_n), crest_n: f64::from(crest_n) },
         }
     }

@@ -180,9 +180,9 @@ fn click_interval(click: Option<Click>) -> Interval<f64> {
     Interval::of([0.0, click.map_or(0.0, |click| f64::from(click.height_n))])
 }
 
-/// Makes the types of all kinds from one list. Behind it stand the kinds of record that have no word of their own.
+/// Makes the types of all kinds from one list.
 macro_rules! kinds {
-    ($( $kind:ident in $module:ident, )* ; $( $record:ident, )*) => {
+    ($( $kind:ident in $module:ident, )*) => {
         /// The fields of a layer's kind, as a person wrote them.
         #[derive(Clone, Debug, PartialEq)]
         pub(crate) enum Kind {
@@ -260,7 +260,6 @@ macro_rules! kinds {
         pub(crate) fn field(layer: &Record, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
             match layer {
                 $( Record::$kind(layer) => IntoField::field(layer, region, program), )*
-                $( Record::$record(layer) => IntoField::field(layer, region, program), )*
             }
         }
 
@@ -268,7 +267,6 @@ macro_rules! kinds {
         pub fn without_place(layer: Record) -> Record {
             match layer {
                 $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )*
-                $( Record::$record(layer) => Record::$record(IntoField::without_place(layer)), )*
             }
         }
     };
@@ -287,7 +285,4 @@ kinds! {
     Rings in rings,
     Spokes in spokes,
     Direction in direction,
-    ;
-    DriftingGrating,
-    DriftingRings,
 }

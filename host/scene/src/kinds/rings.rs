@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{DriftingRings, Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
+use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
 
 use super::wave::{self, WaveField};
 use super::{Field, IntoField, Lowered, Words, drift};
@@ -63,41 +63,28 @@ impl Words for Rings {
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
-        let rings = Record {
-            wave: self.wave,
-            x_m: (self.x_mm * MM) as f32,
-            y_m: (self.y_mm * MM) as f32,
-            cycles_per_m: (1.0 / (self.wavelength_mm * MM)) as f32,
-            trough_n: lowering.amount(layer, self.amounts.low),
-            crest_n: lowering.amount(layer, self.amounts.high),
-        };
-        let layer = if self.drift_mm_per_s == 0.0 {
-            RecordLayer::Rings(rings)
-        } else {
-            let drift_hz = drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32;
-            RecordLayer::DriftingRings(DriftingRings { rings, drift_hz })
-        };
-        Some(layer.into())
+        Some(
+            RecordLayer::Rings(Record {
+                wave: self.wave,
+                x_m: (self.x_mm * MM) as f32,
+                y_m: (self.y_mm * MM) as f32,
+                cycles_per_m: (1.0 / (self.wavelength_mm * MM)) as f32,
+                trough_n: lowering.amount(layer, self.amounts.low),
+                crest_n: lowering.amount(layer, self.amounts.high),
+                drift_hz: drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32,
+            })
+            .into(),
+        )
     }
 }
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(RingsField::new(self, 0.0))
+        Arc::new(RingsField::new(self))
     }
 
     fn without_place(self) -> Self {
         Self { x_m: 0.0, y_m: 0.0, ..self }
-    }
-}
-
-impl IntoField for DriftingRings {
-    fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(RingsField::new(&self.rings, f64::from(self.drift_hz)))
-    }
-
-    fn without_place(self) -> Self {
-        Self { rings: self.rings.without_place(), ..self }
     }
 }
 
@@ -111,12 +98,12 @@ struct RingsField {
 }
 
 impl RingsField {
-    fn new(rings: &Record, drift_hz: f64) -> Self {
+    fn new(rings: &Record) -> Self {
         let Record { wave, trough_n, crest_n, .. } = *rings;
         Self {
             middle_m: (f64::from(rings.x_m), f64::from(rings.y_m)),
             cycles_per_m: f64::from(rings.cycles_per_m),
-            drift_hz,
+            drift_hz: f64::from(rings.drift_hz),
             wave: WaveField { wave, trough_n: f64::from(trough_n), crest_n: f64::from(crest_n) },
         }
     }
