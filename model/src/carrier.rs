@@ -194,7 +194,7 @@ mod tests {
         assert!((carrier(Waveform::Sine, 0.0).peak_per_rms() - core::f32::consts::SQRT_2).abs() < 1e-7);
     }
 
-    /// The table of `PROTOCOL.md`.
+    /// The example of `PROTOCOL.md`.
     #[test]
     fn a_peak_of_60_v_leaves_the_rms_voltages_of_the_protocol() {
         for (waveform, carrier_hz, expected_v_rms) in

@@ -20,7 +20,7 @@ fn table(heading: &str) -> Vec<Vec<&'static str>> {
 /// Rows of the table of ranges: number, least, largest, name of the field.
 fn rows() -> Vec<[&'static str; 4]> {
     let cells = |row: Vec<&'static str>| match row[..] {
-        [number, least, largest, _, field] => [number, least, largest, field],
+        [number, least, largest, field] => [number, least, largest, field],
         _ => panic!("{row:?}"),
     };
     table("### `Ranges`").into_iter().map(cells).collect()
@@ -92,11 +92,11 @@ fn numbers_of_the_header() {
         let mut header = HEADER;
         set(&mut header);
         let refused = header.check(&LIMITS, TICK_HZ).unwrap_err();
-        check(&format!("header: {name}"), &(refused.min, refused.max, format!("{:?}", refused.field)));
+        check(name, &(refused.min, refused.max, format!("{:?}", refused.field)));
     }
     let law = FingerLaw::new(f32::NAN, &[LawPoint { voltage_v_rms: 150.0, electric_friction_n: 0.1 }]);
     let refused = Header { law, ..HEADER }.check(&LIMITS, TICK_HZ).unwrap_err();
-    check("header: exponent of a law", &(refused.min, refused.max, format!("{:?}", refused.field)));
+    check("exponent of a law", &(refused.min, refused.max, format!("{:?}", refused.field)));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Tests of the board against section 16 of `PROTOCOL.md`, "Details for clients".
+//! Details of `PROTOCOL.md`: frames that are not understood, the order of refusals, uploads, numbers of a scene.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 

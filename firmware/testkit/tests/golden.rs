@@ -49,13 +49,3 @@ fn scenes_are_golden() {
         assert_eq!(Point::parse(golden.as_slice().try_into().unwrap()), point);
     }
 }
-
-/// The example of the page is the scene of the golden bytes.
-#[test]
-fn the_law_of_the_protocol_is_golden() {
-    let page = include_str!("../../wire/PROTOCOL.md");
-    let (_, example) = page.split_once("1 mN at 50 V and 27 mN at 150 V.").unwrap();
-    let lines = example.lines().skip_while(|line| line.is_empty()).take_while(|line| line.starts_with("    "));
-    let bytes: Vec<u8> = lines.flat_map(|line| from_hex(line.trim())).collect();
-    assert_eq!(to_hex(&bytes), to_hex(&support::law_scene()));
-}

@@ -35,6 +35,14 @@ fn numbered(name: &str) -> Vec<(usize, &'static str)> {
     table(&format!("### `{name}`")).iter().map(|row| (row[0].parse().unwrap(), row[1])).collect()
 }
 
+/// Number and name in the list of fields.
+fn config_fields() -> Vec<(usize, &'static str)> {
+    let (_, list) = PROTOCOL.split_once("\n### `ConfigField`\n\n").unwrap();
+    let (list, _) = list.split_once(".\n").unwrap();
+    let fields = list.split(',').map(|field| field.trim().split_once(char::is_whitespace).unwrap());
+    fields.map(|(number, name)| (number.parse().unwrap(), name.trim_matches('`'))).collect()
+}
+
 #[test]
 fn examples_are_frames_and_can_be_read() {
     let mut lines = PROTOCOL.lines();
@@ -64,7 +72,6 @@ fn examples_of_the_hello_request_have_the_version_of_the_page() {
         format!("the hello request of protocol {PROTOCOL_MAJOR}.{PROTOCOL_MINOR} has the payload `{payload}`"),
         format!("payload and CRC   {payload} "),
         format!("\n    payload {payload}\n"),
-        format!("> hello request                       payload {payload}\n"),
     ] {
         assert_eq!(PROTOCOL.matches(&example).count(), 1, "{example}");
     }
@@ -72,8 +79,11 @@ fn examples_of_the_hello_request_have_the_version_of_the_page() {
 
 #[test]
 fn enums_have_the_numbers_that_the_tables_say() {
+    fn code<'de, T: serde::Deserialize<'de>>() -> Vec<(usize, &'static str)> {
+        variants::all::<T>().into_iter().enumerate().collect()
+    }
     fn check<'de, T: serde::Deserialize<'de>>(name: &str) {
-        assert_eq!(numbered(name), variants::all::<T>().into_iter().enumerate().collect::<Vec<_>>(), "{name}");
+        assert_eq!(numbered(name), code::<T>(), "{name}");
     }
     check::<Command>("Command");
     check::<FromBoard>("FromBoard");
@@ -81,7 +91,7 @@ fn enums_have_the_numbers_that_the_tables_say() {
     check::<Accepted>("Accepted");
     check::<Refusal>("Refusal");
     check::<SceneError>("SceneError");
-    check::<ConfigField>("ConfigField");
+    assert_eq!(config_fields(), code::<ConfigField>());
 }
 
 #[test]
@@ -211,6 +221,14 @@ fn limits_are_those_of_the_table() {
         at += 2 + usize::from(len);
     }
     assert_eq!(at, HELLO_LEN);
+}
+
+/// The page is short, and so is the client at its beginning.
+#[test]
+fn the_page_and_its_client_are_short() {
+    assert!(PROTOCOL.len() <= 40_000, "{}", PROTOCOL.len());
+    let client = PROTOCOL.split("```").nth(1).unwrap();
+    assert!(client.starts_with("python\n") && client.lines().count() - 1 <= 80, "{}", client.lines().count());
 }
 
 /// Numbers that stand in the text.

@@ -18,6 +18,8 @@ import numpy as np
 import pytest
 from frixel import Device, ParameterError, PlayError, SceneError, Telemetry
 
+from .conftest import REPOSITORY
+
 SCENE = {
     "layer": [
         {"kind": "constant", "name": "base", "friction_fraction": 0.3, "live": True},
@@ -266,6 +268,16 @@ def test_a_board_at_a_port_plays_and_is_disarmed(virtual_board: VirtualBoard) ->
     assert device.state == "disarmed"
     with Device.open(virtual_board.port) as device:
         assert device.state == "disarmed"
+
+
+def test_the_client_of_the_protocol_plays(virtual_board: VirtualBoard, tmp_path: Path) -> None:
+    page = (REPOSITORY / "firmware/wire/PROTOCOL.md").read_text(encoding="utf-8")
+    client = tmp_path / "client.py"
+    client.write_text(page.split("```python\n")[1].split("```")[0], encoding="utf-8")
+    command = [sys.executable, str(client), virtual_board.port]
+    played = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert played.returncode == 0, played.stderr
+    assert played.stdout.splitlines()[1:] == ["Armed Active", "Armed", "Disarmed"]
 
 
 def test_an_idle_program_loses_its_board(virtual_board: VirtualBoard) -> None:

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Time in which a stream fades in and out, s (PROTOCOL, section 15).
+/// Time in which a stream fades in and out, s (`PROTOCOL.md`, section 14).
 const FADE_S: f64 = 0.01;
 /// How long a board may have had samples without reporting that it waits for more, s. After this time the recorder
 /// assumes that a report was lost between two telemetry messages, and that the stream plays.
