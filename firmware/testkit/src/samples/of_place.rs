@@ -58,10 +58,10 @@ const fn grating_to_count(wave: Wave, drift_hz: f32) -> Layer {
 
 const GRATING: Sample = Sample {
     records: &[
-        sample(RECTANGLE, Blend::Add, 0.5, grating(Wave::Sine, 0.0), &[3..4, 24..44]),
+        sample(RECTANGLE, Blend::Add, 0.5, grating(Wave::Sine, 0.0), &[3..4, 24..44, 48..52]),
         sample(Region::Screen, Blend::Add, -1.0, grating(Wave::Square { duty: 0.25 }, -2.5), &[3..4, 24..52]),
         sample(ELLIPSE, Blend::Multiply, 1.0, grating(Wave::Triangle, 4.0), &[3..4, 24..44, 48..52]),
-        sample(POLYGON, Blend::Max, 1.0, grating(Wave::Saw, 0.0), &[3..4, 24..44]),
+        sample(POLYGON, Blend::Max, 1.0, grating(Wave::Saw, 0.0), &[3..4, 24..44, 48..52]),
     ],
     costs: &[
         cost("tick_sine_alone", grating_to_count(Wave::Sine, 0.0)),
@@ -225,7 +225,7 @@ const fn rings_to_count(drift_hz: f32) -> Layer {
 
 const RINGS: Sample = Sample {
     records: &[
-        sample(ELLIPSE, Blend::Add, 1.0, rings(Wave::Sine, 0.0), &[3..4, 24..44]),
+        sample(ELLIPSE, Blend::Add, 1.0, rings(Wave::Sine, 0.0), &[3..4, 24..44, 48..52]),
         sample(Region::Screen, Blend::Replace, 0.5, rings(Wave::Square { duty: 0.25 }, 4.0), &[3..4, 24..52]),
     ],
     costs: &[
