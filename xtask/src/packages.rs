@@ -121,6 +121,6 @@ mod tests {
                 }
             }
         }
-        assert!(included > 10, "{included}");
+        assert_ne!(included, 0, "no file is included");
     }
 }
