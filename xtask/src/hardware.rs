@@ -176,18 +176,18 @@ fn pin_table(carrier: &Carrier, pins: &[Pin], supplies: &[Supply], on_board: &st
 
 fn page(carrier: &Carrier) -> String {
     let mut text = String::from(
-        "# Wiring\n\nWritten by `cargo xtask hardware` from `hardware/carrier.toml`; a test holds it. Read \
-         [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before \
+        "# Wiring\n\nWritten by `cargo xtask hardware` from `hardware/carrier.toml`; a test holds it. Read\n\
+         [safety.md](safety.md) and [hardware.md](hardware.md) first: they say why, and what to measure before\n\
          anything is switched on. Nobody has built this yet.\n\n\
          ![schematic](schematic.svg)\n\n\
-         The schematic has a sheet for each function; a name at the end of a line is a net, and equal names are \
+         The schematic has a sheet for each function; a name at the end of a line is a net, and equal names are\n\
          connected. Pins of U1 are those of the NUCLEO, and of a Pico.\n\n\
          ## By connector and pin\n\nThe NUCLEO's connectors CN7 and CN10. Compare the positions with your board before \
          you solder. Every row goes to all other nodes of its net.\n\n",
     );
     text += &pin_table(carrier, &carrier.pin, &carrier.supply, "on the NUCLEO");
     text += "\n## With a Pico or Pico 2\n\n**Connect no amplifier to these boards yet**: \
-             they have no bring-up ([pico.md](pico.md)). In place of the NUCLEO: the pins around the board, by their \
+             they have no bring-up ([pico.md](pico.md)). In place of the NUCLEO: the pins around the board, by their\n\
              number. The nodes of U1 among the nets below are the NUCLEO's.\n\n";
     text += &pin_table(carrier, &carrier.pico, &carrier.pico_supply, "serial port, or on the board");
     text += "\n## Left open\n\nPins of the processor boards that look like a supply of the carrier and must not be \
@@ -226,14 +226,14 @@ impl Net {
 
 fn high_voltage(carrier: &Carrier) -> String {
     let mut text = String::from(
-        "\n## High voltage\n\nWhat is *in the box* has no 68 kOhm in front of it: one box of insulating material, \
-         closed, opened with a tool only, with 200 V written on it. Amplifier, supply of the rails and **both series \
-         resistors** are in it, the resistors at the amplifier's output without a cable. Only the electrode's wire, \
-         the input of the supply and the low voltages leave it. Wires of these nets are rated for 600 V. Between any \
-         of them and any other net, and between the two rails, are 5 mm or more, through air and along surfaces; \
-         between them and protective earth, the host's USB, the supply's input and the outside, 10 mm or more: for \
-         420 V between the rails, 4.2 mm, and twice that where insulation is reinforced (IEC 60664-1, table F.4, \
-         pollution degree 2, material group III, in a public copy: 4 mm for 400 V, 5 mm for 500 V). A rail may be 5 % \
+        "\n## High voltage\n\nWhat is *in the box* has no 68 kOhm in front of it: one box of insulating material,\n\
+         closed, opened with a tool only, with 200 V written on it. Amplifier, supply of the rails and **both series\n\
+         resistors** are in it, the resistors at the amplifier's output without a cable. Only the electrode's wire,\n\
+         the input of the supply and the low voltages leave it. Wires of these nets are rated for 600 V. Between any\n\
+         of them and any other net, and between the two rails, are 5 mm or more, through air and along surfaces;\n\
+         between them and protective earth, the host's USB, the supply's input and the outside, 10 mm or more: for\n\
+         420 V between the rails, 4.2 mm, and twice that where insulation is reinforced (IEC 60664-1, table F.4,\n\
+         pollution degree 2, material group III, in a public copy: 4 mm for 400 V, 5 mm for 500 V). A rail may be 5 %\n\
          above its 200 V.\n\n\
          | net | V peak to the common | where |\n|---|---|---|\n",
     );
@@ -246,8 +246,8 @@ fn high_voltage(carrier: &Carrier) -> String {
 
 fn measures(carrier: &Carrier) -> String {
     let mut text = String::from(
-        "\n## Measure before anything is switched on\n\nWith everything connected, USB pulled, all supplies off and \
-         the rails at 0 V. The limits are those of the reading; the meter may be wrong by as much as the \
+        "\n## Measure before anything is switched on\n\nWith everything connected, USB pulled, all supplies off and\n\
+         the rails at 0 V. The limits are those of the reading; the meter may be wrong by as much as the\n\
          last column says.\n\n\
          | from | to | parts | at least | at most | why | meter |\n|---|---|---|---|---|---|---|\n",
     );

@@ -1,5 +1,5 @@
 //! Every file of tests belongs to a test program. The files of `tests` are modules of few programs, which cargo does not
-//! look for by itself, so a file that no program names would never run.
+//! look for by itself, so a file that no program names would never run. And every file that a document names exists.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -69,4 +69,25 @@ fn modules_of(file: &Path) -> Vec<PathBuf> {
         }
     }
     found
+}
+
+/// Names in backticks that begin with a folder of the repository.
+#[test]
+fn every_file_that_a_document_names_exists() {
+    let mut documents = Vec::new();
+    files_below(&root().join("docs"), "md", &mut documents);
+    let mut count = 0;
+    for document in documents {
+        let text = fs::read_to_string(&document).unwrap();
+        for name in text.split('`') {
+            let name = name.split("::").next().unwrap_or_default();
+            let is_path =
+                ["firmware/", "hil-sim/", "host/", "model/", "xtask/"].iter().any(|top| name.starts_with(top));
+            if is_path && !name.contains(['*', ' ', '\n']) && !name.contains("KIND") && !name.contains("/target/") {
+                assert!(root().join(name).exists(), "{} names {name}, which does not exist", document.display());
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 100, "{count}");
 }

@@ -224,6 +224,22 @@ fn decoded(path: &Path) -> (u32, u32, Vec<u8>) {
     (frame.width, frame.height, bytes)
 }
 
+/// A paragraph in lines of at most 120 characters.
+fn lines(paragraph: &str) -> String {
+    let mut width = 0;
+    let words = paragraph.split(' ').map(|word| {
+        let length = word.chars().count();
+        let separator = match width {
+            0 => "",
+            width if width + 1 + length > 120 => "\n",
+            _ => " ",
+        };
+        width = if separator == " " { width + 1 + length } else { length };
+        [separator, word].concat()
+    });
+    words.collect()
+}
+
 fn page(gallery: &[Entry]) -> String {
     let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel scene preview`, \
                     play it with `frixel play`. After `cargo xtask studio`,\n[gallery/index.html](gallery/index.html) lets \
@@ -251,7 +267,7 @@ fn page(gallery: &[Entry]) -> String {
         let _ = write!(
             page,
             "\n## {name}\n\n{}\n\n[scenes/{name}.toml](../scenes/{name}.toml)\n\n![friction map of {name}.toml](gallery/{name}.png)\n",
-            entry.comment()
+            lines(&entry.comment())
         );
     }
     page
