@@ -10,6 +10,7 @@
 //! | PC6 | TIM3_CH1 | SYNC of the DAC |
 
 use frixel_board::hardware;
+use frixel_cortex_m::Boot;
 use stm32_metapac::timer::vals::Ocm;
 use stm32_metapac::{GPIOC, TIM3};
 
@@ -30,7 +31,7 @@ const TIM3_FUNCTION: u8 = 2;
 const _: () = assert!(CORE_HZ.is_multiple_of(crate::board::TICK_HZ) && PERIOD_CYCLES <= 1 << 16);
 
 /// TIM3, as the tick uses it.
-pub struct Period;
+pub struct Period(());
 
 impl hardware::Period for Period {
     const PERIOD_CYCLES: u32 = PERIOD_CYCLES;
@@ -48,13 +49,14 @@ impl hardware::Period for Period {
 }
 
 /// Starts the timer, with SYNC high and without interrupts.
-pub fn start() {
+pub fn start(_: &Boot) -> Period {
     TIM3.arr().write(|w| w.set_arr((PERIOD_CYCLES - 1) as u16));
     TIM3.ccr(0).write(|w| w.set_ccr(LATCH_CYCLES as u16));
     end_frame();
     TIM3.ccer().write(|w| w.set_cce(0, true));
     pins::alternate(GPIOC, SYNC, TIM3_FUNCTION);
     TIM3.cr1().modify(|w| w.set_cen(true));
+    Period(())
 }
 
 /// Enables the interrupt at the start of every period, from the next one on.

@@ -1,16 +1,24 @@
 //! What every board with a Cortex-M needs unsafe code for. Beside this crate, only the boards' own crates have any.
 //!
-//! - [`Owned`]: a value that an interrupt handler owns, and [`TickOwner`], the tick that its interrupt owns;
+//! - [`Boot`]: what a start has once, and [`TickOwner`], the tick that its interrupt owns ([`tick_interrupt!`] declares
+//!   both);
+//! - [`Owned`]: any other value that an interrupt handler owns;
+//! - [`fault_handlers!`]: the handlers of panics, hard faults and interrupts without a handler, and the record of the
+//!   last fault;
 //! - [`guard`]: makes a stack overflow a fault;
-//! - [`hard_fault_handler!`]: the handler of hard faults, on a stack of its own;
-//! - [`outlasting`]: a place that the start-up code does not clear.
+//! - [`outlasting`]: a place that the start-up code does not clear;
+//! - [`CycleDelay`]: waits by the core's clock.
 #![no_std]
 
+mod boot;
+mod delay;
 pub mod fault;
 pub mod guard;
 mod owned;
 mod tick_owner;
 
+pub use boot::{Boot, never};
+pub use delay::CycleDelay;
 pub use fault::outlasting;
 pub use owned::Owned;
 pub use tick_owner::TickOwner;
