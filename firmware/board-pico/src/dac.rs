@@ -17,7 +17,7 @@
 
 use frixel_board::hardware::{DacFrames, Late};
 use frixel_cortex_m::Boot;
-use frixel_drivers::ad5761r::{self, Ad5761r, BusError, FRAME_LEN, Frame, FrameBus, FrameDevice};
+use frixel_drivers::ad5761r::{self, Ad5761r, BusError, Frame, FrameBus, FrameDevice};
 use frixel_drivers::pio::{Condition, Destination, Instruction, PULL, PUSH};
 use frixel_drivers::pio::{jump, set, shift_in, shift_out, wait_flag};
 use frixel_wire::dac_code::DacCode;
@@ -122,5 +122,3 @@ impl FrameBus for DacBus {
         Ok(())
     }
 }
-
-const _: () = assert!(FRAME_LEN == 3);

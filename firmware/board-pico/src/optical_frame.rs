@@ -12,6 +12,7 @@ use core::task::Poll;
 use embedded_hal_async::i2c::Operation;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::optical_frame::{self, BusError, I2cPort};
+use frixel_drivers::i2c_fifo::{FifoTransfer, I2cFifos};
 use frixel_drivers::pin::DirectPin;
 use rp_pac::I2C0;
 use rp_pac::i2c::vals::Speed;
@@ -28,25 +29,18 @@ const DATA_READY: usize = 18;
 /// Cycles of the core in a period of SCL, and in its low part: 400 kHz, low for 1.5 us of 2.5.
 const PERIOD: u32 = CORE_HZ / 400_000;
 const LOW: u32 = PERIOD * 3 / 5;
-/// Words of a FIFO.
-const FIFO_LEN: usize = 16;
 
 /// Takes the bus, and runs the main loop for ever with the frame as its touch source.
 pub fn run(main_loop: MainLoop<Pico>) -> ! {
     clock::restart(Peripherals::set_i2c0);
     pins::connect_pulled_up(SDA, Function::I2c);
-    let mut port = Port { sent: 0, received: 0 };
+    let mut port = Port(FifoTransfer::default());
     port.give_clock();
     optical_frame::run(main_loop, port, pins::input_pulled_down(DATA_READY))
 }
 
 /// I2C 0 at 400 kHz, with the transfer that is under way.
-struct Port {
-    /// Bytes whose commands are in the FIFO or were carried out.
-    sent: usize,
-    /// Bytes that were read.
-    received: usize,
-}
+struct Port(FifoTransfer);
 
 impl I2cPort for Port {
     type Clock = DirectPin<OpenDrain>;
@@ -77,13 +71,13 @@ impl I2cPort for Port {
     fn begin(&mut self, address: u8, _: &Operation<'_>) {
         // Clears the flags of an earlier transfer.
         let _ = I2C0.ic_clr_intr().read();
-        (self.sent, self.received) = (0, 0);
+        self.0 = FifoTransfer::default();
         enable(address);
     }
 
     fn poll(&mut self, operation: &mut Operation<'_>) -> Poll<Result<(), BusError>> {
-        self.receive(operation);
-        self.send(operation);
+        self.0.receive(&mut Fifos, operation);
+        self.0.send(&mut Fifos, operation);
         let status = I2C0.ic_raw_intr_stat().read();
         if status.tx_abrt() {
             // Only a lost arbitration and a missing acknowledgement are possible.
@@ -91,45 +85,29 @@ impl I2cPort for Port {
             return Poll::Ready(Err(if lost { BusError::ArbitrationLoss } else { BusError::NoAcknowledge }));
         }
         // The last byte may have come between the two.
-        self.receive(operation);
-        let is_complete = match operation {
-            Operation::Read(bytes) => self.received == bytes.len(),
-            Operation::Write(bytes) => self.sent == bytes.len(),
-        };
-        if status.stop_det() && is_complete { Poll::Ready(Ok(())) } else { Poll::Pending }
+        self.0.receive(&mut Fifos, operation);
+        if status.stop_det() && self.0.is_complete(operation) { Poll::Ready(Ok(())) } else { Poll::Pending }
     }
 }
 
-impl Port {
-    /// Fills the transmit FIFO: with the bytes to write, or with commands to read, of which no more may be under way
-    /// than the receive FIFO holds.
-    fn send(&mut self, operation: &Operation<'_>) {
-        let (bytes, is_read): (&[u8], bool) = match operation {
-            Operation::Read(bytes) => (bytes, true),
-            Operation::Write(bytes) => (bytes, false),
-        };
-        while let Some(byte) = bytes.get(self.sent)
-            && I2C0.ic_status().read().tfnf()
-            && !(is_read && self.sent - self.received >= FIFO_LEN)
-        {
-            self.sent += 1;
-            I2C0.ic_data_cmd().write(|w| {
-                w.set_cmd(is_read);
-                w.set_dat(if is_read { 0 } else { *byte });
-                w.set_stop(self.sent == bytes.len());
-            });
-        }
+/// Its FIFOs.
+struct Fifos;
+
+impl I2cFifos for Fifos {
+    fn has_room(&self) -> bool {
+        I2C0.ic_status().read().tfnf()
     }
 
-    /// Empties the receive FIFO.
-    fn receive(&mut self, operation: &mut Operation<'_>) {
-        let Operation::Read(bytes) = operation else { return };
-        while let Some(byte) = bytes.get_mut(self.received)
-            && I2C0.ic_status().read().rfne()
-        {
-            *byte = I2C0.ic_data_cmd().read().dat();
-            self.received += 1;
-        }
+    fn command(&mut self, write: Option<u8>, is_last: bool) {
+        I2C0.ic_data_cmd().write(|w| {
+            w.set_cmd(write.is_none());
+            w.set_dat(write.unwrap_or(0));
+            w.set_stop(is_last);
+        });
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        I2C0.ic_status().read().rfne().then(|| I2C0.ic_data_cmd().read().dat())
     }
 }
 

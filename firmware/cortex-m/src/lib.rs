@@ -7,6 +7,7 @@
 //!   last fault;
 //! - [`guard`]: makes a stack overflow a fault;
 //! - [`outlasting`]: a place that the start-up code does not clear;
+//! - [`runs_from_ram!`]: an image that runs from RAM;
 //! - [`CycleDelay`]: waits by the core's clock.
 #![no_std]
 
@@ -15,6 +16,7 @@ mod delay;
 pub mod fault;
 pub mod guard;
 mod owned;
+pub mod ram_image;
 mod tick_owner;
 
 pub use boot::{Boot, never};
