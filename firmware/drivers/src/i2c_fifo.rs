@@ -114,11 +114,12 @@ mod tests {
         }
     }
 
-    /// Serves a transfer, while the controller carries out some commands between two polls.
+    /// Serves a transfer, while the controller carries out some commands at any time.
     fn run(operation: &mut Operation<'_>, pace: &[usize]) -> Controller {
         let (mut controller, mut transfer) = (Controller::default(), FifoTransfer::default());
         for count in pace.iter().cycle().take(1_000) {
             transfer.receive(&mut controller, operation);
+            controller.run(*count);
             transfer.send(&mut controller, operation);
             controller.run(*count);
         }
