@@ -25,7 +25,9 @@ impl Wire {
     }
 
     fn receive(&self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.received.push(*byte));
+        for byte in bytes {
+            self.received.push(*byte);
+        }
     }
 }
 

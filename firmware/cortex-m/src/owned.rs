@@ -72,11 +72,16 @@ impl<T> Owned<T> {
 /// Returns a pointer whose value the compiler does not know. Otherwise it may write the address, as a constant, into every
 /// function of the tick, which takes an `ARMv6-M` 500 bytes more than a register.
 #[inline]
-fn unnamed<T>(mut pointer: *mut T) -> *mut T {
+fn unnamed<T>(pointer: *mut T) -> *mut T {
     #[cfg(target_arch = "arm")]
-    // SAFETY: no instruction. It accesses nothing.
-    unsafe {
-        core::arch::asm!("/* {} */", inout(reg) pointer, options(nomem, nostack, preserves_flags));
+    {
+        let unnamed;
+        // SAFETY: no instruction. It accesses nothing.
+        unsafe {
+            core::arch::asm!("/* {} */", inout(reg) pointer => unnamed, options(nomem, nostack, preserves_flags));
+        }
+        unnamed
     }
+    #[cfg(not(target_arch = "arm"))]
     pointer
 }

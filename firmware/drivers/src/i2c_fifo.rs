@@ -101,13 +101,12 @@ mod tests {
         /// Carries out commands. The receive FIFO never overflows.
         fn run(&mut self, count: usize) {
             for (write, is_last) in self.commands.drain(..count.min(self.commands.len())) {
-                match write {
-                    Some(byte) => self.written.push(byte),
-                    None => {
-                        assert!(self.received.len() < FIFO_LEN, "a byte is lost");
-                        self.received.push_back(self.next);
-                        self.next += 1;
-                    }
+                if let Some(byte) = write {
+                    self.written.push(byte);
+                } else {
+                    assert!(self.received.len() < FIFO_LEN, "a byte is lost");
+                    self.received.push_back(self.next);
+                    self.next += 1;
                 }
                 self.stops += u32::from(is_last);
             }

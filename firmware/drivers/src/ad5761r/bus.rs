@@ -60,7 +60,9 @@ mod tests {
     impl FrameBus for Complement {
         fn exchange(&mut self, bytes: &mut [u8]) -> Result<(), BusError> {
             self.sent.push(bytes.to_vec());
-            bytes.iter_mut().for_each(|byte| *byte = !*byte);
+            for byte in bytes {
+                *byte = !*byte;
+            }
             Ok(())
         }
     }
