@@ -26,7 +26,6 @@ pub fn start() {
 pub type Pin = DirectPin<Wire>;
 
 /// A pin of a port, by its number.
-#[derive(Clone, Copy)]
 pub struct Wire(Gpio, u32);
 
 impl ReadLevel for Wire {
@@ -49,9 +48,8 @@ pub(crate) struct Forced(Wire);
 
 impl SetLevel for Forced {
     fn set(&self, high: bool) {
-        let Wire(port, number) = self.0;
-        set(port, number, high);
-        mode(port, number, Moder::OUTPUT);
+        self.0.set(high);
+        mode(self.0.0, self.0.1, Moder::OUTPUT);
     }
 }
 

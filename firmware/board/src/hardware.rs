@@ -30,7 +30,7 @@ use frixel_wire::dac_code::DacCode;
 pub trait Hardware: 'static {
     /// Ticks a second.
     const TICK_HZ: u32;
-    /// Readings of the arm switch a second, as its driver is told.
+    /// Samples of the arm switch per second, from which its driver counts the time of debouncing.
     const SWITCH_HZ: u32 = Self::TICK_HZ;
 
     /// The timer of the tick.

@@ -9,7 +9,7 @@ use crate::bring_up::{Line, LineReader, Typed};
 /// Longest text that is shown at once, in bytes.
 const TEXT_MAX_LEN: usize = 384;
 
-/// The terminal. What it shows goes to the debug probe, too. A port that fails shows nothing, and nothing is typed there.
+/// The terminal. What it shows goes to the debug probe, too. On a port that fails, lines are lost in both directions.
 pub struct Terminal<P> {
     serial: P,
     reader: LineReader,

@@ -1,16 +1,16 @@
-//! What a start has once.
+//! The token of a start.
 
 use cortex_m::Peripherals;
 
-/// The right to hand the tick's parts out, and the tick to its interrupt.
+/// Permission to make the parts of a tick, and to give the tick to its interrupt.
 ///
-/// There is one, which [`Boot::take`] returns. Constructors of parts that the tick uses borrow it, and
-/// [`TickOwner::give`](crate::TickOwner::give) takes it: so once the interrupt runs, no code without `unsafe` can replace
+/// A program has one, which [`Boot::take`] returns. Constructors of the tick's parts borrow it, and
+/// [`TickOwner::give`](crate::TickOwner::give) takes it. So once the interrupt runs, no code without `unsafe` can replace
 /// the tick, or make a second part that drives the same registers.
 pub struct Boot(());
 
 impl Boot {
-    /// Takes it, and the processor's peripherals. A second call panics.
+    /// Takes the token and the processor's peripherals. A second call panics.
     pub fn take() -> (Self, Peripherals) {
         match Peripherals::take() {
             Some(peripherals) => (Self(()), peripherals),

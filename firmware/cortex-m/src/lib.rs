@@ -1,7 +1,7 @@
 //! What every board with a Cortex-M needs unsafe code for. Beside this crate, only the boards' own crates have any.
 //!
-//! - [`Boot`]: what a start has once, and [`TickOwner`], the tick that its interrupt owns ([`tick_interrupt!`] declares
-//!   both);
+//! - [`TickOwner`]: the tick, which its interrupt owns, declared by [`tick_interrupt!`]; and [`Boot`], the token with
+//!   which it is given;
 //! - [`Owned`]: any other value that an interrupt handler owns;
 //! - [`fault_handlers!`]: the handlers of panics, hard faults and interrupts without a handler, and the record of the
 //!   last fault;

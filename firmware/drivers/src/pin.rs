@@ -17,7 +17,7 @@ pub trait SetLevel {
 }
 
 /// A pin of the processor.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct DirectPin<P>(pub P);
 
 impl<P> ErrorType for DirectPin<P> {

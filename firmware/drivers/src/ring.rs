@@ -62,8 +62,8 @@ impl<const LEN: usize> RingReader<LEN> {
 pub struct InterruptRing<const LEN: usize> {
     /// The bytes.
     pub bytes: [AtomicU8; LEN],
-    /// Where the next byte goes. Only the interrupt writes it. All that a static holds is zero, so that none of it lies
-    /// in flash.
+    /// Where the next byte goes. Only the interrupt writes it. It counts from zero, so that the initial value of a static
+    /// is all zeros, which takes no flash.
     next: AtomicUsize,
 }
 
