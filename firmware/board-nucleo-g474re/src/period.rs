@@ -44,7 +44,12 @@ impl hardware::Period for Period {
 
     #[inline]
     fn has_begun(&mut self) -> bool {
-        has_begun()
+        let begun = TIM3.sr().read().uif();
+        if begun {
+            // Zeros clear flags: this clears all of them, and no other is used.
+            TIM3.sr().write(|w| w.set_uif(false));
+        }
+        begun
     }
 }
 
@@ -63,17 +68,6 @@ pub fn start(_: &Boot) -> Period {
 pub(crate) fn start_interrupts() {
     TIM3.sr().write(|w| w.set_uif(false));
     TIM3.dier().write(|w| w.set_uie(true));
-}
-
-/// Whether a period has begun since the last call.
-#[inline]
-pub fn has_begun() -> bool {
-    let begun = TIM3.sr().read().uif();
-    if begun {
-        // Zeros clear flags: this clears all of them, and no other is used.
-        TIM3.sr().write(|w| w.set_uif(false));
-    }
-    begun
 }
 
 /// Cycles since the period began.

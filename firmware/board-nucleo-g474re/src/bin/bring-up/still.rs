@@ -6,12 +6,12 @@ use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{Dac, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
-use board_nucleo_g474re::period::{self, Period};
+use board_nucleo_g474re::period::Period;
 use board_nucleo_g474re::pins::Pin;
 use board_nucleo_g474re::{tick, watchdog};
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{Sync, TestOutput};
-use frixel_board::hardware::DacFrames as _;
+use frixel_board::hardware::{DacFrames as _, Period as _};
 use frixel_cortex_m::Boot;
 use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_wire::dac_code::DacCode;
@@ -42,8 +42,8 @@ impl Still {
     /// Waits for the next period, and puts `output` out at its end; zero as long as the amplifier is ready.
     pub(crate) fn next_period(&mut self, output: TestOutput) {
         watchdog::feed();
-        let _ = period::has_begun();
-        while !period::has_begun() {}
+        let _ = self.period.has_begun();
+        while !self.period.has_begun() {}
         match output {
             _ if tick::inputs().0 => self.output.disable(),
             TestOutput::Dac(volts) if self.frames.send(code(volts)).is_ok() => self.output.kick_dac_alone(),
@@ -66,8 +66,8 @@ impl Still {
     /// Sets the output to zero. The last frame has been latched before, so that CLEAR comes after it.
     pub(crate) fn zero(&mut self) {
         for _ in 0..2 {
-            let _ = period::has_begun();
-            while !period::has_begun() {}
+            let _ = self.period.has_begun();
+            while !self.period.has_begun() {}
         }
         self.output.disable();
     }

@@ -8,9 +8,9 @@ use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{DacBus, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
-use board_nucleo_g474re::period::{self, LATCH_CYCLES, Period};
+use board_nucleo_g474re::period::{LATCH_CYCLES, Period};
 use board_nucleo_g474re::{tick, watchdog};
-use frixel_board::hardware::DacFrames as _;
+use frixel_board::hardware::{DacFrames as _, Period as _};
 use frixel_board::main_loop::MainLoop;
 use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
@@ -57,17 +57,17 @@ impl Still {
     /// Waits until a period begins, sends a frame of zero, and waits until the next one begins. Returns `false` if the
     /// frame was not sent.
     fn frame(&mut self) -> bool {
-        next_period();
+        self.next_period();
         let is_sent = self.frames.send(DacCode::ZERO).is_ok();
-        next_period();
+        self.next_period();
         is_sent
     }
-}
 
-fn next_period() {
-    watchdog::feed();
-    let _ = period::has_begun();
-    while !period::has_begun() {}
+    fn next_period(&mut self) {
+        watchdog::feed();
+        let _ = self.period.has_begun();
+        while !self.period.has_begun() {}
+    }
 }
 
 impl Looped {
