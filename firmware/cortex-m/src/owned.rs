@@ -40,10 +40,13 @@ impl<T> Owned<T> {
         })
     }
 
-    /// Gives the value to the handler of a place to which only this function gives.
+    /// Gives the value to the handler.
+    ///
+    /// # Safety
+    /// Nothing else than this function gives to this place.
     #[inline]
-    pub(crate) fn give_once(&self, _: Boot, value: T) {
-        // SAFETY: there is one `Boot`, and it ends here, so this is the first call.
+    pub(crate) unsafe fn give_once(&self, _: Boot, value: T) {
+        // SAFETY: there is one `Boot`, and it ends here, so this is the first call; and no other function gives.
         unsafe { self.put(value) };
     }
 

@@ -21,7 +21,8 @@ where
     /// Gives the tick to its interrupt. There is one [`Boot`], so a program has one tick, which nothing replaces.
     #[inline]
     pub fn give(&self, boot: Boot, tick: Tick<H>) {
-        self.0.give_once(boot, tick);
+        // SAFETY: the place is private, and nothing else here gives.
+        unsafe { self.0.give_once(boot, tick) };
     }
 
     /// Runs the tick, if there is one.
