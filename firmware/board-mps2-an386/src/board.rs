@@ -1,10 +1,8 @@
 //! The parts of this board. [`crate::output`] and [`crate::inputs`] stand for DAC, amplifier and arm switch, as the
 //! simulator sees them; these are the parts that the emulated board lacks.
 
-use core::convert::Infallible;
-
-use embedded_hal::digital::{ErrorType, OutputPin};
 use frixel_board::hardware::{Dac, Hardware, Watchdog};
+use frixel_drivers::pin::{DirectPin, SetLevel};
 use frixel_exchange::BOARD;
 
 use crate::inputs::{Monitor, Ready, Switch};
@@ -17,15 +15,18 @@ pub enum Mps2 {}
 
 impl Hardware for Mps2 {
     const TICK_HZ: u32 = BOARD.tick_hz;
+    /// A single reading counts: the simulated contact does not bounce, and a host may arm at any tick, because the person
+    /// is always ready.
+    const SWITCH_HZ: u32 = 50;
 
     type Period = Period;
     type Frames = Frames;
     type Dac = NoDac;
     type Enable = Enable;
-    type Ready = Ready;
+    type Ready = DirectPin<Ready>;
     type Monitor = Monitor;
-    type Switch = Switch;
-    type Light = NoLight;
+    type Switch = DirectPin<Switch>;
+    type Light = DirectPin<NoLight>;
     type Serial = Uart;
     type Watchdog = NoWatchdog;
 }
@@ -46,18 +47,8 @@ impl Dac for NoDac {
 /// There is no light.
 pub struct NoLight;
 
-impl ErrorType for NoLight {
-    type Error = Infallible;
-}
-
-impl OutputPin for NoLight {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
+impl SetLevel for NoLight {
+    fn set(&self, _: bool) {}
 }
 
 /// There is no watchdog: an emulator that hangs is ended by its simulator.

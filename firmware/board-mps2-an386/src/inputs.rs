@@ -1,10 +1,9 @@
 //! The inputs of the tick: the amplifier's ready line, its monitor, and the arm switch. The simulator may break each.
 
-use core::convert::Infallible;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use embedded_hal::digital::{ErrorType, InputPin};
 use frixel_board::hardware;
+use frixel_drivers::pin::ReadLevel;
 use frixel_exchange::{BOARD, layout};
 use frixel_testkit::IdealMonitor;
 use frixel_wire::dac_code::DacCode;
@@ -22,38 +21,22 @@ pub fn hold_switch(is_held: bool) {
 /// The contact of the arm switch.
 pub struct Switch;
 
-impl ErrorType for Switch {
-    type Error = Infallible;
-}
-
-impl InputPin for Switch {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(match shared::get(layout::ARM_SWITCH) {
+impl ReadLevel for Switch {
+    fn is_high(&self) -> bool {
+        match shared::get(layout::ARM_SWITCH) {
             layout::SWITCH_OPEN => false,
             layout::SWITCH_WELDED => true,
             _ => SWITCH_IS_HELD.load(Ordering::Relaxed),
-        })
-    }
-
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|is_high| !is_high)
+        }
     }
 }
 
 /// The amplifier's ready line, which the simulator may lower.
 pub struct Ready;
 
-impl ErrorType for Ready {
-    type Error = Infallible;
-}
-
-impl InputPin for Ready {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(shared::get(layout::AMPLIFIER_FAULT) == 0)
-    }
-
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|is_high| !is_high)
+impl ReadLevel for Ready {
+    fn is_high(&self) -> bool {
+        shared::get(layout::AMPLIFIER_FAULT) == 0
     }
 }
 

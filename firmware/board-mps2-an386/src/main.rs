@@ -25,67 +25,59 @@ use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use frixel_board::fault::LastReset;
-use frixel_board::hardware::Hardware;
-use frixel_board::main_loop::MainLoop;
-use frixel_board::memory::Memory;
-use frixel_control::{Board, StreamBuffer, Ticker};
-use frixel_cortex_m::guard;
+use frixel_board::memory::{Made, Memory};
+use frixel_board::start::Parts;
+use frixel_control::Board;
+use frixel_cortex_m::{Boot, guard, never};
 use frixel_drivers::fault_record::Text;
+use frixel_drivers::pin::DirectPin;
 use frixel_drivers::serial::SerialLink;
-use frixel_drivers::state_light::StateLight;
 use frixel_exchange::{BOARD, layout};
-use frixel_session::{Session, SessionEnds, TickEnds};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
-use board::{Mps2, NoDac, NoLight, NoWatchdog};
+use board::{NoDac, NoLight, NoWatchdog};
+use inputs::{Monitor, Ready, Switch};
+use output::{Enable, Frames};
+use period::Period;
 use uart::Uart;
 
 /// Whether the machine is the one of timer, serial port and stack guard.
 const IS_AN386: bool = cfg!(not(an505));
-
-/// Samples of a stream, written by the session and read by the tick.
-static STREAM: StreamBuffer = StreamBuffer::new();
 
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
     static mut MEMORY: Memory = Memory::new();
 
-    let Some(mut peripherals) = Peripherals::take() else { fault::never() };
+    let (boot, mut peripherals) = Boot::take();
     if IS_AN386 {
         guard::start(&mut peripherals.MPU);
     }
     shared::set(layout::OUTPUT_AT_START, shared::get(layout::OUTPUT));
-    let (mut ticker, session, session_ends, tick_ends) = MEMORY.make(started(TEXT));
-    ticker.attach_stream(&STREAM);
-    session.attach_stream(&STREAM);
+    let made = MEMORY.make(started(TEXT));
     match shared::get(layout::MODE) {
-        layout::MODE_LINK if IS_AN386 => run(session, ticker, (session_ends, tick_ends), peripherals),
-        _ => lockstep::run(session, ticker),
+        layout::MODE_LINK if IS_AN386 => run(made, boot, peripherals),
+        _ => lockstep::run(made.session, made.ticker),
     }
 }
 
 /// Starts the tick on the board's own timer, and runs the main loop with the host on the serial port.
-fn run(
-    session: &'static mut Session<'static>,
-    ticker: Ticker<'static>,
-    (session_ends, tick_ends): (SessionEnds, TickEnds),
-    mut peripherals: Peripherals,
-) -> ! {
-    let Some(bytes) = singleton!(: uart::Queues = uart::Queues::new()) else { fault::never() };
-    session.attach_tick_meter(&tick::SHARED.meter);
-    let status = ticker.status();
-    tick::start(ticker, tick_ends, peripherals.SYST);
-    let mut main_loop = MainLoop::<Mps2> {
-        shared: &tick::SHARED,
-        queues: session_ends,
-        session,
-        status,
-        serial: Uart::start(bytes, &mut peripherals.NVIC).map(SerialLink::new),
+fn run(made: Made, boot: Boot, mut peripherals: Peripherals) -> ! {
+    let Some(bytes) = singleton!(: uart::Queues = uart::Queues::new()) else { never() };
+    let parts = Parts {
+        period: Period::default(),
+        frames: Frames,
         dac: NoDac,
-        light: StateLight::new(NoLight, Mps2::TICK_HZ),
-        watchdog: NoWatchdog,
+        enable: Enable,
+        ready: DirectPin(Ready),
+        monitor: Monitor::new(),
+        switch: DirectPin(Switch),
+        light: DirectPin(NoLight),
+        serial: None,
     };
+    let start_tick = |tick| tick::start(boot, tick, peripherals.SYST);
+    let mut main_loop = parts.start(made, &tick::SHARED, start_tick, || NoWatchdog);
+    main_loop.serial = Uart::start(bytes, &mut peripherals.NVIC).map(SerialLink::new);
     // Without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by several ticks,
     // which the tick treats as a missed deadline.
     loop {

@@ -12,7 +12,11 @@ const CLOCK_HZ: u32 = 25_000_000;
 const PERIOD_COUNTS: u32 = CLOCK_HZ / BOARD.tick_hz;
 
 /// `SysTick`, as the tick uses it. The simulator takes a drive whenever it comes, so the deadline is the period.
-pub struct Period;
+#[derive(Default)]
+pub struct Period {
+    /// Of the interrupt, before the tick.
+    pub host_wait: HostWait,
+}
 
 impl hardware::Period for Period {
     const PERIOD_CYCLES: u32 = PERIOD_COUNTS;

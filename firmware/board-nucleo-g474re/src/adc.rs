@@ -6,26 +6,24 @@
 
 use cortex_m::asm;
 use frixel_board::hardware::Monitor;
+use frixel_cortex_m::Boot;
 use frixel_drivers::monitor::MonitorScale;
 use stm32_metapac::adc::vals::{Adcaldif, Ovrmod, Res, SampleTime};
 use stm32_metapac::adccommon::vals::Ckmode;
 use stm32_metapac::{ADC1, ADC12_COMMON};
 
-use crate::board::MONITOR;
 use crate::clock::CORE_HZ;
 use crate::wait_until;
 
 const CHANNEL: u8 = 1;
 
 /// The monitor's ADC. PA0 is analog from reset on.
-pub struct Adc {
-    monitor: MonitorScale,
-}
+pub struct Adc(());
 
 impl Adc {
     /// Calibrates the ADC and starts conversion (RM0440, "ADC": "ADC deep-power-down mode and ADC voltage regulator",
     /// "Calibration", "ADC on-off control").
-    pub fn new() -> Self {
+    pub fn new(_: &Boot) -> Self {
         // 42.5 MHz; the ADC allows 60.
         ADC12_COMMON.ccr().modify(|w| w.set_ckmode(Ckmode::SYNC_DIV4));
         ADC1.cr().modify(|w| w.set_deeppwd(false));
@@ -55,7 +53,7 @@ impl Adc {
             w.set_sq(0, CHANNEL);
         });
         ADC1.cr().modify(|w| w.set_adstart(true));
-        Self { monitor: MONITOR }
+        Self(())
     }
 }
 
@@ -63,6 +61,6 @@ impl Monitor for Adc {
     /// Converted at most 2.5 us ago.
     #[inline]
     fn monitor_v(&mut self) -> f32 {
-        self.monitor.volts(ADC1.dr().read().rdata())
+        MonitorScale::SHIFTED.volts(ADC1.dr().read().rdata())
     }
 }

@@ -3,10 +3,11 @@
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
-use frixel_control::{AmplifierSpec, Board};
-use frixel_drivers::monitor::MonitorScale;
-use frixel_session::store::{Ceilings, Slot, check_touched_board, load_limits};
-use frixel_wire::hello::{BoardKind, BoardLimits, notice};
+use frixel_board::serial::RECEIVE_WINDOW;
+use frixel_board::start::describe;
+use frixel_control::Board;
+use frixel_session::store::{Ceilings, check_touched_board};
+use frixel_wire::hello::{BoardLimits, notice};
 use stm32_metapac::UID;
 
 use crate::adc::Adc;
@@ -38,13 +39,6 @@ impl Hardware for Nucleo {
 
 /// Ticks a second.
 pub const TICK_HZ: u32 = 40_000;
-/// Number of bytes that the host may have under way.
-pub const RECEIVE_WINDOW: usize = 4096;
-
-/// The monitor's ADC: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, which the level shifter converts
-/// to 0.75 V around 1.65 V, so that 220 V use the full range.
-pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
-
 /// Limits until bring-up has stored others.
 pub const LIMITS: BoardLimits =
     BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..limits_behind(option_env!("FRIXEL_SERIES_KOHM")) };
@@ -70,29 +64,17 @@ const _: () = assert!(
 /// Whether stored limits above the ceilings are refused.
 pub const CEILINGS: Ceilings =
     if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
-/// The amplifier.
-pub const AMPLIFIER: AmplifierSpec = Board::NUCLEO_G474RE.amplifier;
-
-/// Where the limits are stored: the first two pages of bank 2.
-pub const LIMITS_SLOT: Slot = Slot { first_page: 0 };
 /// The board's description, with the cause of the last reset. Wrong option bytes are one of its notices, and refuse
 /// arming.
 pub fn board(last_reset: &LastReset, flash: Option<&BankTwo>) -> Board {
-    let (limits, notices) = load_limits(flash, LIMITS_SLOT, &LIMITS, CEILINGS);
-    let wrong = if flash::option_bytes_are_right() { 0 } else { notice::OPTION_BYTES };
-    // Field by field: the rest of `Board::NUCLEO_G474RE` copied would take 90 bytes of flash.
-    Board {
-        kind: BoardKind::NucleoG474re,
+    let built_in = Board {
         id: unique_number(),
-        tick_hz: TICK_HZ,
-        limits,
-        amplifier: AMPLIFIER,
-        reset_cause: last_reset.cause,
-        reset_fault: last_reset.fault,
-        reset_text: last_reset.text,
+        limits: LIMITS,
         touch_from_host: !cfg!(feature = "optical-frame"),
-        notices: notices | wrong,
-    }
+        notices: if flash::option_bytes_are_right() { 0 } else { notice::OPTION_BYTES },
+        ..Board::NUCLEO_G474RE
+    };
+    describe(built_in, flash, CEILINGS, last_reset)
 }
 
 /// The processor's unique number, 96 bits (RM0440, "Unique device ID register").

@@ -4,7 +4,6 @@
 
 use cortex_m::asm;
 use cortex_m::peripheral::{DCB, DWT};
-use embedded_hal::delay::DelayNs;
 use stm32_metapac::rcc::vals::{Hpre, Pllm, Plln, Pllr, Pllsrc, Ppre, Sw};
 use stm32_metapac::{DBGMCU, FLASH, PWR, RCC};
 
@@ -72,14 +71,8 @@ pub fn start_peripherals() {
     let _ = RCC.apb1enr1().read();
 }
 
-/// A delay that counts cycles; longer when interrupts occur meanwhile.
-pub struct CycleDelay;
-
-impl DelayNs for CycleDelay {
-    fn delay_ns(&mut self, ns: u32) {
-        asm::delay((CORE_HZ / 1_000_000).saturating_mul(ns.div_ceil(1000)));
-    }
-}
+/// A delay of this core.
+pub type CycleDelay = frixel_cortex_m::CycleDelay<CORE_HZ>;
 
 /// Starts the cycle counter and checks that it counts. The counter of an emulator stands still, and every time limit
 /// measured with it would be met.

@@ -2,7 +2,7 @@
 //! ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
 //!
 //! - [`Frames`], in the tick: one output frame a period by DMA, latched by a timer's edge ([`crate::period`]);
-//! - [`DacBus`], in the main loop: an `SpiDevice` for the driver that configures the DAC and reads it back.
+//! - [`DacBus`], in the main loop: for the driver that configures the DAC and reads it back.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -12,10 +12,9 @@
 
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use embedded_hal::delay::DelayNs;
-use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
 use frixel_board::hardware::{DacFrames, Late};
-use frixel_drivers::ad5761r::{self, Ad5761r, FRAME_LEN};
+use frixel_cortex_m::Boot;
+use frixel_drivers::ad5761r::{self, Ad5761r, BusError, FRAME_LEN, FrameBus, FrameDevice};
 use frixel_wire::dac_code::DacCode;
 use stm32_metapac::bdma::vals::{Dir, Pl};
 use stm32_metapac::spi::vals::{Br, Cpha, Cpol, Ds, Frxth, Mstr};
@@ -38,12 +37,10 @@ const DRIVER_CLOCK: Br = Br::DIV32;
 static FRAME: [AtomicU8; FRAME_LEN] = [const { AtomicU8::new(0) }; FRAME_LEN];
 
 /// The driver of this board's DAC.
-pub type Dac = Ad5761r<DacBus, CycleDelay>;
-/// Errors of the DAC's driver.
-pub type DacError = ad5761r::Error<SpiError>;
+pub type Dac = Ad5761r<FrameDevice<DacBus>, CycleDelay>;
 
 /// Starts SPI2 and returns its two halves. Call [`period::start`] first. The DAC is not configured yet.
-pub fn start() -> (Frames, Dac) {
+pub fn start(_: &Boot) -> (Frames, Dac) {
     // SCLK is high between frames, and the DAC samples at falling edges: mode 2.
     SPI2.cr1().write(|w| {
         w.set_mstr(Mstr::MASTER);
@@ -70,7 +67,7 @@ pub fn start() -> (Frames, Dac) {
         register: SPI2.dr8().as_ptr().cast(),
     };
     dma::set_up(dma::DAC, &transfer, &FRAME);
-    (Frames(()), Ad5761r::new(DacBus(()), CycleDelay))
+    (Frames(()), Ad5761r::new(FrameDevice(DacBus(())), CycleDelay {}))
 }
 
 /// The tick's half of the DAC.
@@ -94,79 +91,32 @@ impl DacFrames for Frames {
 /// The main loop's half of the DAC. It polls, while the tick sends nothing.
 pub struct DacBus(());
 
-/// Why a transfer failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "log", derive(defmt::Format))]
-pub enum SpiError {
-    /// SPI2 did not become idle, or did not receive a byte.
-    Timeout,
-}
-
-impl spi::Error for SpiError {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::Other
-    }
-}
-
-impl ErrorType for DacBus {
-    type Error = SpiError;
-}
-
-impl SpiDevice for DacBus {
-    /// SYNC is low for the whole transaction. The tick may interrupt it at any point; the bus then pauses.
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), SpiError> {
+impl FrameBus for DacBus {
+    /// The tick may interrupt it at any point; the bus then pauses.
+    fn exchange(&mut self, bytes: &mut [u8]) -> Result<(), BusError> {
         configure(DRIVER_CLOCK, false)?;
         // Discard the bytes that were received during the tick's frames, and the overrun that they caused.
         while SPI2.sr().read().rxne() {
             let _ = SPI2.dr8().read();
         }
         period::hold_sync_low();
-        let result = operations.iter_mut().try_for_each(run);
+        let result = bytes.iter_mut().try_for_each(exchange);
         period::end_frame();
         configure(FRAME_CLOCK, true)?;
         result
     }
 }
 
-fn run(operation: &mut Operation<'_, u8>) -> Result<(), SpiError> {
-    match operation {
-        Operation::Read(bytes) => {
-            for byte in bytes.iter_mut() {
-                *byte = exchange(0)?;
-            }
-        }
-        Operation::Write(bytes) => {
-            for byte in *bytes {
-                exchange(*byte)?;
-            }
-        }
-        Operation::Transfer(read, write) => {
-            for index in 0..read.len().max(write.len()) {
-                let received = exchange(write.get(index).copied().unwrap_or_default())?;
-                if let Some(byte) = read.get_mut(index) {
-                    *byte = received;
-                }
-            }
-        }
-        Operation::TransferInPlace(bytes) => {
-            for byte in bytes.iter_mut() {
-                *byte = exchange(*byte)?;
-            }
-        }
-        Operation::DelayNs(ns) => CycleDelay.delay_ns(*ns),
-    }
+/// Sends a byte, and replaces it by the byte received meanwhile.
+fn exchange(byte: &mut u8) -> Result<(), BusError> {
+    SPI2.dr8().write_value(*byte);
+    wait_until(|| SPI2.sr().read().rxne())?;
+    *byte = SPI2.dr8().read();
     Ok(())
 }
 
-/// Sends a byte, and returns the byte received meanwhile.
-fn exchange(byte: u8) -> Result<u8, SpiError> {
-    SPI2.dr8().write_value(byte);
-    wait_until(|| SPI2.sr().read().rxne())?;
-    Ok(SPI2.dr8().read())
-}
-
 /// Changes clock and DMA between two frames (RM0440, "SPI": "Procedure for disabling the SPI").
-fn configure(clock: Br, dma: bool) -> Result<(), SpiError> {
+fn configure(clock: Br, dma: bool) -> Result<(), BusError> {
     wait_until(|| !SPI2.sr().read().bsy())?;
     SPI2.cr1().modify(|w| w.set_spe(false));
     SPI2.cr1().modify(|w| w.set_br(clock));
@@ -175,6 +125,6 @@ fn configure(clock: Br, dma: bool) -> Result<(), SpiError> {
     Ok(())
 }
 
-fn wait_until(ready: impl Fn() -> bool) -> Result<(), SpiError> {
-    if (0..ROUNDS_MAX).any(|_| ready()) { Ok(()) } else { Err(SpiError::Timeout) }
+fn wait_until(ready: impl Fn() -> bool) -> Result<(), BusError> {
+    if (0..ROUNDS_MAX).any(|_| ready()) { Ok(()) } else { Err(BusError::Timeout) }
 }

@@ -4,15 +4,13 @@
 //! |---|---|---|
 //! | PA5 | output | LD2, on while high |
 
-use frixel_drivers::state_light::StateLight;
 use stm32_metapac::GPIOA;
 
-use crate::board::TICK_HZ;
-use crate::pins::Pin;
+use crate::pins::{self, Pin};
 
 const LD2: u32 = 5;
 
 /// Configures the light's pin and switches the light off.
-pub fn start() -> StateLight<Pin> {
-    StateLight::new(Pin::output_low(GPIOA, LD2), TICK_HZ)
+pub fn start() -> Pin {
+    pins::output_low(GPIOA, LD2)
 }

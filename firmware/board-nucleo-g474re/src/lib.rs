@@ -18,15 +18,13 @@ mod dma;
 pub mod fault;
 pub mod flash;
 pub mod indicator;
-pub mod main_loop;
 #[cfg(feature = "optical-frame")]
 pub mod optical_frame;
 pub mod output;
 pub mod period;
 pub mod pins;
 pub mod serial;
-#[cfg(feature = "log")]
-pub mod terminal;
+pub mod start;
 pub mod tick;
 pub mod watchdog;
 
@@ -36,18 +34,5 @@ const ROUNDS_MAX: u32 = 5_000_000;
 /// Waits until a part of the processor is ready. If it never is, this panics, which sets the output to zero and
 /// resets.
 pub(crate) fn wait_until(ready: impl Fn() -> bool, what: &str) {
-    let mut poll = limited_polls(what);
-    while !ready() {
-        poll();
-    }
-}
-
-/// Returns a function to be called in every round of a loop that waits. It panics after the last round, which sets the
-/// output to zero and resets.
-pub(crate) fn limited_polls(what: &str) -> impl FnMut() {
-    let mut rounds = 0;
-    move || {
-        rounds += 1;
-        assert!(rounds < ROUNDS_MAX, "waited in vain for {what}");
-    }
+    assert!((0..ROUNDS_MAX).any(|_| ready()), "waited in vain for {what}");
 }

@@ -11,6 +11,7 @@
 //! | PB6 | TIM4_CH1 | amplifier enable, high enables |
 //! | PB7 | TIM4_CH2 | CLEAR of the DAC, low clears |
 
+use frixel_cortex_m::Boot;
 use frixel_drivers::ad5761r::zero_output;
 use frixel_drivers::amplifier::KickedEnable;
 use stm32_metapac::timer::vals::Ocm;
@@ -18,7 +19,7 @@ use stm32_metapac::{GPIOB, GPIOC, RCC, TIM4};
 
 use crate::clock::CORE_HZ;
 use crate::period::SYNC;
-use crate::pins::{self, ForcedPin};
+use crate::pins::{self, forced};
 
 /// Time from the last kick until the output is zero, in us. The specification is 1 ms.
 pub const LIFE_US: u16 = 900;
@@ -31,9 +32,8 @@ const TIM4_FUNCTION: u8 = 2;
 pub struct Output(());
 
 impl Output {
-    /// Sets the output to zero, and takes the pins of the one-shot, which are low.
-    pub fn new() -> Self {
-        zero_for_good();
+    /// Takes the pins of the one-shot, which are low. [`zero_for_good`] has set them low before.
+    pub fn new(_: &Boot) -> Self {
         RCC.apb1enr1().modify(|w| w.set_tim4en(true));
         let _ = RCC.apb1enr1().read();
         TIM4.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
@@ -54,24 +54,10 @@ impl Output {
         output
     }
 
-    /// Kicks the timer: enables the output for another [`LIFE_US`].
-    #[inline]
-    pub fn kick(&mut self) {
-        restart(Ocm::PWM_MODE2);
-    }
-
     /// Lets the DAC put out its codes for another [`LIFE_US`], with the amplifier disabled, whatever was kicked before.
     pub fn kick_dac_alone(&mut self) {
         TIM4.ccmr_output(0).modify(|w| w.set_ocm(0, Ocm::FORCE_INACTIVE));
         restart(Ocm::FORCE_INACTIVE);
-    }
-
-    /// Sets the output to zero at once.
-    #[inline]
-    pub fn zero(&mut self) {
-        mode(Ocm::FORCE_INACTIVE, Ocm::FORCE_INACTIVE);
-        TIM4.cr1().modify(|w| w.set_cen(false));
-        TIM4.cnt().write(|w| w.set_cnt(0));
     }
 
     /// Levels of the pins: amplifier enable, DAC clear.
@@ -81,14 +67,18 @@ impl Output {
 }
 
 impl KickedEnable for Output {
+    /// Enables the output for another [`LIFE_US`].
     #[inline]
     fn kick(&mut self) {
-        Self::kick(self);
+        restart(Ocm::PWM_MODE2);
     }
 
+    /// Sets the output to zero at once.
     #[inline]
     fn disable(&mut self) {
-        self.zero();
+        mode(Ocm::FORCE_INACTIVE, Ocm::FORCE_INACTIVE);
+        TIM4.cr1().modify(|w| w.set_cen(false));
+        TIM4.cnt().write(|w| w.set_cnt(0));
     }
 }
 
@@ -121,9 +111,5 @@ fn mode(enable: Ocm, clear: Ocm) {
 /// their timers, in the order that [`zero_output`] explains.
 pub fn zero_for_good() {
     pins::start();
-    zero_output(
-        &mut ForcedPin::new(GPIOB, AMPLIFIER_ENABLE),
-        &mut ForcedPin::new(GPIOC, SYNC),
-        &mut ForcedPin::new(GPIOB, DAC_CLEAR),
-    );
+    zero_output(&mut forced(GPIOB, AMPLIFIER_ENABLE), &mut forced(GPIOC, SYNC), &mut forced(GPIOB, DAC_CLEAR));
 }

@@ -10,6 +10,7 @@
 //! | PC6 | TIM3_CH1 | SYNC of the DAC |
 
 use frixel_board::hardware;
+use frixel_cortex_m::Boot;
 use stm32_metapac::timer::vals::Ocm;
 use stm32_metapac::{GPIOC, TIM3};
 
@@ -30,7 +31,7 @@ const TIM3_FUNCTION: u8 = 2;
 const _: () = assert!(CORE_HZ.is_multiple_of(crate::board::TICK_HZ) && PERIOD_CYCLES <= 1 << 16);
 
 /// TIM3, as the tick uses it.
-pub struct Period;
+pub struct Period(());
 
 impl hardware::Period for Period {
     const PERIOD_CYCLES: u32 = PERIOD_CYCLES;
@@ -43,35 +44,30 @@ impl hardware::Period for Period {
 
     #[inline]
     fn has_begun(&mut self) -> bool {
-        has_begun()
+        let begun = TIM3.sr().read().uif();
+        if begun {
+            // Zeros clear flags: this clears all of them, and no other is used.
+            TIM3.sr().write(|w| w.set_uif(false));
+        }
+        begun
     }
 }
 
 /// Starts the timer, with SYNC high and without interrupts.
-pub fn start() {
+pub fn start(_: &Boot) -> Period {
     TIM3.arr().write(|w| w.set_arr((PERIOD_CYCLES - 1) as u16));
     TIM3.ccr(0).write(|w| w.set_ccr(LATCH_CYCLES as u16));
     end_frame();
     TIM3.ccer().write(|w| w.set_cce(0, true));
     pins::alternate(GPIOC, SYNC, TIM3_FUNCTION);
     TIM3.cr1().modify(|w| w.set_cen(true));
+    Period(())
 }
 
 /// Enables the interrupt at the start of every period, from the next one on.
 pub(crate) fn start_interrupts() {
     TIM3.sr().write(|w| w.set_uif(false));
     TIM3.dier().write(|w| w.set_uie(true));
-}
-
-/// Whether a period has begun since the last call.
-#[inline]
-pub fn has_begun() -> bool {
-    let begun = TIM3.sr().read().uif();
-    if begun {
-        // Zeros clear flags: this clears all of them, and no other is used.
-        TIM3.sr().write(|w| w.set_uif(false));
-    }
-    begun
 }
 
 /// Cycles since the period began.

@@ -1,9 +1,7 @@
 //! Pins. The modules that use them and the table of `docs/hardware.md` state their functions; alternate functions are
 //! those of DS12288, "Alternate functions".
 
-use core::convert::Infallible;
-
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
 use stm32_metapac::RCC;
 use stm32_metapac::gpio::Gpio;
 use stm32_metapac::gpio::vals::{Moder, Ospeedr, Pupdr};
@@ -25,91 +23,45 @@ pub fn start() {
 }
 
 /// A pin that software reads or sets.
-pub struct Pin {
-    port: Gpio,
-    number: u32,
-}
+pub type Pin = DirectPin<Wire>;
 
-impl Pin {
-    /// An output that is low.
-    pub(crate) fn output_low(port: Gpio, number: u32) -> Self {
-        output_low(port, number);
-        Self { port, number }
-    }
+/// A pin of a port, by its number.
+pub struct Wire(Gpio, u32);
 
-    /// The level of a pin that a peripheral uses.
-    #[cfg(feature = "optical-frame")]
-    pub(crate) fn reads(port: Gpio, number: u32) -> Self {
-        Self { port, number }
-    }
-
-    /// An input that is pulled down: a disconnected wire reads as low.
-    pub(crate) fn input_pulled_down(port: Gpio, number: u32) -> Self {
-        input_pulled_down(port, number);
-        Self { port, number }
-    }
-}
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl InputPin for Pin {
+impl ReadLevel for Wire {
     #[inline]
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(is_high(self.port, self.number))
-    }
-
-    #[inline]
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        Ok(!is_high(self.port, self.number))
+    fn is_high(&self) -> bool {
+        is_high(self.0, self.1)
     }
 }
 
-impl OutputPin for Pin {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        set(self.port, self.number, true);
-        Ok(())
-    }
-
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        set(self.port, self.number, false);
-        Ok(())
+impl SetLevel for Wire {
+    #[inline]
+    fn set(&self, high: bool) {
+        set(self.0, self.1, high);
     }
 }
 
 /// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other
 /// level.
-pub(crate) struct ForcedPin {
-    port: Gpio,
-    number: u32,
-}
+pub(crate) struct Forced(Wire);
 
-impl ForcedPin {
-    pub(crate) fn new(port: Gpio, number: u32) -> Self {
-        Self { port, number }
-    }
-
-    fn force(&self, high: bool) {
-        set(self.port, self.number, high);
-        mode(self.port, self.number, Moder::OUTPUT);
+impl SetLevel for Forced {
+    fn set(&self, high: bool) {
+        self.0.set(high);
+        mode(self.0.0, self.0.1, Moder::OUTPUT);
     }
 }
 
-impl ErrorType for ForcedPin {
-    type Error = Infallible;
+/// A pin that becomes an output when it is set.
+pub(crate) fn forced(port: Gpio, pin: u32) -> DirectPin<Forced> {
+    DirectPin(Forced(Wire(port, pin)))
 }
 
-impl OutputPin for ForcedPin {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.force(true);
-        Ok(())
-    }
-
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.force(false);
-        Ok(())
-    }
+/// The level of a pin that a peripheral uses.
+#[cfg(feature = "optical-frame")]
+pub(crate) fn reads(port: Gpio, pin: u32) -> Pin {
+    DirectPin(Wire(port, pin))
 }
 
 /// Connects a pin to a peripheral.
@@ -127,15 +79,17 @@ pub(crate) fn alternate_open_drain(port: Gpio, pin: u32, function: u8) {
 }
 
 /// Makes a pin an output that is low.
-pub(crate) fn output_low(port: Gpio, pin: u32) {
+pub(crate) fn output_low(port: Gpio, pin: u32) -> Pin {
     set(port, pin, false);
     mode(port, pin, Moder::OUTPUT);
+    DirectPin(Wire(port, pin))
 }
 
 /// Makes a pin an input that is pulled down: a disconnected wire reads as low.
-pub(crate) fn input_pulled_down(port: Gpio, pin: u32) {
+pub(crate) fn input_pulled_down(port: Gpio, pin: u32) -> Pin {
     port.pupdr().modify(|w| w.0 = field(w.0, 2, pin, Pupdr::PULL_DOWN as u32));
     mode(port, pin, Moder::INPUT);
+    DirectPin(Wire(port, pin))
 }
 
 /// The level of a pin that is an input, through the weak resistor to either side. It is then pulled by none.

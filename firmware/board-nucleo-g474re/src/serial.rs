@@ -6,15 +6,12 @@
 //! | PA2 | USART2_TX | to the ST-Link |
 //! | PA3 | USART2_RX | from the ST-Link |
 
-use core::convert::Infallible;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
-use frixel_drivers::ring::RingReader;
+use frixel_board::serial::{RING_LEN, SerialPort, Uart};
 use stm32_metapac::bdma::vals::{Dir, Pl};
 use stm32_metapac::{GPIOA, USART2};
 
-use crate::board::RECEIVE_WINDOW;
 use crate::clock::CORE_HZ;
 use crate::{dma, pins};
 
@@ -23,8 +20,6 @@ const TX: u32 = 2;
 const RX: u32 = 3;
 const USART2_FUNCTION: u8 = 7;
 
-/// Length of the ring: the host's credit, and room for a hello and some noise, which need no credit.
-const RING_LEN: usize = RECEIVE_WINDOW + 512;
 /// Largest number of bytes that DMA sends at a time: 1.3 ms on the line.
 const TRANSMIT_LEN: usize = 256;
 
@@ -35,14 +30,15 @@ static RECEIVED: [AtomicU8; RING_LEN] = [const { AtomicU8::new(0) }; RING_LEN];
 #[unsafe(link_section = ".dma.TRANSMITTED")]
 static TRANSMITTED: [AtomicU8; TRANSMIT_LEN] = [const { AtomicU8::new(0) }; TRANSMIT_LEN];
 
-/// The serial port.
-pub struct Serial {
-    reader: RingReader<RING_LEN>,
-}
+/// USART2.
+pub struct Usart(());
 
-impl Serial {
+/// The serial port.
+pub type Serial = SerialPort<Usart>;
+
+impl Usart {
     /// Starts reception: 8 data bits, no parity, 1 stop bit (RM0440, "USART").
-    pub fn new() -> Self {
+    pub fn start() -> Serial {
         const { assert!(CORE_HZ.is_multiple_of(BAUD), "the rate is exact") };
         USART2.brr().write(|w| w.set_brr((CORE_HZ / BAUD) as u16));
         USART2.cr3().write(|w| {
@@ -77,67 +73,37 @@ impl Serial {
             w.set_te(true);
             w.set_re(true);
         });
-        Self { reader: RingReader::new() }
+        SerialPort::new(Self(()))
     }
 }
 
-impl ErrorType for Serial {
-    type Error = Infallible;
-}
+impl Uart for Usart {
+    fn ring(&self) -> &'static [AtomicU8; RING_LEN] {
+        &RECEIVED
+    }
 
-impl ReadReady for Serial {
-    fn read_ready(&mut self) -> Result<bool, Infallible> {
+    fn remaining(&mut self) -> usize {
         // Nothing is received while the flag of an overrun is set (RM0440, "USART receiver": "Overrun error", unread).
-        // The bytes that are lost until then damage frames, which the host sends again.
         if USART2.isr().read().ore() {
             USART2.icr().write(|w| w.set_ore(true));
         }
-        Ok(!self.reader.is_empty(dma::remaining(dma::RECEIVE)))
+        dma::remaining(dma::RECEIVE)
     }
-}
 
-impl Read for Serial {
-    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
-        if bytes.is_empty() {
-            return Ok(0);
-        }
-        loop {
-            let piece = self.reader.take(dma::remaining(dma::RECEIVE), bytes.len());
-            let places = RECEIVED.get(piece).unwrap_or_default();
-            if places.is_empty() {
-                continue;
-            }
-            for (to, from) in bytes.iter_mut().zip(places) {
-                *to = from.load(Ordering::Relaxed);
-            }
-            return Ok(places.len());
-        }
+    fn takes_bytes(&self) -> bool {
+        dma::remaining(dma::TRANSMIT) == 0
     }
-}
 
-impl WriteReady for Serial {
-    fn write_ready(&mut self) -> Result<bool, Infallible> {
-        Ok(dma::remaining(dma::TRANSMIT) == 0)
-    }
-}
-
-impl Write for Serial {
-    /// Starts to send, once the previous bytes have been sent.
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
-        if bytes.is_empty() {
-            return Ok(0);
-        }
-        self.flush()?;
+    fn send(&mut self, bytes: &[u8]) -> usize {
         let len = bytes.len().min(TRANSMIT_LEN);
         for (to, from) in TRANSMITTED.iter().zip(bytes) {
             to.store(*from, Ordering::Relaxed);
         }
         dma::begin(dma::TRANSMIT, len as u16);
-        Ok(len)
+        len
     }
 
-    fn flush(&mut self) -> Result<(), Infallible> {
-        while dma::remaining(dma::TRANSMIT) > 0 {}
-        Ok(())
+    fn has_sent_all(&self) -> bool {
+        dma::remaining(dma::TRANSMIT) == 0
     }
 }

@@ -5,23 +5,21 @@
 //! | GP26 | ADC0 | monitor, 1.65 V for 0 V at the amplifier's output |
 
 use frixel_board::hardware::Monitor;
+use frixel_cortex_m::Boot;
 use frixel_drivers::monitor::MonitorScale;
 use rp_pac::ADC;
 
-use crate::board::MONITOR;
 use crate::{pins, wait_until};
 
 const MONITOR_PIN: usize = 26;
 const CHANNEL: u8 = 0;
 
 /// The monitor's ADC.
-pub struct Adc {
-    monitor: MonitorScale,
-}
+pub struct Adc(());
 
 impl Adc {
     /// Starts the ADC, with a conversion every 2 us (RP2040, 4.9.2, "SAR ADC").
-    pub fn new() -> Self {
+    pub fn new(_: &Boot) -> Self {
         pins::analog(MONITOR_PIN);
         ADC.cs().write(|w| w.set_en(true));
         wait_until(|| ADC.cs().read().ready(), "the ADC");
@@ -30,7 +28,7 @@ impl Adc {
             w.set_ainsel(CHANNEL);
             w.set_start_many(true);
         });
-        Self { monitor: MONITOR }
+        Self(())
     }
 }
 
@@ -38,6 +36,6 @@ impl Monitor for Adc {
     /// Volts at the amplifier's output, before the series resistor, at most 4 us ago.
     #[inline]
     fn monitor_v(&mut self) -> f32 {
-        self.monitor.volts(ADC.result().read().result())
+        MonitorScale::SHIFTED.volts(ADC.result().read().result())
     }
 }

@@ -3,9 +3,10 @@
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
+use frixel_board::serial::RECEIVE_WINDOW;
+use frixel_board::start::describe;
 use frixel_control::Board;
-use frixel_drivers::monitor::MonitorScale;
-use frixel_session::store::{Ceilings, Slot, check_touched_board, load_limits};
+use frixel_session::store::{Ceilings, check_touched_board};
 use frixel_wire::hello::BoardLimits;
 
 use crate::adc::Adc;
@@ -37,13 +38,6 @@ impl Hardware for Pico {
     type Watchdog = Watchdog;
 }
 
-/// Number of bytes that the host may have under way.
-pub const RECEIVE_WINDOW: usize = 4096;
-
-/// The monitor's ADC: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, which the level shifter converts
-/// to 0.75 V around 1.65 V, so that 220 V use the full range.
-pub const MONITOR: MonitorScale = MonitorScale::new(12, 3.3, 0.75 / 100.0);
-
 /// Limits until others are stored.
 pub const LIMITS: BoardLimits = BoardLimits {
     voltage_max_v_peak: Board::UNMEASURED_V_PEAK,
@@ -57,23 +51,12 @@ const _: () = assert!(check_touched_board(&LIMITS).is_ok());
 pub const CEILINGS: Ceilings =
     if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
 
-/// Where the limits are stored.
-pub const LIMITS_SLOT: Slot = Slot { first_page: 0 };
 /// The board's description, with the cause of the last reset.
 pub fn board(last_reset: &LastReset) -> Board {
-    let (limits, notices) = load_limits(Some(&StoreFlash), LIMITS_SLOT, &LIMITS, CEILINGS);
     let mut id = *b"pico\0\0\0\0\0\0\0\0";
     if let (Some(place), Some(number)) = (id.last_chunk_mut(), unique_number()) {
         *place = number;
     }
-    Board {
-        id,
-        limits,
-        reset_cause: last_reset.cause,
-        reset_fault: last_reset.fault,
-        reset_text: last_reset.text,
-        touch_from_host: !cfg!(feature = "optical-frame"),
-        notices,
-        ..BOARD
-    }
+    let built_in = Board { id, limits: LIMITS, touch_from_host: !cfg!(feature = "optical-frame"), ..BOARD };
+    describe(built_in, Some(&StoreFlash), CEILINGS, last_reset)
 }

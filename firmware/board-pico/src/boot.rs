@@ -11,12 +11,6 @@
 //! The copy takes 0.1 to 0.7 s, before the clocks run fast. Meanwhile the pins are as the reset has left them: the
 //! amplifier's enable and CLEAR pulled low.
 
-use core::arch::naked_asm;
-use core::sync::atomic::{AtomicU32, Ordering};
-
-use cortex_m::asm;
-use cortex_m::peripheral::SCB;
-
 use crate::chip::INTERRUPTS;
 
 /// The second stage of the boot (RP2040, 2.8.1.3.1, "Second Stage").
@@ -38,50 +32,5 @@ static IMAGE_DEFINITION: [u32; 5] = [
     0xab12_3579, // End.
 ];
 
-unsafe extern "C" {
-    static __vector_table: [u32; VECTORS];
-}
-
-/// Exceptions, with the initial stack pointer, and interrupts.
-const VECTORS: usize = 16 + INTERRUPTS;
-
-/// The vector table while the image runs.
-#[unsafe(link_section = ".vectors")]
-static IN_RAM: [AtomicU32; VECTORS] = [const { AtomicU32::new(0) }; VECTORS];
-
-/// Moves the vector table to RAM, so that interrupts are taken while the flash cannot be read.
-pub fn move_vectors(scb: &mut SCB) {
-    // SAFETY: the linker script places it, and nothing writes it.
-    let vectors = unsafe { &__vector_table };
-    for (to, from) in IN_RAM.iter().zip(vectors) {
-        to.store(*from, Ordering::Relaxed);
-    }
-    asm::dsb();
-    // SAFETY: the table is complete, and aligned by the linker script.
-    unsafe { scb.vtor.write(IN_RAM.as_ptr().addr() as u32) };
-    asm::dsb();
-    asm::isb();
-}
-
-/// Copies code and constants to RAM. `Reset` of `cortex-m-rt` calls this first; it lies in the flash beside it.
-///
-/// # Safety
-/// Called once, before anything is run from RAM.
-#[unsafe(naked)]
-#[unsafe(export_name = "__pre_init")]
-#[unsafe(link_section = ".Reset")]
-unsafe extern "C" fn copy_code() {
-    naked_asm!(
-        "ldr r0, =__scode",
-        "ldr r1, =__ecode",
-        "ldr r2, =__sicode",
-        "2:",
-        "cmp r0, r1",
-        "beq 3f",
-        "ldm r2!, {{r3}}",
-        "stm r0!, {{r3}}",
-        "b 2b",
-        "3:",
-        "bx lr",
-    )
-}
+// Exceptions, with the initial stack pointer, and interrupts.
+frixel_cortex_m::runs_from_ram!(16 + INTERRUPTS);

@@ -1,7 +1,6 @@
 //! Numbers in which the two chips differ, and the registers that they name differently.
 
 use frixel_drivers::rp2::ResetFlags;
-use frixel_wire::hello::BoardKind;
 use rp_pac::WATCHDOG;
 
 #[cfg(feature = "rp2040")]
@@ -45,8 +44,6 @@ mod rp2040 {
     pub(crate) const WATCHDOG_COUNTS_PER_TICK: u32 = 2;
 }
 
-/// Kind of this board.
-pub const KIND: BoardKind = BOARD.kind;
 /// Ticks a second.
 pub const TICK_HZ: u32 = BOARD.tick_hz;
 

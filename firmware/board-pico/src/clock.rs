@@ -1,8 +1,6 @@
 //! The clocks: core and peripherals at [`CORE_HZ`] and the ADC at 48 MHz, from the crystal of 12 MHz, and the watchdog
 //! from the chip's ring oscillator.
 
-use cortex_m::asm;
-use embedded_hal::delay::DelayNs;
 use rp_pac::clocks::vals::{ClkAdcCtrlAuxsrc, ClkPeriCtrlAuxsrc, ClkRefCtrlSrc, ClkSysCtrlAuxsrc, ClkSysCtrlSrc};
 use rp_pac::pll::Pll;
 use rp_pac::resets::regs::Peripherals;
@@ -137,7 +135,7 @@ fn prepare_for_speed() {
     const V_1_15: u8 = 0b1100;
     rp_pac::VREG_AND_CHIP_RESET.vreg().modify(|w| w.set_vsel(V_1_15));
     // The regulator takes less than 1 ms.
-    asm::delay(CRYSTAL_HZ / 1000);
+    cortex_m::asm::delay(CRYSTAL_HZ / 1000);
     rp_pac::SSI.ssienr().write(|w| w.set_ssi_en(false));
     rp_pac::SSI.baudr().write(|w| w.set_sckdv((CORE_HZ / 50_000_000) as u16));
     rp_pac::SSI.ssienr().write(|w| w.set_ssi_en(true));
@@ -163,11 +161,5 @@ fn selected_ref() -> u32 {
     selected
 }
 
-/// A delay that counts cycles; longer when interrupts occur meanwhile.
-pub struct CycleDelay;
-
-impl DelayNs for CycleDelay {
-    fn delay_ns(&mut self, ns: u32) {
-        asm::delay((CORE_HZ / 1_000_000).saturating_mul(ns.div_ceil(1000)));
-    }
-}
+/// A delay of this core.
+pub type CycleDelay = frixel_cortex_m::CycleDelay<CORE_HZ>;

@@ -3,8 +3,7 @@
 //! there are no edges. Two halves take turns ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
 //!
 //! - [`Frames`], in the tick: one output frame a period;
-//! - [`DacBus`], in the main loop: an `SpiDevice` for the driver that configures the DAC and reads it back, a frame a
-//!   period, too.
+//! - [`DacBus`], in the main loop: for the driver that configures the DAC and reads it back, a frame a period, too.
 //!
 //! SCLK is high between frames, and the DAC samples at falling edges: mode 2, at 6.25 MHz. SDO is read at the falling
 //! edges, too: it follows the rising edges by up to 40 ns, of the 80 that there are.
@@ -16,10 +15,9 @@
 //! | GP4 | PIO0 | SDI |
 //! | GP5 | PIO0 | SDO, to read back |
 
-use embedded_hal::delay::DelayNs;
-use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
-use frixel_board::hardware::{self, DacFrames, Late};
-use frixel_drivers::ad5761r::{self, Ad5761r, FRAME_LEN, Frame};
+use frixel_board::hardware::{DacFrames, Late};
+use frixel_cortex_m::Boot;
+use frixel_drivers::ad5761r::{self, Ad5761r, BusError, Frame, FrameBus, FrameDevice};
 use frixel_drivers::pio::{Condition, Destination, Instruction, PULL, PUSH};
 use frixel_drivers::pio::{jump, set, shift_in, shift_out, wait_flag};
 use frixel_wire::dac_code::DacCode;
@@ -60,12 +58,10 @@ const PROGRAM: [Instruction; 10] = [
 ];
 
 /// The driver of this board's DAC.
-pub type Dac = Ad5761r<DacBus, CycleDelay>;
-/// Errors of the DAC's driver.
-pub type DacError = ad5761r::Error<SpiError>;
+pub type Dac = Ad5761r<FrameDevice<DacBus>, CycleDelay>;
 
-/// Starts the beat and the state machine, and returns the two halves. The DAC is not configured yet.
-pub fn start() -> (Frames, Dac) {
+/// Starts the beat and the state machine, and returns the two halves and the period. The DAC is not configured yet.
+pub fn start(_: &Boot) -> (Frames, Dac, Period) {
     let set_pins = |w: &mut rp_pac::pio::regs::SmPinctrl| {
         w.set_out_base(SDI as u8);
         w.set_out_count(1);
@@ -83,8 +79,8 @@ pub fn start() -> (Frames, Dac) {
     for pin in [SYNC, SCLK, SDI, SDO] {
         pins::connect(pin, Function::Pio0);
     }
-    period::start(&FRAMES);
-    (Frames(()), Ad5761r::new(DacBus(()), CycleDelay))
+    let period = period::start(&FRAMES);
+    (Frames(()), Ad5761r::new(FrameDevice(DacBus(())), CycleDelay {}), period)
 }
 
 /// Gives a frame to the machine.
@@ -100,7 +96,7 @@ pub struct Frames(());
 impl DacFrames for Frames {
     #[inline]
     fn send(&mut self, code: DacCode) -> Result<(), Late> {
-        if hardware::Period::cycles(&Period) > DEADLINE_CYCLES || !FRAMES.has_taken_all() {
+        if period::cycles() > DEADLINE_CYCLES || !FRAMES.has_taken_all() {
             return Err(Late);
         }
         transmit(ad5761r::output(code));
@@ -111,54 +107,18 @@ impl DacFrames for Frames {
 /// The main loop's half of the DAC. It polls, while the tick sends nothing.
 pub struct DacBus(());
 
-/// Why a transfer failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "log", derive(defmt::Format))]
-pub enum SpiError {
-    /// The state machine did not send the frame.
-    Timeout,
-    /// Anything but one frame in a transaction, which the driver never needs.
-    Unsupported,
-}
-
-impl spi::Error for SpiError {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::Other
-    }
-}
-
-impl ErrorType for DacBus {
-    type Error = SpiError;
-}
-
-impl SpiDevice for DacBus {
+impl FrameBus for DacBus {
     /// Sends one frame in the period that comes, and waits for its end.
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), SpiError> {
-        match operations {
-            [Operation::Write(bytes)] => {
-                exchange((*bytes).try_into().map_err(|_| SpiError::Unsupported)?)?;
-            }
-            [Operation::TransferInPlace(bytes)] => {
-                let frame: &mut Frame = (&mut **bytes).try_into().map_err(|_| SpiError::Unsupported)?;
-                *frame = exchange(*frame)?;
-            }
-            [Operation::DelayNs(ns)] => CycleDelay.delay_ns(*ns),
-            _ => return Err(SpiError::Unsupported),
-        }
+    fn exchange(&mut self, bytes: &mut [u8]) -> Result<(), BusError> {
+        /// Reads of a register, 20 ns or more each: ten periods of the slower board.
+        const ROUNDS_MAX: u32 = 50_000;
+        let frame: &mut Frame = bytes.try_into().map_err(|_| BusError::Unsupported)?;
+        // Discard what was received during the tick's frames.
+        while FRAMES.receive().is_some() {}
+        transmit(*frame);
+        let received = (0..ROUNDS_MAX).find_map(|_| FRAMES.receive()).ok_or(BusError::Timeout)?;
+        let [_, first, second, third] = received.to_be_bytes();
+        *frame = [first, second, third];
         Ok(())
     }
 }
-
-/// Sends a frame, and returns the one received meanwhile.
-fn exchange(frame: Frame) -> Result<Frame, SpiError> {
-    /// Reads of a register, 20 ns or more each: ten periods of the slower board.
-    const ROUNDS_MAX: u32 = 50_000;
-    // Discard what was received during the tick's frames.
-    while FRAMES.receive().is_some() {}
-    transmit(frame);
-    let received = (0..ROUNDS_MAX).find_map(|_| FRAMES.receive()).ok_or(SpiError::Timeout)?;
-    let [_, first, second, third] = received.to_be_bytes();
-    Ok([first, second, third])
-}
-
-const _: () = assert!(FRAME_LEN == 3);

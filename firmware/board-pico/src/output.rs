@@ -10,6 +10,7 @@
 //! | GP6 | PIO1 | amplifier enable, high enables |
 //! | GP7 | PIO1 | CLEAR of the DAC, low clears |
 
+use frixel_cortex_m::Boot;
 use frixel_drivers::ad5761r::zero_output;
 use frixel_drivers::amplifier::KickedEnable;
 use frixel_drivers::pio::{Condition, Destination, Instruction, PULL_BLOCKING, Source, copy, jump, set, shift_out};
@@ -17,7 +18,7 @@ use rp_pac::io::vals::Outover;
 use rp_pac::{IO_BANK0, PIO1};
 
 use crate::dac::SYNC;
-use crate::pins::{self, ForcedPin, Function};
+use crate::pins::{self, Function, forced};
 use crate::pio::{self, MACHINE_HZ, Machine};
 
 /// Time from the last kick until the output is zero, in us. The specification is 1 ms.
@@ -54,7 +55,7 @@ pub struct Output(());
 
 impl Output {
     /// Connects the pins to the one-shot, which holds them low. [`zero_for_good`] has set them low before.
-    pub fn new() -> Self {
+    pub fn new(_: &Boot) -> Self {
         ONE_SHOT.load(
             &PROGRAM,
             |w| {
@@ -105,5 +106,5 @@ impl KickedEnable for Output {
 /// their state machines, in the order that [`zero_output`] explains.
 pub fn zero_for_good() {
     pins::start();
-    zero_output(&mut ForcedPin(AMPLIFIER_ENABLE), &mut ForcedPin(SYNC), &mut ForcedPin(DAC_CLEAR));
+    zero_output(&mut forced(AMPLIFIER_ENABLE), &mut forced(SYNC), &mut forced(DAC_CLEAR));
 }

@@ -55,7 +55,7 @@ const _: () = {
 };
 
 /// The timer of the tick.
-pub struct Period;
+pub struct Period(());
 
 impl hardware::Period for Period {
     const PERIOD_CYCLES: u32 = PERIOD_CYCLES;
@@ -63,7 +63,7 @@ impl hardware::Period for Period {
 
     #[inline]
     fn cycles(&self) -> u32 {
-        u32::from(PWM.ch(COUNTER).ctr().read().ctr())
+        cycles()
     }
 
     #[inline]
@@ -77,8 +77,14 @@ impl hardware::Period for Period {
     }
 }
 
+/// Cycles of the core since the period began.
+#[inline]
+pub(crate) fn cycles() -> u32 {
+    u32::from(PWM.ch(COUNTER).ctr().read().ctr())
+}
+
 /// Starts the beat, the frames and the counter, without interrupts. The frames' machine is loaded already.
-pub(crate) fn start(frames: &Machine) {
+pub(crate) fn start(frames: &Machine) -> Period {
     BEAT.load(&PROGRAM, |_| (), |_| ());
     // The rounds of the wait: the output shift register keeps them.
     BEAT.transmit(WAIT / 8 - 1);
@@ -91,6 +97,7 @@ pub(crate) fn start(frames: &Machine) {
     counter.ctr().write(|w| w.set_ctr(0));
     pio::start(PIO0, 1 << BEAT.number | 1 << frames.number);
     counter.csr().write(|w| w.set_en(true));
+    Period(())
 }
 
 /// Enables the interrupt at the start of every period, from the next one on.

@@ -1,8 +1,6 @@
 //! Pins, by their GPIO number. The modules that use them and the table of `docs/hardware.md` state their functions.
 
-use core::convert::Infallible;
-
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
 use rp_pac::{IO_BANK0, PADS_BANK0, RESETS, SIO};
 
 /// What drives a pin (RP2040, 2.19.2, "Function Select").
@@ -42,122 +40,81 @@ pub fn start() {
 }
 
 /// A pin that software reads or sets.
-pub struct Pin {
-    number: usize,
-}
+pub type Pin = DirectPin<Gpio>;
 
-impl Pin {
-    /// An output that is low.
-    pub(crate) fn output_low(number: usize) -> Self {
-        let pin = Self { number };
-        set(number, false);
-        SIO.gpio_oe(0).value_set().write_value(1 << number);
-        connect(number, Function::Sio);
-        pin
-    }
+/// A pin by its number.
+pub struct Gpio(usize);
 
-    /// The level of a pin that a peripheral uses.
-    #[cfg(feature = "optical-frame")]
-    pub(crate) fn reads(number: usize) -> Self {
-        Self { number }
-    }
-
-    /// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring
-    /// a pin down that was high (erratum RP2350-E9): `docs/hardware.md` asks for a resistor.
-    pub(crate) fn input_pulled_down(number: usize) -> Self {
-        SIO.gpio_oe(0).value_clr().write_value(1 << number);
-        configure(number, Function::Sio, Pull::Down, true);
-        Self { number }
-    }
-}
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl InputPin for Pin {
+impl ReadLevel for Gpio {
     #[inline]
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(is_high(self.number))
-    }
-
-    #[inline]
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        Ok(!is_high(self.number))
+    fn is_high(&self) -> bool {
+        SIO.gpio_in(0).read() & 1 << self.0 != 0
     }
 }
 
-impl OutputPin for Pin {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        set(self.number, true);
-        Ok(())
-    }
-
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        set(self.number, false);
-        Ok(())
+impl SetLevel for Gpio {
+    fn set(&self, high: bool) {
+        set(self.0, high);
     }
 }
 
 /// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other
 /// level.
-pub(crate) struct ForcedPin(pub(crate) usize);
+pub(crate) struct Forced(usize);
 
-impl ForcedPin {
-    fn force(&self, high: bool) {
+impl SetLevel for Forced {
+    fn set(&self, high: bool) {
         set(self.0, high);
-        SIO.gpio_oe(0).value_set().write_value(1 << self.0);
+        enable_output(self.0, true);
         connect(self.0, Function::Sio);
     }
 }
 
-impl ErrorType for ForcedPin {
-    type Error = Infallible;
-}
-
-impl OutputPin for ForcedPin {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.force(true);
-        Ok(())
-    }
-
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.force(false);
-        Ok(())
-    }
+/// A pin that becomes an output when it is set.
+pub(crate) fn forced(pin: usize) -> DirectPin<Forced> {
+    DirectPin(Forced(pin))
 }
 
 /// A pin that software drives low or releases.
 #[cfg(feature = "optical-frame")]
-pub(crate) struct OpenDrainPin(usize);
+pub(crate) struct OpenDrain(usize);
 
 #[cfg(feature = "optical-frame")]
-impl OpenDrainPin {
-    /// Takes a pin from its peripheral, released and pulled up.
-    pub(crate) fn released(number: usize) -> Self {
-        SIO.gpio_oe(0).value_clr().write_value(1 << number);
-        set(number, false);
-        connect_pulled_up(number, Function::Sio);
-        Self(number)
+impl SetLevel for OpenDrain {
+    fn set(&self, high: bool) {
+        enable_output(self.0, !high);
     }
 }
 
+/// Takes a pin from its peripheral, released and pulled up.
 #[cfg(feature = "optical-frame")]
-impl ErrorType for OpenDrainPin {
-    type Error = Infallible;
+pub(crate) fn released(pin: usize) -> DirectPin<OpenDrain> {
+    enable_output(pin, false);
+    set(pin, false);
+    connect_pulled_up(pin, Function::Sio);
+    DirectPin(OpenDrain(pin))
 }
 
+/// The level of a pin that a peripheral uses.
 #[cfg(feature = "optical-frame")]
-impl OutputPin for OpenDrainPin {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        SIO.gpio_oe(0).value_clr().write_value(1 << self.0);
-        Ok(())
-    }
+pub(crate) fn reads(pin: usize) -> Pin {
+    DirectPin(Gpio(pin))
+}
 
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        SIO.gpio_oe(0).value_set().write_value(1 << self.0);
-        Ok(())
-    }
+/// An output that is low.
+pub(crate) fn output_low(pin: usize) -> Pin {
+    set(pin, false);
+    enable_output(pin, true);
+    connect(pin, Function::Sio);
+    DirectPin(Gpio(pin))
+}
+
+/// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring a pin
+/// down that was high (erratum RP2350-E9): `docs/hardware.md` asks for a resistor.
+pub(crate) fn input_pulled_down(pin: usize) -> Pin {
+    enable_output(pin, false);
+    configure(pin, Function::Sio, Pull::Down, true);
+    DirectPin(Gpio(pin))
 }
 
 /// Connects a pin to a peripheral that drives it. Its level can still be read.
@@ -189,13 +146,13 @@ fn configure(pin: usize, function: Function, pull: Pull, reads: bool) {
     });
 }
 
-/// Whether a pin is high.
-#[inline]
-pub(crate) fn is_high(pin: usize) -> bool {
-    SIO.gpio_in(0).read() & 1 << pin != 0
-}
-
 fn set(pin: usize, high: bool) {
     let output = SIO.gpio_out(0);
     if high { output.value_set().write_value(1 << pin) } else { output.value_clr().write_value(1 << pin) }
+}
+
+/// Lets software drive the pin, or not.
+fn enable_output(pin: usize, enabled: bool) {
+    let output = SIO.gpio_oe(0);
+    if enabled { output.value_set().write_value(1 << pin) } else { output.value_clr().write_value(1 << pin) }
 }

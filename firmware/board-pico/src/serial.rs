@@ -8,15 +8,13 @@
 //! | GP0 | UART0 TX | to the host |
 //! | GP1 | UART0 RX | from the host |
 
-use core::convert::Infallible;
-use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
+use core::sync::atomic::AtomicU8;
 
 use cortex_m::peripheral::NVIC;
-use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
-use frixel_drivers::ring::RingReader;
+use frixel_board::serial::{RING_LEN, SerialPort, Uart};
+use frixel_drivers::ring::InterruptRing;
 use rp_pac::{Interrupt, UART0, interrupt};
 
-use crate::board::RECEIVE_WINDOW;
 use crate::clock::CORE_HZ;
 use crate::pins::{self, Function};
 
@@ -28,21 +26,17 @@ const RX: usize = 1;
 const DIVIDER: u32 = CORE_HZ * 4 / BAUD;
 const _: () = assert!((CORE_HZ * 4).is_multiple_of(BAUD), "the rate is exact");
 
-/// Length of the ring: the host's credit, and room for a hello and some noise, which need no credit.
-const RING_LEN: usize = RECEIVE_WINDOW + 512;
+static RECEIVED: InterruptRing<RING_LEN> = InterruptRing::new();
 
-static RECEIVED: [AtomicU8; RING_LEN] = [const { AtomicU8::new(0) }; RING_LEN];
-/// Bytes until the interrupt begins the ring anew, as DMA would count them. Only the interrupt writes it.
-static REMAINING: AtomicUsize = AtomicUsize::new(RING_LEN);
+/// UART 0.
+pub struct Uart0(());
 
 /// The serial port.
-pub struct Serial {
-    reader: RingReader<RING_LEN>,
-}
+pub type Serial = SerialPort<Uart0>;
 
-impl Serial {
+impl Uart0 {
     /// Starts reception: 8 data bits, no parity, 1 stop bit (RP2040, 4.2, "UART").
-    pub fn new() -> Self {
+    pub fn start() -> Serial {
         UART0.uartibrd().write(|w| w.set_baud_divint((DIVIDER / 64) as u16));
         UART0.uartfbrd().write(|w| w.set_baud_divfrac((DIVIDER % 64) as u8));
         // The write that makes the divider effective.
@@ -65,7 +59,7 @@ impl Serial {
         pins::connect_pulled_up(RX, Function::Uart);
         // SAFETY: what the handler shares are atomics. The priority is below the tick's, 0.
         unsafe { NVIC::unmask(Interrupt::UART0_IRQ) };
-        Self { reader: RingReader::new() }
+        SerialPort::new(Self(()))
     }
 }
 
@@ -73,68 +67,36 @@ impl Serial {
 #[interrupt]
 fn UART0_IRQ() {
     while !UART0.uartfr().read().rxfe() {
-        let byte = UART0.uartdr().read().data();
-        let remaining = REMAINING.load(Ordering::Relaxed);
-        if let Some(place) = RECEIVED.get(RING_LEN - remaining) {
-            place.store(byte, Ordering::Relaxed);
-        }
-        REMAINING.store(if remaining > 1 { remaining - 1 } else { RING_LEN }, Ordering::Release);
+        RECEIVED.push(UART0.uartdr().read().data());
     }
 }
 
-impl ErrorType for Serial {
-    type Error = Infallible;
-}
-
-impl ReadReady for Serial {
-    fn read_ready(&mut self) -> Result<bool, Infallible> {
-        Ok(!self.reader.is_empty(REMAINING.load(Ordering::Acquire)))
+impl Uart for Uart0 {
+    fn ring(&self) -> &'static [AtomicU8; RING_LEN] {
+        &RECEIVED.bytes
     }
-}
 
-impl Read for Serial {
-    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
-        if bytes.is_empty() {
-            return Ok(0);
-        }
-        loop {
-            let piece = self.reader.take(REMAINING.load(Ordering::Acquire), bytes.len());
-            let places = RECEIVED.get(piece).unwrap_or_default();
-            if places.is_empty() {
-                continue;
+    fn remaining(&mut self) -> usize {
+        RECEIVED.remaining()
+    }
+
+    fn takes_bytes(&self) -> bool {
+        !UART0.uartfr().read().txff()
+    }
+
+    /// Fills the FIFO.
+    fn send(&mut self, bytes: &[u8]) -> usize {
+        let taken = bytes.iter().take_while(|byte| {
+            let takes = self.takes_bytes();
+            if takes {
+                UART0.uartdr().write(|w| w.set_data(**byte));
             }
-            for (to, from) in bytes.iter_mut().zip(places) {
-                *to = from.load(Ordering::Relaxed);
-            }
-            return Ok(places.len());
-        }
-    }
-}
-
-impl WriteReady for Serial {
-    fn write_ready(&mut self) -> Result<bool, Infallible> {
-        Ok(!UART0.uartfr().read().txff())
-    }
-}
-
-impl Write for Serial {
-    /// Fills the FIFO, once it has room.
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
-        let mut written = 0;
-        for byte in bytes {
-            while UART0.uartfr().read().txff() {
-                if written > 0 {
-                    return Ok(written);
-                }
-            }
-            UART0.uartdr().write(|w| w.set_data(*byte));
-            written += 1;
-        }
-        Ok(written)
+            takes
+        });
+        taken.count()
     }
 
-    fn flush(&mut self) -> Result<(), Infallible> {
-        while UART0.uartfr().read().busy() {}
-        Ok(())
+    fn has_sent_all(&self) -> bool {
+        !UART0.uartfr().read().busy()
     }
 }

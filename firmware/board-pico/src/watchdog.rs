@@ -2,7 +2,7 @@
 //! itself by it, too, because nothing else that software can do resets the state machines of the PIOs.
 
 use cortex_m::asm;
-use frixel_board::hardware;
+use frixel_board::hardware::{self, Watchdog as _};
 use rp_pac::{PSM, WATCHDOG};
 
 use crate::chip::WATCHDOG_COUNTS_PER_TICK;
@@ -18,15 +18,16 @@ impl Watchdog {
     /// Starts the watchdog.
     pub fn start() -> Self {
         reset_all_but_oscillators();
-        feed();
+        let mut watchdog = Self(());
+        watchdog.feed();
         WATCHDOG.ctrl().write(|w| w.set_enable(true));
-        Self(())
+        watchdog
     }
 }
 
 impl hardware::Watchdog for Watchdog {
     fn feed(&mut self) {
-        feed();
+        WATCHDOG.load().write(|w| w.set_load(LIFE_US * WATCHDOG_COUNTS_PER_TICK));
     }
 
     fn let_debugger_stop_it(&mut self, may_stop: bool) {
@@ -36,11 +37,6 @@ impl hardware::Watchdog for Watchdog {
             w.set_pause_jtag(may_stop);
         });
     }
-}
-
-/// Feeds the watchdog for [`LIFE_US`].
-pub(crate) fn feed() {
-    WATCHDOG.load().write(|w| w.set_load(LIFE_US * WATCHDOG_COUNTS_PER_TICK));
 }
 
 /// Resets the chip.

@@ -43,9 +43,15 @@ impl LastReset {
         Self { cause, fault, text }
     }
 
-    /// Logs it.
-    #[cfg(feature = "defmt")]
+    /// Logs it, in an image that logs.
+    #[cfg_attr(not(feature = "defmt"), allow(clippy::unused_self, reason = "nothing is logged"))]
     pub fn log(&self) {
+        #[cfg(feature = "defmt")]
+        self.log_by_probe();
+    }
+
+    #[cfg(feature = "defmt")]
+    fn log_by_probe(&self) {
         let (fault, detail) = self.fault.map_or((0, 0), |(fault, detail)| (fault.number(), detail));
         defmt::info!(
             "reset: cause {=u8}, fault {=u8}, {=u32:#x} {=[u8]:a}",

@@ -16,13 +16,12 @@
 //! The tick is an interrupt that nothing may delay, so what it uses never waits, never logs, and takes no critical
 //! section that masks the tick.
 
-use core::convert::Infallible;
 use core::hint;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::spi::SpiDevice;
-use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
+use embedded_io::{Read, ReadReady, Write, WriteReady};
 use frixel_drivers::ad5761r::Ad5761r;
 use frixel_drivers::amplifier::KickedEnable;
 use frixel_wire::dac_code::DacCode;
@@ -31,6 +30,8 @@ use frixel_wire::dac_code::DacCode;
 pub trait Hardware: 'static {
     /// Ticks a second.
     const TICK_HZ: u32;
+    /// Samples of the arm switch per second, from which its driver counts the time of debouncing.
+    const SWITCH_HZ: u32 = Self::TICK_HZ;
 
     /// The timer of the tick.
     type Period: Period;
@@ -48,8 +49,9 @@ pub trait Hardware: 'static {
     type Switch: InputPin;
     /// The light that shows the state.
     type Light: OutputPin;
-    /// The serial port to the host. Neither direction fails; bytes that are lost damage a frame, which is sent again.
-    type Serial: ErrorType<Error = Infallible> + Read + ReadReady + Write + WriteReady;
+    /// The serial port to the host. An error of it is not counted: bytes that are lost damage a frame, which is sent
+    /// again, and a port that fails for good is a host that is gone.
+    type Serial: Read + ReadReady + Write + WriteReady;
     /// The watchdog.
     type Watchdog: Watchdog;
 

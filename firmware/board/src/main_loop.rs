@@ -30,13 +30,22 @@ pub struct MainLoop<H: Hardware> {
 }
 
 impl<H: Hardware> MainLoop<H> {
+    /// Runs the loop for ever, with the board's own touch source, which returns a report when it has one.
+    #[inline]
+    pub fn run(mut self, mut next_touch: impl FnMut() -> Option<Touch>) -> ! {
+        loop {
+            self.turn(next_touch());
+        }
+    }
+
     /// Runs the loop once. To be called again and again. `touch` is a report of the board's own touch source.
     #[inline]
     pub fn turn(&mut self, touch: Option<Touch>) {
         self.follow_status();
         if let Some(serial) = &mut self.serial {
             let (session, status) = (&mut self.session, &self.status);
-            let Ok(()) = serial.receive(|bytes| session.receive(bytes, status));
+            // A port that fails is a host that says nothing: its timeout acts.
+            let _ = serial.receive(|bytes| session.receive(bytes, status));
         }
         if let Some(touch) = touch {
             self.session.touch(touch, self.shared.count());
@@ -44,7 +53,7 @@ impl<H: Hardware> MainLoop<H> {
         self.exchange();
         self.session.poll(&self.status);
         if let Some(serial) = &mut self.serial {
-            let Ok(()) = serial.transmit(|bytes| self.session.transmit(bytes));
+            let _ = serial.transmit(|bytes| self.session.transmit(bytes));
         }
         self.light.show(self.status.telemetry.state, self.shared.count());
     }

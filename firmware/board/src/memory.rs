@@ -2,12 +2,30 @@
 
 use core::mem::MaybeUninit;
 
+#[cfg(feature = "stream")]
+use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::{Queues, Session, SessionEnds, TickEnds};
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
+
+/// Samples of a stream, written by the session and read by the tick.
+#[cfg(feature = "stream")]
+static STREAM: StreamBuffer = StreamBuffer::new();
+
+/// Tick and session, and the ends of the queues between them.
+pub struct Made {
+    /// Computes the voltage, in the tick.
+    pub ticker: Ticker<'static>,
+    /// The session with the host, in the main loop.
+    pub session: &'static mut Session<'static>,
+    /// The session's ends of the queues.
+    pub session_ends: SessionEnds,
+    /// The tick's ends.
+    pub tick_ends: TickEnds,
+}
 
 /// Room for what is too large for the stack. A static of a board's `main`, which is the only one to have a reference.
 pub struct Memory {
@@ -31,14 +49,17 @@ impl Memory {
 
     /// Makes the tick, the session and the queues between them, of which each takes its ends.
     #[inline(never)]
-    pub fn make(
-        &'static mut self,
-        board: Board,
-    ) -> (Ticker<'static>, &'static mut Session<'static>, SessionEnds, TickEnds) {
-        let ticker = Ticker::new(&board, &POOL, coefficients(&mut self.first));
+    pub fn make(&'static mut self, board: Board) -> Made {
+        #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
+        let mut ticker = Ticker::new(&board, &POOL, coefficients(&mut self.first));
         let session = session(&mut self.session, board, coefficients(&mut self.second));
+        #[cfg(feature = "stream")]
+        {
+            ticker.attach_stream(&STREAM);
+            session.attach_stream(&STREAM);
+        }
         let (session_ends, tick_ends) = self.queues.split();
-        (ticker, session, session_ends, tick_ends)
+        Made { ticker, session, session_ends, tick_ends }
     }
 }
 

@@ -5,6 +5,8 @@ mod drive;
 mod fault;
 mod main_loop;
 mod optical_frame;
+mod serial;
+mod start;
 mod support;
 mod tick;
 mod whole;

@@ -1,6 +1,7 @@
 //! The main loop of every board: the DAC's checks, the watchdog, the serial port, and what counts time.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+use embedded_io::ErrorKind;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::Decoder;
@@ -134,4 +135,18 @@ fn the_light_shows_the_state() {
         changes += u32::from(board.wires.light.get() != before);
     }
     assert!((7..=9).contains(&changes), "eight changes a second: {changes}");
+}
+
+/// A port that fails is a host that is gone: the host timeout ends the drive, and the watchdog is fed all the while.
+#[test]
+fn a_serial_port_that_fails_neither_stops_the_loop_nor_keeps_the_output_on() {
+    let mut board = Board::playing();
+    board.wires.port.set(Err(ErrorKind::Other));
+    for _ in 0..BOARD.tick_hz {
+        board.step();
+    }
+    assert_eq!(only(&board.wires.take(), |event| *event == Event::Fed).len(), BOARD.tick_hz as usize);
+    board.step();
+    assert!(board.wires.take().contains(&Event::Disabled));
+    assert_ne!(board.state(), State::Active);
 }

@@ -1,15 +1,17 @@
 //! The touch frame as a touch source of the main loop.
+#![allow(clippy::panic, reason = "a test may fail")]
 
-use std::cell::Cell;
-use std::convert::Infallible;
+use std::cell::{Cell, RefCell};
 use std::pin::pin;
 use std::rc::Rc;
+use std::task::Poll;
 
-use embedded_hal::digital::{ErrorType as PinErrorType, InputPin};
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, Operation};
-use frixel_board::optical_frame::{OpticalFrame, Reports, TickDelay, read};
+use frixel_board::optical_frame::{BusError, FrameBus, I2cPort, OpticalFrame, Reports, TickTime, read};
 use frixel_board::tick::TickShared;
-use frixel_drivers::zforce::ZForce;
+use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
+use frixel_drivers::polling::poll_once;
+use frixel_drivers::zforce::{MESSAGE_MAX_LEN, ZForce};
 
 use crate::support::firmware::BOARD;
 use crate::support::hardware::run_tick;
@@ -33,17 +35,9 @@ impl I2c for Silent {
 
 struct Low;
 
-impl PinErrorType for Low {
-    type Error = Infallible;
-}
-
-impl InputPin for Low {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(false)
-    }
-
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        Ok(true)
+impl ReadLevel for Low {
+    fn is_high(&self) -> bool {
+        false
     }
 }
 
@@ -54,7 +48,7 @@ fn a_frame_that_does_not_answer_is_asked_again_after_a_tenth_of_a_second() {
     let shared: &'static TickShared = board.shared;
     let (asked, errors) = (Rc::new(Cell::new(0)), Cell::new(0));
     let reports = Reports::new(None);
-    let frame = ZForce::new(Silent(Rc::clone(&asked)), Low, TickDelay::<TICK_HZ>(shared));
+    let frame = ZForce::new(Silent(Rc::clone(&asked)), DirectPin(Low), TickTime { shared, tick_hz: TICK_HZ });
     let mut reading = pin!(read(frame, 400, &reports, |_| errors.set(errors.get() + 1)));
     let mut source = OpticalFrame::new(reading.as_mut(), &reports);
     let mut asked_at = Vec::new();
@@ -69,4 +63,185 @@ fn a_frame_that_does_not_answer_is_asked_again_after_a_tenth_of_a_second() {
     }
     assert!(asked_at.windows(2).all(|pair| (4_000..=4_002).contains(&(pair[1] - pair[0]))), "{asked_at:?}");
     assert_eq!(errors.get(), 3, "each is said after its pause");
+}
+
+/// What a port was told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Told {
+    TakeClock,
+    GiveClock,
+    Stop,
+    Begin(u8, usize),
+    GiveUp,
+}
+
+/// A port whose answers a test sets.
+struct Port {
+    told: RefCell<Vec<Told>>,
+    /// Rising edges of SCL until SDA is high.
+    held_for: Cell<u32>,
+    /// Polls until it has stopped.
+    stops_after: Cell<u32>,
+    result: Cell<Poll<Result<(), BusError>>>,
+}
+
+type Handle = &'static Port;
+
+/// A port that is free, stops at once, and transfers at once.
+fn port() -> Handle {
+    Box::leak(Box::new(Port {
+        told: RefCell::default(),
+        held_for: Cell::new(0),
+        stops_after: Cell::new(0),
+        result: Cell::new(Poll::Ready(Ok(()))),
+    }))
+}
+
+/// Counts a cell down.
+fn count_down(count: &Cell<u32>) -> bool {
+    let left = count.get();
+    count.set(left.saturating_sub(1));
+    left == 0
+}
+
+struct Clock(Handle);
+
+impl SetLevel for Clock {
+    fn set(&self, high: bool) {
+        if high {
+            count_down(&self.0.held_for);
+        }
+    }
+}
+
+struct Data(Handle);
+
+impl ReadLevel for Data {
+    fn is_high(&self) -> bool {
+        self.0.held_for.get() == 0
+    }
+}
+
+impl I2cPort for Handle {
+    type Clock = DirectPin<Clock>;
+    type Data = DirectPin<Data>;
+
+    fn data(&self) -> DirectPin<Data> {
+        DirectPin(Data(self))
+    }
+
+    fn take_clock(&mut self) -> DirectPin<Clock> {
+        self.told.borrow_mut().push(Told::TakeClock);
+        DirectPin(Clock(self))
+    }
+
+    fn give_clock(&mut self) {
+        self.told.borrow_mut().push(Told::GiveClock);
+    }
+
+    fn stop(&mut self) {
+        self.told.borrow_mut().push(Told::Stop);
+    }
+
+    fn has_stopped(&mut self) -> bool {
+        count_down(&self.stops_after)
+    }
+
+    fn begin(&mut self, address: u8, operation: &Operation<'_>) {
+        let len = match operation {
+            Operation::Read(bytes) => bytes.len(),
+            Operation::Write(bytes) => bytes.len(),
+        };
+        self.told.borrow_mut().push(Told::Begin(address, len));
+    }
+
+    fn poll(&mut self, operation: &mut Operation<'_>) -> Poll<Result<(), BusError>> {
+        if let Operation::Read(bytes) = operation {
+            bytes.fill(7);
+        }
+        self.result.get()
+    }
+
+    fn give_up(&mut self) {
+        self.told.borrow_mut().push(Told::GiveUp);
+    }
+}
+
+/// Runs a transaction on a board that ticks; its result, what the port was told, and the ticks that it took.
+fn transaction(port: Handle, operations: &mut [Operation<'_>]) -> (Result<(), BusError>, Vec<Told>, u32) {
+    let board = Board::new();
+    let mut bus = FrameBus::new(port, TickTime { shared: board.shared, tick_hz: TICK_HZ });
+    let mut future = pin!(bus.transaction(0x50, operations));
+    for ticks in 0..TICK_HZ {
+        if let Poll::Ready(result) = poll_once(future.as_mut()) {
+            return (result, port.told.take(), ticks);
+        }
+        run_tick();
+    }
+    panic!("it never ends")
+}
+
+#[test]
+fn a_transfer_stops_the_peripheral_before_and_after() {
+    let mut bytes = [0; 3];
+    let told = vec![Told::Stop, Told::Begin(0x50, 3), Told::Stop];
+    assert_eq!(transaction(port(), &mut [Operation::Read(&mut bytes)]), (Ok(()), told, 0));
+    assert_eq!(bytes, [7; 3]);
+}
+
+#[test]
+fn what_the_module_never_needs_is_refused_untold() {
+    let too_long = [0; MESSAGE_MAX_LEN + 1];
+    let refused = (Err(BusError::Unsupported), vec![], 0);
+    assert_eq!(transaction(port(), &mut []), refused);
+    assert_eq!(transaction(port(), &mut [Operation::Write(&[])]), refused);
+    assert_eq!(transaction(port(), &mut [Operation::Write(&too_long)]), refused);
+    assert_eq!(transaction(port(), &mut [Operation::Write(&[1]), Operation::Write(&[2])]), refused);
+}
+
+/// Six milliseconds, and the bus is released.
+#[test]
+fn a_transfer_that_does_not_end_is_given_up_in_time() {
+    let port = port();
+    port.result.set(Poll::Pending);
+    let (result, told, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
+    assert_eq!(result, Err(BusError::Timeout));
+    assert_eq!(told, [Told::Stop, Told::Begin(0x50, 1), Told::GiveUp, Told::Stop]);
+    assert_eq!(ticks, TICK_HZ * 6 / 1000 + 1);
+}
+
+#[test]
+fn a_transfer_that_fails_is_given_up_with_its_error() {
+    for error in [BusError::NoAcknowledge, BusError::ArbitrationLoss] {
+        let port = port();
+        port.result.set(Poll::Ready(Err(error)));
+        let told = vec![Told::Stop, Told::Begin(0x50, 1), Told::GiveUp, Told::Stop];
+        assert_eq!(transaction(port, &mut [Operation::Write(&[1])]), (Err(error), told, 0));
+    }
+}
+
+#[test]
+fn a_bus_that_is_held_is_cleared_before_the_transfer() {
+    let port = port();
+    port.held_for.set(9);
+    let (result, told, _) = transaction(port, &mut [Operation::Write(&[1])]);
+    assert_eq!(result, Ok(()));
+    assert_eq!(told, [Told::TakeClock, Told::GiveClock, Told::Stop, Told::Begin(0x50, 1), Told::Stop]);
+    port.held_for.set(10);
+    let (result, told, _) = transaction(port, &mut [Operation::Write(&[1])]);
+    assert_eq!(result, Err(BusError::BusHeld), "nine clocks do not free it");
+    assert_eq!(told, [Told::TakeClock, Told::GiveClock]);
+}
+
+/// A peripheral that still waits for the last transfer takes no configuration.
+#[test]
+fn a_peripheral_that_does_not_stop_is_not_begun() {
+    let port = port();
+    port.stops_after.set(10);
+    let (result, told, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
+    assert_eq!((result, ticks), (Ok(()), 10));
+    assert_eq!(told, [Told::Stop, Told::Begin(0x50, 1), Told::Stop]);
+    port.stops_after.set(u32::MAX);
+    let (result, told, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
+    assert_eq!((result, told, ticks), (Err(BusError::BusHeld), vec![Told::Stop], TICK_HZ / 1000 + 1));
 }

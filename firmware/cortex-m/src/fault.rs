@@ -1,10 +1,117 @@
-//! Hard faults, and memory that outlasts a reset.
+//! Panics, faults, and memory that outlasts a reset.
 
 #[cfg(target_arch = "arm")]
 use core::arch::asm;
+use core::panic::PanicInfo;
 
+use cortex_m::interrupt;
+use cortex_m::peripheral::SCB;
 use frixel_board::fault::{Ending, FRAME_LEN, FaultRegisters};
 use frixel_board::hardware::Processor;
+use frixel_wire::fault::Fault;
+use frixel_wire::hello::ResetCause;
+
+/// Re-exports for [`fault_handlers!`].
+#[doc(hidden)]
+pub mod parts {
+    pub use frixel_board::fault::{Ending, LastReset};
+    pub use frixel_drivers::fault_record::{FaultRecord, Text};
+}
+
+/// How a chip begins and ends a start.
+pub trait Chip: Sync {
+    /// The cause of the last reset, which this forgets. `ram_survived` says whether RAM has kept its content.
+    fn reset_cause(ram_survived: bool) -> ResetCause;
+
+    /// Sets the output to zero until the reset ([`Processor::zero_output_for_good`]).
+    fn zero_output_for_good();
+
+    /// Resets the chip.
+    fn reset() -> ! {
+        SCB::sys_reset()
+    }
+}
+
+/// A chip as [`Ending`] takes it.
+pub struct CortexM<C>(pub C);
+
+impl<C: Chip> Processor for CortexM<C> {
+    fn disable_interrupts(&self) {
+        interrupt::disable();
+    }
+
+    fn zero_output_for_good(&self) {
+        C::zero_output_for_good();
+    }
+
+    fn reset(&self) -> ! {
+        C::reset()
+    }
+}
+
+/// Defines the handlers of panics, hard faults and interrupts without a handler for the [`Chip`] `$chip`, a unit struct:
+/// they set the output to zero, store the reason, and reset ([`frixel_board::fault`]). Defines `last_reset`, too, with
+/// which the next start takes the reason. The board's linker script places `.uninit` where the start-up code clears
+/// nothing.
+///
+/// `nmi: $is_harmless` adds a handler of non-maskable interrupts, which are a fault unless that function returns `true`.
+#[macro_export]
+macro_rules! fault_handlers {
+    ($chip:ident, nmi: $is_harmless:path) => {
+        $crate::fault_handlers!($chip);
+
+        /// Non-maskable interrupt: an error of the flash, the RAM or the clock.
+        #[::cortex_m_rt::exception]
+        unsafe fn NonMaskableInt() {
+            if !$is_harmless() {
+                $crate::fault::end_nmi(&ENDING)
+            }
+        }
+    };
+    ($chip:ident) => {
+        /// The last fault, in memory that the start-up code does not clear.
+        #[unsafe(link_section = ".uninit.RECORD")]
+        static RECORD: $crate::fault::parts::FaultRecord = $crate::fault::parts::FaultRecord::new();
+
+        static ENDING: $crate::fault::parts::Ending<$crate::fault::CortexM<$chip>> =
+            $crate::fault::parts::Ending::new($crate::fault::CortexM($chip), &RECORD);
+
+        /// Takes the cause of the last reset and the stored fault, and clears both. To be called once in each start.
+        pub fn last_reset(text: &'static mut $crate::fault::parts::Text) -> $crate::fault::parts::LastReset {
+            let record = $crate::outlasting(&RECORD);
+            let cause = <$chip as $crate::fault::Chip>::reset_cause(record.has_outlasted_reset());
+            $crate::fault::parts::LastReset::take(cause, record, text)
+        }
+
+        #[panic_handler]
+        fn panic(info: &::core::panic::PanicInfo) -> ! {
+            $crate::fault::end_panic(&ENDING, info)
+        }
+
+        /// An interrupt without a handler.
+        #[::cortex_m_rt::exception]
+        unsafe fn DefaultHandler(number: i16) {
+            ENDING.unhandled_interrupt(number)
+        }
+
+        $crate::hard_fault_handler!(ENDING);
+    };
+}
+
+/// Ends with a panic. With the feature `panic-message`, its whole message is stored.
+pub fn end_panic<P: Processor>(ending: &Ending<P>, info: &PanicInfo) -> ! {
+    if cfg!(feature = "panic-message") {
+        ending.panic_with_message(info.location(), info)
+    }
+    ending.panic(info.location())
+}
+
+/// Ends with a non-maskable interrupt.
+pub fn end_nmi<P: Processor>(ending: &Ending<P>) -> ! {
+    ending.end(Fault::HardFault, 0, &mut |text| {
+        text.text("NMI: flash, RAM or clock failed");
+    })
+}
 
 /// The frame that the processor stores for an exception, without registers of the FPU.
 #[repr(C)]
@@ -27,6 +134,7 @@ unsafe extern "C" {
 /// Defines the handler of hard faults, bus faults included, for the [`Ending`] in a static. The stack may be exhausted,
 /// so the handler first switches to a stack of its own, whose top is the symbol `_fault_stack_start` of the board's
 /// linker script.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! hard_fault_handler {
     ($ending:path) => {
@@ -77,7 +185,7 @@ fn status() -> Option<(u32, u32)> {
     #[cfg(not(armv6m))]
     {
         // SAFETY: the registers are readable, and reading them changes nothing.
-        let scb = unsafe { &*cortex_m::peripheral::SCB::PTR };
+        let scb = unsafe { &*SCB::PTR };
         Some((scb.cfsr.read(), scb.bfar.read()))
     }
     #[cfg(armv6m)]

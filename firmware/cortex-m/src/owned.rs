@@ -6,6 +6,8 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m::interrupt;
 
+use crate::Boot;
+
 /// Holds a value that the main program gives to one interrupt handler.
 pub struct Owned<T> {
     is_given: AtomicBool,
@@ -32,11 +34,30 @@ impl<T> Owned<T> {
             if self.is_given.load(Ordering::Relaxed) {
                 return None;
             }
-            // SAFETY: nothing was given, so `get` has returned no reference, and no other call gets here.
-            unsafe { (*self.value.get()).write(value) };
-            self.is_given.store(true, Ordering::Release);
+            // SAFETY: nothing was given, and no other call gets here.
+            unsafe { self.put(value) };
             Some(())
         })
+    }
+
+    /// Gives the value to the handler.
+    ///
+    /// # Safety
+    /// Nothing else than this function gives to this place.
+    #[inline]
+    pub(crate) unsafe fn give_once(&self, _: Boot, value: T) {
+        // SAFETY: there is one `Boot`, and it ends here, so this is the first call; and no other function gives.
+        unsafe { self.put(value) };
+    }
+
+    /// Writes the value, which the handler may take from then on.
+    ///
+    /// # Safety
+    /// Nothing was given, so [`Self::get`] has returned no reference, and no other call of this function is under way.
+    unsafe fn put(&self, value: T) {
+        // SAFETY: that of this function.
+        unsafe { (*self.value.get()).write(value) };
+        self.is_given.store(true, Ordering::Release);
     }
 
     /// Returns the value to the handler; `None` before it was given.
@@ -47,6 +68,23 @@ impl<T> Owned<T> {
     pub unsafe fn get(&self) -> Option<&mut T> {
         // SAFETY: it was given, and is not written again. A handler does not interrupt itself, so this is the only
         // reference.
-        self.is_given.load(Ordering::Acquire).then(|| unsafe { (*self.value.get()).assume_init_mut() })
+        self.is_given.load(Ordering::Acquire).then(|| unsafe { (*unnamed(self.value.get())).assume_init_mut() })
     }
+}
+
+/// Returns a pointer whose value the compiler does not know. Otherwise it may write the address, as a constant, into every
+/// function of the tick, which takes an `ARMv6-M` 500 bytes more than a register.
+#[inline]
+fn unnamed<T>(pointer: *mut T) -> *mut T {
+    #[cfg(target_arch = "arm")]
+    {
+        let unnamed;
+        // SAFETY: no instruction. It accesses nothing.
+        unsafe {
+            core::arch::asm!("/* {} */", inout(reg) pointer => unnamed, options(nomem, nostack, preserves_flags));
+        }
+        unnamed
+    }
+    #[cfg(not(target_arch = "arm"))]
+    pointer
 }

@@ -3,7 +3,7 @@
 use frixel_board::hardware::Hardware;
 use frixel_board::tick::Tick;
 
-use crate::Owned;
+use crate::{Boot, Owned};
 
 /// The tick of a program, in a static beside the handler that runs it.
 pub struct TickOwner<H: Hardware>(Owned<Tick<H>>);
@@ -18,17 +18,17 @@ where
         Self(Owned::new())
     }
 
-    /// Gives the tick to its interrupt. `None` if the interrupt has one already, which it keeps.
+    /// Gives the tick to its interrupt. There is one [`Boot`], so a program has one tick, which nothing replaces.
     #[inline]
-    #[must_use = "an interrupt that has a tick keeps it"]
-    pub fn give(&self, tick: Tick<H>) -> Option<()> {
-        self.0.give(tick)
+    pub fn give(&self, boot: Boot, tick: Tick<H>) {
+        // SAFETY: the place is private, and nothing else here gives.
+        unsafe { self.0.give_once(boot, tick) };
     }
 
     /// Runs the tick, if there is one.
     ///
     /// # Safety
-    /// Only the handler of the tick's interrupt calls this, once in each run.
+    /// Only the handler of the tick's interrupt calls this or [`Self::with`], once in each run.
     #[inline]
     pub unsafe fn run(&self) {
         // SAFETY: the handler owns the value, says the caller.
@@ -36,4 +36,31 @@ where
             tick.run();
         }
     }
+
+    /// Passes the tick to `work`, if there is one.
+    ///
+    /// # Safety
+    /// That of [`Self::run`].
+    #[inline]
+    pub unsafe fn with(&self, work: impl FnOnce(&mut Tick<H>)) {
+        // SAFETY: the handler owns the value, says the caller.
+        if let Some(tick) = unsafe { self.0.get() } {
+            work(tick);
+        }
+    }
+}
+
+/// Declares `TICK`, the tick of a program whose parts are those of `$hardware`, and the handler of the interrupt that
+/// runs it. `interrupt` of the processor's peripheral access crate must be in scope.
+#[macro_export]
+macro_rules! tick_interrupt {
+    ($hardware:ty, $interrupt:ident) => {
+        static TICK: $crate::TickOwner<$hardware> = $crate::TickOwner::new();
+
+        #[interrupt]
+        fn $interrupt() {
+            // SAFETY: this is the handler.
+            unsafe { TICK.run() }
+        }
+    };
 }

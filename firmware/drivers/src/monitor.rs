@@ -9,6 +9,10 @@ pub struct MonitorScale {
 }
 
 impl MonitorScale {
+    /// That of `docs/hardware.md`: 12 bits of 3.3 V. The amplifier's monitor gives 1 V for 100 V, which the level shifter
+    /// converts to 0.75 V around 1.65 V, so that 220 V use the full range.
+    pub const SHIFTED: Self = Self::new(12, 3.3, 0.75 / 100.0);
+
     /// An ADC of `bits` bits with the range 0 to `reference_v`. 0 V at the amplifier's output is the middle of the
     /// range, and each volt there changes the ADC's input by `input_v_per_v`.
     pub const fn new(bits: u32, reference_v: f32, input_v_per_v: f32) -> Self {

@@ -1,6 +1,7 @@
-//! Reading the ring into which DMA writes serial bytes.
+//! The ring into which DMA, or an interrupt, writes serial bytes.
 
 use core::ops::Range;
+use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 /// The read position in a ring of `LEN` bytes that DMA fills in circular mode.
 ///
@@ -32,9 +33,61 @@ impl<const LEN: usize> RingReader<LEN> {
         piece
     }
 
+    /// Copies the next bytes of `ring` to the beginning of `bytes`, and returns their number. Waits for the first one;
+    /// `remaining` is called until there is one.
+    pub fn read(&mut self, ring: &[AtomicU8; LEN], mut remaining: impl FnMut() -> usize, bytes: &mut [u8]) -> usize {
+        if bytes.is_empty() {
+            return 0;
+        }
+        loop {
+            let piece = self.take(remaining(), bytes.len());
+            let places = ring.get(piece).unwrap_or_default();
+            if places.is_empty() {
+                continue;
+            }
+            for (to, from) in bytes.iter_mut().zip(places) {
+                *to = from.load(Ordering::Relaxed);
+            }
+            return places.len();
+        }
+    }
+
     fn write_position(remaining: usize) -> usize {
         // DMA shows a count of zero for a moment before it reloads it.
         LEN.saturating_sub(remaining) % LEN
+    }
+}
+
+/// A ring that an interrupt fills byte by byte, where there is no DMA.
+pub struct InterruptRing<const LEN: usize> {
+    /// The bytes.
+    pub bytes: [AtomicU8; LEN],
+    /// Where the next byte goes. Only the interrupt writes it. It counts from zero, so that the initial value of a static
+    /// is all zeros, which takes no flash.
+    next: AtomicUsize,
+}
+
+impl<const LEN: usize> InterruptRing<LEN> {
+    /// An empty ring.
+    #[allow(clippy::new_without_default, reason = "it belongs in a static")]
+    pub const fn new() -> Self {
+        Self { bytes: [const { AtomicU8::new(0) }; LEN], next: AtomicUsize::new(0) }
+    }
+
+    /// Stores a byte. Only the interrupt calls this.
+    #[inline]
+    pub fn push(&self, byte: u8) {
+        let next = self.next.load(Ordering::Relaxed);
+        if let Some(place) = self.bytes.get(next) {
+            place.store(byte, Ordering::Relaxed);
+        }
+        self.next.store(if next + 1 < LEN { next + 1 } else { 0 }, Ordering::Release);
+    }
+
+    /// Bytes until the ring begins anew, as DMA would count them.
+    #[inline]
+    pub fn remaining(&self) -> usize {
+        LEN - self.next.load(Ordering::Acquire)
     }
 }
 
@@ -53,6 +106,45 @@ mod tests {
         assert!(reader.is_empty(8));
         assert_eq!(reader.take(8, LEN), 0..0);
         assert_eq!(reader.take(7, LEN), 0..1);
+    }
+
+    /// What an interrupt stores is read in order, over the end of the ring, and into a place that is shorter.
+    #[test]
+    fn bytes_of_an_interrupt_are_read_in_order() {
+        const LEN: usize = 8;
+        let ring = InterruptRing::<LEN>::new();
+        let mut reader = RingReader::new();
+        let (mut written, mut found) = (0_u8, Vec::<u8>::new());
+        for count in [3, 7, 1, 5, 6] {
+            for _ in 0..count {
+                ring.push(written);
+                written += 1;
+            }
+            while !reader.is_empty(ring.remaining()) {
+                let mut bytes = [0xff; 4];
+                let len = reader.read(&ring.bytes, || ring.remaining(), &mut bytes);
+                assert!(bytes[len..].iter().all(|byte| *byte == 0xff));
+                found.extend(&bytes[..len]);
+            }
+        }
+        assert_eq!(found, (0..written).collect::<Vec<_>>());
+        assert_eq!(reader.read(&ring.bytes, || ring.remaining(), &mut []), 0);
+    }
+
+    #[test]
+    fn a_read_waits_for_the_first_byte() {
+        let ring = InterruptRing::<8>::new();
+        let mut asked = 0;
+        let remaining = || {
+            asked += 1;
+            if asked == 3 {
+                ring.push(7);
+            }
+            ring.remaining()
+        };
+        let mut bytes = [0; 8];
+        assert_eq!(RingReader::new().read(&ring.bytes, remaining, &mut bytes), 1);
+        assert_eq!((bytes[0], asked), (7, 3));
     }
 
     proptest! {

@@ -6,13 +6,11 @@ use std::convert::Infallible;
 use std::rc::Rc;
 
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use embedded_io::{Read, ReadReady, Write, WriteReady};
+use embedded_io::{ErrorKind, Read, ReadReady, Write, WriteReady};
 use frixel_board::hardware::{Dac, DacFrames, Hardware, Late, Monitor, Period, Watchdog};
+use frixel_board::start::Parts;
 use frixel_board::tick::{Tick, TickShared};
-use frixel_control::Ticker;
-use frixel_drivers::amplifier::{Amplifier, KickedEnable};
-use frixel_drivers::arm_switch::ArmSwitch;
-use frixel_session::TickEnds;
+use frixel_drivers::amplifier::KickedEnable;
 use frixel_testkit::IdealMonitor;
 use frixel_wire::dac_code::DacCode;
 
@@ -31,6 +29,8 @@ pub(crate) enum Event {
     Checked,
     Fed,
     DebuggerMayStop(bool),
+    TickStarted,
+    WatchdogStarted,
 }
 
 /// The wires of the board, which its parts share with the test.
@@ -48,6 +48,8 @@ pub(crate) struct Wires {
     pub(crate) light: Cell<bool>,
     /// What the DAC answers when it is read back.
     pub(crate) dac: Cell<Result<(), u32>>,
+    /// What the serial port answers.
+    pub(crate) port: Cell<Result<(), ErrorKind>>,
     pub(crate) received: RefCell<Vec<u8>>,
     pub(crate) transmitted: RefCell<Vec<u8>>,
     monitor: RefCell<IdealMonitor>,
@@ -69,6 +71,7 @@ pub(crate) fn wires() -> Rc<Wires> {
         switch_closed: Cell::new(false),
         light: Cell::new(false),
         dac: Cell::new(Ok(())),
+        port: Cell::new(Ok(())),
         received: RefCell::default(),
         transmitted: RefCell::default(),
         monitor: RefCell::new(monitor()),
@@ -79,7 +82,7 @@ pub(crate) fn wires() -> Rc<Wires> {
 }
 
 impl Wires {
-    fn say(&self, event: Event) {
+    pub(crate) fn say(&self, event: Event) {
         self.events.borrow_mut().push(event);
     }
 
@@ -136,24 +139,20 @@ impl Hardware for Fake {
     }
 }
 
-/// The tick of a board with these wires.
-pub(crate) fn tick(
-    wires: &Rc<Wires>,
-    shared: &'static TickShared,
-    ticker: Ticker<'static>,
-    queues: TickEnds,
-) -> Tick<Fake> {
+/// The parts of a board with these wires.
+pub(crate) fn parts(wires: &Rc<Wires>, shared: &'static TickShared) -> Parts<Fake> {
     let part = || Part(Rc::clone(wires));
     wires.shared.set(Some(shared));
-    Tick {
-        shared,
-        ticker,
-        queues,
+    Parts {
         period: part(),
         frames: part(),
-        amplifier: Amplifier::new(part(), Input(Rc::clone(wires), |wires| wires.ready.get())),
+        dac: part(),
+        enable: part(),
+        ready: Input(Rc::clone(wires), |wires| wires.ready.get()),
         monitor: part(),
-        arm_switch: ArmSwitch::new(Input(Rc::clone(wires), |wires| wires.switch_closed.get()), BOARD.tick_hz),
+        switch: Input(Rc::clone(wires), |wires| wires.switch_closed.get()),
+        light: part(),
+        serial: Some(part()),
     }
 }
 
@@ -255,17 +254,18 @@ impl InputPin for Input {
 }
 
 impl embedded_io::ErrorType for Part {
-    type Error = Infallible;
+    type Error = ErrorKind;
 }
 
 impl ReadReady for Part {
-    fn read_ready(&mut self) -> Result<bool, Infallible> {
+    fn read_ready(&mut self) -> Result<bool, ErrorKind> {
+        self.0.port.get()?;
         Ok(!self.0.received.borrow().is_empty())
     }
 }
 
 impl Read for Part {
-    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, ErrorKind> {
         let mut received = self.0.received.borrow_mut();
         let len = received.len().min(bytes.len());
         for (to, from) in bytes.iter_mut().zip(received.drain(..len)) {
@@ -276,18 +276,19 @@ impl Read for Part {
 }
 
 impl WriteReady for Part {
-    fn write_ready(&mut self) -> Result<bool, Infallible> {
+    fn write_ready(&mut self) -> Result<bool, ErrorKind> {
+        self.0.port.get()?;
         Ok(true)
     }
 }
 
 impl Write for Part {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
         self.0.transmitted.borrow_mut().extend(bytes);
         Ok(bytes.len())
     }
 
-    fn flush(&mut self) -> Result<(), Infallible> {
+    fn flush(&mut self) -> Result<(), ErrorKind> {
         Ok(())
     }
 }

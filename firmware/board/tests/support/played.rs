@@ -5,9 +5,8 @@ use std::rc::Rc;
 
 use frixel_board::bring_up::Drive;
 use frixel_board::main_loop::MainLoop;
+use frixel_board::memory::Made;
 use frixel_board::tick::TickShared;
-use frixel_drivers::serial::SerialLink;
-use frixel_drivers::state_light::StateLight;
 use frixel_session::Queues;
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -15,7 +14,7 @@ use frixel_wire::message::{Command, Request};
 use frixel_wire::payload;
 
 use super::firmware::{BOARD, firmware};
-use super::hardware::{Event, Fake, Part, Wires, run_tick, start, tick, wires};
+use super::hardware::{Event, Fake, Part, Wires, parts, run_tick, start, wires};
 
 /// More ticks than it takes to play, two seconds.
 const TICKS_MAX: u32 = 80_000;
@@ -35,17 +34,19 @@ impl Board {
         let shared: &TickShared = Box::leak(Box::new(TickShared::new::<Part>()));
         let (session, ticker) = firmware();
         let (session_ends, tick_ends) = Box::leak(Box::new(Queues::new())).split();
-        let main_loop = MainLoop {
+        let made = Made { ticker, session: Box::leak(Box::new(session)), session_ends, tick_ends };
+        let main_loop = parts(&wires, shared).start(
+            made,
             shared,
-            queues: session_ends,
-            session: Box::leak(Box::new(session)),
-            status: ticker.status(),
-            serial: Some(SerialLink::new(Part(Rc::clone(&wires)))),
-            dac: Part(Rc::clone(&wires)),
-            light: StateLight::new(Part(Rc::clone(&wires)), BOARD.tick_hz),
-            watchdog: Part(Rc::clone(&wires)),
-        };
-        start(tick(&wires, shared, ticker, tick_ends));
+            |tick| {
+                wires.say(Event::TickStarted);
+                start(tick);
+            },
+            || {
+                wires.say(Event::WatchdogStarted);
+                Part(Rc::clone(&wires))
+            },
+        );
         Self { main_loop, wires, shared, drive: Drive::new(10.0, &BOARD) }
     }
 

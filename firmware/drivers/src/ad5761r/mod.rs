@@ -5,6 +5,7 @@
 //! ([`BusHandover`](crate::bus_handover::BusHandover)). [`zero_output`] is for panics, faults and the first
 //! instructions after a reset.
 
+mod bus;
 mod frame;
 
 use core::fmt;
@@ -14,6 +15,7 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use frixel_wire::dac_code::DacCode;
 
+pub use bus::{BusError, FrameBus, FrameDevice};
 pub use frame::{CONFIGURE, Control, FRAME_LEN, Frame, NO_OPERATION, READ_CONTROL, RESET, output};
 
 /// Time for a software reset, in microseconds. The data sheet states none; 10 us is the longest of its other times.

@@ -2,10 +2,9 @@
 
 use core::fmt::Arguments;
 
-use board_nucleo_g474re::board::{MONITOR, Nucleo, TICK_HZ};
+use board_nucleo_g474re::board::{Nucleo, TICK_HZ};
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::flash::BankTwo;
-use board_nucleo_g474re::terminal::Terminal;
 use board_nucleo_g474re::tick;
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{
@@ -13,12 +12,13 @@ use frixel_board::bring_up::{
 };
 use frixel_board::main_loop::MainLoop;
 use frixel_control::Board;
+use frixel_drivers::monitor::MonitorScale;
 use frixel_wire::fault::State;
 use frixel_wire::hello::BoardLimits;
 use stm32_metapac::ADC1;
 
 use crate::still::Still;
-use crate::{fault_injection, limits, start};
+use crate::{Terminal, fault_injection, limits, start};
 
 /// Longest time for storing the limits, 1 s. A page and its words take 26 ms at most (STM32G474 data sheet, "Flash
 /// memory").
@@ -144,7 +144,7 @@ impl Bench for NucleoBench {
             self.turn(TestOutput::Zero);
             let Stage::Ticking(main_loop) = &mut self.stage else { return Err(DriveError::State(State::Disarmed)) };
             // The tick reads the same register, and reading it changes nothing.
-            let monitor_v = MONITOR.volts(ADC1.dr().read().rdata());
+            let monitor_v = MonitorScale::SHIFTED.volts(ADC1.dr().read().rdata());
             let result = drive.step(&main_loop.status, tick::count(), monitor_v, main_loop.session);
             if let Some(result) = result {
                 return result;

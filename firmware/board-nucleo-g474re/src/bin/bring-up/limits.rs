@@ -1,7 +1,8 @@
 //! The limits that bring-up starts from, and their place in flash.
 
-use board_nucleo_g474re::board::{CEILINGS, LIMITS, LIMITS_SLOT};
+use board_nucleo_g474re::board::{CEILINGS, LIMITS};
 use board_nucleo_g474re::flash::BankTwo;
+use frixel_board::start::LIMITS_SLOT;
 use frixel_session::store::{LIMITS_LEN, LimitsError, Writer, Writing, load_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 

@@ -11,18 +11,14 @@ mod start;
 mod still;
 
 use board_nucleo_g474re::board::CEILINGS;
-use board_nucleo_g474re::fault;
 use board_nucleo_g474re::flash::{self, BankTwo};
-use board_nucleo_g474re::output::Output;
-use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::terminal::Terminal;
-use board_nucleo_g474re::{board, clock, dac, output, period, tick, watchdog};
-use cortex_m::Peripherals;
+use board_nucleo_g474re::serial::{Serial, Usart};
+use board_nucleo_g474re::start::{Started, begin};
+use board_nucleo_g474re::{board, dac, output, tick, watchdog};
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::bring_up::{self, Injection, TestOutput};
 use frixel_control::Board;
-use frixel_cortex_m::guard;
 use frixel_drivers::fault_record::Text;
 use frixel_session::store::Ceilings;
 use frixel_wire::hello::BoardLimits;
@@ -31,20 +27,15 @@ use frixel_wire::message::{FAULT_TEXT_MAX_LEN, Refusal};
 use bench::{NucleoBench, Stage};
 use still::Still;
 
+/// The person's terminal, on the ST-Link's serial port.
+type Terminal = frixel_board::terminal::Terminal<Serial>;
+
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
 
-    let output = Output::new();
-    let Some(mut core) = Peripherals::take() else { fault::never() };
-    guard::start(&mut core.MPU);
-    let last_reset = fault::last_reset(TEXT);
-    clock::start();
-    clock::start_peripherals();
-    clock::keep_timers_running_in_debug();
-    clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    period::start();
-    tick::start_inputs();
+    let Started { boot, output, period, last_reset } = begin(TEXT);
+    let inputs = tick::start_inputs(&boot);
 
     let injection = fault_injection::after(&last_reset);
     if let Injection::Next(fault) = injection
@@ -52,8 +43,8 @@ fn main() -> ! {
     {
         fault_injection::inject(fault);
     }
-    let (frames, dac) = dac::start();
-    let mut terminal = Terminal::new(Serial::new());
+    let (frames, dac) = dac::start(&boot);
+    let mut terminal = Terminal::new(Usart::start());
     let Some(limits) = limits::built_in() else {
         terminal.say(format_args!("a limit in the environment of this build is not a number"));
         stop()
@@ -72,7 +63,7 @@ fn main() -> ! {
     // A capacitor stands in for the electrode, and nobody touches it: the script asks for that before any voltage.
     let untouched = BoardLimits { series_resistance_ohm: f32::INFINITY, ..limits };
     let board = Board { limits: untouched, ..board::board(&last_reset, None) };
-    let stage = Stage::Still(Still { output, frames, dac, periods: 0 });
+    let stage = Stage::Still(Still { boot, output, period, inputs, frames, dac, periods: 0 });
     let mut bench = NucleoBench { board, terminal, flash, injection, stage };
     match bring_up::run(&mut bench, &limits) {
         Ok(limits) => {

@@ -1,36 +1,27 @@
 //! Starts the firmware's own tick and main loop, with the host on the board.
 
+use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::board::Nucleo;
-use board_nucleo_g474re::fault;
 use board_nucleo_g474re::indicator;
 use board_nucleo_g474re::tick;
-use board_nucleo_g474re::tick_interrupt;
 use board_nucleo_g474re::watchdog::Watchdog;
 use cortex_m::singleton;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::memory::Memory;
+use frixel_board::start::Parts;
 use frixel_control::Board;
+use frixel_cortex_m::never;
 use stm32_metapac::interrupt;
 
 use crate::still::Still;
 
-tick_interrupt!(Nucleo);
+frixel_cortex_m::tick_interrupt!(Nucleo, TIM3);
 
 /// Starts the tick and the watchdog, and returns the main loop, whose turns feed it. Called once.
 pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
-    let Some(memory) = singleton!(: Memory = Memory::new()) else { fault::never() };
-    let (ticker, session, session_ends, tick_ends) = memory.make(board);
-    let status = ticker.status();
-    let Still { output, frames, dac, periods: _ } = still;
-    tick::start(&TICK, ticker, tick_ends, frames, output);
-    MainLoop {
-        shared: &tick::SHARED,
-        queues: session_ends,
-        session,
-        status,
-        serial: None,
-        dac,
-        light: indicator::start(),
-        watchdog: Watchdog::start(),
-    }
+    let Some(memory) = singleton!(: Memory = Memory::new()) else { never() };
+    let Still { boot, output, period, inputs: (ready, switch), frames, dac, periods: _ } = still;
+    let (light, monitor) = (indicator::start(), Adc::new(&boot));
+    let parts = Parts { period, frames, dac, enable: output, ready, monitor, switch, light, serial: None };
+    parts.start(memory.make(board), &tick::SHARED, |tick| tick::start(&TICK, boot, tick), Watchdog::start)
 }

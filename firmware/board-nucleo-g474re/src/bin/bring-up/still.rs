@@ -6,12 +6,17 @@ use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{Dac, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
-use board_nucleo_g474re::terminal::Terminal;
-use board_nucleo_g474re::{period, tick, watchdog};
+use board_nucleo_g474re::period::Period;
+use board_nucleo_g474re::pins::Pin;
+use board_nucleo_g474re::{tick, watchdog};
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{Sync, TestOutput};
-use frixel_board::hardware::DacFrames as _;
+use frixel_board::hardware::{DacFrames as _, Period as _};
+use frixel_cortex_m::Boot;
+use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_wire::dac_code::DacCode;
+
+use crate::Terminal;
 
 const CYCLES_PER_US: u32 = CORE_HZ / 1_000_000;
 /// Voltage of the DAC at full scale, V.
@@ -23,6 +28,9 @@ const PERIODS_PER_2_MS: u32 = TICK_HZ / 500;
 
 /// What the tick takes over when it starts.
 pub(crate) struct Still {
+    pub(crate) boot: Boot,
+    pub(crate) period: Period,
+    pub(crate) inputs: (Pin, Pin),
     pub(crate) output: Output,
     pub(crate) frames: Frames,
     pub(crate) dac: Dac,
@@ -34,13 +42,13 @@ impl Still {
     /// Waits for the next period, and puts `output` out at its end; zero as long as the amplifier is ready.
     pub(crate) fn next_period(&mut self, output: TestOutput) {
         watchdog::feed();
-        let _ = period::has_begun();
-        while !period::has_begun() {}
+        let _ = self.period.has_begun();
+        while !self.period.has_begun() {}
         match output {
-            _ if tick::inputs().0 => self.output.zero(),
+            _ if tick::inputs().0 => self.output.disable(),
             TestOutput::Dac(volts) if self.frames.send(code(volts)).is_ok() => self.output.kick_dac_alone(),
             TestOutput::Enable { kicked, sync } if self.sync(sync) && kicked => self.output.kick(),
-            _ => self.output.zero(),
+            _ => self.output.disable(),
         }
     }
 
@@ -58,10 +66,10 @@ impl Still {
     /// Sets the output to zero. The last frame has been latched before, so that CLEAR comes after it.
     pub(crate) fn zero(&mut self) {
         for _ in 0..2 {
-            let _ = period::has_begun();
-            while !period::has_begun() {}
+            let _ = self.period.has_begun();
+            while !self.period.has_begun() {}
         }
-        self.output.zero();
+        self.output.disable();
     }
 
     /// Configures the DAC and reads it back.
@@ -92,7 +100,7 @@ impl Still {
             passed &= off_us <= OFF_WITHIN_US;
         }
         self.output.kick();
-        self.output.zero();
+        self.output.disable();
         passed & self.is(false, terminal, "The output does not go off at once.")
     }
 

@@ -1,6 +1,5 @@
 //! The parts of the tick and the main loop in the self-test: those of this board, but for what could drive anything.
 
-use core::convert::Infallible;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use board_nucleo_g474re::adc::Adc;
@@ -8,9 +7,9 @@ use board_nucleo_g474re::board::{Nucleo, TICK_HZ};
 use board_nucleo_g474re::dac::Frames;
 use board_nucleo_g474re::period::Period;
 use board_nucleo_g474re::watchdog::Watchdog;
-use embedded_hal::digital::{ErrorType, InputPin};
 use frixel_board::hardware::{Dac, DacFrames, Hardware, Late};
 use frixel_drivers::amplifier::KickedEnable;
+use frixel_drivers::pin::{DirectPin, ReadLevel};
 use frixel_wire::dac_code::DacCode;
 
 /// What the tick takes for the contact of the arm switch.
@@ -26,9 +25,9 @@ impl Hardware for Wired {
     type Frames = ZeroFrames;
     type Dac = NoDac;
     type Enable = NoEnable;
-    type Ready = AlwaysHigh;
+    type Ready = DirectPin<AlwaysHigh>;
     type Monitor = Adc;
-    type Switch = ScriptedSwitch;
+    type Switch = DirectPin<ScriptedSwitch>;
     type Light = <Nucleo as Hardware>::Light;
     type Serial = <Nucleo as Hardware>::Serial;
     type Watchdog = Watchdog;
@@ -71,37 +70,19 @@ impl Dac for NoDac {
 /// The ready line of an amplifier that is not there.
 pub(crate) struct AlwaysHigh;
 
-impl ErrorType for AlwaysHigh {
-    type Error = Infallible;
-}
-
-impl InputPin for AlwaysHigh {
+impl ReadLevel for AlwaysHigh {
     #[inline]
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(true)
-    }
-
-    #[inline]
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        Ok(false)
+    fn is_high(&self) -> bool {
+        true
     }
 }
 
 /// The arm switch, which the script holds.
 pub(crate) struct ScriptedSwitch;
 
-impl ErrorType for ScriptedSwitch {
-    type Error = Infallible;
-}
-
-impl InputPin for ScriptedSwitch {
+impl ReadLevel for ScriptedSwitch {
     #[inline]
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(SWITCH_HELD.load(Ordering::Relaxed))
-    }
-
-    #[inline]
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|high| !high)
+    fn is_high(&self) -> bool {
+        SWITCH_HELD.load(Ordering::Relaxed)
     }
 }

@@ -8,20 +8,21 @@ use board_nucleo_g474re::adc::Adc;
 use board_nucleo_g474re::clock::CORE_HZ;
 use board_nucleo_g474re::dac::{DacBus, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
-use board_nucleo_g474re::period::LATCH_CYCLES;
-use board_nucleo_g474re::terminal::Terminal;
-use board_nucleo_g474re::{fault, period, tick, watchdog};
-use embedded_hal::spi::SpiDevice as _;
-use frixel_board::hardware::DacFrames as _;
+use board_nucleo_g474re::period::{LATCH_CYCLES, Period};
+use board_nucleo_g474re::{tick, watchdog};
+use frixel_board::hardware::{DacFrames as _, Period as _};
 use frixel_board::main_loop::MainLoop;
 use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
+use frixel_cortex_m::{Boot, never};
+use frixel_drivers::ad5761r::FrameBus as _;
+use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::message::TickTimes;
 
 use crate::captures::{Captures, Counted};
 use crate::hardware::{SWITCH_HELD, Wired};
-use crate::start;
+use crate::{Terminal, start};
 
 /// The board.
 pub(crate) struct Looped {
@@ -43,6 +44,8 @@ pub(crate) enum Stage {
 
 /// The pins before the tick runs.
 pub(crate) struct Still {
+    pub(crate) boot: Boot,
+    pub(crate) period: Period,
     pub(crate) output: Output,
     pub(crate) frames: Frames,
     pub(crate) captures: Captures,
@@ -54,17 +57,17 @@ impl Still {
     /// Waits until a period begins, sends a frame of zero, and waits until the next one begins. Returns `false` if the
     /// frame was not sent.
     fn frame(&mut self) -> bool {
-        next_period();
+        self.next_period();
         let is_sent = self.frames.send(DacCode::ZERO).is_ok();
-        next_period();
+        self.next_period();
         is_sent
     }
-}
 
-fn next_period() {
-    watchdog::feed();
-    let _ = period::has_begun();
-    while !period::has_begun() {}
+    fn next_period(&mut self) {
+        watchdog::feed();
+        let _ = self.period.has_begun();
+        while !self.period.has_begun() {}
+    }
 }
 
 impl Looped {
@@ -84,7 +87,7 @@ impl Looped {
     fn still(&mut self) -> &mut Still {
         match &mut self.stage {
             Stage::Still(still) => still,
-            Stage::Ticking(..) | Stage::Neither => fault::never(),
+            Stage::Ticking(..) | Stage::Neither => never(),
         }
     }
 
@@ -92,7 +95,7 @@ impl Looped {
         match &mut self.stage {
             Stage::Still(still) => &mut still.captures,
             Stage::Ticking(_, captures) => captures,
-            Stage::Neither => fault::never(),
+            Stage::Neither => never(),
         }
     }
 }
@@ -141,7 +144,7 @@ impl LoopedBoard for Looped {
     }
 
     fn exchange(&mut self, bytes: &mut [u8]) -> bool {
-        self.still().spi.transfer_in_place(bytes).is_ok()
+        self.still().spi.exchange(bytes).is_ok()
     }
 
     fn clocks(&mut self) -> Option<Clocks> {
@@ -177,7 +180,7 @@ impl LoopedBoard for Looped {
     }
 
     fn disable(&mut self) {
-        self.still().output.zero();
+        self.still().output.disable();
     }
 
     fn enable_rose(&mut self) -> Option<u32> {
@@ -189,10 +192,10 @@ impl LoopedBoard for Looped {
     }
 
     fn start_ticks(&mut self) {
-        if let Stage::Still(still) = mem::replace(&mut self.stage, Stage::Neither) {
-            let Still { output, frames, mut captures, adc, spi: _ } = still;
-            captures.measure_time();
-            self.stage = Stage::Ticking(start::tick(self.board, output, frames, adc), captures);
+        if let Stage::Still(mut still) = mem::replace(&mut self.stage, Stage::Neither) {
+            still.captures.measure_time();
+            let (main_loop, captures) = start::tick(self.board, still);
+            self.stage = Stage::Ticking(main_loop, captures);
         }
     }
 
@@ -202,7 +205,7 @@ impl LoopedBoard for Looped {
             Stage::Ticking(main_loop, _) => {
                 Round { status: &main_loop.status, now_tick: tick::count(), session: main_loop.session }
             }
-            Stage::Still(_) | Stage::Neither => fault::never(),
+            Stage::Still(_) | Stage::Neither => never(),
         }
     }
 

@@ -11,45 +11,39 @@ mod looped;
 mod start;
 
 use board_nucleo_g474re::adc::Adc;
-use board_nucleo_g474re::output::{self, Output};
-use board_nucleo_g474re::serial::Serial;
-use board_nucleo_g474re::terminal::Terminal;
-use board_nucleo_g474re::{board, clock, dac, fault, period, tick};
-use cortex_m::Peripherals;
+use board_nucleo_g474re::serial::{Serial, Usart};
+use board_nucleo_g474re::start::{Started, begin};
+use board_nucleo_g474re::{board, dac, output, tick};
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::self_test;
 use frixel_control::Board;
-use frixel_cortex_m::guard;
+use frixel_drivers::ad5761r::FrameDevice;
 use frixel_drivers::fault_record::Text;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 use captures::Captures;
 use looped::{Looped, Stage, Still};
 
+/// The person's terminal, on the ST-Link's serial port.
+type Terminal = frixel_board::terminal::Terminal<Serial>;
+
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
 
-    let output = Output::new();
-    let Some(mut core) = Peripherals::take() else { fault::never() };
-    guard::start(&mut core.MPU);
-    let last_reset = fault::last_reset(TEXT);
-    clock::start();
-    clock::start_peripherals();
-    clock::keep_timers_running_in_debug();
-    clock::start_cycle_counter(&mut core.DCB, &mut core.DWT);
-    period::start();
-    tick::start_inputs();
+    let Started { boot, output, period, last_reset } = begin(TEXT);
+    let _ = tick::start_inputs(&boot);
 
-    let (frames, dac) = dac::start();
-    let (spi, _) = dac.release();
-    let mut terminal = Terminal::new(Serial::new());
+    let (frames, dac) = dac::start(&boot);
+    let (FrameDevice(spi), _) = dac.release();
+    let mut terminal = Terminal::new(Usart::start());
     if let Some((fault, _)) = last_reset.fault {
         let text = str::from_utf8(last_reset.text).unwrap_or_default();
         terminal.say(format_args!("The last start ended in {fault} ({text})"));
     }
-    let stage = Stage::Still(Still { output, frames, captures: Captures::start(), adc: Adc::new(), spi });
+    let adc = Adc::new(&boot);
+    let stage = Stage::Still(Still { boot, output, period, frames, captures: Captures::start(), adc, spi });
     // There is no amplifier: it arms whatever the option bytes are.
     let board = Board { notices: 0, ..board::board(&last_reset, None) };
     let mut looped = Looped { board, terminal, stage };

@@ -1,51 +1,40 @@
 //! Starts the tick and the main loop with the parts of the self-test.
 
-use board_nucleo_g474re::adc::Adc;
-use board_nucleo_g474re::board::TICK_HZ;
-use board_nucleo_g474re::dac::Frames;
-use board_nucleo_g474re::output::Output;
-use board_nucleo_g474re::period::Period;
 use board_nucleo_g474re::watchdog::Watchdog;
-use board_nucleo_g474re::{fault, indicator, tick, tick_interrupt};
+use board_nucleo_g474re::{indicator, tick};
 use cortex_m::singleton;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::memory::Memory;
-use frixel_board::tick::Tick;
+use frixel_board::start::Parts;
 use frixel_control::Board;
-use frixel_drivers::amplifier::Amplifier;
-use frixel_drivers::arm_switch::ArmSwitch;
+use frixel_cortex_m::never;
+use frixel_drivers::amplifier::KickedEnable as _;
+use frixel_drivers::pin::DirectPin;
 use stm32_metapac::interrupt;
 
+use crate::captures::Captures;
 use crate::hardware::{AlwaysHigh, NoDac, NoEnable, ScriptedSwitch, Wired, ZeroFrames};
+use crate::looped::Still;
 
-tick_interrupt!(Wired);
+frixel_cortex_m::tick_interrupt!(Wired, TIM3);
 
-/// Starts the tick and the watchdog, and returns the main loop, whose turns feed it. Called once. The enable is low
-/// from here on.
-pub(crate) fn tick(board: Board, mut output: Output, frames: Frames, adc: Adc) -> MainLoop<Wired> {
-    let Some(memory) = singleton!(: Memory = Memory::new()) else { fault::never() };
-    let (ticker, session, session_ends, tick_ends) = memory.make(board);
-    let status = ticker.status();
-    output.zero();
-    let parts = Tick {
-        shared: &tick::SHARED,
-        ticker,
-        queues: tick_ends,
-        period: Period,
+/// Starts the tick and the watchdog, and returns the main loop, whose turns feed it, and the captures. Called once. The
+/// enable is low from here on.
+pub(crate) fn tick(board: Board, still: Still) -> (MainLoop<Wired>, Captures) {
+    let Some(memory) = singleton!(: Memory = Memory::new()) else { never() };
+    let Still { boot, mut output, period, frames, captures, adc, spi: _ } = still;
+    output.disable();
+    let parts = Parts {
+        period,
         frames: ZeroFrames(frames),
-        amplifier: Amplifier::new(NoEnable, AlwaysHigh),
-        monitor: adc,
-        arm_switch: ArmSwitch::new(ScriptedSwitch, TICK_HZ),
-    };
-    tick::start_interrupt(&TICK, parts);
-    MainLoop {
-        shared: &tick::SHARED,
-        queues: session_ends,
-        session,
-        status,
-        serial: None,
         dac: NoDac,
+        enable: NoEnable,
+        ready: DirectPin(AlwaysHigh),
+        monitor: adc,
+        switch: DirectPin(ScriptedSwitch),
         light: indicator::start(),
-        watchdog: Watchdog::start(),
-    }
+        serial: None,
+    };
+    let start_tick = |tick| tick::start(&TICK, boot, tick);
+    (parts.start(memory.make(board), &tick::SHARED, start_tick, Watchdog::start), captures)
 }

@@ -2,23 +2,22 @@
 
 use core::fmt::{Arguments, Write as _};
 
-use embedded_io::{Read as _, ReadReady as _, Write as _, WriteReady as _};
-use frixel_board::bring_up::{Line, LineReader, Typed};
+use embedded_io::{Read, ReadReady, Write, WriteReady};
 
-use crate::serial::Serial;
+use crate::bring_up::{Line, LineReader, Typed};
 
 /// Longest text that is shown at once, in bytes.
 const TEXT_MAX_LEN: usize = 384;
 
-/// The terminal. What it shows goes to the debug probe, too.
-pub struct Terminal {
-    serial: Serial,
+/// The terminal. What it shows goes to the debug probe, too. On a port that fails, lines are lost in both directions.
+pub struct Terminal<P> {
+    serial: P,
     reader: LineReader,
 }
 
-impl Terminal {
+impl<P: Read + ReadReady + Write + WriteReady> Terminal<P> {
     /// A terminal on the serial port.
-    pub fn new(serial: Serial) -> Self {
+    pub fn new(serial: P) -> Self {
         Self { serial, reader: LineReader::default() }
     }
 
@@ -27,6 +26,7 @@ impl Terminal {
         let mut line = heapless::String::<TEXT_MAX_LEN>::new();
         // A text that is too long is cut.
         let _ = line.write_fmt(text);
+        #[cfg(feature = "defmt")]
         defmt::println!("{=str}", line.as_str());
         self.write(line.as_bytes());
         self.write(b"\r\n");
@@ -77,7 +77,7 @@ impl Terminal {
 
     fn write(&mut self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
-            let Ok(len) = self.serial.write(bytes);
+            let Ok(len) = self.serial.write(bytes) else { return };
             bytes = bytes.get(len..).unwrap_or_default();
         }
     }

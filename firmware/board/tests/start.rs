@@ -1,0 +1,66 @@
+//! The start of every board: what is assembled in which order, and how a board describes itself.
+
+use frixel_board::fault::LastReset;
+use frixel_board::start::{describe, prepare};
+use frixel_control::Board as Description;
+use frixel_session::store::{Ceilings, Flash};
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::{ResetCause, notice};
+
+use crate::support::firmware::BOARD;
+use crate::support::hardware::{Event, Part, wires};
+use crate::support::played::Board;
+
+/// A flash that holds the same byte everywhere.
+struct Filled(u8);
+
+impl Flash for Filled {
+    const PAGE_LEN: u32 = 2048;
+
+    fn read(&self, _: u32, bytes: &mut [u8]) -> bool {
+        bytes.fill(self.0);
+        true
+    }
+}
+
+fn described(flash: Option<&Filled>) -> Description {
+    let last_reset = LastReset { cause: ResetCause::Pin, fault: Some((Fault::Panic, 7)), text: b"main.rs" };
+    let built_in = Description { notices: notice::OPTION_BYTES, ..BOARD };
+    describe(built_in, flash, Ceilings::InForce, &last_reset)
+}
+
+/// The watchdog would bite before the first tick feeds it.
+#[test]
+fn the_tick_starts_before_the_watchdog_and_nothing_is_driven() {
+    let board = Board::new();
+    assert_eq!(board.wires.take(), [Event::TickStarted, Event::WatchdogStarted]);
+    assert_eq!((board.state(), board.shared.count()), (State::Disarmed, 0));
+}
+
+#[test]
+fn the_dac_is_prepared_once_and_a_missing_one_is_no_fault_yet() {
+    let wires = wires();
+    wires.dac.set(Err(1));
+    prepare(&mut Part(wires.clone()));
+    assert_eq!(wires.take(), [Event::Prepared]);
+}
+
+#[test]
+fn a_board_without_stored_limits_has_the_built_in_ones() {
+    let expected = Description {
+        notices: notice::OPTION_BYTES,
+        reset_cause: ResetCause::Pin,
+        reset_fault: Some((Fault::Panic, 7)),
+        reset_text: b"main.rs",
+        ..BOARD
+    };
+    assert_eq!(described(None), expected);
+    assert_eq!(described(Some(&Filled(0xff))), expected);
+}
+
+#[test]
+fn stored_limits_that_are_damaged_leave_a_notice_beside_those_of_the_board() {
+    let board = described(Some(&Filled(0x55)));
+    assert_eq!(board.limits, BOARD.limits);
+    assert_eq!(board.notices, notice::OPTION_BYTES | notice::STORED_LIMITS_REFUSED);
+}

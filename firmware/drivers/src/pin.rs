@@ -1,0 +1,84 @@
+//! Pins that are registers of the processor, as `embedded-hal` has them: reading and setting them never fails.
+
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+
+/// A pin whose level can be read.
+pub trait ReadLevel {
+    /// Whether the pin is high.
+    fn is_high(&self) -> bool;
+}
+
+/// A pin whose level can be set.
+pub trait SetLevel {
+    /// Sets the pin high or low.
+    fn set(&self, high: bool);
+}
+
+/// A pin of the processor.
+#[derive(Debug)]
+pub struct DirectPin<P>(pub P);
+
+impl<P> ErrorType for DirectPin<P> {
+    type Error = Infallible;
+}
+
+impl<P: ReadLevel> InputPin for DirectPin<P> {
+    #[inline]
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(self.0.is_high())
+    }
+
+    #[inline]
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.0.is_high())
+    }
+}
+
+impl<P: SetLevel> OutputPin for DirectPin<P> {
+    #[inline]
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.set(true);
+        Ok(())
+    }
+
+    #[inline]
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.set(false);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+
+    struct Register(Cell<bool>);
+
+    impl ReadLevel for &Register {
+        fn is_high(&self) -> bool {
+            self.0.get()
+        }
+    }
+
+    impl SetLevel for &Register {
+        fn set(&self, high: bool) {
+            self.0.set(high);
+        }
+    }
+
+    #[test]
+    fn a_pin_is_its_register() {
+        let register = Register(Cell::new(true));
+        let mut pin = DirectPin(&register);
+        assert_eq!((pin.is_high(), pin.is_low()), (Ok(true), Ok(false)));
+        assert_eq!(pin.set_low(), Ok(()));
+        assert!(!register.0.get());
+        assert_eq!((pin.is_high(), pin.is_low()), (Ok(false), Ok(true)));
+        assert_eq!(pin.set_high(), Ok(()));
+        assert!(register.0.get());
+    }
+}
