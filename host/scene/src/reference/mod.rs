@@ -5,7 +5,7 @@ mod stroke;
 
 use std::sync::Arc;
 
-use frixel_layers::{Blend, Record};
+use frixel_layers::{Blend, Interval, Record};
 
 pub(crate) use shape::{Shape, edges};
 pub use stroke::{Context, StrokeReference, direction_of};
@@ -34,6 +34,8 @@ pub(crate) struct Piece {
     /// [`Context::begun_s`] of the layer.
     begun_s: f64,
     pub(crate) field: Arc<dyn Field>,
+    /// Bounds of the layer's friction before its gain, from `frixel-layers`.
+    pub(crate) bounds: Interval<f64>,
     /// Whether the layer fades with the host's stream.
     pub(crate) is_streamed: bool,
 }
@@ -75,7 +77,7 @@ impl Reference {
     pub fn with_vibrations_held(mut self) -> Self {
         for piece in &mut self.pieces {
             if let Some(largest_n) = piece.field.largest_over_time_n() {
-                piece.field = kinds::constant_field(largest_n);
+                (piece.field, piece.bounds) = (kinds::constant_field(largest_n), Interval::of([largest_n]));
             }
         }
         self
@@ -164,7 +166,16 @@ impl Piece {
     fn new(record: &Record, program: &Program) -> Self {
         let shape = Shape::new(record.region, &program.points);
         let field = kinds::field(&record.layer, record.region, program);
-        let is_streamed = record.layer.is_streamed();
-        Self { shape, blend: record.blend, gain: f64::from(record.gain), is_on: true, begun_s: 0.0, field, is_streamed }
+        let Interval { low, high } = record.layer.bounds(&program.points);
+        Self {
+            shape,
+            blend: record.blend,
+            gain: f64::from(record.gain),
+            is_on: true,
+            begun_s: 0.0,
+            field,
+            bounds: Interval { low: f64::from(low), high: f64::from(high) },
+            is_streamed: record.layer.is_streamed(),
+        }
     }
 }
