@@ -1,5 +1,7 @@
 //! The range of a program's target friction over its screen, and how much of it is out of reach.
 
+use std::collections::BTreeSet;
+
 use frixel_layers::Interval;
 use serde::Serialize;
 
@@ -44,16 +46,15 @@ impl TargetRange {
         let (reach, within) = (&program.reach, program.within_reach());
         let places = Places::of(program);
         let mut sampled = Interval::of([]);
-        let mut above = Counted::new(pieces.len());
-        let mut below = Counted::new(pieces.len());
+        let (mut above, mut below) = (Counted::default(), Counted::default());
         for (x_m, y_m) in places.iter() {
             let interval = interval_at(pieces.iter(), x_m, y_m);
             sampled = sampled.hull(interval);
             if interval.high > within.high {
-                above.count(&reference, x_m, y_m);
+                above.count(reference.visible_at(x_m, y_m));
             }
             if interval.low < within.low {
-                below.count(&reference, x_m, y_m);
+                below.count(reference.visible_at(x_m, y_m));
             }
         }
         let Interval { low, high } = widened(sampled, &program.header, pieces, SEARCHED_MAX);
@@ -94,31 +95,24 @@ impl Places {
     }
 }
 
-/// Counts places on one side of the reach, and marks the layers that apply there.
+/// Places on one side of the reach, and the layers that apply there.
+#[derive(Default)]
 struct Counted {
     places: usize,
-    layers: Vec<bool>,
+    layers: BTreeSet<usize>,
 }
 
 impl Counted {
-    fn new(layers: usize) -> Self {
-        Self { places: 0, layers: vec![false; layers] }
-    }
-
-    fn count(&mut self, reference: &Reference, x_m: f64, y_m: f64) {
+    fn count(&mut self, layers: impl Iterator<Item = usize>) {
         self.places += 1;
-        for number in reference.visible_at(x_m, y_m) {
-            if let Some(applies) = self.layers.get_mut(number) {
-                *applies = true;
-            }
-        }
+        self.layers.extend(layers);
     }
 
     fn share(self, program: &Program, places: usize) -> OutOfReach {
-        let titles = program.titles.iter().zip(self.layers);
+        let titles = self.layers.iter().filter_map(|layer| program.titles.get(*layer));
         OutOfReach {
             screen_percent: 100.0 * self.places as f64 / places.max(1) as f64,
-            layers: titles.filter(|(_, applies)| *applies).map(|(title, _)| title.to_string()).collect(),
+            layers: titles.map(ToString::to_string).collect(),
         }
     }
 }

@@ -99,10 +99,7 @@ impl Reference {
 
     /// Electric friction in a context. `click_n` returns the friction that a layer's click adds.
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
-        let covers = |piece: &Piece| piece.is_on && piece.shape.covers(context.x_m, context.y_m);
-        // Layers below one that replaces them need no evaluation.
-        let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
-        let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
+        let above = self.stack_at(context.x_m, context.y_m, |_, piece| piece.is_on).filter(|(_, piece)| piece.is_on);
         above.fold(0.0, |below_n, (number, piece)| {
             let own_n =
                 piece.gain * (piece.field.at(&Context { begun_s: piece.begun_s, ..*context }) + click_n(number));
@@ -119,20 +116,28 @@ impl Reference {
     /// The layers that have an effect at a place in metres, by their index from the bottom, from the topmost down: those
     /// that are on and cover it, and that no layer above replaces.
     pub fn visible_at(&self, x_m: f64, y_m: f64) -> impl Iterator<Item = usize> {
-        let covers = move |piece: &Piece| piece.is_on && piece.shape.covers(x_m, y_m);
-        let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
-        let visible = self.pieces.iter().enumerate().skip(lowest).rev().filter(move |(_, piece)| covers(piece));
+        let visible = self.stack_at(x_m, y_m, |_, piece| piece.is_on).rev().filter(|(_, piece)| piece.is_on);
         visible.map(|(number, _)| number)
     }
 
     /// The layers that cover a place in metres, by their index from the bottom, from the topmost down, as far as none
     /// that is not in `off` replaces them.
     pub(crate) fn covering_at(&self, x_m: f64, y_m: f64, off: &[usize]) -> impl Iterator<Item = usize> {
+        self.stack_at(x_m, y_m, |layer, _| !off.contains(&layer)).rev().map(|(layer, _)| layer)
+    }
+
+    /// The layers that cover a place, with their index, from bottom to top, without those below one that replaces them
+    /// and is on.
+    fn stack_at(
+        &self,
+        x_m: f64,
+        y_m: f64,
+        is_on: impl Fn(usize, &Piece) -> bool,
+    ) -> impl DoubleEndedIterator<Item = (usize, &Piece)> {
         let covers = move |piece: &Piece| piece.shape.covers(x_m, y_m);
         let pieces = || self.pieces.iter().enumerate();
-        let hides = |(layer, piece): (usize, &Piece)| !off.contains(&layer) && piece.hides_below() && covers(piece);
-        let lowest = pieces().rposition(hides).unwrap_or(0);
-        pieces().skip(lowest).rev().filter(move |(_, piece)| covers(piece)).map(|(layer, _)| layer)
+        let hides = |(layer, piece): (usize, &Piece)| piece.hides_below() && is_on(layer, piece) && covers(piece);
+        pieces().skip(pieces().rposition(hides).unwrap_or(0)).filter(move |(_, piece)| covers(piece))
     }
 
     /// Left, top, right and bottom of the smallest rectangle around a layer, in metres, infinite for a layer that covers

@@ -40,15 +40,6 @@ fn the_pictures_of_a_scene_have_so_many_pixels_together() {
     assert!(error.ends_with(says), "{error}");
 }
 
-/// As a computer from another maker names a file.
-#[test]
-fn a_picture_is_found_by_its_name_in_other_characters() {
-    let files = BTreeMap::from([("textures/cafe\u{301}.png".to_owned(), PICTURES["textures/brick.png"].clone())]);
-    let text = format!("{SHORT}{}", layer("caf\u{e9}.png", 0, 40, ""));
-    let scene = Scene::parse(&text, "scene.toml", &files).expect("it reads");
-    assert!(compile(&scene, &LIMITS, TICK_HZ).is_ok());
-}
-
 #[test]
 fn a_small_picture_has_a_sample_for_each_pixel() {
     let found = program(&layer("leather.png", 0, 50, ""));
