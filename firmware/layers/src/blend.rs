@@ -54,7 +54,7 @@ impl Blend {
         }
     }
 
-    /// The interval after a layer is blended over those below it. Unless the layer `always` acts, what is below it counts
+    /// The interval after a layer is blended over those below it. Unless the layer `always` acts, what is below counts
     /// as well.
     pub fn of_intervals<T: Number>(self, below: Interval<T>, own: Interval<T>, always: bool) -> Interval<T> {
         let blended = match self {

@@ -39,7 +39,7 @@ pub struct OutOfReach {
 
 impl TargetRange {
     /// Evaluates a grid of places all over the screen. Least and largest friction also count where layers reach them
-    /// between these places, as in a refusal: a noise counts in full, and several varying layers as far as a search finds.
+    /// between these places, as in a refusal: a noise counts in full, several varying layers as far as a search finds.
     pub fn of(program: &Program) -> Self {
         let reference = Reference::new(program);
         let pieces = reference.pieces();

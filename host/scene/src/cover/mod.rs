@@ -1,10 +1,10 @@
 //! Finds where layers overlap, and the range of their target friction there.
 //!
 //! The edges of all layers cut the screen into cells. Within a cell, the same rectangles apply everywhere. Each layer's
-//! extremes in a cell follow from the bounds of its kind in `frixel-layers`, which the reference narrows to the cell where
-//! it has a closed form. Blended, they bound the friction of the stack. If a single layer varies, the bound is reached. For
-//! several varying layers, and for a layer whose outline crosses the cell, it need not be: such a cell is searched for a
-//! place that is out of reach.
+//! extremes in a cell follow from the bounds of its kind in `frixel-layers`, which the reference narrows to the cell
+//! where it has a closed form. Blended, they bound the friction of the stack. If a single layer varies, the bound is
+//! reached. For several varying layers, and for a layer whose outline crosses the cell, it need not be: such a cell is
+//! searched for a place that is out of reach.
 
 mod cell;
 
@@ -47,8 +47,9 @@ struct Stack {
     /// Numbers of the layers, starting with the last one that replaces all below it.
     layers: Vec<usize>,
     bound: Interval<f64>,
-    /// What keeps the bound from being reached: each layer that varies, each whose extremes are only bounded, and each
-    /// outline in the cell. With up to one, the bound is reached; with more, the cell is searched.
+    /// What keeps the bound from being reached: 1 for each layer that is not the same everywhere, 2 if its extremes are
+    /// only bounded, and 1 for its outline in the cell. With up to 1, the bound is reached; with more, the cell is
+    /// searched.
     doubts: usize,
     outlined: bool,
 }
@@ -61,9 +62,9 @@ struct Suspect {
     grid: Option<(f64, f64)>,
 }
 
-/// All sets of layers that exceed `reach`, or may exceed it, somewhere on the screen of a scene, each with the cell where
-/// it does so most. At about `places_max` places at most are evaluated: a scene that has more is searched with coarser
-/// steps.
+/// All sets of layers that exceed `reach`, or may exceed it, somewhere on the screen of a scene, each with the cell
+/// where it does so most. At about `places_max` places at most are evaluated: a scene that has more is searched with
+/// coarser steps.
 pub(super) fn excesses(header: &Header, pieces: &[Piece], reach: Interval<f64>, places_max: usize) -> Vec<Excess> {
     let extent = |excess: &Excess| (beyond(excess.found, reach), beyond(excess.bound, reach));
     let mut worst: BTreeMap<Vec<usize>, Excess> = BTreeMap::new();
@@ -126,7 +127,7 @@ impl Stack {
                 continue;
             }
             let (extremes, doubts) = match piece.extremes_in(cell) {
-                Extremes::Reached(extremes) => (extremes, usize::from(extremes.low < extremes.high)),
+                Extremes::Reached(extremes) => (extremes, usize::from(piece.bounds.low < piece.bounds.high)),
                 Extremes::Bounded(bounds) => (bounds, 2),
             };
             let is_outlined = coverage == Coverage::Part;
