@@ -54,13 +54,15 @@ impl Blend {
         }
     }
 
-    /// The interval of a blend over two intervals.
-    pub fn of_intervals<T: Number>(self, below: Interval<T>, own: Interval<T>) -> Interval<T> {
-        match self {
+    /// The interval after a layer is blended over those below it. Unless the layer `always` acts, what is below counts
+    /// as well.
+    pub fn of_intervals<T: Number>(self, below: Interval<T>, own: Interval<T>, always: bool) -> Interval<T> {
+        let blended = match self {
             Self::Replace => own,
             Self::Add => below.plus(own),
             Self::Multiply => below.times(own),
             Self::Max => below.max(own),
-        }
+        };
+        if always { blended } else { below.hull(blended) }
     }
 }

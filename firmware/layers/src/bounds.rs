@@ -40,14 +40,9 @@ pub fn electric_friction_max_n(header: &Header, records: &[Record], points: &[Po
 /// place.
 fn over(record: &Record, points: &[Point], below: Interval<f32>) -> Interval<f32> {
     let own = Interval::of([record.gain]).times(rounded_outward(record.layer.bounds(points)));
-    let blended = record.blend.of_intervals(below, own);
-    if record.layer.is_streamed() {
-        rounded_outward(below.hull(blended))
-    } else if record.region == Region::Screen {
-        blended
-    } else {
-        below.hull(blended)
-    }
+    let is_streamed = record.layer.is_streamed();
+    let blended = record.blend.of_intervals(below, own, record.region == Region::Screen && !is_streamed);
+    if is_streamed { rounded_outward(blended) } else { blended }
 }
 
 /// The interval with the margin for rounding on both sides.

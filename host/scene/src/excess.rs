@@ -1,8 +1,8 @@
 //! Finds layers whose target friction is out of reach.
 
-use frixel_layers::{Blend, Interval, Layer as RecordLayer, Record};
+use frixel_layers::{Blend, Header, Interval, Layer as RecordLayer, Record};
 
-use super::cover::{Cell, PLACES_MAX, excesses};
+use super::cover::{Cell, PLACES_MAX, excesses, widened};
 use super::digits::{digits, down, up};
 use super::file::Scene;
 use super::kinds::{Clicked, Kind};
@@ -28,10 +28,8 @@ pub(super) type Raise<'r> = &'r dyn Fn(f64) -> Vec<(&'static str, f64)>;
 pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Program, log: &mut Log) {
     let within = program.within_reach();
     let reference = Reference::new(program);
-    let width_m = f64::from(program.header.screen_width_m);
-    let height_m = f64::from(program.header.screen_height_m);
     let mut reported = Vec::new();
-    for excess in excesses(reference.pieces(), width_m, height_m, within, PLACES_MAX) {
+    for excess in excesses(&program.header, reference.pieces(), within, PLACES_MAX) {
         let layers: Vec<Played> = excess
             .layers
             .iter()
@@ -39,7 +37,7 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
             .map(|(layer, record)| Played { layer, record })
             .collect();
         let ridges = added_ridges(program, &excess.layers);
-        let ridges = ridges_in_reach_as_largest(&reference, &excess.layers, &ridges, [width_m, height_m], within)
+        let ridges = ridges_in_reach_as_largest(&program.header, &reference, &excess.layers, &ridges, within)
             .then(|| ridges.iter().filter_map(|number| program.titles.get(*number)).collect::<Vec<_>>());
         let largest_of = ridges.map(|titles| listed(&titles));
         let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise, largest_of };
@@ -83,10 +81,10 @@ fn added_ridges(program: &Program, numbers: &[usize]) -> Vec<usize> {
 
 /// Whether the layers of `numbers` stay in reach once `ridges`, some of them, count by `blend = "max"`.
 fn ridges_in_reach_as_largest(
+    header: &Header,
     reference: &Reference,
     numbers: &[usize],
     ridges: &[usize],
-    [width_m, height_m]: [f64; 2],
     within: Interval<f64>,
 ) -> bool {
     if ridges.is_empty() {
@@ -100,7 +98,7 @@ fn ridges_in_reach_as_largest(
             Some(piece)
         })
         .collect();
-    excesses(&pieces, width_m, height_m, within, PLACES_MAX).iter().all(|excess| excess.found.high <= within.high)
+    widened(within, header, &pieces, PLACES_MAX).high <= within.high
 }
 
 impl Program {

@@ -107,8 +107,7 @@ impl Program {
     fn worst_with(&self, pieces: &[Piece]) -> Option<Excess> {
         let within = self.within_reach();
         let extent = |excess: &Excess| beyond(excess.found, within);
-        let (width_m, height_m) = (f64::from(self.header.screen_width_m), f64::from(self.header.screen_height_m));
-        let found = excesses(pieces, width_m, height_m, within, PLACES_MAX).into_iter();
+        let found = excesses(&self.header, pieces, within, PLACES_MAX).into_iter();
         found.filter(|excess| extent(excess) > 0.0).max_by(|one, other| extent(one).total_cmp(&extent(other)))
     }
 }

@@ -1,15 +1,18 @@
 //! The range of a program's target friction over its screen, and how much of it is out of reach.
 
-use frixel_layers::{Blend, Interval};
+use std::collections::BTreeSet;
+
+use frixel_layers::Interval;
 use serde::Serialize;
 
-use super::cover::{ZERO, interval_at};
+use super::cover::{interval_at, widened};
 use super::program::Program;
-use super::reach::ROUNDING;
-use crate::reference::{Piece, Reference};
+use crate::reference::Reference;
 
 /// Places that are evaluated along the longer side of the screen.
 const PLACES: f64 = 600.0;
+/// Most further places that are evaluated where several varying layers may exceed the range found at those places.
+const SEARCHED_MAX: usize = 100_000;
 
 /// The range of a program's target friction anywhere on its screen, at any time and speed, with clicks and streams at
 /// their largest.
@@ -35,23 +38,26 @@ pub struct OutOfReach {
 }
 
 impl TargetRange {
-    /// Evaluates a grid of places all over the screen.
+    /// Evaluates a grid of places all over the screen. Least and largest friction also count where layers reach them
+    /// between these places, as in a refusal: a noise counts in full, several varying layers as far as a search finds.
     pub fn of(program: &Program) -> Self {
         let reference = Reference::new(program);
         let pieces = reference.pieces();
-        let reach = &program.reach;
-        let slack_n = ROUNDING * reach.electric_friction_max_n;
+        let (reach, within) = (&program.reach, program.within_reach());
         let places = Places::of(program);
-        let mut range: Option<Interval<f64>> = None;
-        let mut above = Counted::new(pieces.len());
-        let mut below = Counted::new(pieces.len());
+        let mut sampled = Interval::of([]);
+        let (mut above, mut below) = (Counted::default(), Counted::default());
         for (x_m, y_m) in places.iter() {
             let interval = interval_at(pieces.iter(), x_m, y_m);
-            range = Some(range.map_or(interval, |range| range.hull(interval)));
-            above.count(interval.high > reach.electric_friction_max_n + slack_n, pieces, x_m, y_m);
-            below.count(interval.low < -slack_n, pieces, x_m, y_m);
+            sampled = sampled.hull(interval);
+            if interval.high > within.high {
+                above.count(reference.visible_at(x_m, y_m));
+            }
+            if interval.low < within.low {
+                below.count(reference.visible_at(x_m, y_m));
+            }
         }
-        let Interval { low, high } = range.unwrap_or(ZERO);
+        let Interval { low, high } = widened(sampled, &program.header, pieces, SEARCHED_MAX);
         Self {
             least_n: reach.natural_friction_n + low,
             most_n: reach.natural_friction_n + high,
@@ -89,37 +95,24 @@ impl Places {
     }
 }
 
-/// Counts places on one side of the reach, and marks the layers that apply there.
+/// Places on one side of the reach, and the layers that apply there.
+#[derive(Default)]
 struct Counted {
     places: usize,
-    layers: Vec<bool>,
+    layers: BTreeSet<usize>,
 }
 
 impl Counted {
-    fn new(layers: usize) -> Self {
-        Self { places: 0, layers: vec![false; layers] }
-    }
-
-    fn count(&mut self, is_outside: bool, pieces: &[Piece], x_m: f64, y_m: f64) {
-        if !is_outside {
-            return;
-        }
+    fn count(&mut self, layers: impl Iterator<Item = usize>) {
         self.places += 1;
-        for (piece, applies) in pieces.iter().zip(&mut self.layers).rev() {
-            if piece.shape.covers(x_m, y_m) {
-                *applies = true;
-                if piece.blend == Blend::Replace {
-                    break;
-                }
-            }
-        }
+        self.layers.extend(layers);
     }
 
     fn share(self, program: &Program, places: usize) -> OutOfReach {
-        let titles = program.titles.iter().zip(self.layers);
+        let titles = self.layers.iter().filter_map(|layer| program.titles.get(*layer));
         OutOfReach {
             screen_percent: 100.0 * self.places as f64 / places.max(1) as f64,
-            layers: titles.filter(|(_, applies)| *applies).map(|(title, _)| title.to_string()).collect(),
+            layers: titles.map(ToString::to_string).collect(),
         }
     }
 }

@@ -70,13 +70,15 @@ impl Program {
             .filter_map(|number| self.records.get(number).map(|record| (number, record)))
             .map(|(number, record)| (number, Shape::new(record.region, &self.points)))
             .collect();
-        let boxes: Vec<[(f64, f64); 2]> = shapes.iter().filter_map(|(_, shape)| shape.corners_m()).collect();
-        let candidates = |along: fn((f64, f64)) -> f64, middle_m: f32| -> Vec<f64> {
-            let edges = boxes.iter().map(|corners| along(corners[0]) + INSIDE_M);
-            let middles = boxes.iter().map(|corners| f64::midpoint(along(corners[0]), along(corners[1])));
+        let boxes = shapes.iter().map(|(_, shape)| shape.bounds_m()).filter(|[left_m, ..]| left_m.is_finite());
+        let (columns, rows): (Vec<_>, Vec<_>) =
+            boxes.map(|[left, top, right, bottom]| ([left, right], [top, bottom])).unzip();
+        let candidates = |sides_m: &[[f64; 2]], middle_m: f32| -> Vec<f64> {
+            let edges = sides_m.iter().map(|[start_m, _]| start_m + INSIDE_M);
+            let middles = sides_m.iter().map(|[start_m, end_m]| f64::midpoint(*start_m, *end_m));
             edges.chain(middles).chain([f64::from(middle_m)]).collect()
         };
-        let (xs, ys) = (candidates(|(x_m, _)| x_m, cell.x_m), candidates(|(_, y_m)| y_m, cell.y_m));
+        let (xs, ys) = (candidates(&columns, cell.x_m), candidates(&rows, cell.y_m));
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
             .map(|place_m| meeting_at(place_m, &shapes, &costs, core))

@@ -5,7 +5,7 @@ use frixel_layers::{Blend, Interval};
 use serde::Serialize;
 use thiserror::Error;
 
-use super::cover::{PLACES_MAX, excesses};
+use super::cover::{PLACES_MAX, widened};
 use super::digits::digits;
 use super::file::Scene;
 use super::finger::Evidence;
@@ -290,10 +290,8 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
 fn demand_above(program: &Program, limit_n: f64) -> Option<f64> {
     let Program { header, reach: Reach { electric_friction_max_n, .. }, .. } = program;
     let largest_n = if header.layers_fixed {
-        let size_m = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
-        let within = Interval { low: f64::NEG_INFINITY, high: limit_n };
-        let excesses = excesses(Reference::new(program).pieces(), size_m.0, size_m.1, within, PLACES_MAX);
-        excesses.iter().map(|excess| excess.found.high).fold(0.0, f64::max)
+        let below = Interval { low: f64::NEG_INFINITY, high: limit_n };
+        widened(below, header, Reference::new(program).pieces(), PLACES_MAX).high
     } else {
         *electric_friction_max_n
     };

@@ -7,7 +7,7 @@ use frixel_layers::{Bitmap as Record, Interval, Layer as RecordLayer, Region as 
 
 use super::constant::ConstantField;
 use super::samples::Samples;
-use super::{Field, IntoField, Lowered, Words};
+use super::{Extremes, Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -210,12 +210,12 @@ impl Field for Samples {
 
     /// A bilinear patch has its extremes at its corners: at the samples' centres, and where the cell cuts it. For a
     /// turned picture, all samples within reach of the cell count.
-    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+    fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
         let positions = cell.corners().map(|(x_m, y_m)| self.position(x_m, y_m));
         let u = Interval::of(positions.iter().map(|(u, _)| *u));
         let v = Interval::of(positions.iter().map(|(_, v)| *v));
         if self.is_turned() {
-            return Interval::of(self.frictions(around(u, self.width), around(v, self.height)));
+            return Extremes::Bounded(Interval::of(self.frictions(around(u, self.width), around(v, self.height))));
         }
         let stretch = |start_m: f64, end_m: f64, first_m: f64, pitch_m: f64, samples: RangeInclusive<i64>| {
             let centres = samples.map(move |n| first_m + (n as f64 + 0.5) * pitch_m);
@@ -226,11 +226,7 @@ impl Field for Samples {
         let columns = stretch(cell.left_m, cell.right_m, self.x_m, self.pitch_m, around(u, self.width));
         let rows = stretch(cell.top_m, cell.bottom_m, self.y_m, self.pitch_y_m, around(v, self.height));
         let places = rows.iter().flat_map(|y_m| columns.iter().map(|x_m| (*x_m, *y_m)));
-        Interval::of(places.map(|(x_m, y_m)| self.at_place(x_m, y_m)))
-    }
-
-    fn doubts_in(&self, _cell: Cell, _outline_m: [f64; 4]) -> usize {
-        if self.is_turned() { 2 } else { 1 }
+        Extremes::Reached(Interval::of(places.map(|(x_m, y_m)| self.at_place(x_m, y_m))))
     }
 
     fn detail_m(&self) -> Option<f64> {

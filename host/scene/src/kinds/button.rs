@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_layers::{Button as Record, Click as RecordClick, Interval, Layer as RecordLayer, Region as RecordRegion};
 
 use super::click::Click;
-use super::{Clicked, Field, IntoField, Lowered, Words, click_interval};
+use super::{Clicked, Extremes, Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake};
@@ -90,9 +90,16 @@ impl IntoField for Record {
             RecordRegion::Ellipse { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, true),
             RecordRegion::Screen | RecordRegion::Polygon { .. } => (f32::NAN, f32::NAN, f32::NAN, f32::NAN, false),
         };
+        let (left_m, top_m) = (f64::from(x_m), f64::from(y_m));
         let half_m = (0.5 * f64::from(width_m), 0.5 * f64::from(height_m));
         Arc::new(ButtonField {
-            middle_m: (f64::from(x_m) + half_m.0, f64::from(y_m) + half_m.1),
+            outline: Cell {
+                left_m,
+                top_m,
+                right_m: left_m + f64::from(width_m),
+                bottom_m: top_m + f64::from(height_m),
+            },
+            middle_m: (left_m + half_m.0, top_m + half_m.1),
             half_m,
             is_ellipse,
             rim_width_m: f64::from(self.rim_width_m),
@@ -105,6 +112,7 @@ impl IntoField for Record {
 
 #[derive(Debug)]
 struct ButtonField {
+    outline: Cell,
     middle_m: (f64, f64),
     half_m: (f64, f64),
     is_ellipse: bool,
@@ -126,13 +134,9 @@ impl Field for ButtonField {
         self.face_n + (self.rim_n - self.face_n) * height * height
     }
 
-    fn interval_in(&self, _cell: Cell) -> Interval<f64> {
-        Interval::of([self.rim_n, self.face_n]).plus(click_interval(self.click()))
-    }
-
-    fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
-        let [left_m, top_m, right_m, bottom_m] = outline_m;
-        if (Cell { left_m, top_m, right_m, bottom_m }) == cell { 1 } else { 2 }
+    /// A cell that is the whole button has all of its rim, and its face.
+    fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
+        if cell == self.outline { Extremes::Reached(bounds) } else { Extremes::Bounded(bounds) }
     }
 
     fn detail_m(&self) -> Option<f64> {

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{Constant as Record, Interval, Layer as RecordLayer, Region as RecordRegion};
+use frixel_layers::{Constant as Record, Layer as RecordLayer, Region as RecordRegion};
 
 use super::{Field, IntoField, Lowered, Words};
-use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
 use crate::grammar::AmountFields;
@@ -56,13 +55,5 @@ pub(crate) struct ConstantField(pub(crate) f64);
 impl Field for ConstantField {
     fn at(&self, _context: &Context) -> f64 {
         self.0
-    }
-
-    fn interval_in(&self, _cell: Cell) -> Interval<f64> {
-        Interval::of([self.0])
-    }
-
-    fn doubts_in(&self, _cell: Cell, _outline_m: [f64; 4]) -> usize {
-        0
     }
 }

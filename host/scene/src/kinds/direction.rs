@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use frixel_layers::{Direction as Record, Interval, Layer as RecordLayer, Region as RecordRegion};
+use frixel_layers::{Direction as Record, Layer as RecordLayer, Region as RecordRegion};
 
 use super::{Field, IntoField, Lowered, Words};
 use crate::fields::Fields;
@@ -87,7 +87,7 @@ impl Field for DirectionField {
         weight_along * self.along_n + (1.0 - weight_along) * self.against_n
     }
 
-    fn interval_at(&self, _x_m: f64, _y_m: f64) -> Interval<f64> {
-        Interval::of([self.along_n, self.against_n])
+    fn is_still(&self) -> bool {
+        false
     }
 }

@@ -8,7 +8,7 @@ use frixel_layers::{
 };
 
 use super::click::Click;
-use super::{Clicked, Field, IntoField, Lowered, Words, click_interval};
+use super::{Clicked, Extremes, Field, IntoField, Lowered, Words, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -152,13 +152,13 @@ impl Field for EdgeField {
     }
 
     /// The ridge falls off on both sides of the line.
-    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+    fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
         let distances = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.distance_m(x_m, y_m)));
         let nearest_m = 0.0_f64.clamp(distances.low, distances.high);
         let ends = [distances.low, distances.high, nearest_m];
         let still = Interval::of(ends.into_iter().map(|distance_m| self.at_distance(distance_m)));
         let is_crossed = distances.low < 0.0 && distances.high > 0.0;
-        still.plus(click_interval(self.click().filter(|_| is_crossed)))
+        Extremes::Reached(still.plus(click_interval(self.click().filter(|_| is_crossed))))
     }
 
     fn detail_m(&self) -> Option<f64> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, IntoField, Lowered, Words, drift};
+use super::{Extremes, Field, IntoField, Lowered, Words, drift};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -148,16 +148,14 @@ impl Field for GratingField {
         self.wave.at_turns(self.turns(context.x_m, context.y_m) - self.drift_hz * context.t_s)
     }
 
-    fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
-        self.wave.interval_over_time(self.turns(x_m, y_m), self.drift_hz)
+    fn is_still(&self) -> bool {
+        self.drift_hz == 0.0
     }
 
-    /// Over a rectangle the phase takes every value between its least and its largest; where stripes pass, every value.
-    fn interval_in(&self, cell: Cell) -> Interval<f64> {
-        if self.drift_hz != 0.0 {
-            return self.wave.whole_interval();
-        }
-        self.wave.interval(Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.turns(x_m, y_m))))
+    /// Over a rectangle the phase takes every value between its least and its largest.
+    fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
+        let turns = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.turns(x_m, y_m)));
+        Extremes::Reached(self.wave.interval(turns))
     }
 
     fn detail_m(&self) -> Option<f64> {

@@ -107,23 +107,18 @@ pub(crate) trait Field: Debug + Send + Sync {
     /// The friction in a context, without clicks.
     fn at(&self, context: &Context) -> f64;
 
-    /// The interval of the friction at a place, at any time and speed, and with its click.
-    fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
-        let friction_n = self.at(&Context { x_m, y_m, ..Context::default() });
-        Interval::of([friction_n]).plus(click_interval(self.click()))
+    /// Whether the friction at a place is always the same, apart from clicks. Otherwise the layer reaches both of its
+    /// bounds at every place.
+    fn is_still(&self) -> bool {
+        true
     }
 
-    /// Bounds of the friction in the cell. They may be wider than the actual range.
-    fn interval_in(&self, cell: Cell) -> Interval<f64> {
-        let (x_m, y_m) = cell.middle();
-        self.interval_at(x_m, y_m)
-    }
-
-    /// 0 if the friction is the same all over the cell, 1 if [`Field::interval_in`] counts as reached where no other
-    /// layer varies, 2 if only evaluating places shows what is reached. `outline_m` is the layer's own rectangle: left, top, right, bottom.
-    fn doubts_in(&self, cell: Cell, outline_m: [f64; 4]) -> usize {
-        let _ = (cell, outline_m);
-        1
+    /// The extremes of a still layer in a cell, clicks included. `bounds` are those of the whole layer, from the kind's
+    /// file in `frixel-layers`. By default they count as reached, so that a refusal depends on the numbers in the scene
+    /// file, and not on the seed of a noise.
+    fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
+        let _ = cell;
+        Extremes::Reached(bounds)
     }
 
     /// Length over which the friction varies little, m; `None` when it is the same everywhere.
@@ -153,6 +148,15 @@ pub(crate) trait Field: Debug + Send + Sync {
     }
 }
 
+/// The least and the largest friction that a layer asks for in a cell of the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Extremes {
+    /// The layer reaches both.
+    Reached(Interval<f64>),
+    /// Bounds that it need not reach: only evaluating places shows what it does.
+    Bounded(Interval<f64>),
+}
+
 /// The parameters of a kind in a record, and their reference.
 pub(crate) trait IntoField: Copy {
     /// The friction over plane and time.
@@ -176,7 +180,7 @@ pub(crate) fn constant_field(friction_n: f64) -> Arc<dyn Field> {
 }
 
 /// Range of the friction that a click adds, at any time.
-fn click_interval(click: Option<Click>) -> Interval<f64> {
+pub(crate) fn click_interval(click: Option<Click>) -> Interval<f64> {
     Interval::of([0.0, click.map_or(0.0, |click| f64::from(click.height_n))])
 }
 

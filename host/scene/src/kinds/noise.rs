@@ -3,10 +3,9 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use frixel_layers::{Interval, Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
+use frixel_layers::{Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
 
 use super::{Field, IntoField, Lowered, Words};
-use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Mistake as Required, Number};
 use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
@@ -116,12 +115,6 @@ impl Field for NoiseField {
         let wave = |[x, y, phase]: &[f64; 3]| libm::cos(TAU * (x * context.x_m + y * context.y_m + phase));
         let mean = self.waves.iter().map(wave).sum::<f64>() / self.waves.len() as f64;
         f64::midpoint(self.low_n, self.high_n) + 0.5 * (self.high_n - self.low_n) * mean
-    }
-
-    /// The range that the scene file names, which a cell need not reach: it counts as reached, so that what is said of
-    /// a layer's reach depends on its own numbers, and not on the seed.
-    fn interval_in(&self, _cell: Cell) -> Interval<f64> {
-        Interval { low: self.low_n, high: self.high_n }
     }
 
     fn detail_m(&self) -> Option<f64> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, IntoField, Lowered, Words, drift};
+use super::{Extremes, Field, IntoField, Lowered, Words, drift};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
@@ -119,20 +119,17 @@ impl Field for RingsField {
         self.wave.at_turns(self.turns(context.x_m, context.y_m) - self.drift_hz * context.t_s)
     }
 
-    fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
-        self.wave.interval_over_time(self.turns(x_m, y_m), self.drift_hz)
+    fn is_still(&self) -> bool {
+        self.drift_hz == 0.0
     }
 
     /// The nearest place of a cell is the centre or lies on the cell's border, and the farthest is a corner. The
-    /// distance takes every value between the two; where rings pass, the phase takes every value.
-    fn interval_in(&self, cell: Cell) -> Interval<f64> {
-        if self.drift_hz != 0.0 {
-            return self.wave.whole_interval();
-        }
+    /// distance takes every value between the two.
+    fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
         let nearest =
             (self.middle_m.0.clamp(cell.left_m, cell.right_m), self.middle_m.1.clamp(cell.top_m, cell.bottom_m));
         let places = cell.corners().into_iter().chain([nearest]);
-        self.wave.interval(Interval::of(places.map(|(x_m, y_m)| self.turns(x_m, y_m))))
+        Extremes::Reached(self.wave.interval(Interval::of(places.map(|(x_m, y_m)| self.turns(x_m, y_m)))))
     }
 
     fn detail_m(&self) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{Blend, Interval, Layer as RecordLayer, Point, Region as RecordRegion, Speed as Record, range};
+use frixel_layers::{Blend, Layer as RecordLayer, Point, Region as RecordRegion, Speed as Record, range};
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
 use super::{Field, IntoField, Lowered, Words};
@@ -98,7 +98,7 @@ impl Field for SpeedField {
         }
     }
 
-    fn interval_at(&self, _x_m: f64, _y_m: f64) -> Interval<f64> {
-        Interval::of(self.0.iter().map(|(_, friction_n)| *friction_n))
+    fn is_still(&self) -> bool {
+        false
     }
 }

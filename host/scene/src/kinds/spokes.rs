@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Spokes as Record, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Field, IntoField, Lowered, Words};
+use super::{Extremes, Field, IntoField, Lowered, Words};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Mistake, Number};
@@ -136,7 +136,7 @@ impl Field for SpokesField {
 
     /// From outside of a rectangle, its corners lie at the ends of the angles that it covers, and it covers less than
     /// half a turn.
-    fn interval_in(&self, cell: Cell) -> Interval<f64> {
+    fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
         let corners = cell.corners().map(|corner| self.off_middle_m(corner));
         let nearest = self.off_middle_m((
             self.middle_m.0.clamp(cell.left_m, cell.right_m),
@@ -154,21 +154,14 @@ impl Field for SpokesField {
             let turns = beside.map(|beside| self.number * (middle_turns + beside) + self.phase_turns);
             self.wave.interval(Interval::of(turns))
         } else {
-            Interval::of([self.wave.trough_n, self.wave.crest_n])
+            bounds
         };
         let farthest_m = corners.map(|(x_m, y_m)| libm::hypot(x_m, y_m)).into_iter().fold(0.0, f64::max);
         let fades = Interval::of([self.fade(nearest_m), self.fade(farthest_m)]);
         let mean_n = Interval::of([self.mean_n]);
-        mean_n.plus(fades.times(wave_n.plus(Interval::of([-self.mean_n]))))
-    }
-
-    /// Where spokes fade, angle and distance reach their extremes at different places.
-    fn doubts_in(&self, cell: Cell, _outline_m: [f64; 4]) -> usize {
-        let corners = cell.corners().map(|corner| self.off_middle_m(corner));
-        let fades = corners.into_iter().any(|(x_m, y_m)| self.fade(libm::hypot(x_m, y_m)) < 1.0);
-        let has_middle = (cell.left_m..=cell.right_m).contains(&self.middle_m.0)
-            && (cell.top_m..=cell.bottom_m).contains(&self.middle_m.1);
-        if fades || has_middle { 2 } else { 1 }
+        let extremes_n = mean_n.plus(fades.times(wave_n.plus(Interval::of([-self.mean_n]))));
+        // Where spokes fade, angle and distance reach their extremes at different places.
+        if fades.low < 1.0 { Extremes::Bounded(extremes_n) } else { Extremes::Reached(extremes_n) }
     }
 
     fn detail_m(&self) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Stream as Record};
+use frixel_layers::{Layer as RecordLayer, Region as RecordRegion, Stream as Record};
 
 use super::{Field, IntoField, Lowered, Words};
 use crate::fields::Fields;
@@ -66,7 +66,7 @@ impl Field for StreamField {
         self.low_n + (self.high_n - self.low_n) * context.stream
     }
 
-    fn interval_at(&self, _x_m: f64, _y_m: f64) -> Interval<f64> {
-        Interval::of([self.low_n, self.high_n])
+    fn is_still(&self) -> bool {
+        false
     }
 }

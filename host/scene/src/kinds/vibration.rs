@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use frixel_layers::{
-    Beat, Burst as RecordBurst, Interval, Layer as RecordLayer, Region as RecordRegion, Vibration as Record, range,
+    Beat, Burst as RecordBurst, Layer as RecordLayer, Region as RecordRegion, Vibration as Record, range,
 };
 
 use super::{Field, IntoField, Lowered, Words};
@@ -155,8 +155,8 @@ impl Field for VibrationField {
         self.low_n + (self.high_n - self.low_n) * self.envelope(context.t_s - context.begun_s) * wave
     }
 
-    fn interval_at(&self, _x_m: f64, _y_m: f64) -> Interval<f64> {
-        Interval::of([self.low_n, self.high_n])
+    fn is_still(&self) -> bool {
+        false
     }
 
     fn largest_over_time_n(&self) -> Option<f64> {

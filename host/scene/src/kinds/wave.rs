@@ -57,16 +57,6 @@ impl WaveField {
         self.trough_n + (self.crest_n - self.trough_n) * wave
     }
 
-    /// The range of the friction over all phases.
-    pub(super) fn whole_interval(&self) -> Interval<f64> {
-        Interval::of([self.trough_n, self.crest_n])
-    }
-
-    /// The range of the friction over time at a place with a phase, in turns, which waves pass if `drift_hz` is not 0.
-    pub(super) fn interval_over_time(&self, turns: f64, drift_hz: f64) -> Interval<f64> {
-        if drift_hz == 0.0 { Interval::of([self.at_turns(turns)]) } else { self.whole_interval() }
-    }
-
     /// The range of the friction while the phase covers an interval, in turns.
     pub(super) fn interval(&self, turns: Interval<f64>) -> Interval<f64> {
         let passes = |turn: f64| libm::floor(turns.high - turn) > libm::floor(turns.low - turn);

@@ -5,7 +5,7 @@ mod stroke;
 
 use std::sync::Arc;
 
-use frixel_layers::{Blend, Record};
+use frixel_layers::{Blend, Interval, Record};
 
 pub(crate) use shape::{Shape, edges};
 pub use stroke::{Context, StrokeReference, direction_of};
@@ -34,6 +34,8 @@ pub(crate) struct Piece {
     /// [`Context::begun_s`] of the layer.
     begun_s: f64,
     pub(crate) field: Arc<dyn Field>,
+    /// Bounds of the layer's friction before its gain, from `frixel-layers`.
+    pub(crate) bounds: Interval<f64>,
     /// Whether the layer fades with the host's stream.
     pub(crate) is_streamed: bool,
 }
@@ -75,7 +77,7 @@ impl Reference {
     pub fn with_vibrations_held(mut self) -> Self {
         for piece in &mut self.pieces {
             if let Some(largest_n) = piece.field.largest_over_time_n() {
-                piece.field = kinds::constant_field(largest_n);
+                (piece.field, piece.bounds) = (kinds::constant_field(largest_n), Interval::of([largest_n]));
             }
         }
         self
@@ -97,10 +99,7 @@ impl Reference {
 
     /// Electric friction in a context. `click_n` returns the friction that a layer's click adds.
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
-        let covers = |piece: &Piece| piece.is_on && piece.shape.covers(context.x_m, context.y_m);
-        // Layers below one that replaces them need no evaluation.
-        let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
-        let above = self.pieces.iter().enumerate().skip(lowest).filter(|(_, piece)| covers(piece));
+        let above = self.stack_at(context.x_m, context.y_m, |_, piece| piece.is_on).filter(|(_, piece)| piece.is_on);
         above.fold(0.0, |below_n, (number, piece)| {
             let own_n =
                 piece.gain * (piece.field.at(&Context { begun_s: piece.begun_s, ..*context }) + click_n(number));
@@ -117,20 +116,28 @@ impl Reference {
     /// The layers that have an effect at a place in metres, by their index from the bottom, from the topmost down: those
     /// that are on and cover it, and that no layer above replaces.
     pub fn visible_at(&self, x_m: f64, y_m: f64) -> impl Iterator<Item = usize> {
-        let covers = move |piece: &Piece| piece.is_on && piece.shape.covers(x_m, y_m);
-        let lowest = self.pieces.iter().rposition(|piece| piece.hides_below() && covers(piece)).unwrap_or(0);
-        let visible = self.pieces.iter().enumerate().skip(lowest).rev().filter(move |(_, piece)| covers(piece));
+        let visible = self.stack_at(x_m, y_m, |_, piece| piece.is_on).rev().filter(|(_, piece)| piece.is_on);
         visible.map(|(number, _)| number)
     }
 
     /// The layers that cover a place in metres, by their index from the bottom, from the topmost down, as far as none
     /// that is not in `off` replaces them.
     pub(crate) fn covering_at(&self, x_m: f64, y_m: f64, off: &[usize]) -> impl Iterator<Item = usize> {
+        self.stack_at(x_m, y_m, |layer, _| !off.contains(&layer)).rev().map(|(layer, _)| layer)
+    }
+
+    /// The layers that cover a place, with their index, from bottom to top, without those below one that replaces them
+    /// and is on.
+    fn stack_at(
+        &self,
+        x_m: f64,
+        y_m: f64,
+        is_on: impl Fn(usize, &Piece) -> bool,
+    ) -> impl DoubleEndedIterator<Item = (usize, &Piece)> {
         let covers = move |piece: &Piece| piece.shape.covers(x_m, y_m);
         let pieces = || self.pieces.iter().enumerate();
-        let hides = |(layer, piece): (usize, &Piece)| !off.contains(&layer) && piece.hides_below() && covers(piece);
-        let lowest = pieces().rposition(hides).unwrap_or(0);
-        pieces().skip(lowest).rev().filter(move |(_, piece)| covers(piece)).map(|(layer, _)| layer)
+        let hides = |(layer, piece): (usize, &Piece)| piece.hides_below() && is_on(layer, piece) && covers(piece);
+        pieces().skip(pieces().rposition(hides).unwrap_or(0)).filter(move |(_, piece)| covers(piece))
     }
 
     /// Left, top, right and bottom of the smallest rectangle around a layer, in metres, infinite for a layer that covers
@@ -164,7 +171,16 @@ impl Piece {
     fn new(record: &Record, program: &Program) -> Self {
         let shape = Shape::new(record.region, &program.points);
         let field = kinds::field(&record.layer, record.region, program);
-        let is_streamed = record.layer.is_streamed();
-        Self { shape, blend: record.blend, gain: f64::from(record.gain), is_on: true, begun_s: 0.0, field, is_streamed }
+        let Interval { low, high } = record.layer.bounds(&program.points);
+        Self {
+            shape,
+            blend: record.blend,
+            gain: f64::from(record.gain),
+            is_on: true,
+            begun_s: 0.0,
+            field,
+            bounds: Interval { low: f64::from(low), high: f64::from(high) },
+            is_streamed: record.layer.is_streamed(),
+        }
     }
 }

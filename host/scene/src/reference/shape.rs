@@ -49,23 +49,6 @@ impl Shape {
         }
     }
 
-    /// Top left and bottom right corner of the bounding rectangle; `None` for everywhere.
-    pub(crate) fn corners_m(&self) -> Option<[(f64, f64); 2]> {
-        match self {
-            Self::Everywhere => None,
-            Self::Rectangle { left_m, top_m, right_m, bottom_m } => Some([(*left_m, *top_m), (*right_m, *bottom_m)]),
-            Self::Ellipse { middle_m: (x_m, y_m), half_axes_m: (a_m, b_m) } => {
-                Some([(x_m - a_m, y_m - b_m), (x_m + a_m, y_m + b_m)])
-            }
-            Self::Polygon(vertices) => {
-                let first = *vertices.first()?;
-                Some(vertices.iter().fold([first, first], |[from, to], (x_m, y_m)| {
-                    [(from.0.min(*x_m), from.1.min(*y_m)), (to.0.max(*x_m), to.1.max(*y_m))]
-                }))
-            }
-        }
-    }
-
     pub(crate) fn covers(&self, x_m: f64, y_m: f64) -> bool {
         match self {
             Self::Everywhere => true,
@@ -87,7 +70,7 @@ impl Shape {
         }
     }
 
-    /// Left, top, right and bottom of the smallest rectangle around it.
+    /// Left, top, right and bottom of the smallest rectangle around it, infinite for everywhere.
     pub(crate) fn bounds_m(&self) -> [f64; 4] {
         match self {
             Self::Everywhere => [f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY],
