@@ -56,10 +56,11 @@ fn shifter(carrier: &Carrier, corner: Option<u32>) -> Shifter {
     Shifter { source, r19, r20, r21, r22, r23, offset_v: OFFSET_MAX_V * end(6), input_a: INPUT_MAX_A * end(7) }
 }
 
-/// V at the ADC for 1 V at the amplifier's output, in a board's source.
+/// V at the ADC for 1 V at the amplifier's output, in a board's source, which takes it from the driver.
 fn firmware_v_per_v(sources: &str) -> f64 {
-    let text = source(sources, "board");
-    let scale = text.split_once("MonitorScale::new(").unwrap().1.split_once(')').unwrap().0;
+    assert!(source(sources, "adc").contains("MonitorScale::SHIFTED.volts("), "{sources}");
+    let text = source("firmware/drivers/src", "monitor");
+    let scale = text.split_once("SHIFTED: Self = Self::new(").unwrap().1.split_once(')').unwrap().0;
     let [bits, reference_v, per_v] = scale.split(", ").collect::<Vec<_>>().try_into().unwrap();
     assert_eq!((bits, reference_v.parse().ok()), ("12", Some(SUPPLY_V)));
     let (of, over) = per_v.split_once(" / ").unwrap();
