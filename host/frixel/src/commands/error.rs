@@ -27,7 +27,7 @@ use frixel_lab::stroke_file::StrokeFileError;
 use frixel_lab::sweep::{CellError, PlanError, StudyError};
 use frixel_lab::threshold::Guessed;
 use frixel_model::ParameterError;
-use frixel_play::{PlayError, StopReason};
+use frixel_play::{PlayError, SimulationError, StopReason};
 use frixel_scene::{CompileError, Shown, Warning};
 use frixel_session::store::LimitsError;
 use rayon::ThreadPoolBuildError;
@@ -292,6 +292,14 @@ impl CommandError {
         match error {
             PlayError::Stopped(reason) => Self::Stopped { port: port.to_owned(), reason },
             error => Self::Play(error),
+        }
+    }
+
+    /// Why a play on the simulator in this process ended early.
+    pub(crate) fn of_simulation(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Play(error) => Self::of_play("sim", error),
+            SimulationError::World(error) => error.into(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! What the board has for a scene, and what the scene needs of it.
 
 use frixel_felt::check::SceneCheck;
+use frixel_felt::judge::Judgement;
 use frixel_hil_sim::RigConfig;
 
 use super::{Figure, ReportError, Subject};
@@ -64,7 +65,7 @@ pub(super) fn figure(subject: &Subject, counts: &Counts) -> Result<(Figure, Vec<
     let rig = RigConfig::default();
     let costs = board_costs(program, &rig)?;
     let check =
-        SceneCheck::of(program, &rig.board.limits, &costs, &rig.world.touch).with_board(program, rig.board.kind);
+        SceneCheck::of(program, &rig.board.limits, &costs, Judgement::default()).with_board(program, rig.board.kind);
     let parts = parts(&check);
     let mut data = Data::new(["what", "unit", "needed", "whole"]);
     data.row(["layers that are played".into(), String::new().as_str().into(), check.layers.into(), Value::from("")]);
