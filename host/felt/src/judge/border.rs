@@ -24,6 +24,8 @@ pub(super) struct Borders {
     program: Program,
     layer: usize,
     reference: Reference,
+    /// The same without the element, if it adds to what lies below: its step is not the change of those below.
+    below: Option<Reference>,
 }
 
 /// A border of an element that a finger crossed, one way or the other.
@@ -38,7 +40,7 @@ pub(super) struct MetBorder {
 impl Borders {
     /// Borders are met with vibrations at their largest, without clicks, streams, and ridges on what lies below: a ridge
     /// is felt by itself, and its region ends where nothing is felt.
-    pub(super) fn new(program: &Program, layer: usize, starts_on: impl Fn(usize) -> bool) -> Self {
+    pub(super) fn new(program: &Program, layer: usize, joins: bool, starts_on: impl Fn(usize) -> bool) -> Self {
         let is_ridge_on_ground = |layer: usize| {
             let record = program.records.get(layer);
             record.is_some_and(|record| matches!(record.layer, Layer::Edge(_)) && record.blend != Blend::Replace)
@@ -46,7 +48,9 @@ impl Borders {
         let reference = Reference::new(program)
             .with_vibrations_held()
             .with_only(|layer| starts_on(layer) && !is_ridge_on_ground(layer));
-        Self { program: program.clone(), layer, reference }
+        let without = |other: usize| other != layer && starts_on(other) && !is_ridge_on_ground(other);
+        let below = joins.then(|| reference.clone().with_only(without));
+        Self { program: program.clone(), layer, reference, below }
     }
 
     /// The border that was felt most surely in a run.
@@ -81,14 +85,19 @@ impl Borders {
         is_onto: bool,
         [scene_n, felt_n]: [&[f64]; 2],
     ) -> Option<MetBorder> {
+        let electric_n = |reference: &Reference, context: &Context| {
+            total_n(&self.program, reference.electric_friction_at_n(context)) - self.program.reach.natural_friction_n
+        };
         let side = |moment: &Moment| {
             let context = Context { t_s: 0.0, ..moment.context };
-            let electric_n = total_n(&self.program, self.reference.electric_friction_at_n(&context))
-                - self.program.reach.natural_friction_n;
+            let electric_n = electric_n(&self.reference, &context);
             (visible_layers(&self.reference, context.x_m, context.y_m), electric_n)
         };
         let sides = [side(run.get(before.end - 1)?), side(run.get(after.start)?)];
         let [(other_layers, other_n), (own_layers, own_n)] = if is_onto { sides } else { [sides[1], sides[0]] };
+        let own = run.get(if is_onto { after.start } else { before.end - 1 })?;
+        let at_border = Context { t_s: 0.0, ..own.context };
+        let other_n = self.below.as_ref().map_or(other_n, |below| electric_n(below, &at_border));
         let mut sums = Sums::default();
         before.clone().chain(after.clone()).filter_map(|number| run.get(number)).for_each(|moment| sums.add(moment));
         let (low, high) = if is_onto { (0.0, 1.0) } else { (1.0, 0.0) };

@@ -97,7 +97,7 @@ impl<'e> Measure<'e> {
             below: element
                 .joins_those_below()
                 .then(|| scene.clone().with_only(|other| other < layer && starts_on(other))),
-            borders: Borders::new(&element.program, layer, starts_on),
+            borders: Borders::new(&element.program, layer, element.joins_those_below(), starts_on),
             scene,
             element,
         }
