@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
+use frixel_felt::judge::Advice;
 use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::load;
+use frixel_play::{judge, judged_rig, load};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
@@ -38,14 +39,17 @@ fn checked(request: &Request) -> Result<Value, HostError> {
         Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
         costs => costs?,
     };
-    let check = SceneCheck::of(&program, &config.board.limits, &costs, &touch);
+    let rig = judged_rig(config.board, touch);
+    let judgement = judge(&program, &rig, None, Advice::Sought, &|| ControlFlow::Continue(()));
+    let judgement = judgement.map_err(HostError::Simulation)?;
+    let check = SceneCheck::of(&program, &config.board.limits, &costs, judgement);
     let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
         "ok": !program.is_draft(),
         "isDraft": program.is_draft(),
         "problems": problems,
         "screen": screen(&scene),
-        "layers": layers(&scene, &request.entry, &program, &check.perception),
+        "layers": layers(&scene, &request.entry, &program, &check.judgement),
         "report": format!("{draft}{}", check.summary()),
         "lowN": check.asked.least_n,
         "highN": check.asked.most_n,

@@ -1,7 +1,7 @@
 //! Textures that a finger felt.
 
 use super::moment::{MOMENT_HZ, Moment};
-use crate::perception::{Texture, component_power, texture_component};
+use super::{Texture, component_power, texture_component};
 use crate::spectrum::Spectrum;
 
 /// Moments of which a spectrum is taken: 256 ms, in which the speed of a hand changes little.
