@@ -357,11 +357,13 @@ fn check_and_preview_say_what_a_person_feels() {
     let feel = text.lines().find(|line| line.trim_start().starts_with("felt ")).unwrap();
     assert!(feel.contains("layer 1 \"ridges\": ") && feel.contains(" Hz, felt from about "), "{feel}");
     assert!(succeed(&repository(), &["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
-    let json: Value = serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json"])).unwrap();
+    // A touch source that keeps up with a millimetre: that of 100 reports a second takes a third of it.
+    let arguments = ["scene", "check", &scene, "--json", "--touch", "500"];
+    let json: Value = serde_json::from_str(&succeed(&repository(), &arguments)).unwrap();
     let layer = &json["judgement"]["layers"][0];
     let number = |value: &Value| value.as_f64().unwrap();
     let (texture, speed) = (&layer["texture"], number(&layer["speed_mm_per_s"]));
     assert_eq!((&layer["verdict"], &texture["verdict"]), (&json!("felt"), &json!("felt")));
     assert!((number(&texture["frequency_hz"]) / speed - 1.0).abs() < 0.05, "{texture}, a millimetre at {speed} mm/s");
-    assert!((0.7..1.1).contains(&(number(&texture["amplitude_n"]) / 0.01)), "{texture}");
+    assert!((0.9..1.0).contains(&(number(&texture["amplitude_n"]) / 0.01)), "{texture}");
 }

@@ -98,12 +98,16 @@ fn reasons_name_what_is_in_the_way() {
             feel::sentence(&fine)
         );
     }
-    let burst = top("[[layer]]\nkind = \"vibration\"\nfrequency_hz = 120\nlow_fraction = 0\nhigh_fraction = 0.9\n\
-         burst = { period_ms = 60000, on_ms = 1, ramp_ms = 0.5 }\n");
-    let [Reason::TooShort { .. }, Reason::TooRare { .. }] = burst.reasons[..] else {
-        panic!("{}", feel::sentence(&burst));
-    };
-    assert_eq!(burst.verdict, Verdict::NotFelt);
+    for (on_ms, verdict) in [(1, Verdict::NotFelt), (2, Verdict::NearThreshold)] {
+        let burst = top(&format!(
+            "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 120\nlow_fraction = 0\nhigh_fraction = 0.9\n\
+             burst = {{ period_ms = 60000, on_ms = {on_ms}, ramp_ms = 0.5 }}\n"
+        ));
+        let [Reason::TooShort { .. }, Reason::TooRare { .. }] = burst.reasons[..] else {
+            panic!("{}", feel::sentence(&burst));
+        };
+        assert_eq!(burst.verdict, verdict, "{}", feel::sentence(&burst));
+    }
 }
 
 #[test]

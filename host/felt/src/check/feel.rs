@@ -155,7 +155,7 @@ fn reasons(layer: &LayerVerdict) -> String {
     let speed = speed_mm_per_s.filter(|_| !told.is_empty() && *verdict != Verdict::NotFelt);
     let speed = speed.map_or(String::new(), |speed| format!(" at {speed:.0} mm/s"));
     let burst = burst.iter().map(|BurstTimes { on_ms, period_ms }| {
-        format!("all this while a burst lasts, {} ms of every {} ms", two_digits(*on_ms), two_digits(*period_ms))
+        format!("in bursts of {} ms, one every {} ms", two_digits(*on_ms), two_digits(*period_ms))
     });
     let told = [format!("{}{speed}", told.join("; "))].into_iter().chain(burst);
     let told = told.chain(reasons.iter().filter_map(reason_text)).chain(advice.clone());

@@ -1,7 +1,7 @@
 //! Elements: the layers of a program, each as it is judged.
 
 use frixel_hil_sim::Stroke;
-use frixel_layers::{Blend, Burst, Direction, Layer, Record, Region};
+use frixel_layers::{Blend, Burst, Direction, Layer, Record, Region, Vibration};
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program, without_place};
 
@@ -9,6 +9,10 @@ use super::way::Way;
 
 /// Speeds of the three strokes, m/s: slow, usual and fast exploration. Assumed.
 pub(super) const SPEEDS_M_PER_S: [f64; 3] = [0.02, 0.05, 0.1];
+
+/// Longest pause between two bursts of a judged program, s, so that a finger that crosses 4 mm at the slowest of the
+/// speeds is there during a burst. A longer pause is a reason by itself.
+const PAUSE_MAX_S: f32 = 0.2;
 
 /// A layer of a program, and the way across it.
 #[derive(Clone, Debug)]
@@ -24,9 +28,9 @@ pub struct Element {
 }
 
 /// The three strokes across an element, at 20, 50 and 100 mm/s: over the part of it that no other layer replaces, and
-/// 10 mm beyond, within the screen. A layer that depends on the direction is crossed there and back.
+/// 10 mm beyond, within the screen; there and back if a layer of the scene depends on the direction.
 pub fn strokes(element: &Element) -> Vec<Stroke> {
-    let there_and_back = matches!(element.record().map(|record| &record.layer), Some(Layer::Direction(_)));
+    let there_and_back = element.program.records.iter().any(|record| matches!(record.layer, Layer::Direction(_)));
     SPEEDS_M_PER_S.iter().filter_map(|speed| element.way.stroke(*speed, there_and_back)).collect()
 }
 
@@ -38,12 +42,6 @@ impl Element {
         let start = program.start.get_mut(layer)?;
         let is_triggered = !start.on;
         start.on = true;
-        // A burst is judged while it lasts.
-        for record in &mut program.records {
-            if let Layer::Vibration(vibration) = &mut record.layer {
-                vibration.burst = Burst::default();
-            }
-        }
         let axis_turns = match record.layer {
             Layer::Direction(Direction { angle_turns, .. }) => Some(f64::from(angle_turns)),
             _ => None,
@@ -52,6 +50,11 @@ impl Element {
             Layer::Vibration(vibration) if vibration.burst.period_s > 0.0 => Some(vibration.burst),
             _ => None,
         };
+        for record in &mut program.records {
+            if let Layer::Vibration(Vibration { burst, .. }) = &mut record.layer {
+                burst.period_s = burst.period_s.min(burst.on_s + PAUSE_MAX_S);
+            }
+        }
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
         let reference = Reference::at_start(&program);
         let joins = matches!(record.blend, Blend::Add | Blend::Max);
@@ -61,7 +64,7 @@ impl Element {
         Some(Self { layer, title: program.titles.get(layer)?.clone(), program, burst, is_triggered, way })
     }
 
-    /// The program that plays while the element is judged: the element is on, and vibrations do not pause.
+    /// The program that plays while the element is judged: the element is on, and pauses between bursts are short.
     pub fn program(&self) -> &Program {
         &self.program
     }

@@ -5,12 +5,13 @@ use serde::Serialize;
 
 use super::element::Element;
 use super::measure::{FINGERTIP_M, Measured, WAY_MAX_M};
-use super::{Step, Verdict};
+use super::texture::SUMMED_S;
+use super::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict};
 
 /// How long a finger is on an element, s: a burst that comes less often is missed by some strokes. Assumed.
 const TOUCH_S: f64 = 1.0;
-/// A shorter pulse is not felt, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
-pub(super) const PULSE_MIN_S: f64 = 2e-3;
+/// A shorter burst is not felt, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
+const BURST_MIN_S: f64 = 2e-3;
 
 /// Why an element is not surely felt, or felt otherwise than it is written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,7 +35,7 @@ pub enum Reason {
     TooWeak,
     /// Friction is the same throughout, and there is no border.
     Flat,
-    /// A burst or a click is too short.
+    /// A burst is too short.
     TooShort {
         /// Its duration, ms.
         duration_ms: f64,
@@ -73,7 +74,7 @@ impl Reason {
     /// The surest verdict that the reason allows by itself.
     fn most(&self) -> Verdict {
         match self {
-            Self::TooShort { .. } => Verdict::NotFelt,
+            Self::TooShort { duration_ms, .. } if *duration_ms < 1e3 * BURST_MIN_S => Verdict::NotFelt,
             Self::TooRare { .. } => Verdict::NearThreshold,
             _ => Verdict::Felt,
         }
@@ -90,7 +91,8 @@ pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (V
     let extent = of_extent(element, felt);
     let own = match verdict {
         _ if extent.is_some_and(|most| is_surer_than(verdict, most)) => {
-            Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps: steps(&scene.sharp) })
+            let weber_steps = felt.steps().chain([scene.sharp]).map(|step| steps(&step)).fold(0.0, f64::max);
+            Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps })
         }
         Verdict::Felt => is_buzz(felt).then_some(Reason::Buzz),
         _ if is_surer(faultless.verdict()) => {
@@ -107,8 +109,14 @@ pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (V
         _ if scene.whole.contrast_n == 0.0 && felt.border.is_none() && felt.texture.is_none() => Some(Reason::Flat),
         _ => Some(Reason::TooWeak),
     };
-    let reasons: Vec<Reason> =
-        element.burst.iter().flat_map(|burst| of_bursts(burst, element.is_triggered)).chain(own).collect();
+    let mut reasons: Vec<Reason> = element
+        .burst
+        .iter()
+        .flat_map(|burst| [too_short(burst, felt), too_rare(burst, element.is_triggered)])
+        .flatten()
+        .collect();
+    let is_short = reasons.iter().any(|reason| matches!(reason, Reason::TooShort { .. }));
+    reasons.extend(own.filter(|own| !is_short || *own == Reason::Buzz));
     let most = reasons.iter().map(Reason::most).chain(extent).chain([verdict]).min_by_key(|most| most.sureness());
     (most.unwrap_or(verdict), reasons)
 }
@@ -137,17 +145,23 @@ fn is_buzz(felt: &Measured) -> bool {
     !felt.is_vibration && is_felt(felt.scene.sharp) && !felt.steps().any(is_felt)
 }
 
-/// What keeps a finger from feeling bursts. A program starts those that are `triggered` when it wants them felt.
-fn of_bursts(burst: &Burst, triggered: bool) -> Vec<Reason> {
-    let [on_s, period_s] = [burst.on_s, burst.period_s].map(f64::from);
-    let pause_s = period_s - on_s;
-    let rare = Reason::TooRare { pause_ms: 1e3 * pause_s, touch_ms: 1e3 * TOUCH_S };
-    let rare = (pause_s > TOUCH_S && !triggered).then_some(rare);
-    of_pulse(on_s).into_iter().chain(rare).collect()
+/// Whether bursts are too short: if they lasted longer, their power would be enough.
+fn too_short(burst: &Burst, felt: &Measured) -> Option<Reason> {
+    let on_s = f64::from(burst.on_s);
+    let faint = felt.texture.filter(|texture| texture.verdict != Verdict::Felt);
+    let enough_s = faint.and_then(|Texture { amplitude_n, threshold_n, natural_noise_n, .. }| {
+        let enough_n = (THRESHOLD_UNCERTAINTY * threshold_n?).max(natural_noise_n);
+        let enough_s = on_s * (enough_n / amplitude_n).powi(2);
+        (on_s < SUMMED_S && enough_s <= SUMMED_S).then_some(enough_s)
+    });
+    let is_short = on_s < BURST_MIN_S || enough_s.is_some();
+    let least_ms = 1e3 * enough_s.unwrap_or(0.0).max(BURST_MIN_S);
+    is_short.then_some(Reason::TooShort { duration_ms: 1e3 * on_s, least_ms })
 }
 
-/// What keeps a finger from feeling a pulse, such as a click.
-pub(super) fn of_pulse(duration_s: f64) -> Option<Reason> {
-    let reason = Reason::TooShort { duration_ms: 1e3 * duration_s, least_ms: 1e3 * PULSE_MIN_S };
-    (duration_s < PULSE_MIN_S).then_some(reason)
+/// Whether a touch may fall between two bursts. A program starts those that are `triggered` when it wants them felt.
+fn too_rare(burst: &Burst, triggered: bool) -> Option<Reason> {
+    let pause_s = f64::from(burst.period_s) - f64::from(burst.on_s);
+    let rare = Reason::TooRare { pause_ms: 1e3 * pause_s, touch_ms: 1e3 * TOUCH_S };
+    (pause_s > TOUCH_S && !triggered).then_some(rare)
 }

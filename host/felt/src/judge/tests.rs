@@ -146,10 +146,12 @@ fn rare_and_short_bursts_have_their_reasons() {
     };
     let (lasting, rare) = (vibration(""), vibration("burst = { period_ms = 5000, on_ms = 100, ramp_ms = 10 }\n"));
     assert_eq!((lasting.verdict, rare.verdict), (Verdict::Felt, Verdict::NearThreshold));
-    assert_eq!(lasting.texture, rare.texture);
+    // The pauses are part of what is felt: a burst fills less than the time in which touch sums.
+    let [lasting_n, rare_n] = [&lasting, &rare].map(|found| found.texture.unwrap().amplitude_n);
+    assert!((0.6..0.95).contains(&(rare_n / lasting_n)), "{rare_n} of {lasting_n}");
     assert!(matches!(rare.reasons[..], [Reason::TooRare { .. }]), "{rare:?}");
     let said = feel::sentence(&rare);
-    assert!(said.contains("while a burst lasts, 100 ms of every 5000 ms; too rare: a pause of 4.9 s"), "{said}");
+    assert!(said.contains("in bursts of 100 ms, one every 5000 ms; too rare: a pause of 4.9 s"), "{said}");
 }
 
 #[test]
@@ -194,4 +196,16 @@ fn many_layers_fit_a_terminal() {
     assert!(rows <= 27, "{rows} rows beside those of costs: {lines:#?}");
     let counted: String = lines.iter().filter(|(name, _)| *name == "more").map(|(_, text)| text.as_str()).collect();
     assert!(counted.contains("felt"), "{lines:#?}");
+}
+
+/// The notches act on a finger that slides against the axis of the layer above.
+#[test]
+fn what_only_one_direction_lets_through_is_felt_on_the_way_back() {
+    let half = "region = { x_mm = 64, y_mm = 0, width_mm = 56, height_mm = 80 }\n";
+    let ratchet = format!(
+        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 8\nlow_fraction = 0\nhigh_fraction = 0.9\n{half}\
+         [[layer]]\nkind = \"direction\"\nblend = \"multiply\"\nalong_factor = 0\nagainst_factor = 1\n{half}"
+    );
+    let notches = &FAULTLESS.judged(&ratchet).layers[0];
+    assert_eq!(notches.verdict, Verdict::Felt, "{}", feel::sentence(notches));
 }

@@ -17,6 +17,8 @@ const BEYOND_M: f64 = 0.01;
 const LENGTH_MAX_M: f64 = 0.12;
 /// From one place at which friction is compared to the next, m.
 const STEP_M: f64 = 2.5e-4;
+/// The part of a way that is left out at both ends: a border of the screen may be that of a region, too.
+const END_PART: f64 = 1e-4;
 /// A way is taken in place of an earlier one if friction changes on it by so many times as much.
 const BETTER: f64 = 1.05;
 
@@ -29,7 +31,8 @@ pub(super) struct Way {
 
 impl Way {
     /// The way across a layer on which friction changes most, and 10 mm beyond both ends, within the screen; `None` for
-    /// a layer that is visible nowhere. What changes `below` does not count. A layer that depends on the direction is crossed along its axis.
+    /// a layer that is visible nowhere. What changes `below` does not count. A layer that depends on the direction is
+    /// crossed along its axis.
     pub(super) fn across(
         layer: usize,
         axis_turns: Option<f64>,
@@ -132,17 +135,18 @@ impl Way {
         Self { from_m: beyond(self.from_m, [-x, -y]), to_m: beyond(self.to_m, [x, y]) }
     }
 
-    /// The first part of at most [`LENGTH_MAX_M`] on which friction changes most, and its change, N.
+    /// The first part of at most [`LENGTH_MAX_M`] on which friction changes most, there or back, and its change, N.
     fn liveliest_part(self, [reference, below]: [&Reference; 2]) -> (Self, f64) {
         let length_m = self.length_m();
         let count = (length_m / STEP_M) as usize + 1;
-        let direction = self.direction();
-        let friction_n = |number: usize| {
-            let (x_m, y_m) = self.at(number as f64 / count as f64);
+        let [x, y] = self.direction();
+        let friction_n = |direction: [f64; 2], number: usize| {
+            let (x_m, y_m) = self.at((number as f64 / count as f64).clamp(END_PART, 1.0 - END_PART));
             let context = Context { x_m, y_m, speed_m_per_s: 0.05, direction, ..Context::default() };
             reference.electric_friction_at_n(&context) - below.electric_friction_at_n(&context)
         };
-        let friction_n: Vec<f64> = (0..=count).map(friction_n).collect();
+        let [there_n, back_n] = [[x, y], [-x, -y]]
+            .map(|direction| (0..=count).map(|number| friction_n(direction, number)).collect::<Vec<f64>>());
         let window = ((LENGTH_MAX_M / STEP_M) as usize).min(count) + 1;
         let change_n = |friction_n: &[f64]| {
             let (least_n, most_n) = friction_n
@@ -151,8 +155,13 @@ impl Way {
             most_n - least_n
         };
         let step = (window / 8).max(1);
-        let starts = (0..friction_n.len() - window).step_by(step).chain([friction_n.len() - window]);
-        let changes = starts.filter_map(|start| Some((start, change_n(friction_n.get(start..start + window)?))));
+        let last = there_n.len() - window;
+        let starts = (0..last).step_by(step).chain([last]);
+        let change_n = |from: usize| {
+            let [there_n, back_n] = [&there_n, &back_n].map(|friction_n| friction_n.get(from..from + window));
+            Some(change_n(there_n?).max(change_n(back_n?)))
+        };
+        let changes = starts.filter_map(|start| Some((start, change_n(start)?)));
         let best = changes.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best });
         let (start, change_n) = best.unwrap_or((0, 0.0));
         let part = |number: usize| number as f64 / count as f64;
