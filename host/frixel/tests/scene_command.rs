@@ -357,7 +357,7 @@ fn check_and_preview_say_what_a_person_feels() {
     let feel = text.lines().find(|line| line.trim_start().starts_with("felt ")).unwrap();
     assert!(feel.contains("layer 1 \"ridges\": ") && feel.contains(" Hz, felt from about "), "{feel}");
     assert!(succeed(&repository(), &["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
-    // A touch source that keeps up with a millimetre: that of 100 reports a second takes a third of it.
+    // A touch source that keeps up with a millimetre: the one of 100 reports a second blurs a third of it.
     let arguments = ["scene", "check", &scene, "--json", "--touch", "500"];
     let json: Value = serde_json::from_str(&succeed(&repository(), &arguments)).unwrap();
     let layer = &json["judgement"]["layers"][0];
@@ -365,5 +365,5 @@ fn check_and_preview_say_what_a_person_feels() {
     let (texture, speed) = (&layer["texture"], number(&layer["speed_mm_per_s"]));
     assert_eq!((&layer["verdict"], &texture["verdict"]), (&json!("felt"), &json!("felt")));
     assert!((number(&texture["frequency_hz"]) / speed - 1.0).abs() < 0.05, "{texture}, a millimetre at {speed} mm/s");
-    assert!((0.9..1.0).contains(&(number(&texture["amplitude_n"]) / 0.01)), "{texture}");
+    assert!((0.8..1.0).contains(&(number(&texture["amplitude_n"]) / 0.01)), "{texture}");
 }

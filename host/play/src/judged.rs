@@ -3,17 +3,17 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, PollingLink};
+use frixel_driver::{ByteStream, Device, DeviceError, PollingLink};
 use frixel_felt::fidelity::{FidelitySample, SAMPLE_HZ};
 use frixel_felt::judge::{self, Advice, Judgement};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{Board, BoardMemory, Rig, RigConfig, Stroke, TouchConfig, WorldConfig, WorldError};
 use frixel_model::FrictionLaw;
 use frixel_scene::Program;
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardLimits, Hello};
 use thiserror::Error;
 
-use crate::{PlayError, Player, SimStream};
+use crate::{PlayError, Player, Recorded, SimStream};
 
 /// Seed of all that is random in the world, for every element and size.
 const SEED: u64 = 1;
@@ -59,29 +59,33 @@ pub fn judge(
         if goes_on().is_break() {
             return Ok(Vec::new());
         }
-        play(program, rig, own_finger, stroke, &mut memory, goes_on)
+        let mut rig = rig_under(stroke, &mut memory, rig)?;
+        if let Some(finger) = own_finger {
+            rig.world_mut().set_own_finger(finger);
+        }
+        felt_by(SimStream::new(rig, Recorder::default()), program, stroke, goes_on)
     })
 }
 
-fn play(
+/// The rig of a play that judges, under a stroke that begins when the program does.
+pub fn rig_under<'m>(stroke: &Stroke, memory: &'m mut BoardMemory, config: &RigConfig) -> Result<Rig<'m>, WorldError> {
+    Rig::new(memory, config, stroke.clone(), SEED)
+}
+
+/// What is felt of a program on the line to [such a rig](rig_under), under its whole stroke.
+pub fn felt_by<S: ByteStream + Recorded<Recorder = Recorder>>(
+    line: S,
     program: &Program,
-    config: &RigConfig,
-    own_finger: Option<FrictionLaw>,
     stroke: &Stroke,
-    memory: &mut BoardMemory,
     goes_on: &dyn Fn() -> ControlFlow<()>,
 ) -> Result<Vec<FidelitySample>, SimulationError> {
-    let tick_hz = config.board.tick_hz;
+    let device = Device::connect(PollingLink::new(line))?;
+    let Hello { limits, tick_hz, .. } = *device.hello();
     let ticks = (stroke.duration_s() * f64::from(tick_hz)).round() as u64;
     let ticks_per_row = (f64::from(tick_hz) / SAMPLE_HZ).round().max(1.0) as u32;
-    let recorder = Recorder::new(program, &config.board.limits, tick_hz, ticks, ticks_per_row);
+    let recorder = Recorder::new(program, &limits, tick_hz, ticks, ticks_per_row);
     let recorder = recorder.map_err(PlayError::Finger)?.through_finger();
-    let mut rig = Rig::new(memory, config, stroke.clone(), SEED)?;
-    if let Some(contact) = own_finger {
-        rig.world_mut().set_own_finger(contact);
-    }
-    let stream = SimStream::new(rig, Recorder::default());
-    let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
+    let mut player = Player::recording(device, recorder);
     player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
     while player.recorder_mut().ticks_left() > 0 && goes_on().is_continue() {
         player.step(Duration::MAX)?;

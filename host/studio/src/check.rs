@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
-use frixel_felt::judge::Advice;
+use frixel_felt::judge::{self, Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::{judge, judged_rig, load};
+use frixel_play::{SimulationError, felt_by, judged_rig, load, rig_under};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
@@ -40,8 +40,7 @@ fn checked(request: &Request) -> Result<Value, HostError> {
         costs => costs?,
     };
     let rig = judged_rig(config.board, touch);
-    let judgement = judge(&program, &rig, None, Advice::Sought, &|| ControlFlow::Continue(()));
-    let judgement = judgement.map_err(HostError::Simulation)?;
+    let judgement = judge(&program, &rig).map_err(HostError::Simulation)?;
     let check = SceneCheck::of(&program, &config.board.limits, &costs, judgement);
     let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
@@ -60,6 +59,15 @@ fn checked(request: &Request) -> Result<Value, HostError> {
 
 fn screen(scene: &Scene) -> Value {
     json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
+}
+
+/// As [`frixel_play::judge`], on the line of the page: the module has the code of one kind of line to a rig.
+fn judge(program: &Program, rig: &RigConfig) -> Result<Judgement, SimulationError> {
+    let mut memory = BoardMemory::new();
+    judge::judge(program, Advice::Sought, &mut |program, stroke| {
+        let line = RigStream::under_stroke(rig_under(stroke, &mut memory, rig)?, rig);
+        felt_by(line, program, stroke, &|| ControlFlow::Continue(()))
+    })
 }
 
 /// What a simulated board needs for a program: uploads it once, without playing it.
