@@ -21,8 +21,8 @@ use frixel_wire::fault::Flags;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
 
+use crate::judge::{WEBER_FRACTION, natural_noise_amplitude_n, weber_steps};
 use crate::percentile::percentiles;
-use crate::perception::{WEBER_FRACTION, natural_noise_amplitude_n, weber_steps};
 use crate::recorder::FeltRow;
 use crate::spectrum::Spectrum;
 

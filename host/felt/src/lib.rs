@@ -5,19 +5,17 @@
 //!
 //! - [`FrictionMap`]: the target friction of a program over its screen.
 //! - [`check`]: what a program costs and what will be felt of it, as `frixel scene check` prints it.
-//! - [`perception`]: what a person will feel of a program, with its sources.
+//! - [`judge`]: what a person will feel of each element, with its sources.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
-//! - [`noticed`]: what a finger noticed of each layer in plays.
 //! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
 #![forbid(unsafe_code)]
 
 pub mod check;
 pub mod fidelity;
+pub mod judge;
 pub mod metrics;
-pub mod noticed;
 mod percentile;
-pub mod perception;
 mod preview;
 pub mod recorder;
 mod spectrum;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use frixel::output::draw_preview_png;
 use frixel::scene_file;
 use frixel_felt::Preview;
-use frixel_felt::perception::{weber_steps, weber_steps_safe};
+use frixel_felt::judge::{weber_steps, weber_steps_safe};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
 use frixel_lab::default_stroke::default_stroke;

@@ -3,13 +3,15 @@
 
 use std::fmt::Write;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use frixel::scene_file::SceneFolder;
-use frixel_felt::perception::{Perception, Verdict, weber_steps};
+use frixel_felt::judge::{Advice, Verdict, weber_steps};
 use frixel_hil_sim::{Board, TouchConfig};
 use frixel_model::TouchBound;
+use frixel_play::{judge, judged_rig};
 use frixel_scene::{FingerProfile, Program, Scene, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
@@ -209,8 +211,10 @@ fn gallery() -> String {
     for path in paths {
         let scene = fs::read_to_string(&path).unwrap();
         let cells = drives.each_ref().map(|drive| {
-            let perception = Perception::of(&draft(&scene, "example", drive), &TouchConfig::REALISTIC);
-            let count = |verdict| perception.layers.iter().filter(|layer| layer.verdict == verdict).count();
+            let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
+            let program = draft(&scene, "example", drive);
+            let judgement = judge(&program, &rig, None, Advice::Omitted, &|| ControlFlow::Continue(())).unwrap();
+            let count = |verdict| judgement.layers.iter().filter(|layer| layer.verdict == verdict).count();
             let counts = [
                 (Verdict::Felt, "felt"),
                 (Verdict::NearThreshold, "maybe"),

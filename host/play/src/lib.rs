@@ -8,6 +8,8 @@
 //! - [`Control`]: carries out lines of text that change its layers and the program.
 //! - [`LiveLayers`]: the settings of the layers while they play.
 //! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
+//! - [`SimStream`]: the line to the simulated board in this process.
+//! - [`judge`]: judges a program by strokes that a simulated board plays.
 //! - [`Recorded`]: a link with a record of what the board plays.
 //!
 //! The crate opens no file, reads no clock and starts no thread: time is the link's clock. It compiles for
@@ -17,16 +19,20 @@
 mod control;
 mod error;
 mod feed;
+mod judged;
 mod live_layers;
 mod player;
 mod recorded;
+mod sim_stream;
 mod trigger;
 mod upload;
 
 pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
+pub use judged::{SimulationError, felt_by, judge, judged_rig, rig_under};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced};
 pub use recorded::Recorded;
+pub use sim_stream::SimStream;
 pub use upload::{load, start};

@@ -4,13 +4,16 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use frixel_felt::check::SceneCheck;
+use frixel_felt::judge::Advice;
 use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_lab::input::{is_same_name, read_named};
 use frixel_lab::simulation::board_costs;
+use frixel_play::{judge, judged_rig};
 use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -133,10 +136,14 @@ impl Scene {
         let program = py.detach(|| compile(&self.parsed, &rig.board.limits, rig.board.tick_hz));
         let program = program.map_err(|error| scene_error(py, &error))?;
         let json = py.detach(|| {
-            let check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, &touch);
+            let costs = board_costs(&program, &rig).map_err(|error| error.to_string())?;
+            let goes_on = || ControlFlow::Continue(());
+            let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, &goes_on);
+            let judgement = judgement.map_err(|error| error.to_string())?;
+            let check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
             Ok((if with_board { check.with_board(&program, rig.board.kind) } else { check }).to_json())
         });
-        json.map_err(|error: frixel_lab::simulation::RehearsalError| raised(py, "PlayError", (error.to_string(),)))
+        json.map_err(|error: String| raised(py, "PlayError", (error,)))
     }
 
     /// Electric friction over the screen, N, row after row from the top, within a size in pixels; and sentences that a

@@ -125,7 +125,7 @@ def test_a_check_says_what_the_command_says(scenes: Path) -> None:
     path = scenes / "brick.toml"
     report = Scene.load(path).check(touch="200")
     assert report["layers"] > 0
-    assert report["perception"]
+    assert report["judgement"]
     command = [os.environ["FRIXEL"], "scene", "check", str(path), "--touch", "200", "--json"]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     assert json.loads(printed) == report

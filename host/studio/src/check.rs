@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
+use frixel_felt::judge::{self, Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::load;
+use frixel_play::{SimulationError, felt_by, judged_rig, load, rig_under};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
@@ -38,14 +39,16 @@ fn checked(request: &Request) -> Result<Value, HostError> {
         Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
         costs => costs?,
     };
-    let check = SceneCheck::of(&program, &config.board.limits, &costs, &touch);
+    let rig = judged_rig(config.board, touch);
+    let judgement = judge(&program, &rig).map_err(HostError::Simulation)?;
+    let check = SceneCheck::of(&program, &config.board.limits, &costs, judgement);
     let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
         "ok": !program.is_draft(),
         "isDraft": program.is_draft(),
         "problems": problems,
         "screen": screen(&scene),
-        "layers": layers(&scene, &request.entry, &program, &check.perception),
+        "layers": layers(&scene, &request.entry, &program, &check.judgement),
         "report": format!("{draft}{}", check.summary()),
         "lowN": check.asked.least_n,
         "highN": check.asked.most_n,
@@ -56,6 +59,15 @@ fn checked(request: &Request) -> Result<Value, HostError> {
 
 fn screen(scene: &Scene) -> Value {
     json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
+}
+
+/// As [`frixel_play::judge`], on the line of the page: the module has the code of one kind of line to a rig.
+fn judge(program: &Program, rig: &RigConfig) -> Result<Judgement, SimulationError> {
+    let mut memory = BoardMemory::new();
+    judge::judge(program, Advice::Sought, &mut |program, stroke| {
+        let line = RigStream::under_stroke(rig_under(stroke, &mut memory, rig)?, rig);
+        felt_by(line, program, stroke, &|| ControlFlow::Continue(()))
+    })
 }
 
 /// What a simulated board needs for a program: uploads it once, without playing it.

@@ -2,7 +2,7 @@
 
 use frixel_driver::{ControlError, DeviceError};
 use frixel_hil_sim::{StrokeError, WorldError};
-use frixel_play::PlayError;
+use frixel_play::{PlayError, SimulationError};
 use thiserror::Error;
 
 use crate::layer_text::TextError;
@@ -23,6 +23,9 @@ pub enum HostError {
     /// The world of the simulator could not be built.
     #[error(transparent)]
     World(WorldError),
+    /// The strokes that judge the scene could not be played.
+    #[error(transparent)]
+    Simulation(SimulationError),
     /// The world's finger could not be built.
     #[error(transparent)]
     Stroke(StrokeError),

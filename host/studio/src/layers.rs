@@ -1,7 +1,7 @@
 //! The layers of a scene's files, for a page that lists them beside the text.
 
 use frixel_felt::check::feel;
-use frixel_felt::perception::{LayerPerception, Perception, Texture};
+use frixel_felt::judge::{Judgement, LayerVerdict, Texture};
 use frixel_layers::{Point, Region, range};
 use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
 use serde::Serialize;
@@ -72,7 +72,7 @@ struct PerceivedTexture {
 }
 
 impl Perceived {
-    fn of(layer: &LayerPerception) -> Self {
+    fn of(layer: &LayerVerdict) -> Self {
         let steps = layer.border.iter().map(|border| border.step).chain([layer.contrast]);
         let largest = steps.max_by(|one, other| one.weber_steps.abs().total_cmp(&other.weber_steps.abs()));
         let step = largest.unwrap_or(layer.contrast);
@@ -81,7 +81,7 @@ impl Perceived {
             from_n: step.from_n,
             to_n: step.to_n,
             weber_steps: step.weber_steps,
-            texture: layer.surest_texture().map(PerceivedTexture::of),
+            texture: layer.texture.as_ref().map(PerceivedTexture::of),
         }
     }
 }
@@ -94,7 +94,7 @@ impl PerceivedTexture {
 }
 
 /// The layers of a scene, called `entry`, that was compiled to `program`.
-pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: &Perception) -> Vec<FileLayer> {
+pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &Judgement) -> Vec<FileLayer> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
         let live: Result<Vec<Vec<u8>>, _> = layers.iter().map(|layer| program.layers.records(layer)).collect();
@@ -103,8 +103,8 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, perception: 
             index: number,
             name: name.unwrap_or_else(|| kind.to_owned()),
             kind,
-            felt: perceived(number, perception).map_or_else(String::new, feel::sentence),
-            perceived: perceived(number, perception).map(Perceived::of),
+            felt: perceived(number, judgement).map_or_else(String::new, feel::sentence),
+            perceived: perceived(number, judgement).map(Perceived::of),
             controls: layers,
             is_live: live.is_ok(),
             why_not_live: live.err().map_or(String::new(), |error| error.to_string()),
@@ -150,8 +150,8 @@ fn corners_m(region: &Region, points: &[Point]) -> Option<[f32; 4]> {
 }
 
 /// What is felt of the layer of the table with this number, or of its first copy.
-fn perceived(table: usize, perception: &Perception) -> Option<&LayerPerception> {
-    perception.layers.iter().find(|layer| layer.layer.number().table == table)
+fn perceived(table: usize, judgement: &Judgement) -> Option<&LayerVerdict> {
+    judgement.layers.iter().find(|layer| layer.layer.number().table == table)
 }
 
 /// The gains in reach of some records together, once they are on and all others as the scene starts.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_felt::recorder::Recorder;
+use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
 use frixel_play::Recorded;
 use frixel_wire::fault::{Fault, State};
@@ -25,6 +25,22 @@ pub(crate) struct RigStream<'a> {
     touched: TouchedPlaces,
     /// The record of the last tick.
     last: Option<TickRecord>,
+    /// Whether the world's own stroke moves the finger, from when a scene first plays.
+    stroke: Stroking,
+    /// Is called with every tick.
+    observer: Option<Observer>,
+}
+
+/// Is called with a tick.
+type Observer = Box<dyn FnMut(&TickRecord)>;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stroking {
+    /// The pointer moves the finger.
+    Never,
+    /// No scene has played yet.
+    Waiting,
+    Begun,
 }
 
 impl<'a> RigStream<'a> {
@@ -32,10 +48,31 @@ impl<'a> RigStream<'a> {
         // The pointer moves the finger; the world's own stroke never starts.
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
         let rig = Rig::new(memory, config, stroke, seed).map_err(HostError::World)?;
-        let felt = FeltSampler::new(rig.tick_hz());
-        let touch = TouchFollower::new(&config.board);
-        let touched = TouchedPlaces::default();
-        Ok(Self { rig, pointer: Pointer::default(), felt, touch, touched, last: None })
+        Ok(Self::of(rig, config, Stroking::Never))
+    }
+
+    /// A line to a rig that [judges](frixel_play::rig_under): its stroke and its record begin when a scene first plays.
+    pub(crate) fn under_stroke(rig: Rig<'a>, config: &RigConfig) -> Self {
+        Self::of(rig, config, Stroking::Waiting)
+    }
+
+    fn of(rig: Rig<'a>, config: &RigConfig, stroke: Stroking) -> Self {
+        Self {
+            felt: FeltSampler::new(rig.tick_hz()),
+            rig,
+            pointer: Pointer::default(),
+            touch: TouchFollower::new(&config.board),
+            touched: TouchedPlaces::default(),
+            last: None,
+            stroke,
+            observer: None,
+        }
+    }
+
+    /// Calls `observer` with every tick.
+    #[must_use]
+    pub(crate) fn observed(self, observer: impl FnMut(&TickRecord) + 'static) -> Self {
+        Self { observer: Some(Box::new(observer)), ..self }
     }
 
     /// The world, to change its touch source or to inject faults.
@@ -68,6 +105,28 @@ impl<'a> RigStream<'a> {
 
     /// Passes one tick.
     pub(crate) fn step(&mut self) -> TickRecord {
+        let record = if self.stroke == Stroking::Never { self.step_pointer() } else { self.step_stroke() };
+        if let Some(observer) = &mut self.observer {
+            observer(&record);
+        }
+        self.last = Some(record);
+        record
+    }
+
+    fn step_stroke(&mut self) -> TickRecord {
+        let record = self.rig.step();
+        let recorder = self.felt.recorder_mut();
+        if self.stroke == Stroking::Begun {
+            recorder.record(&Observation::of_tick(&record));
+        } else if record.status.telemetry.state == State::Active {
+            recorder.start(record.tick as u32);
+            self.rig.world_mut().start_stroke();
+            self.stroke = Stroking::Begun;
+        }
+        record
+    }
+
+    fn step_pointer(&mut self) -> TickRecord {
         let tick_hz = f64::from(self.rig.tick_hz());
         let finger = self.pointer.at(self.rig.tick() as f64);
         let world = self.world_mut();
@@ -85,24 +144,7 @@ impl<'a> RigStream<'a> {
         let record = self.rig.step();
         self.touched = self.touch.advance(touch, record.status.telemetry.tick);
         self.felt.add(&record, self.touched, self.rig.world_mut().finger_law());
-        self.last = Some(record);
         record
-    }
-}
-
-impl RigStream<'_> {
-    /// As [`ByteStream::read`], and calls `observer` with every tick that passes.
-    pub(crate) fn read_observed(
-        &mut self,
-        buffer: &mut Vec<u8>,
-        wait: Duration,
-        observer: &mut dyn FnMut(&TickRecord),
-    ) {
-        let end = self.now() + wait;
-        while !self.rig.has_received() && self.now() < end {
-            observer(&self.step());
-        }
-        self.rig.receive(buffer);
     }
 }
 
@@ -121,7 +163,11 @@ impl ByteStream for RigStream<'_> {
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        self.read_observed(buffer, wait, &mut |_| {});
+        let end = self.now() + wait;
+        while !self.rig.has_received() && self.now() < end {
+            self.step();
+        }
+        self.rig.receive(buffer);
         Ok(())
     }
 

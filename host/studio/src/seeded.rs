@@ -1,12 +1,12 @@
 //! One seeded stroke over a scene, as a hash: equal in a page and natively, or one of the crates computes differently
 //! in WebAssembly.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::Duration;
 
-use frixel_driver::{ByteStream, LinkClosed};
 use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord, WorldConfig};
 use frixel_layers::Header;
-use frixel_play::Recorded;
 
 use crate::host::{connect, load, stream_mut};
 use crate::host_error::HostError;
@@ -29,69 +29,33 @@ pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
     let world = WorldConfig { touch: touch_source(request)?, ..config.world.realistic() };
     let config = RigConfig { world, ..config };
     let mut memory = BoardMemory::new();
-    let mut host = connect(Hashing::new(&mut memory, &config, request.numbers.seed)?)?;
+    let hash = Rc::new(RefCell::new(Hash::new()));
+    let observed = Rc::clone(&hash);
+    let line = RigStream::new(&mut memory, &config, request.numbers.seed)?;
+    let mut host = connect(line.observed(move |record| observed.borrow_mut().add(record)))?;
     load(&mut host, request)?;
     let Some(header) = host.playing().map(|playing| playing.program().header) else { return Err(HostError::NoBoard) };
     host.arm_and_play()?;
     let tick_hz = f64::from(host.device().hello().tick_hz);
-    stream_mut(&mut host).slide(&header, request.numbers.duration_ms, tick_hz);
+    slide(stream_mut(&mut host), &header, request.numbers.duration_ms, tick_hz);
     host.wait(Duration::from_millis(request.numbers.duration_ms.into()))?;
     host.stop()?;
-    Ok(stream_mut(&mut host).hash.0)
+    let found = hash.borrow().0;
+    Ok(found)
 }
 
-/// The line to the rig, with a hash of its ticks.
-struct Hashing<'a> {
-    rig: RigStream<'a>,
-    hash: Hash,
-    recorder: (),
-}
-
-impl<'a> Hashing<'a> {
-    fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
-        Ok(Self { rig: RigStream::new(memory, config, seed)?, hash: Hash::new(), recorder: () })
-    }
-
-    /// Samples of the pointer from now on.
-    fn slide(&mut self, header: &Header, duration_ms: u32, tick_hz: f64) {
-        let start_tick = self.rig.tick() as f64;
-        for t_ms in (0..=duration_ms).step_by(SAMPLE_MS as usize) {
-            let part = f64::from(t_ms % STROKE_MS) / f64::from(STROKE_MS);
-            let (width_m, height_m) = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
-            let place_m = [width_m * (0.05 + 0.9 * part * part), height_m * (0.4 + 0.2 * part)];
-            // The start tick itself has passed.
-            let tick = start_tick + 1.0 + f64::from(t_ms) * 1e-3 * tick_hz;
-            // The finger lifts before it begins again.
-            let is_down = t_ms % STROKE_MS + SAMPLE_MS < STROKE_MS;
-            self.rig.pointer.add(PointerSample { tick, place_m, is_down, normal_load_n: None }, start_tick);
-        }
-    }
-}
-
-impl Recorded for Hashing<'_> {
-    type Recorder = ();
-
-    fn recorder_mut(&mut self) -> &mut () {
-        &mut self.recorder
-    }
-}
-
-impl ByteStream for Hashing<'_> {
-    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
-        self.rig.write(bytes)
-    }
-
-    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        self.rig.read_observed(buffer, wait, &mut |record| self.hash.add(record));
-        Ok(())
-    }
-
-    fn now(&self) -> Duration {
-        self.rig.now()
-    }
-
-    fn name(&self) -> &str {
-        self.rig.name()
+/// Samples of the pointer from now on.
+fn slide(rig: &mut RigStream, header: &Header, duration_ms: u32, tick_hz: f64) {
+    let start_tick = rig.tick() as f64;
+    for t_ms in (0..=duration_ms).step_by(SAMPLE_MS as usize) {
+        let part = f64::from(t_ms % STROKE_MS) / f64::from(STROKE_MS);
+        let (width_m, height_m) = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
+        let place_m = [width_m * (0.05 + 0.9 * part * part), height_m * (0.4 + 0.2 * part)];
+        // The start tick itself has passed.
+        let tick = start_tick + 1.0 + f64::from(t_ms) * 1e-3 * tick_hz;
+        // The finger lifts before it begins again.
+        let is_down = t_ms % STROKE_MS + SAMPLE_MS < STROKE_MS;
+        rig.pointer.add(PointerSample { tick, place_m, is_down, normal_load_n: None }, start_tick);
     }
 }
 

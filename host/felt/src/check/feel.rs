@@ -2,8 +2,8 @@
 
 use frixel_scene::LayerTitle;
 
-use crate::perception::{
-    AlikeLayers, BorderStep, BurstTimes, LayerPerception, MAYBE, Obstacle, Over, Perception, SizeLimit, Step, Texture,
+use crate::judge::{
+    AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, Over, Reason, SizeLimit, Step, Texture,
     VOLTAGE_DIFFERENCE_DB, Verdict, texture_range_n, weber_steps_text,
 };
 
@@ -18,7 +18,7 @@ const NAMES_MAX: usize = 3;
 /// Lines on layers that are alike; more are counted in one line.
 const ALIKE_LINES_MAX: usize = 2;
 
-/// A verdict on a layer or on its click.
+/// A verdict on a layer, or on its click.
 struct Element {
     layer: LayerTitle,
     /// What of the layer it is: empty, or `click of `.
@@ -29,8 +29,8 @@ struct Element {
 
 /// Lines of a name and a text. The first ones are named by a verdict: one for all elements of which the same is felt,
 /// what is least sure first. Then come layers that are alike, and notes.
-pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
-    let mut elements: Vec<Element> = perception.layers.iter().flat_map(elements).collect();
+pub fn lines(judgement: &Judgement) -> Vec<(&'static str, String)> {
+    let mut elements: Vec<Element> = judgement.layers.iter().flat_map(elements).collect();
     elements.sort_by_key(|element| element.verdict.sureness());
     let has_maybe = elements.iter().any(|element| element.verdict == Verdict::NearThreshold);
     let groups = grouped(elements);
@@ -42,19 +42,19 @@ pub fn lines(perception: &Perception) -> Vec<(&'static str, String)> {
     let shown = rows.take_while(|rows| *rows <= ROWS_MAX).count();
     lines.truncate(shown);
     lines.extend(rest(groups.get(shown..).unwrap_or_default()).map(|text| ("more", text)));
-    lines.extend(perception.alike.iter().take(ALIKE_LINES_MAX).map(|alike| ("alike", alike_text(alike))));
-    let more_pairs = perception.alike.len().saturating_sub(ALIKE_LINES_MAX);
+    lines.extend(judgement.alike.iter().take(ALIKE_LINES_MAX).map(|alike| ("alike", alike_text(alike))));
+    let more_pairs = judgement.alike.len().saturating_sub(ALIKE_LINES_MAX);
     lines.extend(
         (more_pairs > 0)
             .then(|| ("alike", format!("{more_pairs} more {}", if more_pairs == 1 { "pair" } else { "pairs" }))),
     );
     lines.extend(has_maybe.then(|| ("note", MAYBE.to_owned())));
-    lines.extend(perception.notes.iter().map(|note| ("note", note.clone())));
+    lines.extend(judgement.notes.iter().map(|note| ("note", note.clone())));
     lines
 }
 
 /// What a person will feel of a layer, a verdict and its reasons.
-pub fn sentence(layer: &LayerPerception) -> String {
+pub fn sentence(layer: &LayerVerdict) -> String {
     let texts = elements(layer).map(|Element { part, verdict, text, .. }| {
         if part.is_empty() {
             format!("{}: {text}", verdict.words())
@@ -65,18 +65,23 @@ pub fn sentence(layer: &LayerPerception) -> String {
     texts.collect::<Vec<String>>().join("; ")
 }
 
-/// The verdict on a layer, and that on its click.
-fn elements(layer: &LayerPerception) -> impl Iterator<Item = Element> {
+/// The verdict on a layer, and that on its click where it is less sure.
+fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Element> {
     let title = &layer.layer;
     let whole = Element { layer: title.clone(), part: "", verdict: layer.verdict, text: reasons(layer) };
-    let cut_off = if layer.is_click_cut_off { ", cut off at the most that the drive can give" } else { "" };
-    let click = layer.click.map(|click| Element {
+    let click = layer.click.filter(|click| click.verdict.sureness() < layer.verdict.sureness());
+    let click = click.map(|click| Element {
         layer: title.clone(),
         part: "click of ",
         verdict: click.verdict,
-        text: format!("{}{cut_off}", step_text(&click, "")),
+        text: click_text(layer, &click),
     });
     std::iter::once(whole).chain(click)
+}
+
+fn click_text(layer: &LayerVerdict, click: &Step) -> String {
+    let cut_off = if layer.is_click_cut_off { ", cut off at the most that the drive can give" } else { "" };
+    format!("{}{cut_off}", step_text(click, ""))
 }
 
 /// Elements of which the same is felt.
@@ -139,12 +144,29 @@ fn rest(groups: &[Group]) -> Option<String> {
     (!counts.is_empty()).then(|| format!("{} (--json has them all)", counts.join(", ")))
 }
 
-/// Why a layer has its verdict: all that is felt as surely, and what would be felt more surely without an obstacle.
-fn reasons(layer: &LayerPerception) -> String {
-    let LayerPerception { verdict, over, contrast, is_narrow, textures, border, burst, .. } = layer;
+/// What is felt of a layer as surely as all of it, why no more is, and what would do.
+fn reasons(layer: &LayerVerdict) -> String {
+    let LayerVerdict { verdict, over, contrast, speed_mm_per_s, reasons, advice, burst, .. } = layer;
     if *over == Over::Samples {
         let Step { from_n, to_n, .. } = contrast;
         return format!("what is streamed moves it between {} and {} mN", millinewtons(*from_n), millinewtons(*to_n));
+    }
+    let told = told(layer);
+    let speed = speed_mm_per_s.filter(|_| !told.is_empty() && *verdict != Verdict::NotFelt);
+    let speed = speed.map_or(String::new(), |speed| format!(" at {speed:.0} mm/s"));
+    let burst = burst.iter().map(|BurstTimes { on_ms, period_ms }| {
+        format!("in bursts of {} ms, one every {} ms", two_digits(*on_ms), two_digits(*period_ms))
+    });
+    let told = [format!("{}{speed}", told.join("; "))].into_iter().chain(burst);
+    let told = told.chain(reasons.iter().filter_map(reason_text)).chain(advice.clone());
+    told.collect::<Vec<String>>().join("; ")
+}
+
+/// The steps and the texture that are felt as surely as the layer.
+fn told(layer: &LayerVerdict) -> Vec<String> {
+    let LayerVerdict { verdict, over, contrast, is_narrow, texture, border, reasons, .. } = layer;
+    if reasons.contains(&Reason::Flat) {
+        return vec![format!("{} mN throughout, without a border that is felt", millinewtons(contrast.from_n))];
     }
     let place = match (over, is_narrow) {
         (Over::Speed, _) => " from 20 to 100 mm/s",
@@ -155,47 +177,41 @@ fn reasons(layer: &LayerPerception) -> String {
     };
     let bare = || "the bare screen".to_owned();
     let from = |border: &BorderStep| format!(" from {}", border.from.as_ref().map_or_else(bare, ToString::to_string));
-    let steps = border.iter().map(|border| (border.step, from(border)));
-    let mut steps: Vec<(Step, String)> = steps.chain([(*contrast, place.to_owned())]).collect();
+    let mut steps: Vec<(Step, String)> =
+        border.iter().map(|border| (border.step, from(border))).chain([(*contrast, place.to_owned())]).collect();
     steps.sort_by(|(one, _), (other, _)| other.weber_steps.abs().total_cmp(&one.weber_steps.abs()));
-    let is_told = |own: Verdict, unhindered: Verdict| own == *verdict || unhindered.sureness() > verdict.sureness();
+    // Bursts make what is felt while they last less sure.
+    let surest = layer.click.iter().map(|click| click.verdict).chain(texture.iter().map(|texture| texture.verdict));
+    let surest = Verdict::of_any(surest.chain(steps.iter().map(|(step, _)| step.verdict)));
     let mut told: Vec<String> = steps
         .iter()
-        .filter(|(step, _)| is_told(step.verdict, Verdict::of_step(step.weber_steps)))
-        // A vibration is told as a texture.
-        .filter(|(step, _)| textures.is_empty() || !matches!(step.obstacle, Some(Obstacle::TooFast { .. })))
+        .filter(|(step, _)| step.verdict == surest && !(texture.is_some() && step.contrast_n == 0.0))
         .map(|(step, place)| step_text(step, place))
         .collect();
     if *verdict == Verdict::NotFelt {
         // One of the steps is as good a reason as both.
         told.truncate(1);
-        if contrast.contrast_n == 0.0 && border.is_none() {
-            told = vec![format!("{} mN throughout, without a border that is felt", millinewtons(contrast.from_n))];
-        }
     }
+    told.extend(texture.iter().filter(|texture| texture.verdict == surest).map(texture_text));
     told.extend(
         layer
-            .surest_texture()
-            .filter(|texture| is_told(texture.verdict, Verdict::of_texture(texture.amplitude_n, texture.frequency_hz)))
-            .map(texture_text),
+            .click
+            .iter()
+            .filter(|click| click.verdict == surest)
+            .map(|click| format!("click {}", click_text(layer, click))),
     );
-    let burst = burst.iter().map(|BurstTimes { on_ms, period_ms }| {
-        format!("all this while a burst lasts, {on_ms:.0} ms of every {period_ms:.0} ms")
-    });
-    told.into_iter().chain(burst).collect::<Vec<String>>().join("; ")
+    told
 }
 
 fn step_text(step: &Step, place: &str) -> String {
-    let Step { from_n, to_n, weber_steps, verdict, obstacle, .. } = step;
+    let Step { from_n, to_n, weber_steps, verdict, .. } = step;
     let steps = weber_steps_text(*weber_steps);
-    let as_a_step = if *verdict == Verdict::NotFelt && obstacle.is_none() { ": not felt as a step" } else { "" };
-    let text =
-        format!("{} to {} mN{place}, {steps} Weber steps{as_a_step}", millinewtons(*from_n), millinewtons(*to_n));
-    with_obstacle(text, obstacle.as_ref())
+    let as_a_step = if *verdict == Verdict::NotFelt { ": not felt as a step" } else { "" };
+    format!("{} to {} mN{place}, {steps} Weber steps{as_a_step}", millinewtons(*from_n), millinewtons(*to_n))
 }
 
 fn texture_text(texture: &Texture) -> String {
-    let Texture { speed_mm_per_s, frequency_hz, amplitude_n, natural_noise_n, verdict, obstacle, .. } = texture;
+    let Texture { frequency_hz, amplitude_n, natural_noise_n, verdict, .. } = texture;
     let threshold = match texture_range_n(*frequency_hz) {
         None => "where no threshold is known".to_owned(),
         Some(_) if *verdict == Verdict::Unknown => {
@@ -207,39 +223,35 @@ fn texture_text(texture: &Texture) -> String {
         }
     };
     let (amplitude, frequency) = (two_digits(1e3 * amplitude_n), two_digits(*frequency_hz));
-    with_obstacle(
-        format!("{amplitude} mN at {frequency} Hz when slid at {speed_mm_per_s:.0} mm/s, {threshold}"),
-        obstacle.as_ref(),
-    )
+    format!("{amplitude} mN at {frequency} Hz, {threshold}")
 }
 
-fn with_obstacle(text: String, obstacle: Option<&Obstacle>) -> String {
-    let Some(obstacle) = obstacle else { return text };
-    let obstacle = match obstacle {
-        Obstacle::TooSmall { least_mm, limit, weber_steps } => {
+fn reason_text(reason: &Reason) -> Option<String> {
+    let text = match reason {
+        Reason::TooSmall { limit, weber_steps } => {
             let limit = match limit {
-                SizeLimit::Fingertip => "a fingertip".to_owned(),
-                SizeLimit::TouchSource { reports_hz } => format!("a touch source of {reports_hz:.0} reports a second"),
+                SizeLimit::Fingertip => "a fingertip",
+                SizeLimit::TouchSource => "the touch source",
             };
-            let left = weber_steps.map_or(String::new(), |steps| format!(", which leaves {}", weber_steps_text(steps)));
-            format!("too small for {limit}{left}: {least_mm} mm at half height would do")
+            format!("too small for {limit}: the scene has {} Weber steps", weber_steps_text(*weber_steps))
         }
-        Obstacle::TooSlow { way_mm, weber_steps } => {
-            format!("too slow a slope: {} within {way_mm:.0} mm", weber_steps_text(*weber_steps))
+        Reason::TooSlow { way_mm, weber_steps } => {
+            format!("too slow a slope: {} in all, on more than {way_mm:.0} mm", weber_steps_text(*weber_steps))
         }
-        Obstacle::TooFast { frequency_hz, most_hz } => {
-            format!("too fast for steps: {} Hz, and {most_hz:.0} Hz is the most", two_digits(*frequency_hz))
-        }
-        Obstacle::TooShort { duration_ms, least_ms } => {
+        Reason::TooWeak => "too weak".to_owned(),
+        Reason::TooShort { duration_ms, least_ms } => {
             format!("too short: {} ms, and {least_ms:.0} ms would do", two_digits(*duration_ms))
         }
-        Obstacle::TooRare { pause_ms, touch_ms } => format!(
+        Reason::TooRare { pause_ms, touch_ms } => format!(
             "too rare: a pause of {} s, and a touch of {} s may fall within it",
             two_digits(1e-3 * pause_ms),
             two_digits(1e-3 * touch_ms)
         ),
+        Reason::Buzz => "a buzz, not stripes in place".to_owned(),
+        // What is felt says it.
+        Reason::Flat | Reason::NotStudied => return None,
     };
-    format!("{text}, {obstacle}")
+    Some(text)
 }
 
 fn alike_text(alike: &AlikeLayers) -> String {

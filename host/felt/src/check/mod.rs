@@ -7,14 +7,14 @@ mod board;
 pub mod feel;
 mod text;
 
-use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig};
 use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
 use frixel_scene::{Program, TargetRange, middle_mm};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use serde::Serialize;
 
-use crate::perception::Perception;
+use crate::judge::Judgement;
 pub use board::BoardImage;
 
 /// What a board needs for a program.
@@ -63,7 +63,7 @@ pub struct SceneCheck {
     /// Reasons to doubt these newtons, a sentence each.
     pub warnings: Vec<String>,
     /// What a person will feel of it.
-    pub perception: Perception,
+    pub judgement: Judgement,
     /// Values that the compiler rounded, converted or clamped, a sentence each.
     pub notes: Vec<String>,
     /// Parts of the scene that the compiler omitted and the reasons, a sentence each.
@@ -156,9 +156,8 @@ pub struct ReachableFriction {
 }
 
 impl SceneCheck {
-    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it, and
-    /// what a finger will feel of it whose place is known by a touch source.
-    pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts, touch: &TouchConfig) -> Self {
+    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it.
+    pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts, judgement: Judgement) -> Self {
         let scene_bytes = program.scene_bytes().len();
         let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
         let total_bytes = costs.wire_total_bytes;
@@ -189,7 +188,7 @@ impl SceneCheck {
             },
             asked: TargetRange::of(program),
             warnings: program.warnings().map(ToString::to_string).collect(),
-            perception: Perception::of(program, touch),
+            judgement,
             notes: program.notes().map(str::to_owned).collect(),
             left_out: program.optimisations().map(ToString::to_string).collect(),
             board: None,

@@ -64,7 +64,7 @@ impl SceneCheck {
         for warning in &self.warnings {
             line("warning", warning.clone());
         }
-        for (name, text) in feel::lines(&self.perception) {
+        for (name, text) in feel::lines(&self.judgement) {
             line(name, text);
         }
         for note in &self.notes {

@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use frixel_hil_sim::StrokeError;
 use frixel_model::ParameterError;
-use frixel_play::PlayError;
+use frixel_play::{PlayError, SimulationError};
 
 pub(crate) use crate::output_file::writing;
 use crate::scene_file::check_path;
@@ -27,6 +27,14 @@ pub(crate) fn of_play(port: &str, error: PlayError) -> anyhow::Error {
     match error {
         PlayError::Stopped(reason) => anyhow!("{port} {reason}"),
         error => error.into(),
+    }
+}
+
+/// Why a play on the simulator in this process ended early.
+pub(crate) fn of_simulation(error: SimulationError) -> anyhow::Error {
+    match error {
+        SimulationError::Play(error) => of_play("sim", error),
+        SimulationError::World(error) => error.into(),
     }
 }
 

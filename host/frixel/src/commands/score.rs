@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::error::of_play;
+use super::error::of_simulation;
 use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::RigConfig;
 use frixel_lab::score::{Score, TrialPlan, Way};
-use frixel_lab::simulation::SimulationError;
 use frixel_scene::compile;
 
 use super::argument::number;
@@ -70,10 +69,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<()> {
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let trials = trial_plan(args)?.of_people(args.people, &scene, &program, args.ideal)?;
     let _folder = OutputFolder::open(&args.out)?;
-    let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(|error| match error {
-        SimulationError::Play(error) => of_play("sim", error),
-        SimulationError::World(error) => error.into(),
-    })?;
+    let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(of_simulation)?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
     let filled = [(&csv, score.to_csv()), (&layers, score.layers_csv()), (&svg, drawn)]

@@ -2,8 +2,9 @@
 
 use std::cmp::Ordering;
 
-use frixel_felt::noticed::{Level, NoticedBorder, NoticedLayer, Noticing};
-use frixel_felt::perception::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict, weber_steps, weber_steps_safe};
+use frixel_felt::judge::{
+    Judgement, LayerVerdict, Level, Step, THRESHOLD_UNCERTAINTY, Texture, Verdict, weber_steps, weber_steps_safe,
+};
 use frixel_scene::{LayerTitle, Program};
 use serde::Serialize;
 
@@ -11,19 +12,6 @@ use crate::statistics::{mean, median};
 
 /// Levels of friction that differ by less in the scene, in Weber steps, are the same.
 const SAME_WEBER_STEPS: f64 = 0.1;
-
-/// What a finger noticed in its plays.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Finger {
-    layers: Vec<NoticedLayer>,
-    borders: Vec<NoticedBorder>,
-}
-
-impl From<&Noticing> for Finger {
-    fn from(noticing: &Noticing) -> Self {
-        Self { layers: noticing.layers(), borders: noticing.borders() }
-    }
-}
 
 /// The simulated fingers that touched something, by their verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -87,22 +75,6 @@ pub struct LayerBorder {
     pub weber_steps: f64,
 }
 
-/// What simulated fingers felt of a border.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BorderScore {
-    /// The layer on one side; absent for the bare screen.
-    pub from: Option<LayerTitle>,
-    /// The layer on the other side, which is above.
-    pub to: Option<LayerTitle>,
-    /// How many of those that crossed it notice the step.
-    pub simulated_fingers: Verdicts,
-    /// Median of the felt step, in Weber steps.
-    pub weber_steps: f64,
-    /// The layers that are only on that side, a bit each from the bottom.
-    #[serde(skip)]
-    layers: [u64; 2],
-}
-
 /// Two levels of friction beside one another in the order of their friction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LevelScore {
@@ -124,29 +96,26 @@ impl LevelScore {
     }
 }
 
-/// A row for each layer that a finger touched, from bottom to top.
-pub(super) fn layers(program: &Program, fingers: &[Finger]) -> Vec<LayerScore> {
-    let titles = program.titles.iter().enumerate();
-    titles.filter_map(|(layer, title)| layer_score(layer, title, program, fingers)).collect()
+/// A row for each layer that a finger was on, from bottom to top.
+pub(super) fn layers(program: &Program, fingers: &[Judgement]) -> Vec<LayerScore> {
+    program.titles.iter().filter_map(|title| layer_score(title, fingers)).collect()
 }
 
-fn layer_score(layer: usize, title: &LayerTitle, program: &Program, fingers: &[Finger]) -> Option<LayerScore> {
-    let touched = || fingers.iter().filter_map(|finger| Some((finger, finger.on(layer)?)));
-    let verdict = |(finger, on_layer): (&Finger, &NoticedLayer)| {
-        let borders = finger.borders.iter().filter(|border| (border.layers[0] | border.layers[1]) >> layer & 1 == 1);
-        Verdict::of_any(borders.map(|border| border.step.verdict).chain([on_layer.verdict()]))
-    };
-    let mut textures: Vec<Texture> = touched().filter_map(|(_, on_layer)| on_layer.texture).collect();
+fn layer_score(title: &LayerTitle, fingers: &[Judgement]) -> Option<LayerScore> {
+    let touched = || fingers.iter().filter_map(|finger| on(finger, title));
+    let mut textures: Vec<Texture> = touched().filter_map(|layer| layer.texture).collect();
     textures.sort_by(|one, other| one.salience().total_cmp(&other.salience()));
-    let borders = borders(program, fingers);
-    let steps = borders.iter().filter_map(|border| border.onto(layer));
+    let borders = || touched().filter_map(|layer| layer.border.as_ref());
     touched().next()?;
     Some(LayerScore {
         layer: title.clone(),
-        simulated_fingers: touched().map(verdict).collect(),
-        contrast_weber_steps: median(touched().map(|(_, on_layer)| on_layer.contrast.weber_steps)),
+        simulated_fingers: touched().map(|layer| layer.verdict).collect(),
+        contrast_weber_steps: median(touched().map(|layer| layer.contrast.weber_steps)),
         texture: textures.get(textures.len() / 2).copied(),
-        border: steps.max_by(|one, other| one.weber_steps.abs().total_cmp(&other.weber_steps.abs())),
+        border: borders().next().map(|first| LayerBorder {
+            from: first.from.clone(),
+            weber_steps: median(borders().map(|border| border.step.weber_steps)),
+        }),
     })
 }
 
@@ -182,85 +151,45 @@ impl LayerScore {
     }
 }
 
-impl Finger {
-    fn on(&self, layer: usize) -> Option<&NoticedLayer> {
-        self.layers.iter().find(|noticed| noticed.layer == layer)
-    }
-
-    /// Mean level of some layers; `None` if the finger touched none of them alone.
-    fn level(&self, layers: &[usize]) -> Option<Level> {
-        let levels = || layers.iter().filter_map(|layer| self.on(*layer)?.level);
-        levels().next()?;
-        Some(Level {
-            scene_n: mean(levels().map(|level| level.scene_n)),
-            felt_n: mean(levels().map(|level| level.felt_n)),
-        })
-    }
+/// What a finger felt of a layer.
+fn on<'f>(finger: &'f Judgement, title: &LayerTitle) -> Option<&'f LayerVerdict> {
+    finger.layers.iter().find(|layer| layer.layer == *title)
 }
 
-impl BorderScore {
-    /// The border as that of a layer that is only on one side of it.
-    fn onto(&self, layer: usize) -> Option<LayerBorder> {
-        let Self { from, to, weber_steps, layers: [before, after], .. } = self;
-        if after >> layer & 1 == 1 {
-            Some(LayerBorder { from: from.clone(), weber_steps: *weber_steps })
-        } else {
-            (before >> layer & 1 == 1).then(|| LayerBorder { from: to.clone(), weber_steps: -weber_steps })
-        }
-    }
-}
-
-/// A row for each border that a finger crossed.
-pub(super) fn borders(program: &Program, fingers: &[Finger]) -> Vec<BorderScore> {
-    let mut sides: Vec<_> =
-        fingers.iter().flat_map(|finger| finger.borders.iter().map(|border| border.sides)).collect();
-    sides.sort_unstable();
-    sides.dedup();
-    let title = |side: Option<usize>| side.and_then(|layer| program.titles.get(layer).cloned());
-    let score = |[from, to]: [Option<usize>; 2]| {
-        let crossed = fingers.iter().flat_map(|finger| &finger.borders).filter(|border| border.sides == [from, to]);
-        let steps = || crossed.clone().map(|border| border.step);
-        let layers = crossed
-            .clone()
-            .fold([0, 0], |[before, after], border| [before | border.layers[0], after | border.layers[1]]);
-        BorderScore {
-            layers,
-            from: title(from),
-            to: title(to),
-            simulated_fingers: steps().map(|step| step.verdict).collect(),
-            weber_steps: median(steps().map(|step| step.weber_steps)),
-        }
-    };
-    sides.into_iter().map(score).collect()
+/// Mean level of some layers; `None` if the finger felt the inside of none of them.
+fn level(finger: &Judgement, layers: &[&LayerTitle]) -> Option<Level> {
+    let levels = || layers.iter().filter_map(|title| on(finger, title)?.level);
+    levels().next()?;
+    Some(Level { scene_n: mean(levels().map(|level| level.scene_n)), felt_n: mean(levels().map(|level| level.felt_n)) })
 }
 
 /// A row for each two levels that are next to one another. A level is that of the flat layers with the same friction in
 /// the scene, of which a finger felt the inside: narrower ones have none.
-pub(super) fn levels(program: &Program, fingers: &[Finger]) -> Vec<LevelScore> {
-    let level = |layer: usize| {
-        let touched = || fingers.iter().filter_map(|finger| finger.on(layer));
-        let levels = touched().filter_map(|on_layer| Some(on_layer.level?.scene_n));
-        let scene_n = mean(levels);
-        (scene_n.is_finite() && touched().all(|on_layer| on_layer.is_flat)).then_some((layer, scene_n))
+pub(super) fn levels(program: &Program, fingers: &[Judgement]) -> Vec<LevelScore> {
+    let scene_n = |title: &LayerTitle| {
+        let touched = || fingers.iter().filter_map(|finger| on(finger, title));
+        let scene_n = mean(touched().filter_map(|layer| Some(layer.level?.scene_n)));
+        (scene_n.is_finite() && touched().all(|layer| layer.is_flat)).then_some(scene_n)
     };
-    let mut flat: Vec<(usize, f64)> = (0..program.titles.len()).filter_map(level).collect();
+    let mut flat: Vec<(&LayerTitle, f64)> =
+        program.titles.iter().filter_map(|title| Some((title, scene_n(title)?))).collect();
     flat.sort_by(|(_, one_n), (_, other_n)| one_n.total_cmp(other_n));
-    let are_same =
-        |(_, one_n): &(usize, f64), (_, other_n): &(usize, f64)| weber_steps(*one_n, *other_n) < SAME_WEBER_STEPS;
+    let are_same = |(_, one_n): &(&LayerTitle, f64), (_, other_n): &(&LayerTitle, f64)| {
+        weber_steps(*one_n, *other_n) < SAME_WEBER_STEPS
+    };
     let groups = flat.chunk_by(are_same);
-    let groups: Vec<Vec<usize>> = groups.map(|group| group.iter().map(|(layer, _)| *layer).collect()).collect();
-    let titles = |group: &[usize]| group.iter().filter_map(|layer| program.titles.get(*layer).cloned()).collect();
-    let score = |pair: &[Vec<usize>]| {
+    let groups: Vec<Vec<&LayerTitle>> = groups.map(|group| group.iter().map(|(title, _)| *title).collect()).collect();
+    let score = |pair: &[Vec<&LayerTitle>]| {
         let [lower, higher] = pair else { return None };
         let steps = || {
-            let both = fingers.iter().filter_map(|finger| Some((finger.level(lower)?, finger.level(higher)?)));
+            let both = fingers.iter().filter_map(|finger| Some((level(finger, lower)?, level(finger, higher)?)));
             // The other way round is not the difference that the scene has.
             both.map(|(low, high)| Step::new(low.felt_n, high.felt_n.max(low.felt_n)))
         };
         steps().next()?;
         Some(LevelScore {
-            lower: titles(lower),
-            higher: titles(higher),
+            lower: lower.iter().copied().cloned().collect(),
+            higher: higher.iter().copied().cloned().collect(),
             simulated_fingers: steps().map(|step| step.verdict).collect(),
             weber_steps: median(steps().map(|step| step.weber_steps)),
         })

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use frixel_felt::fidelity::Fidelity;
-use frixel_felt::perception::{NATURAL_NOISE_RMS_N, weber_steps_safe};
+use frixel_felt::judge::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
 
 use crate::bootstrap::{Draws, Z_95};

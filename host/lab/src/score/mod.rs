@@ -14,15 +14,15 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
-use frixel_felt::noticed::Noticing;
+use frixel_felt::judge::{Advice, Judgement, changes_along};
 use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
-use frixel_model::LoadedContact;
+use frixel_model::{FrictionLaw, LoadedContact};
+use frixel_play::judge;
 use frixel_scene::{LayerTitle, Program, TouchSource};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use layers::Finger;
-pub use layers::{BorderScore, LayerBorder, LayerScore, LevelScore, Verdicts};
+pub use layers::{LayerBorder, LayerScore, LevelScore, Verdicts};
 use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
 #[cfg(not(target_arch = "wasm32"))]
@@ -117,13 +117,11 @@ pub struct Score {
     pub simulated_fingers: usize,
     /// Each number of [`Fidelity`] over all plays.
     pub metrics: Vec<MetricScore>,
-    /// The layers that a finger touched for long enough, while the board drove the scene, from bottom to top.
+    /// The layers that are visible somewhere, from bottom to top, each as the judge's strokes across it are felt.
     pub layers: Vec<LayerScore>,
-    /// The borders that a finger crossed.
-    pub borders: Vec<BorderScore>,
     /// Levels of friction that are next to one another.
     pub levels: Vec<LevelScore>,
-    /// The layers without a row.
+    /// The layers that are visible nowhere.
     pub untouched_layers: Vec<LayerTitle>,
     /// The plays.
     pub plays: Vec<TrialScore>,
@@ -146,7 +144,7 @@ impl Score {
         trials: &[Trial],
         goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Result<Self, SimulationError> {
-        let mut fingers: Vec<(Option<u64>, Noticing)> = Vec::new();
+        let fingers = judgements(program, rig, trials, goes_on)?;
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
             if goes_on().is_break() {
@@ -162,16 +160,13 @@ impl Score {
             for (trial, felt) in trials.iter().zip(felt) {
                 let (samples, fidelity) = felt?;
                 let person = trial.finger.map(|finger| finger.person);
-                let noticing = noticing_of(&mut fingers, person, program);
-                noticing.add(&samples);
-                let changes = noticing.changes_along(&samples);
+                let changes = changes_along(program, &samples);
                 let fidelity = fidelity.map(|fidelity| if changes { fidelity } else { fidelity.without_ratios() });
                 let stroke = trial.stroke_name.clone();
                 plays.push(TrialScore { person, stroke, seed: trial.seed, fidelity });
             }
         }
         let groups = independent(&plays);
-        let fingers: Vec<Finger> = fingers.iter().map(|(_, noticing)| Finger::from(noticing)).collect();
         let layers = layers::layers(program, &fingers);
         let is_untouched = |title: &&LayerTitle| layers.iter().all(|layer| layer.layer != **title);
         let score = Self {
@@ -180,7 +175,6 @@ impl Score {
             touch_source: (&rig.world.touch).into(),
             simulated_fingers: fingers.len(),
             metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
-            borders: layers::borders(program, &fingers),
             levels: layers::levels(program, &fingers),
             untouched_layers: program.titles.iter().filter(is_untouched).cloned().collect(),
             layers,
@@ -190,17 +184,27 @@ impl Score {
     }
 }
 
-/// What a person's finger has noticed of a program so far.
-fn noticing_of<'a>(
-    fingers: &'a mut Vec<(Option<u64>, Noticing)>,
-    person: Option<u64>,
+/// What each finger of some trials feels of a program.
+fn judgements(
     program: &Program,
-) -> &'a mut Noticing {
-    let finger = fingers.iter().position(|(other, _)| *other == person).unwrap_or(fingers.len());
-    if finger == fingers.len() {
-        fingers.push((person, Noticing::new(program)));
+    rig: &RigConfig,
+    trials: &[Trial],
+    goes_on: GoesOn<'_>,
+) -> Result<Vec<Judgement>, SimulationError> {
+    let mut fingers: Vec<Option<TrialFinger>> = Vec::new();
+    let person = |finger: &Option<TrialFinger>| finger.map(|finger| finger.person);
+    for trial in trials {
+        if fingers.iter().all(|other| person(other) != person(&trial.finger)) {
+            fingers.push(trial.finger);
+        }
     }
-    &mut fingers[finger].1
+    let judged = |finger: &Option<TrialFinger>| {
+        let fingertip = finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
+        let rig = RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig };
+        let own_finger = finger.map(|finger| FrictionLaw::from(finger.contact));
+        judge(program, &rig, own_finger, Advice::Omitted, &|| goes_on())
+    };
+    fingers.par_iter().map(judged).collect()
 }
 
 /// The plays in groups that are independent of one another: those of a person, or else those of a stroke. Seeds of the

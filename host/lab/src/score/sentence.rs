@@ -133,7 +133,7 @@ fn shortened(mut parts: Vec<String>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use frixel_felt::perception::Verdict;
+    use frixel_felt::judge::Verdict;
     use frixel_hil_sim::TouchConfig;
     use frixel_scene::LayerNumber;
 
@@ -159,7 +159,6 @@ mod tests {
             simulated_fingers,
             metrics: Vec::new(),
             layers,
-            borders: Vec::new(),
             levels,
             untouched_layers: Vec::new(),
             plays: Vec::new(),

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::fmt::Write;
 
-use frixel_felt::perception::weber_steps_text;
+use frixel_felt::judge::weber_steps_text;
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::metric::{METRICS, Metric};

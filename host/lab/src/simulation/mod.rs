@@ -3,37 +3,18 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus};
+use frixel_driver::{Counters, Device, PollingLink, StreamStatus};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_model::FrictionLaw;
 use frixel_play::{Feed, PlayError, Player};
 use frixel_scene::Program;
 use frixel_wire::hello::Hello;
-use thiserror::Error;
 
 mod rehearsal;
-mod sim_stream;
 
+pub use frixel_play::{SimStream, SimulationError};
 pub use rehearsal::{RehearsalError, board_costs};
-pub use sim_stream::SimStream;
-
-/// Why a play on the simulator ended early.
-#[derive(Debug, Error)]
-pub enum SimulationError {
-    /// The simulated world could not be built.
-    #[error(transparent)]
-    World(#[from] WorldError),
-    /// The play failed.
-    #[error(transparent)]
-    Play(#[from] PlayError),
-}
-
-impl From<DeviceError> for SimulationError {
-    fn from(error: DeviceError) -> Self {
-        Self::Play(error.into())
-    }
-}
 
 /// Settings of a play on the simulator.
 #[derive(Clone, Debug)]

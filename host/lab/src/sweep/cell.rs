@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-use frixel_felt::perception::Verdict;
+use frixel_felt::judge::Verdict;
 use frixel_hil_sim::{Person, RigConfig, StrokeError, TouchConfig};
 use frixel_model::ParameterError as ContactError;
 use frixel_scene::{CompileError, Program, Scene, Screen, compile, parse_touch_source};

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use frixel_chart::DrawError;
-use frixel_felt::perception::Verdict;
+use frixel_felt::judge::Verdict;
 use thiserror::Error;
 
 use super::cell::LayerResult;

@@ -1,22 +1,24 @@
 //! `frixel scene check`: prints the cost of a scene and the friction that can be felt of it.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use frixel_felt::check::{SceneCheck, feel};
-use frixel_felt::perception::{Perception, weber_steps, weber_steps_text};
+use frixel_felt::judge::{Advice, weber_steps, weber_steps_text};
 use frixel_hil_sim::{Board, RigConfig, TouchConfig};
 use frixel_lab::simulation::board_costs;
 use frixel_layers::Header;
+use frixel_play::{judge, judged_rig};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
 
 use super::super::argument;
 use super::super::profiles::{ProfileArgs, TouchArgs};
 use super::super::terminal::{print, print_line};
-use crate::commands::error::at;
+use crate::commands::error::{at, of_simulation};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct CheckArgs {
@@ -64,7 +66,9 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
         }
         compiled => compiled?,
     };
-    let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, &touch);
+    let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, &|| ControlFlow::Continue(()));
+    let judgement = judgement.map_err(of_simulation)?;
+    let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, judgement);
     check.notes.extend(files.outside().map(|path| {
         let path = printable(&path.display().to_string()).into_owned();
         format!("{path} is outside of the scene's folder: give it along with the scene")
@@ -101,7 +105,8 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
 /// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
 fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
-    let lines = feel::lines(&Perception::of(&draft, touch));
+    let judgement = judge(&draft, &judged_rig(rig.board, *touch), None, Advice::Omitted, &|| ControlFlow::Continue(()));
+    let lines = feel::lines(&judgement.map_err(of_simulation)?);
     let felt = lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"));
     print(board_line(&rig.board, &draft, "refuses it; clamped to what it can give") + &felt)
 }

@@ -1,5 +1,6 @@
 //! `frixel scene preview`: draws the friction map of a scene, and says what a person will feel.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use crate::output::{draft_line, draw_preview_png};
@@ -8,11 +9,13 @@ use anyhow::{Result, bail};
 use clap::Args;
 use frixel_felt::Preview;
 use frixel_felt::check::feel;
-use frixel_felt::perception::Perception;
+use frixel_felt::judge::Advice;
 use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_play::{judge, judged_rig};
 use frixel_scene::compile_draft;
 
 use super::super::argument::number;
+use super::super::error::of_simulation;
 use super::super::profiles::ProfileArgs;
 use super::super::terminal::{note_refusals, print_line};
 
@@ -50,7 +53,9 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     if program.is_draft() {
         print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals().count())))?;
     }
-    for (name, text) in feel::lines(&Perception::of(&program, &TouchConfig::REALISTIC)) {
+    let rig = judged_rig(board, TouchConfig::REALISTIC);
+    let judgement = judge(&program, &rig, None, Advice::Omitted, &|| ControlFlow::Continue(()));
+    for (name, text) in feel::lines(&judgement.map_err(of_simulation)?) {
         print_line(format_args!("  {name:<16} {text}"))?;
     }
     print_line(format_args!("  {:<16} {}", "wrote", args.output.display()))

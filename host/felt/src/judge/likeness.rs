@@ -1,12 +1,10 @@
 //! How much of a signal is in what was felt.
 
-use super::moment::Moment;
-
 /// Delays at which felt friction is compared with the scene, in moments: up to 40 ms, which nobody notices
 /// (doi:10.1145/2611387), and 10 ms early, in steps of 2.5 ms.
 const DELAYS: [isize; 21] = [-20, -15, -10, -5, 0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80];
 
-/// Sums of the covariances of a signal with what was felt.
+/// Covariances of a signal with what was felt.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Likeness {
     variance: f64,
@@ -17,31 +15,32 @@ pub(super) struct Likeness {
 }
 
 impl Likeness {
-    /// Adds a signal, of which each value has the number of its moment in a run. Its mean is taken off: a level is no
-    /// contrast.
-    pub(super) fn add(&mut self, signal: impl Iterator<Item = (usize, f64)> + Clone, run: &[Moment]) {
+    /// Adds a signal, of which each value has the number of its moment in the frictions of a run, N. Its mean is taken
+    /// off: a level is no contrast.
+    pub(super) fn add(&mut self, signal: impl Iterator<Item = (usize, f64)> + Clone, scene_n: &[f64], felt_n: &[f64]) {
         let (count, sum) = signal.clone().fold((0.0, 0.0), |(count, sum), (_, value)| (count + 1.0, sum + value));
         let mean = sum / f64::max(count, 1.0);
-        let last = run.len().saturating_sub(1);
+        let last = felt_n.len().saturating_sub(1);
         for (number, value) in signal {
             let deviation = value - mean;
             self.variance += deviation * deviation;
-            self.scene += deviation * run.get(number).map_or(0.0, |moment| moment.scene_n);
+            self.scene += deviation * scene_n.get(number).copied().unwrap_or_default();
             for (sum, delay) in self.felt.iter_mut().zip(DELAYS) {
-                let felt = run.get(number.saturating_add_signed(delay).min(last));
-                *sum += deviation * felt.map_or(0.0, |moment| moment.felt_n);
+                *sum +=
+                    deviation * felt_n.get(number.saturating_add_signed(delay).min(last)).copied().unwrap_or_default();
             }
         }
     }
 
-    /// Slope of felt friction on the signal, at the delay at which it is largest; 0 for a signal that does not change.
+    /// Slope of felt friction on the signal, at the delay at which it is largest, and at most 1: what a display adds is no
+    /// contrast of the scene; 0 for a signal that does not change.
     pub(super) fn slope(&self) -> f64 {
-        if self.variance > 0.0 { self.felt.iter().copied().fold(0.0, f64::max) / self.variance } else { 0.0 }
+        if self.variance > 0.0 { (self.felt.iter().copied().fold(0.0, f64::max) / self.variance).min(1.0) } else { 0.0 }
     }
 
-    /// The part of the scene's friction that follows the signal, which is felt.
+    /// The part of the scene's friction that follows the signal, which is felt: at most all of it.
     pub(super) fn part_of_scene(&self) -> f64 {
         let felt = self.felt.iter().map(|felt| felt * self.scene.signum()).fold(0.0, f64::max);
-        if self.scene.abs() > 0.0 { felt / self.scene.abs() } else { 0.0 }
+        if self.scene.abs() > 0.0 { (felt / self.scene.abs()).min(1.0) } else { 0.0 }
     }
 }

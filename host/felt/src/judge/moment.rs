@@ -3,8 +3,8 @@
 use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference, direction_of};
 
+use super::{SAMPLE_HZ, visible_layers};
 use crate::fidelity::{self, FidelitySample, settled};
-use crate::perception::{SAMPLE_HZ, visible_layers};
 
 /// Moments a second: as many as a program is judged with before it is played.
 pub(super) const MOMENT_HZ: f64 = SAMPLE_HZ;

@@ -1,10 +1,13 @@
 //! Layers of one kind that a person cannot tell apart by their strength.
 
 use frixel_layers::Layer;
-use frixel_scene::{LayerTitle, Program, without_place};
+use frixel_scene::{LayerTitle, Program};
 use serde::Serialize;
 
-use super::{JudgedLayer, Texture, USUAL_M_PER_S, VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps};
+use super::{Element, LayerVerdict, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, weber_steps};
+
+/// An element and its verdict.
+type Judged = (Element, LayerVerdict);
 
 /// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
 const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
@@ -33,10 +36,10 @@ pub struct AlikeLayers {
 /// Pairs of layers of one kind that a person cannot tell apart, each for all copies of both. Layers of the same
 /// parameters are meant to feel the same, layers that act at the same place are not felt one by one, and what is not
 /// felt has nothing to be told apart by. Layers that depend on the direction differ by it, however strong they are.
-pub(super) fn of(judged: &[JudgedLayer], program: &Program) -> Vec<AlikeLayers> {
-    let mut groups: Vec<(&JudgedLayer, usize)> = Vec::new();
-    for layer in judged.iter().filter(|judged| judged.perception.verdict.sureness() > Verdict::Unknown.sureness()) {
-        match groups.iter_mut().find(|(first, _)| are_copies(first, layer, program)) {
+pub(super) fn of(judged: &[Judged], program: &Program) -> Vec<AlikeLayers> {
+    let mut groups: Vec<(&Judged, usize)> = Vec::new();
+    for layer in judged.iter().filter(|(_, found)| found.verdict.sureness() > Verdict::Unknown.sureness()) {
+        match groups.iter_mut().find(|((first, _), _)| first.has_parameters_of(&layer.0)) {
             Some((_, copies)) => *copies += 1,
             None => groups.push((layer, 0)),
         }
@@ -45,18 +48,17 @@ pub(super) fn of(judged: &[JudgedLayer], program: &Program) -> Vec<AlikeLayers> 
         .iter()
         .enumerate()
         .flat_map(|(number, one)| groups.iter().skip(number + 1).map(move |other| (one, other)));
-    let alike = |(one, other): (&(&JudgedLayer, usize), &(&JudgedLayer, usize))| {
-        let ((one, one_copies), (other, other_copies)) = (one, other);
-        let is_comparable = !acts_on(one, other) && !acts_on(other, one) && are_of_one_form(one, other, program);
-        let alike = is_comparable.then(|| alike(one, other, program)).flatten()?;
+    let alike = |((one, one_copies), (other, other_copies)): (&(&Judged, usize), &(&Judged, usize))| {
+        let is_comparable = !acts_on(one, other) && !acts_on(other, one) && are_of_one_form(one, other);
+        let alike = is_comparable.then(|| alike(&one.1, &other.1, program)).flatten()?;
         Some(AlikeLayers { copies: [*one_copies, *other_copies], ..alike })
     };
     pairs.filter_map(alike).collect()
 }
 
 /// Whether two layers are of one kind, and buttons have rims of about the same width.
-fn are_of_one_form(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
-    let layer = |judged: &JudgedLayer| program.records.get(judged.layer).map(|record| record.layer);
+fn are_of_one_form((one, _): &Judged, (other, _): &Judged) -> bool {
+    let layer = |element: &Element| element.record().map(|record| record.layer);
     match (layer(one), layer(other)) {
         (Some(Layer::Button(one)), Some(Layer::Button(other))) => {
             let (narrow_m, wide_m) = (one.rim_width_m.min(other.rim_width_m), one.rim_width_m.max(other.rim_width_m));
@@ -69,19 +71,13 @@ fn are_of_one_form(one: &JudgedLayer, other: &JudgedLayer, program: &Program) ->
 }
 
 /// Whether a layer acts where another one is.
-fn acts_on(one: &JudgedLayer, other: &JudgedLayer) -> bool {
-    other.visible >> one.layer & 1 == 1
-}
-
-/// Whether two layers have the same parameters, but for their place and how they are turned.
-pub(super) fn are_copies(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> bool {
-    let placeless = |judged: &JudgedLayer| program.records.get(judged.layer).map(|record| without_place(record.layer));
-    placeless(one) == placeless(other)
+fn acts_on((one, _): &Judged, (_, other): &Judged) -> bool {
+    other.scene.visible >> one.layer & 1 == 1
 }
 
 /// The layers and their difference, if that is too small to tell them apart.
-fn alike(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> Option<AlikeLayers> {
-    let layers = [one, other].map(|judged| judged.perception.layer.clone());
+fn alike(one: &LayerVerdict, other: &LayerVerdict, program: &Program) -> Option<AlikeLayers> {
+    let layers = [one, other].map(|found| found.layer.clone());
     match (felt_texture(one), felt_texture(other)) {
         (Some(one_texture), Some(other_texture)) => {
             let octaves = libm::log2(one_texture.frequency_hz / other_texture.frequency_hz).abs();
@@ -92,7 +88,7 @@ fn alike(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> Option<Al
             is_alike.then_some(AlikeLayers { layers, copies: [0, 0], difference_db, difference_weber_steps: None })
         }
         (None, None) => {
-            let (one, other) = (&one.perception.contrast, &other.perception.contrast);
+            let (one, other) = (&one.scene.contrast, &other.scene.contrast);
             let least = weber_steps(one.from_n, other.from_n).abs();
             let steps = weber_steps(one.to_n, other.to_n).abs().max(least);
             let difference_weber_steps = Some(steps);
@@ -104,15 +100,13 @@ fn alike(one: &JudgedLayer, other: &JudgedLayer, program: &Program) -> Option<Al
 }
 
 /// The texture at the usual speed, if it may be felt.
-fn felt_texture(judged: &JudgedLayer) -> Option<&Texture> {
-    let mut textures = judged.perception.textures.iter();
-    let texture = textures.find(|texture| texture.speed_mm_per_s == 1e3 * USUAL_M_PER_S)?;
-    (texture.verdict != Verdict::NotFelt).then_some(texture)
+fn felt_texture(found: &LayerVerdict) -> Option<&Texture> {
+    found.scene.texture.as_ref().filter(|texture| texture.verdict != Verdict::NotFelt)
 }
 
 /// The voltage at the 95th percentile of the friction; `None` at natural friction.
-fn voltage_v_rms(judged: &JudgedLayer, program: &Program) -> Option<f64> {
-    let electric_n = judged.perception.contrast.to_n - program.reach.natural_friction_n;
+fn voltage_v_rms(found: &LayerVerdict, program: &Program) -> Option<f64> {
+    let electric_n = found.scene.contrast.to_n - program.reach.natural_friction_n;
     let law = program.header.friction_law().ok().filter(|_| electric_n > 0.0)?;
     Some(law.voltage_v_rms(electric_n))
 }

@@ -1,11 +1,15 @@
 //! Textures that a finger felt.
 
 use super::moment::{MOMENT_HZ, Moment};
-use crate::perception::{Texture, component_power, texture_component};
+use super::{Texture, component_power, texture_component};
 use crate::spectrum::Spectrum;
 
 /// Moments of which a spectrum is taken: 256 ms, in which the speed of a hand changes little.
 const MOMENTS: usize = 512;
+/// A shorter burst counts by its power in this time, s: that of the spectrum's Hann window, three eighths of it. The
+/// threshold of touch falls with the duration up to about a quarter of a second (Verrillo 1965, doi:10.1121/1.1909458;
+/// quoted from memory), so that short bursts count for too much rather than too little.
+pub(super) const SUMMED_S: f64 = 0.375 * MOMENTS as f64 / MOMENT_HZ;
 /// A shorter touch has no texture, in moments: 64 ms.
 const MOMENTS_MIN: usize = 128;
 

@@ -122,7 +122,7 @@ impl Verdict {
 /// falls.
 ///
 /// ```
-/// use frixel_felt::perception::weber_steps;
+/// use frixel_felt::judge::weber_steps;
 ///
 /// assert!((weber_steps(0.25, 0.2775) - 1.0).abs() < 1e-12);
 /// ```

@@ -5,8 +5,10 @@ use std::time::Duration;
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
-use frixel_play::Recorded;
+
 use frixel_wire::fault::State;
+
+use crate::recorded::Recorded;
 
 /// Is called with every tick that is recorded.
 type Observer<'a> = Box<dyn FnMut(&TickRecord) + 'a>;

@@ -1,0 +1,177 @@
+//! Changes of an element that may make it felt, in the order in which they are tried.
+
+use frixel_layers::{Layer, Region};
+use frixel_scene::Program;
+
+use super::{Element, LayerVerdict, Reason};
+
+/// Factors of a size, in the order in which they are tried.
+const SIZES: [f64; 8] = [1.25, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0];
+/// Factors of a friction.
+const GAINS: [f64; 4] = [1.25, 1.6, 2.0, 3.0];
+/// The largest part of the screen's sides that an element is made to fill.
+const SCREEN_PART_MAX: f64 = 0.8;
+
+/// A change of an element.
+pub(super) struct Change {
+    /// The fields that change, as a scene file has them.
+    pub(super) text: String,
+    pub(super) element: Element,
+}
+
+/// The changes that may make an element felt, the smallest first.
+pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
+    let is_small = |reason: &Reason| matches!(reason, Reason::TooSmall { .. });
+    let is_slow = |reason: &Reason| matches!(reason, Reason::TooSlow { .. });
+    let sizes = || SIZES.iter().filter_map(|factor| resized(element, *factor));
+    let steeper = || SIZES.iter().filter_map(|factor| resized(element, 1.0 / factor));
+    let stronger = || {
+        let gains = GAINS.iter().filter_map(|factor| with_gain(element, *factor));
+        gains.chain(strongest(element)).chain(widest(element))
+    };
+    if found.reasons.iter().any(is_small) {
+        let both = strongest(element).into_iter().flat_map(|strong| {
+            SIZES.iter().filter_map(move |factor| {
+                let large = resized(&strong.element, *factor)?;
+                Some(Change { text: format!("{}, {}", large.text, strong.text), ..large })
+            })
+        });
+        sizes().chain(stronger()).chain(both).collect()
+    } else if found.reasons.iter().any(is_slow) {
+        steeper().chain(stronger()).collect()
+    } else {
+        stronger().chain(sizes()).collect()
+    }
+}
+
+/// The element with its layer changed; `None` if it is then visible nowhere.
+fn changed(element: &Element, text: String, change: impl FnOnce(&mut Program) -> Option<()>) -> Option<Change> {
+    let mut program = element.program.clone();
+    change(&mut program)?;
+    // The board would end its table at the friction of the scene as it is written.
+    program.header.electric_friction_max_n = None;
+    let Element { burst, is_triggered, .. } = *element;
+    Some(Change { text, element: Element { burst, is_triggered, ..Element::of(&program, element.layer)? } })
+}
+
+/// The element with a size so many times as large: the wavelength of stripes, the width of a ridge, or the region.
+fn resized(element: &Element, factor: f64) -> Option<Change> {
+    let layer = element.layer;
+    let record = element.record()?;
+    let times = |value: f32| f64::from(value) * factor;
+    // To tenths of a millimetre.
+    let rounded_m = |size_m: f64| 1e-4 * (1e4 * size_m).round();
+    let mm = |size_m: f64| format!("{:.1}", 1e3 * size_m).trim_end_matches(".0").to_owned();
+    match record.layer {
+        Layer::Edge(edge) => {
+            let width_m = rounded_m(times(edge.width_m));
+            changed(element, format!("width_mm = {}", mm(width_m)), |program| {
+                let Layer::Edge(edge) = &mut program.records.get_mut(layer)?.layer else { return None };
+                edge.width_m = width_m as f32;
+                Some(())
+            })
+        }
+        Layer::Grating(grating) => {
+            let cycles_per_m = f64::from(grating.cycles_per_m_x.hypot(grating.cycles_per_m_y));
+            let wavelength_m = rounded_m(factor / cycles_per_m);
+            let part = 1.0 / (wavelength_m * cycles_per_m);
+            changed(element, format!("wavelength_mm = {}", mm(wavelength_m)), |program| {
+                let Layer::Grating(grating) = &mut program.records.get_mut(layer)?.layer else { return None };
+                grating.cycles_per_m_x = (f64::from(grating.cycles_per_m_x) * part) as f32;
+                grating.cycles_per_m_y = (f64::from(grating.cycles_per_m_y) * part) as f32;
+                (part.is_finite() && part > 0.0).then_some(())
+            })
+        }
+        Layer::Rings(rings) => {
+            let wavelength_m = rounded_m(factor / f64::from(rings.cycles_per_m));
+            changed(element, format!("wavelength_mm = {}", mm(wavelength_m)), |program| {
+                let Layer::Rings(rings) = &mut program.records.get_mut(layer)?.layer else { return None };
+                rings.cycles_per_m = (1.0 / wavelength_m) as f32;
+                (wavelength_m > 0.0).then_some(())
+            })
+        }
+        _ if factor > 1.0 => enlarged(element, rounded_m, factor),
+        _ => None,
+    }
+}
+
+/// The element with a region so many times as large around its middle, on the screen.
+fn enlarged(element: &Element, rounded_m: impl Fn(f64) -> f64, factor: f64) -> Option<Change> {
+    let header = &element.program.header;
+    let screen_m = [header.screen_width_m, header.screen_height_m].map(f64::from);
+    let grown = |start_m: f32, size_m: f32, screen_m: f64| {
+        let (start_m, size_m) = (f64::from(start_m), f64::from(size_m));
+        let grown_m = rounded_m((factor * size_m).min(SCREEN_PART_MAX * screen_m)).max(size_m);
+        let grown_start_m = (start_m + 0.5 * (size_m - grown_m)).clamp(0.0, (screen_m - grown_m).max(0.0));
+        (grown_start_m as f32, grown_m as f32)
+    };
+    let region = &element.record()?.region;
+    let (Region::Rectangle { x_m, y_m, width_m, height_m } | Region::Ellipse { x_m, y_m, width_m, height_m }) = *region
+    else {
+        return None;
+    };
+    let (x_m, new_width_m) = grown(x_m, width_m, screen_m[0]);
+    let (y_m, new_height_m) = grown(y_m, height_m, screen_m[1]);
+    let region = match region {
+        Region::Ellipse { .. } => Region::Ellipse { x_m, y_m, width_m: new_width_m, height_m: new_height_m },
+        _ => Region::Rectangle { x_m, y_m, width_m: new_width_m, height_m: new_height_m },
+    };
+    let mm = |size_m: f32| format!("{:.1}", 1e3 * size_m).trim_end_matches(".0").to_owned();
+    let sides = [("width_mm", width_m, new_width_m), ("height_mm", height_m, new_height_m)];
+    let sides = sides.iter().filter(|(_, before_m, after_m)| after_m > before_m);
+    let text: Vec<String> = sides.map(|(name, _, after_m)| format!("{name} = {}", mm(*after_m))).collect();
+    (!text.is_empty()).then_some(())?;
+    changed(element, format!("a region of {}", text.join(", ")), |program| {
+        program.records.get_mut(element.layer)?.region = region;
+        Some(())
+    })
+}
+
+/// The largest gain within the drive's reach.
+fn gain_max(element: &Element) -> Option<f64> {
+    let Element { program, layer, .. } = element;
+    let (_, most) = program.gains_in_reach(&[u8::try_from(*layer).ok()?], &program.start)?;
+    Some(f64::from(most))
+}
+
+/// The element with a gain so many times as large, within the drive's reach.
+fn with_gain(element: &Element, factor: f64) -> Option<Change> {
+    let gain = f64::from(element.program.start.get(element.layer)?.gain);
+    let gain = (100.0 * factor * gain).round() / 100.0;
+    (gain < gain_max(element)?).then(|| gained(element, gain))?
+}
+
+/// The element as strong as the drive can give it by its gain.
+fn strongest(element: &Element) -> Option<Change> {
+    let gain = f64::from(element.program.start.get(element.layer)?.gain);
+    let most = gain_max(element)?;
+    (most > gain).then(|| gained(element, most))?
+}
+
+fn gained(element: &Element, gain: f64) -> Option<Change> {
+    changed(element, format!("gain = {gain}"), |program| {
+        program.start.get_mut(element.layer)?.gain = gain as f32;
+        program.records.get_mut(element.layer)?.gain = gain as f32;
+        Some(())
+    })
+}
+
+/// The element between nothing and all that the drive can give.
+fn widest(element: &Element) -> Option<Change> {
+    let most_n = (0.99 * element.program.reach.electric_friction_max_n) as f32;
+    changed(element, "low_fraction = 0, high_fraction = 0.99".to_owned(), |program| {
+        program.start.get_mut(element.layer)?.gain = 1.0;
+        let record = program.records.get_mut(element.layer)?;
+        record.gain = 1.0;
+        let (low_n, high_n) = match &mut record.layer {
+            Layer::Grating(grating) => (&mut grating.trough_n, &mut grating.crest_n),
+            Layer::Rings(rings) => (&mut rings.trough_n, &mut rings.crest_n),
+            Layer::Spokes(spokes) => (&mut spokes.trough_n, &mut spokes.crest_n),
+            Layer::Noise(noise) => (&mut noise.low_n, &mut noise.high_n),
+            Layer::Vibration(vibration) => (&mut vibration.low_n, &mut vibration.high_n),
+            _ => return None,
+        };
+        (*low_n, *high_n) = (0.0, most_n);
+        Some(())
+    })
+}

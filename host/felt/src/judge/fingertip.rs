@@ -1,0 +1,52 @@
+//! What a fingertip resolves of a change along its way.
+
+use std::ops::Range;
+
+use super::measure::FINGERTIP_M;
+use super::moment::{MOMENT_HZ, Moment};
+
+/// Longest time over which changes are averaged, in moments on either side: 50 ms, half a period at 10 Hz.
+const SIDE_MAX: usize = 100;
+
+/// For each moment of a run, the moments that are nearer than half of the fingertip's resolution.
+pub(super) struct Fingertip {
+    windows: Vec<Range<usize>>,
+}
+
+impl Fingertip {
+    pub(super) fn of(run: &[Moment]) -> Self {
+        let ways_m = run.iter().scan(0.0, |way_m, moment| {
+            *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
+            Some(*way_m)
+        });
+        let ways_m: Vec<f64> = ways_m.collect();
+        let (mut start, mut end) = (0, 0);
+        let window = |(number, way_m): (usize, &f64)| {
+            while ways_m.get(start).is_some_and(|other_m| way_m - other_m > 0.5 * FINGERTIP_M) {
+                start += 1;
+            }
+            while ways_m.get(end).is_some_and(|other_m| other_m - way_m <= 0.5 * FINGERTIP_M) {
+                end += 1;
+            }
+            start.max(number.saturating_sub(SIDE_MAX))..end.min(number + SIDE_MAX + 1)
+        };
+        Self { windows: ways_m.iter().enumerate().map(window).collect() }
+    }
+
+    /// Means of the values of a range over what a fingertip resolves within the range.
+    pub(super) fn smoothed(&self, values: &[f64], range: Range<usize>) -> Vec<f64> {
+        let mut sum = 0.0;
+        let sums: Vec<f64> = std::iter::once(0.0)
+            .chain(values.iter().map(|value| {
+                sum += value;
+                sum
+            }))
+            .collect();
+        let mean = |window: &Range<usize>| {
+            let (from, to) = (window.start.max(range.start), window.end.min(range.end));
+            let [from_sum, to_sum] = [from, to].map(|number| sums.get(number).copied().unwrap_or_default());
+            (to_sum - from_sum) / to.saturating_sub(from).max(1) as f64
+        };
+        self.windows.get(range.clone()).unwrap_or_default().iter().map(mean).collect()
+    }
+}

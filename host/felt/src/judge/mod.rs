@@ -1,0 +1,347 @@
+//! The judge: what a person will feel of each element of a scene, as far as published studies can tell.
+//!
+//! [`strokes`] sends a finger across an element, at 20, 50 and 100 mm/s; [`verdict`] compares what it felt in these plays
+//! with the reference. The strokes are played by whoever has a simulator, so the crate has none: [`judge`] calls back for
+//! each play. `frixel scene check`, the page and `frixel score` judge with these two, and a play judges its own
+//! recording with the second.
+//!
+//! A change of friction that a fingertip resolves, 2 mm, is judged as a step, in Weber fractions of the total friction; a
+//! faster one as a texture, against the threshold of touch at its frequency and against the noise of the finger itself.
+//! An element is felt by its contrast, its texture, its border or its click, at the best of the three speeds. The
+//! thresholds and their sources stand in one file, `thresholds.rs`.
+
+mod advice;
+mod alike;
+mod border;
+mod element;
+mod fingertip;
+mod likeness;
+mod measure;
+mod moment;
+mod reason;
+mod spectrum;
+mod step;
+#[cfg(test)]
+mod tests;
+mod texture;
+mod thresholds;
+mod way;
+
+use std::cmp::Ordering;
+
+use frixel_hil_sim::Stroke;
+use frixel_layers::{Layer, Stream};
+use frixel_scene::reference::Reference;
+use frixel_scene::{LayerTitle, Program};
+use serde::Serialize;
+
+use crate::fidelity::FidelitySample;
+pub use alike::AlikeLayers;
+use element::SPEEDS_M_PER_S;
+pub use element::{Element, strokes};
+pub use measure::changes_along;
+use measure::{Measure, Measured};
+pub use reason::{Reason, SizeLimit};
+pub(crate) use spectrum::component_power;
+pub use step::{BorderStep, BurstTimes, Level, Over, Step, Texture};
+use step::{contrast_within, has_texture, texture_component, total_n, visible_layers};
+pub(crate) use thresholds::{MAYBE, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n, texture_range_n};
+pub use thresholds::{
+    NATURAL_NOISE_RMS_N, THRESHOLD_UNCERTAINTY, Verdict, texture_threshold_n, weber_steps, weber_steps_safe,
+    weber_steps_text,
+};
+
+/// Samples a second of the friction along a stroke: four times the highest frequency with a threshold.
+pub(crate) const SAMPLE_HZ: f64 = 2000.0;
+
+/// What a person will feel of a program.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Judgement {
+    /// The layers that are visible somewhere, from bottom to top.
+    pub layers: Vec<LayerVerdict>,
+    /// Layers that a person cannot tell apart by their strength.
+    pub alike: Vec<AlikeLayers>,
+    /// What only a sliding finger feels, and other notes, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// What a person will feel of a layer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LayerVerdict {
+    /// The layer's number and title.
+    pub layer: LayerTitle,
+    /// Whether a person feels the layer: the surest of contrast, texture, border and click, at the best of the speeds.
+    pub verdict: Verdict,
+    /// The best of the speeds, mm/s; absent where friction depends on the speed, or nothing was played.
+    pub speed_mm_per_s: Option<f64>,
+    /// Why it is not surely felt, or felt otherwise than it is written.
+    pub reasons: Vec<Reason>,
+    /// What would be felt instead; absent where nothing was sought.
+    pub advice: Option<String>,
+    /// What the contrast is a change with.
+    pub over: Over,
+    /// The felt contrast within the layer, on ways of at most 50 mm: from the 5th to the 95th percentile, or from the
+    /// least to the largest friction of an edge, or if [`Self::is_narrow`]. Over speed, from the friction at 20 mm/s to
+    /// that at 100 mm/s; over the direction, between a slide and the slide back; of a stream, from its lowest to its
+    /// highest sample.
+    pub contrast: Step,
+    /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
+    pub is_narrow: bool,
+    /// The most noticeable texture; absent where there is none.
+    pub texture: Option<Texture>,
+    /// Of the borders where the layer ends, that which is felt most surely, as a step onto it; absent for a layer without
+    /// any.
+    pub border: Option<BorderStep>,
+    /// The bursts of a vibration, during which contrast and texture hold; absent if they hold all the time.
+    pub burst: Option<BurstTimes>,
+    /// The step with which the layer's click begins.
+    pub click: Option<Step>,
+    /// Whether the drive cannot give all of the click.
+    pub is_click_cut_off: bool,
+    /// Mean friction inside of the layer where no other one is above; absent for narrow layers.
+    #[serde(skip)]
+    pub level: Option<Level>,
+    /// Whether the scene has the same friction throughout the layer.
+    #[serde(skip)]
+    pub is_flat: bool,
+    /// What layers are compared by.
+    #[serde(skip)]
+    scene: SceneFeel,
+}
+
+/// What a display without fault gives of a layer, to the finger that the scene is meant for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SceneFeel {
+    /// Index of the layer from the bottom.
+    layer: usize,
+    contrast: Step,
+    /// At 50 mm/s.
+    texture: Option<Texture>,
+    /// The layers that act where the layer does, a bit each.
+    visible: u64,
+}
+
+/// How a judgement is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advice {
+    /// Only verdicts.
+    Omitted,
+    /// For what is not surely felt by its size or strength, a change is sought that makes it felt.
+    Sought,
+}
+
+/// Plays a program under a stroke, from which the board drives the scene: [`fidelity::SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ)
+/// samples a second.
+pub type Play<'p, E> = dyn FnMut(&Program, &Stroke) -> Result<Vec<FidelitySample>, E> + 'p;
+
+/// Judges every layer of a program. Copies of a layer are judged once.
+pub fn judge<E>(program: &Program, advice: Advice, play: &mut Play<'_, E>) -> Result<Judgement, E> {
+    let mut judged: Vec<(Element, LayerVerdict)> = Vec::new();
+    for element in (0..program.records.len()).filter_map(|layer| Element::of(program, layer)) {
+        let copy = judged.iter().find(|(other, _)| element.is_copy_of(other));
+        let found = match copy {
+            Some((_, found)) => found.of_copy(&element),
+            None => judge_element(&element, advice, play)?,
+        };
+        judged.push((element, found));
+    }
+    Ok(Judgement {
+        alike: alike::of(&judged, program),
+        notes: notes(program),
+        layers: judged.into_iter().map(|(_, verdict)| verdict).collect(),
+    })
+}
+
+fn judge_element<E>(element: &Element, advice: Advice, play: &mut Play<'_, E>) -> Result<LayerVerdict, E> {
+    let mut judged = |element: &Element| {
+        let strokes = if element.is_streamed() { Vec::new() } else { strokes(element) };
+        let felt = strokes.iter().map(|stroke| play(element.program(), stroke)).collect::<Result<Vec<_>, E>>()?;
+        Ok(verdict(element, &felt))
+    };
+    let found = judged(element)?;
+    if advice == Advice::Omitted || !found.reasons.iter().any(Reason::is_size_or_strength) {
+        return Ok(found);
+    }
+    for change in advice::changes(element, &found) {
+        if judged(&change.element)?.verdict == Verdict::Felt {
+            return Ok(LayerVerdict { advice: Some(format!("felt with {}", change.text)), ..found });
+        }
+    }
+    let advice = Some("no size or strength within the drive's reach was found that is felt".to_owned());
+    Ok(LayerVerdict { advice, ..found })
+}
+
+/// Judges an element by what was felt on its [`strokes`]. The samples hold the reference as well.
+pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict {
+    if let Some(Layer::Stream(stream)) = element.record().map(|record| record.layer) {
+        return of_stream(element, &stream);
+    }
+    let measure = Measure::new(element);
+    let speeds = SPEEDS_M_PER_S.iter().zip(felt);
+    let plays = speeds.filter_map(|(speed_m_per_s, samples)| {
+        let faultless: Vec<FidelitySample> =
+            samples.iter().map(|sample| FidelitySample { felt_n: sample.reference_n, ..*sample }).collect();
+        Some(Stroked { speed_m_per_s: *speed_m_per_s, felt: measure.of(samples)?, faultless: measure.of(&faultless)? })
+    });
+    let mut plays: Vec<Stroked> = plays.collect();
+    let over = element.over();
+    if over == Over::Speed {
+        over_speed(element, &mut plays);
+    }
+    let usual = plays.iter().find(|play| play.speed_m_per_s == SPEEDS_M_PER_S[1]).copied();
+    let Some(best) = plays.iter().copied().max_by(|one, other| one.felt.cmp_felt(&other.felt)) else {
+        let step = Step::new(1.0, 1.0);
+        return LayerVerdict { reasons: vec![Reason::TooWeak], ..LayerVerdict::new(element, step, over) };
+    };
+    let (verdict, reasons) = reason::of(element, &best.felt, &best.faultless);
+    let Measured { contrast, is_narrow, texture, border, click, level, scene, .. } = best.felt;
+    let title = |layer: Option<usize>| layer.and_then(|layer| element.program.titles.get(layer).cloned());
+    let border = border.map(|border| BorderStep {
+        from: title(border.from),
+        to: Some(element.title.clone()),
+        step: border.step,
+    });
+    LayerVerdict {
+        verdict,
+        speed_mm_per_s: (over != Over::Speed).then_some(1e3 * best.speed_m_per_s),
+        reasons,
+        is_narrow,
+        texture,
+        border,
+        click: click.map(|click| click.step),
+        is_click_cut_off: click.is_some_and(|click| click.is_cut_off),
+        level,
+        is_flat: scene.sharp.weber_steps.abs() < FLAT_WEBER_STEPS,
+        scene: SceneFeel {
+            layer: element.layer,
+            contrast: scene.sharp,
+            texture: usual.and_then(|usual| usual.faultless.texture),
+            visible: scene.visible,
+        },
+        ..LayerVerdict::new(element, contrast, over)
+    }
+}
+
+/// A contrast of the scene below it, in Weber steps, is that of a flat layer.
+const FLAT_WEBER_STEPS: f64 = 0.1;
+
+/// What was felt on one of the strokes.
+#[derive(Clone, Copy)]
+struct Stroked {
+    speed_m_per_s: f64,
+    felt: Measured,
+    faultless: Measured,
+}
+
+/// Makes the contrast of a layer that depends on the speed that between the slowest and the fastest play.
+fn over_speed(element: &Element, plays: &mut [Stroked]) {
+    let natural_n = element.program.reach.natural_friction_n;
+    let contrast = |measured: fn(&Stroked) -> Measured, plays: &[Stroked]| {
+        let mean_n = |play: &Stroked| natural_n + measured(play).mean_electric_n;
+        Some(Step::new(mean_n(plays.first()?), mean_n(plays.last()?)))
+    };
+    let felt = contrast(|play| play.felt, plays);
+    let faultless = contrast(|play| play.faultless, plays);
+    let (Some(felt), Some(faultless)) = (felt, faultless) else { return };
+    for play in plays {
+        play.felt.contrast = felt;
+        play.faultless.contrast = faultless;
+        play.felt.scene.sharp = faultless;
+    }
+}
+
+/// Nobody knows what a program will stream.
+fn of_stream(element: &Element, stream: &Stream) -> LayerVerdict {
+    let program = &element.program;
+    let gain = program.start.get(element.layer).map_or(1.0, |setting| f64::from(setting.gain));
+    let [from_n, to_n] = [stream.low_n, stream.high_n].map(|electric_n| total_n(program, gain * f64::from(electric_n)));
+    let step = Step { verdict: Verdict::Unknown, ..Step::new(from_n, to_n) };
+    let found = LayerVerdict::new(element, step, Over::Samples);
+    LayerVerdict { verdict: Verdict::Unknown, reasons: vec![Reason::NotStudied], ..found }
+}
+
+impl Element {
+    fn is_streamed(&self) -> bool {
+        self.record().is_some_and(|record| record.layer.is_streamed())
+    }
+
+    /// What its contrast is a change with.
+    fn over(&self) -> Over {
+        match self.record().map(|record| record.layer) {
+            Some(Layer::Speed(_)) => Over::Speed,
+            Some(Layer::Direction(_)) => Over::Direction,
+            Some(Layer::Vibration(_)) => Over::Time,
+            Some(Layer::Stream(_)) => Over::Samples,
+            _ => Over::Place,
+        }
+    }
+}
+
+impl LayerVerdict {
+    /// A layer of which nothing but a contrast is known.
+    fn new(element: &Element, contrast: Step, over: Over) -> Self {
+        Self {
+            layer: element.title.clone(),
+            verdict: contrast.verdict,
+            speed_mm_per_s: None,
+            reasons: Vec::new(),
+            advice: None,
+            over,
+            contrast,
+            is_narrow: false,
+            texture: None,
+            border: None,
+            burst: element.burst.map(|burst| BurstTimes {
+                on_ms: 1e3 * f64::from(burst.on_s),
+                period_ms: 1e3 * f64::from(burst.period_s),
+            }),
+            click: None,
+            is_click_cut_off: false,
+            level: None,
+            is_flat: false,
+            scene: SceneFeel { layer: element.layer, contrast, texture: None, visible: 1 << element.layer },
+        }
+    }
+
+    /// The same of a copy of the layer.
+    fn of_copy(&self, copy: &Element) -> Self {
+        let visible = self.scene.visible & !(1 << self.scene.layer) | 1 << copy.layer;
+        let scene = SceneFeel { layer: copy.layer, visible, ..self.scene };
+        let border = self.border.clone().map(|border| BorderStep { to: Some(copy.title.clone()), ..border });
+        Self { layer: copy.title.clone(), border, scene, ..self.clone() }
+    }
+}
+
+impl Measured {
+    /// Contrast, border and click.
+    fn steps(&self) -> impl Iterator<Item = Step> {
+        let border = self.border.map(|border| border.step);
+        [Some(self.contrast), border, self.click.map(|click| click.step)].into_iter().flatten()
+    }
+
+    /// The surest way in which it is felt.
+    fn verdict(&self) -> Verdict {
+        Verdict::of_any(self.steps().map(|step| step.verdict).chain(self.texture.map(|texture| texture.verdict)))
+    }
+
+    /// Orders by how surely something is felt, and then by its size.
+    fn cmp_felt(&self, other: &Self) -> Ordering {
+        let size = |measured: &Self| {
+            let step = measured.steps().map(|step| step.weber_steps.abs()).fold(0.0, f64::max) / weber_steps_safe();
+            step.max(measured.texture.map_or(0.0, |texture| texture.salience() / THRESHOLD_UNCERTAINTY))
+        };
+        let by_verdict = self.verdict().sureness().cmp(&other.verdict().sureness());
+        by_verdict.then(size(self).total_cmp(&size(other)))
+    }
+}
+
+fn notes(program: &Program) -> Vec<String> {
+    let changes = Reference::new(program).changes_by_itself();
+    let still = changes.then(|| {
+        "Only a sliding finger feels vibrations and streams: of people whose finger rests, 30 % feel 125 Hz (Dryad \
+         9ghx3ffgp)."
+            .to_owned()
+    });
+    let empty = program.records.is_empty().then(|| "the scene has no layer: there is nothing to feel".to_owned());
+    still.into_iter().chain(empty).collect()
+}

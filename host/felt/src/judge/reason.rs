@@ -1,0 +1,167 @@
+//! Why an element is felt less surely than its friction suggests.
+
+use frixel_layers::Burst;
+use serde::Serialize;
+
+use super::element::Element;
+use super::measure::{FINGERTIP_M, Measured, WAY_MAX_M};
+use super::texture::SUMMED_S;
+use super::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict};
+
+/// How long a finger is on an element, s: a burst that comes less often is missed by some strokes. Assumed.
+const TOUCH_S: f64 = 1.0;
+/// A shorter burst is not felt, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
+const BURST_MIN_S: f64 = 2e-3;
+
+/// Why an element is not surely felt, or felt otherwise than it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "reason")]
+pub enum Reason {
+    /// The element is too small.
+    TooSmall {
+        /// What takes part of the change.
+        limit: SizeLimit,
+        /// The change of the scene, in Weber steps.
+        weber_steps: f64,
+    },
+    /// The friction changes too slowly.
+    TooSlow {
+        /// The longest way that counts as one change, mm.
+        way_mm: f64,
+        /// The change on the whole way, in Weber steps.
+        weber_steps: f64,
+    },
+    /// The change is too small for a person to notice.
+    TooWeak,
+    /// Friction is the same throughout, and there is no border.
+    Flat,
+    /// A burst is too short.
+    TooShort {
+        /// Its duration, ms.
+        duration_ms: f64,
+        /// The shortest one that is felt, ms.
+        least_ms: f64,
+    },
+    /// A touch may fall between two bursts.
+    TooRare {
+        /// The pause between two bursts, ms.
+        pause_ms: f64,
+        /// How long a touch lasts, ms.
+        touch_ms: f64,
+    },
+    /// No study covers it.
+    NotStudied,
+    /// It is felt as a vibration, and no stripe is felt where it is.
+    Buzz,
+}
+
+/// What takes part of a change that is too small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SizeLimit {
+    /// A fingertip, which resolves 2 mm.
+    Fingertip,
+    /// The touch source, whose reports are late, rare and sometimes lost.
+    TouchSource,
+}
+
+impl Reason {
+    /// Whether a larger or a stronger element would be felt more surely.
+    pub(super) fn is_size_or_strength(&self) -> bool {
+        matches!(self, Self::TooSmall { .. } | Self::TooSlow { .. } | Self::TooWeak)
+    }
+
+    /// The surest verdict that the reason allows by itself.
+    fn most(&self) -> Verdict {
+        match self {
+            Self::TooShort { duration_ms, .. } if *duration_ms < 1e3 * BURST_MIN_S => Verdict::NotFelt,
+            Self::TooRare { .. } => Verdict::NearThreshold,
+            _ => Verdict::Felt,
+        }
+    }
+}
+
+/// The verdict on an element that a finger feels as `felt` while it is there, where a display without fault would have
+/// given `faultless`; and the reasons.
+pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (Verdict, Vec<Reason>) {
+    let verdict = felt.verdict();
+    let scene = felt.scene;
+    let is_surer = |other: Verdict| is_surer_than(other, verdict);
+    let steps = |step: &Step| step.weber_steps.abs();
+    let extent = of_extent(element, felt);
+    let own = match verdict {
+        _ if extent.is_some_and(|most| is_surer_than(verdict, most)) => {
+            let weber_steps = felt.steps().chain([scene.sharp]).map(|step| steps(&step)).fold(0.0, f64::max);
+            Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps })
+        }
+        Verdict::Felt => is_buzz(felt).then_some(Reason::Buzz),
+        _ if is_surer(faultless.verdict()) => {
+            let surest = faultless.steps().max_by(Step::cmp_felt).unwrap_or(faultless.contrast);
+            Some(Reason::TooSmall { limit: SizeLimit::TouchSource, weber_steps: steps(&surest) })
+        }
+        _ if is_surer(scene.sharp.verdict) && !felt.is_vibration => {
+            Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps: steps(&scene.sharp) })
+        }
+        _ if is_surer(scene.whole.verdict) && !felt.is_vibration => {
+            Some(Reason::TooSlow { way_mm: 1e3 * WAY_MAX_M, weber_steps: steps(&scene.whole) })
+        }
+        Verdict::Unknown => Some(Reason::NotStudied),
+        _ if scene.whole.contrast_n == 0.0 && felt.border.is_none() && felt.texture.is_none() => Some(Reason::Flat),
+        _ => Some(Reason::TooWeak),
+    };
+    let mut reasons: Vec<Reason> = element
+        .burst
+        .iter()
+        .flat_map(|burst| [too_short(burst, felt), too_rare(burst, element.is_triggered)])
+        .flatten()
+        .collect();
+    let is_short = reasons.iter().any(|reason| matches!(reason, Reason::TooShort { .. }));
+    reasons.extend(own.filter(|own| !is_short || *own == Reason::Buzz));
+    let most = reasons.iter().map(Reason::most).chain(extent).chain([verdict]).min_by_key(|most| most.sureness());
+    (most.unwrap_or(verdict), reasons)
+}
+
+fn is_surer_than(one: Verdict, other: Verdict) -> bool {
+    one.sureness() > other.sureness()
+}
+
+/// The surest verdict on an element that is smaller than a fingertip resolves: less than half of that is too small, and
+/// less than the whole near the threshold at best. A click is felt wherever it is.
+fn of_extent(element: &Element, felt: &Measured) -> Option<Verdict> {
+    if felt.click.is_some_and(|click| click.step.verdict == Verdict::Felt) {
+        return None;
+    }
+    // Sizes of records are `f32`.
+    match element.extent_m() / FINGERTIP_M - 1e-6 {
+        part if part <= 0.5 => Some(Verdict::NotFelt),
+        part if part < 1.0 - 2e-6 => Some(Verdict::NearThreshold),
+        _ => None,
+    }
+}
+
+/// Whether stripes that are strong enough are felt as a vibration only.
+fn is_buzz(felt: &Measured) -> bool {
+    let is_felt = |step: Step| step.verdict == Verdict::Felt;
+    !felt.is_vibration && is_felt(felt.scene.sharp) && !felt.steps().any(is_felt)
+}
+
+/// Whether bursts are too short: if they lasted longer, their power would be enough.
+fn too_short(burst: &Burst, felt: &Measured) -> Option<Reason> {
+    let on_s = f64::from(burst.on_s);
+    let faint = felt.texture.filter(|texture| texture.verdict != Verdict::Felt);
+    let enough_s = faint.and_then(|Texture { amplitude_n, threshold_n, natural_noise_n, .. }| {
+        let enough_n = (THRESHOLD_UNCERTAINTY * threshold_n?).max(natural_noise_n);
+        let enough_s = on_s * (enough_n / amplitude_n).powi(2);
+        (on_s < SUMMED_S && enough_s <= SUMMED_S).then_some(enough_s)
+    });
+    let is_short = on_s < BURST_MIN_S || enough_s.is_some();
+    let least_ms = 1e3 * enough_s.unwrap_or(0.0).max(BURST_MIN_S);
+    is_short.then_some(Reason::TooShort { duration_ms: 1e3 * on_s, least_ms })
+}
+
+/// Whether a touch may fall between two bursts. A program starts those that are `triggered` when it wants them felt.
+fn too_rare(burst: &Burst, triggered: bool) -> Option<Reason> {
+    let pause_s = f64::from(burst.period_s) - f64::from(burst.on_s);
+    let rare = Reason::TooRare { pause_ms: 1e3 * pause_s, touch_ms: 1e3 * TOUCH_S };
+    (pause_s > TOUCH_S && !triggered).then_some(rare)
+}

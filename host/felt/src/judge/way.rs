@@ -1,0 +1,170 @@
+//! Where a finger is sent to feel an element.
+
+use std::f64::consts::TAU;
+
+use frixel_hil_sim::{Point, Stroke};
+use frixel_scene::reference::{Context, Reference, direction_of};
+
+use super::visible_layers;
+
+/// Rows and columns over the bounding rectangle of a layer, the middle one first.
+const ROWS: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
+/// Places of a way at which the layers are determined.
+const PLACES: usize = 400;
+/// Length of a stroke beyond both ends of an element, m.
+const BEYOND_M: f64 = 0.01;
+/// Longest way of a stroke, m: of a longer element, the part on which friction changes most.
+const LENGTH_MAX_M: f64 = 0.12;
+/// From one place at which friction is compared to the next, m.
+const STEP_M: f64 = 2.5e-4;
+/// The part of a way that is left out at both ends: a border of the screen may be that of a region, too.
+const END_PART: f64 = 1e-4;
+/// A way is taken in place of an earlier one if friction changes on it by so many times as much.
+const BETTER: f64 = 1.05;
+
+/// A straight way, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Way {
+    from_m: (f64, f64),
+    to_m: (f64, f64),
+}
+
+impl Way {
+    /// The way across a layer on which friction changes most, and 10 mm beyond both ends, within the screen; `None` for
+    /// a layer that is visible nowhere. What changes `below` does not count. A layer that depends on the direction is
+    /// crossed along its axis.
+    pub(super) fn across(
+        layer: usize,
+        axis_turns: Option<f64>,
+        [reference, below]: [&Reference; 2],
+        screen_m: (f64, f64),
+    ) -> Option<Self> {
+        let [left_m, top_m, right_m, bottom_m] = reference.bounds_m(layer)?;
+        let bounds_m = [left_m.max(0.0), top_m.max(0.0), right_m.min(screen_m.0), bottom_m.min(screen_m.1)];
+        let ways = match axis_turns {
+            Some(axis_turns) => vec![Self::along(axis_turns, bounds_m)],
+            None => Self::rows_and_columns(bounds_m),
+        };
+        let visible = ways.into_iter().filter_map(|way| way.longest_visible(layer, reference));
+        let parts = visible.map(|way| way.extended(screen_m).liveliest_part([reference, below]));
+        parts.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best }).map(|(way, _)| way)
+    }
+
+    /// A stroke along the way at a constant speed, and back again if `there_and_back`.
+    pub(super) fn stroke(&self, speed_m_per_s: f64, there_and_back: bool) -> Option<Stroke> {
+        let point = |(x_m, y_m): (f64, f64)| Point { x_m, y_m };
+        let (from, to) = (point(self.from_m), point(self.to_m));
+        let duration_s = self.length_m() / speed_m_per_s;
+        if there_and_back {
+            Stroke::through(&[(0.0, Some(from)), (duration_s, Some(to)), (2.0 * duration_s, Some(from))]).ok()
+        } else {
+            Stroke::constant_speed(from, to, speed_m_per_s).ok()
+        }
+    }
+
+    fn rows_and_columns([left_m, top_m, right_m, bottom_m]: [f64; 4]) -> Vec<Self> {
+        let row = |part: f64| {
+            let y_m = top_m + part * (bottom_m - top_m);
+            Self { from_m: (left_m, y_m), to_m: (right_m, y_m) }
+        };
+        let column = |part: f64| {
+            let x_m = left_m + part * (right_m - left_m);
+            Self { from_m: (x_m, top_m), to_m: (x_m, bottom_m) }
+        };
+        ROWS.into_iter().flat_map(|part| [row(part), column(part)]).collect()
+    }
+
+    /// The way along an axis through the middle of a rectangle.
+    fn along(axis_turns: f64, [left_m, top_m, right_m, bottom_m]: [f64; 4]) -> Self {
+        let (middle_x_m, middle_y_m) = (0.5 * (left_m + right_m), 0.5 * (top_m + bottom_m));
+        let (axis_y, axis_x) = libm::sincos(TAU * axis_turns);
+        // An axis along one side never meets the ends of the other: infinite.
+        let half_m = (0.5 * (right_m - left_m) / axis_x.abs()).min(0.5 * (bottom_m - top_m) / axis_y.abs());
+        let at = |part: f64| (middle_x_m + part * half_m * axis_x, middle_y_m + part * half_m * axis_y);
+        Self { from_m: at(-1.0), to_m: at(1.0) }
+    }
+
+    fn length_m(&self) -> f64 {
+        libm::hypot(self.to_m.0 - self.from_m.0, self.to_m.1 - self.from_m.1)
+    }
+
+    fn direction(&self) -> [f64; 2] {
+        direction_of([self.to_m.0 - self.from_m.0, self.to_m.1 - self.from_m.1])
+    }
+
+    /// The place after a part of the way, from 0 to 1.
+    fn at(&self, part: f64) -> (f64, f64) {
+        let ((from_x_m, from_y_m), (to_x_m, to_y_m)) = (self.from_m, self.to_m);
+        (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m))
+    }
+
+    fn part(&self, from: f64, to: f64) -> Self {
+        Self { from_m: self.at(from), to_m: self.at(to) }
+    }
+
+    /// The longest stretch on which the layer is visible; `None` for none.
+    fn longest_visible(self, layer: usize, reference: &Reference) -> Option<Self> {
+        let part = |number: usize| number as f64 / PLACES as f64;
+        let (mut longest, mut run) = (0..0, 0..0);
+        for number in 0..PLACES {
+            let (x_m, y_m) = self.at(part(number) + 0.5 / PLACES as f64);
+            if visible_layers(reference, x_m, y_m) >> layer & 1 == 1 {
+                run.end = number + 1;
+                if run.len() > longest.len() {
+                    longest = run.clone();
+                }
+            } else {
+                run = number + 1..number + 1;
+            }
+        }
+        (!longest.is_empty() && self.length_m() > 0.0).then(|| self.part(part(longest.start), part(longest.end)))
+    }
+
+    /// The way from before its beginning to behind its end, within the screen.
+    fn extended(self, (width_m, height_m): (f64, f64)) -> Self {
+        let [x, y] = self.direction();
+        let beyond = |(x_m, y_m): (f64, f64), [x, y]: [f64; 2]| {
+            let room_m = |place_m: f64, direction: f64, side_m: f64| match direction {
+                direction if direction > 0.0 => (side_m - place_m) / direction,
+                direction if direction < 0.0 => -place_m / direction,
+                _ => f64::INFINITY,
+            };
+            let way_m = BEYOND_M.min(room_m(x_m, x, width_m)).min(room_m(y_m, y, height_m)).max(0.0);
+            (x_m + way_m * x, y_m + way_m * y)
+        };
+        Self { from_m: beyond(self.from_m, [-x, -y]), to_m: beyond(self.to_m, [x, y]) }
+    }
+
+    /// The first part of at most [`LENGTH_MAX_M`] on which friction changes most, there or back, and its change, N.
+    fn liveliest_part(self, [reference, below]: [&Reference; 2]) -> (Self, f64) {
+        let length_m = self.length_m();
+        let count = (length_m / STEP_M) as usize + 1;
+        let [x, y] = self.direction();
+        let friction_n = |direction: [f64; 2], number: usize| {
+            let (x_m, y_m) = self.at((number as f64 / count as f64).clamp(END_PART, 1.0 - END_PART));
+            let context = Context { x_m, y_m, speed_m_per_s: 0.05, direction, ..Context::default() };
+            reference.electric_friction_at_n(&context) - below.electric_friction_at_n(&context)
+        };
+        let [there_n, back_n] = [[x, y], [-x, -y]]
+            .map(|direction| (0..=count).map(|number| friction_n(direction, number)).collect::<Vec<f64>>());
+        let window = ((LENGTH_MAX_M / STEP_M) as usize).min(count) + 1;
+        let change_n = |friction_n: &[f64]| {
+            let (least_n, most_n) = friction_n
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least_n, most_n), n| (least_n.min(*n), most_n.max(*n)));
+            most_n - least_n
+        };
+        let step = (window / 8).max(1);
+        let last = there_n.len() - window;
+        let starts = (0..last).step_by(step).chain([last]);
+        let change_n = |from: usize| {
+            let [there_n, back_n] = [&there_n, &back_n].map(|friction_n| friction_n.get(from..from + window));
+            Some(change_n(there_n?).max(change_n(back_n?)))
+        };
+        let changes = starts.filter_map(|start| Some((start, change_n(start)?)));
+        let best = changes.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best });
+        let (start, change_n) = best.unwrap_or((0, 0.0));
+        let part = |number: usize| number as f64 / count as f64;
+        (self.part(part(start), part(start + window - 1)), change_n)
+    }
+}

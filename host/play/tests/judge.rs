@@ -1,0 +1,214 @@
+//! The judge on the simulated board: what is felt of scenes whose answer a person knows.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use frixel_felt::check::feel;
+use frixel_felt::judge::{Advice, Judgement, LayerVerdict, Reason, Verdict};
+use frixel_hil_sim::{Board, RigConfig, TouchConfig};
+use frixel_play::{judge, judged_rig};
+use frixel_scene::{Program, Scene, compile};
+
+fn program(text: &str) -> Program {
+    let board = RigConfig::default().board;
+    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+    compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn judged(layers: &str, advice: Advice) -> Judgement {
+    let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
+    judge(&program(&format!("version = 1\n{layers}")), &rig, None, advice, &|| ControlFlow::Continue(())).unwrap()
+}
+
+/// The topmost layer of a scene.
+fn top(layers: &str) -> LayerVerdict {
+    judged(layers, Advice::Omitted).layers.pop().unwrap()
+}
+
+fn bar(width_mm: f64) -> String {
+    let x_mm = 60.0 - 0.5 * width_mm;
+    format!(
+        "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n\
+         region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = {width_mm}, height_mm = 80 }}\n"
+    )
+}
+
+fn button([width_mm, height_mm, rim_mm]: [f64; 3]) -> String {
+    let (x_mm, y_mm) = (60.0 - 0.5 * width_mm, 40.0 - 0.5 * height_mm);
+    format!(
+        "[[layer]]\nkind = \"button\"\nrim_width_mm = {rim_mm}\nrim_fraction = 0.9\nface_fraction = 0\n\
+         region = {{ x_mm = {x_mm}, y_mm = {y_mm}, width_mm = {width_mm}, height_mm = {height_mm} }}\n"
+    )
+}
+
+fn dot(size_mm: f64) -> String {
+    let at_mm = 5.0 - 0.5 * size_mm;
+    format!(
+        "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n\
+         region = {{ x_mm = 55, y_mm = 35, width_mm = 10, height_mm = 10 }}\n\
+         [[layer]]\nkind = \"constant\"\nfriction_fraction = 0\n\
+         region = {{ x_mm = {}, y_mm = {}, width_mm = {size_mm}, height_mm = {size_mm} }}\n",
+        55.0 + at_mm,
+        35.0 + at_mm
+    )
+}
+
+fn grating(wavelength_mm: f64) -> String {
+    format!("[[layer]]\nkind = \"grating\"\nwavelength_mm = {wavelength_mm}\nlow_fraction = 0\nhigh_fraction = 0.9\n")
+}
+
+/// A larger element of the same friction is never felt less surely.
+#[test]
+fn no_verdict_is_worse_than_that_of_a_smaller_element() {
+    let buttons = [[6.0, 6.0, 2.0], [14.0, 10.0, 2.0], [20.0, 10.0, 2.0], [30.0, 16.0, 4.0], [40.0, 20.0, 4.0]];
+    let grown = [[10.0, 8.0, 2.0], [48.0, 40.0, 2.0], [96.0, 64.0, 2.0]];
+    for scenes in [
+        buttons.map(button).to_vec(),
+        grown.map(button).to_vec(),
+        [1.0, 2.0, 3.0, 10.0, 96.0].map(bar).to_vec(),
+        [3.0, 4.0, 5.0, 6.0].map(dot).to_vec(),
+    ] {
+        let found: Vec<LayerVerdict> = scenes.iter().map(|scene| top(scene)).collect();
+        let said: Vec<String> = found.iter().map(feel::sentence).collect();
+        assert!(found.is_sorted_by_key(|found| sureness(found.verdict)), "{said:#?}");
+        assert_eq!(found.last().unwrap().verdict, Verdict::Felt, "{said:#?}");
+    }
+}
+
+fn sureness(verdict: Verdict) -> usize {
+    [Verdict::NotFelt, Verdict::Unknown, Verdict::NearThreshold, Verdict::Felt]
+        .into_iter()
+        .position(|other| other == verdict)
+        .unwrap()
+}
+
+#[test]
+fn reasons_name_what_is_in_the_way() {
+    let slope = top(&grating(500.0));
+    assert!(matches!(slope.reasons[..], [Reason::TooSlow { .. }]), "{}", feel::sentence(&slope));
+    for wavelength_mm in [0.05, 0.2, 1.0, 2.0] {
+        let fine = top(&grating(wavelength_mm));
+        assert_eq!(
+            (fine.verdict, &fine.reasons[..]),
+            (Verdict::Felt, &[Reason::Buzz][..]),
+            "{}",
+            feel::sentence(&fine)
+        );
+    }
+    for (on_ms, verdict) in [(1, Verdict::NotFelt), (2, Verdict::NearThreshold)] {
+        let burst = top(&format!(
+            "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 120\nlow_fraction = 0\nhigh_fraction = 0.9\n\
+             burst = {{ period_ms = 60000, on_ms = {on_ms}, ramp_ms = 0.5 }}\n"
+        ));
+        let [Reason::TooShort { .. }, Reason::TooRare { .. }] = burst.reasons[..] else {
+            panic!("{}", feel::sentence(&burst));
+        };
+        assert_eq!(burst.verdict, verdict, "{}", feel::sentence(&burst));
+    }
+}
+
+#[test]
+fn gratings_of_almost_the_same_wavelength_are_alike() {
+    let half = |x_mm: u32, wavelength_mm: f64| {
+        format!("{}region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 30, height_mm = 80 }}\n", grating(wavelength_mm))
+    };
+    assert_eq!(judged(&(half(0, 2.0) + &half(60, 2.05)), Advice::Omitted).alike.len(), 1);
+    assert_eq!(judged(&(half(0, 2.0) + &half(60, 5.0)), Advice::Omitted).alike.len(), 0);
+}
+
+/// The click is all that there is of the edge.
+#[test]
+fn an_edge_is_felt_by_its_click() {
+    let edge = |click: f64| {
+        top(&format!(
+            "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 2\nridge_fraction = 0\nclick_fraction = {click}\n"
+        ))
+    };
+    let (strong, weak) = (edge(1.0), edge(0.05));
+    assert_eq!(strong.verdict, Verdict::Felt, "{}", feel::sentence(&strong));
+    assert_eq!(weak.verdict, Verdict::NotFelt, "{}", feel::sentence(&weak));
+}
+
+#[test]
+fn a_scene_without_layers_has_a_note() {
+    assert_eq!(judged("", Advice::Omitted).notes, ["the scene has no layer: there is nothing to feel"]);
+}
+
+/// The board drives with next to nothing, and the reference stays.
+#[test]
+fn nothing_is_felt_of_a_drive_forced_to_zero() {
+    for layers in [bar(10.0), button([14.0, 10.0, 2.0]), grating(1.0), grating(8.0)] {
+        let mut program = program(&format!("version = 1\n{layers}"));
+        let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
+        program.header.voltage_max_v_rms = 1.0;
+        let found = judge(&program, &rig, None, Advice::Omitted, &|| ControlFlow::Continue(())).unwrap();
+        assert_eq!(found.layers[0].verdict, Verdict::NotFelt, "{layers}{}", feel::sentence(&found.layers[0]));
+    }
+}
+
+/// The element that follows its advice is felt.
+#[test]
+fn advice_that_is_followed_ends_in_felt() {
+    let faint = "[[layer]]\nkind = \"constant\"\nfriction_fraction = FRACTION\n\
+                 region = { x_mm = 40, y_mm = 20, width_mm = 30, height_mm = 30 }\n";
+    let edge = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 0.3\nridge_fraction = 0.9\n";
+    for layers in [faint.replace("FRACTION", "0.1"), faint.replace("FRACTION", "0.25"), bar(1.0), edge.to_owned()] {
+        let found = judged(&layers, Advice::Sought).layers.pop().unwrap();
+        assert_ne!(found.verdict, Verdict::Felt, "{layers}");
+        let advice = found.advice.clone().unwrap_or_default();
+        let fields = advice.strip_prefix("felt with ").unwrap_or_else(|| panic!("{}", feel::sentence(&found)));
+        let fields = fields.trim_start_matches("a region of ");
+        let followed = fields.split(", ").fold(layers.clone(), |layers, field| {
+            let (name, _) = field.split_once(" = ").unwrap();
+            follow(&layers, name, field)
+        });
+        assert_eq!(top(&followed).verdict, Verdict::Felt, "{followed}");
+    }
+}
+
+/// A scene with a field in place of what it has, or added.
+fn follow(layers: &str, name: &str, field: &str) -> String {
+    let Some(start) = layers.find(&format!("{name} = ")) else { return format!("{layers}{field}\n") };
+    let length = layers[start..].find([',', '\n', ' ', '}'].as_slice()).unwrap();
+    let end = start + length;
+    let end = end + layers[end + 3..].find([',', '\n', ' ', '}'].as_slice()).unwrap() + 3;
+    format!("{}{field}{}", &layers[..start], &layers[end..])
+}
+
+fn scenes() -> Vec<PathBuf> {
+    let entries = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/verdicts")).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+/// The first comment of each scene has what a person would say before anybody computes anything: `# felt: NAME, NAME`
+/// for each verdict.
+#[test]
+fn the_judge_and_common_sense_agree() {
+    let mut apart = Vec::new();
+    for path in scenes() {
+        let text = fs::read_to_string(&path).unwrap();
+        let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
+        let checked = judge(&program(&text), &rig, None, Advice::Omitted, &|| ControlFlow::Continue(())).unwrap();
+        let expected: Vec<(&str, &str)> = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("# ")?.split_once(": "))
+            .filter(|(word, _)| ["felt", "maybe", "not felt", "unknown"].contains(word))
+            .flat_map(|(word, names)| names.split(", ").map(move |name| (word, name)))
+            .collect();
+        assert!(!expected.is_empty(), "{}", path.display());
+        for found in &checked.layers {
+            let expected = expected.iter().find(|(_, name)| found.layer.as_str().contains(&format!("\"{name}")));
+            let (expected, _) = expected.unwrap_or_else(|| panic!("{}: {} is not named", path.display(), found.layer));
+            if *expected != found.verdict.words() {
+                let scene = path.file_stem().unwrap().display();
+                apart.push(format!("{scene}: {}: {}; a person says {expected}", found.layer, feel::sentence(found)));
+            }
+        }
+    }
+    assert!(apart.is_empty(), "{apart:#?}");
+}
