@@ -5,44 +5,44 @@
 use crate::cost::Cost;
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: Cost = Cost::new(992, 9950);
+pub(crate) const EMPTY: Cost = Cost::new(992, 9953);
 
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: Cost = Cost::new(32, 2623);
 
 // A curve, and each of its points.
-pub(crate) const SPEED: Cost = Cost::new(157, 3880);
+pub(crate) const SPEED: Cost = Cost::new(157, 3874);
 pub(crate) const SPEED_POINT: Cost = Cost::new(8, 117);
 
 // The stream's own work, wherever the finger is.
 pub(crate) const STREAM_ELSEWHERE: Cost = Cost::new(94, 983);
 
 // What other regions add to a rectangle.
-pub(crate) const ELLIPSE: Cost = Cost::new(8, 1137);
+pub(crate) const ELLIPSE: Cost = Cost::new(8, 1138);
 
 // A polygon, each of its edges, and what each of those adds that are level with the finger.
-pub(crate) const POLYGON: Cost = Cost::new(36, 559);
+pub(crate) const POLYGON: Cost = Cost::new(33, 564);
 pub(crate) const POLYGON_EDGE: Cost = Cost::new(19, 80);
 pub(crate) const POLYGON_EDGE_LEVEL: Cost = Cost::new(26, 969);
 
 /// Layers, in a rectangle; `kind::measured_cost` finds one by its name.
 pub(crate) const LAYERS: &[(&str, Cost)] = &[
-    ("bitmap", Cost::new(231, 4525)),
-    ("bitmap_tiled", Cost::new(278, 7003)),
-    ("button", Cost::new(228, 4396)),
-    ("constant", Cost::new(76, 248)),
-    ("direction", Cost::new(178, 4553)),
-    ("drift", Cost::new(14, 405)),
-    ("drifting_rings", Cost::new(56, 3405)),
-    ("edge", Cost::new(184, 4596)),
-    ("noise", Cost::new(410, 23291)),
-    ("rings", Cost::new(40, 2934)),
-    ("saw", Cost::new(122, 2027)),
-    ("sine", Cost::new(143, 3416)),
-    ("spokes", Cost::new(91, 3767)),
-    ("square", Cost::new(135, 1904)),
-    ("stream", Cost::new(101, 1019)),
-    ("triangle", Cost::new(127, 2368)),
-    ("vibration_sine", Cost::new(187, 3702)),
-    ("vibration_square", Cost::new(154, 1464)),
+    ("bitmap", Cost::new(227, 4492)),
+    ("bitmap_tiled", Cost::new(282, 7087)),
+    ("button", Cost::new(228, 4411)),
+    ("constant", Cost::new(76, 242)),
+    ("direction", Cost::new(178, 4546)),
+    ("drift", Cost::new(44, 438)),
+    ("drifting_rings", Cost::new(84, 3398)),
+    ("edge", Cost::new(184, 4573)),
+    ("noise", Cost::new(406, 23316)),
+    ("rings", Cost::new(40, 2920)),
+    ("saw", Cost::new(122, 2024)),
+    ("sine", Cost::new(143, 3413)),
+    ("spokes", Cost::new(91, 3764)),
+    ("square", Cost::new(135, 1901)),
+    ("stream", Cost::new(101, 1005)),
+    ("triangle", Cost::new(127, 2365)),
+    ("vibration_sine", Cost::new(187, 3674)),
+    ("vibration_square", Cost::new(150, 1517)),
 ];

@@ -94,14 +94,20 @@ pub(crate) struct Phase {
 impl Phase {
     /// The phase of a wave that passes a place `drift_hz` times a second.
     pub(crate) fn new(turns: f32, drift_hz: f32, tick_hz: u32) -> Self {
-        Self { turns, steps_per_tick: steps_per_tick(drift_hz, tick_hz) }
+        // Waves at rest take no division.
+        let steps_per_tick = if drift_hz == 0.0 { 0 } else { steps_per_tick(drift_hz, tick_hz) };
+        Self { turns, steps_per_tick }
     }
 
     #[inline]
     pub(crate) fn at(&self, tick: u32) -> f32 {
-        if self.steps_per_tick == 0 {
-            return self.turns;
-        }
+        if self.steps_per_tick == 0 { self.turns } else { self.moved(tick) }
+    }
+
+    /// The phase of a wave that moves. A function of its own, since a wave at rest would take its instructions, too.
+    #[cold]
+    #[inline(never)]
+    fn moved(&self, tick: u32) -> f32 {
         // As a signed number, the phase is between -1/2 and 1/2 turn.
         let steps = tick.wrapping_mul(self.steps_per_tick) as i32;
         self.turns - steps as f32 * TURNS_PER_STEP

@@ -72,8 +72,10 @@ pub(crate) struct GratingCoefficients {
 impl Evaluate for GratingCoefficients {
     #[inline]
     fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
+        // First, since a call keeps no float in a register.
+        let phase_turns = self.phase.at(context.inputs.tick);
         let [x_m, y_m] = context.inputs.place_m;
-        let turns = x_m * self.cycles_per_m_x + y_m * self.cycles_per_m_y + self.phase.at(context.inputs.tick);
+        let turns = x_m * self.cycles_per_m_x + y_m * self.cycles_per_m_y + phase_turns;
         self.middle_n + self.swing_n * self.wave.at(turns)
     }
 }

@@ -79,9 +79,11 @@ pub(crate) struct RingsCoefficients {
 impl Evaluate for RingsCoefficients {
     #[inline]
     fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
+        // First, since a call keeps no float in a register.
+        let phase_turns = self.phase.at(context.inputs.tick);
         let [x_m, y_m] = context.inputs.place_m;
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let distance_m = square_root(x_m * x_m + y_m * y_m);
-        self.middle_n + self.swing_n * self.wave.at(distance_m * self.cycles_per_m + self.phase.at(context.inputs.tick))
+        self.middle_n + self.swing_n * self.wave.at(distance_m * self.cycles_per_m + phase_turns)
     }
 }

@@ -21,7 +21,7 @@ const PLACES: usize = 33;
 const FRICTION_MIN_N: f64 = 1e-4;
 /// Largest excess of a bound over the friction found, relative to it. Stacks with a picture are not compared: its bound
 /// does not depend on its samples.
-const ABOVE_MAX: f64 = 0.3;
+const ABOVE_MAX: f64 = 0.42;
 /// The same for half of the stacks: the header rounds up by as much as 1/128.
 const ABOVE_MEDIAN: f64 = 0.008;
 
