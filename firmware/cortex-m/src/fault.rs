@@ -11,7 +11,7 @@ use frixel_board::hardware::Processor;
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::ResetCause;
 
-/// Re-exports for [`fault_handlers!`].
+/// Re-exports for [`fault_handlers!`](crate::fault_handlers).
 #[doc(hidden)]
 pub mod parts {
     pub use frixel_board::fault::{Ending, LastReset};

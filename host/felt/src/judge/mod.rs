@@ -1,9 +1,8 @@
 //! The judge: what a person will feel of each element of a scene, as far as published studies can tell.
 //!
 //! [`strokes`] sends a finger across an element, at 20, 50 and 100 mm/s; [`verdict`] compares what it felt in these plays
-//! with the reference. The strokes are played by whoever has a simulator, so the crate has none: [`judge`] calls back for
-//! each play. `frixel scene check`, the page and `frixel score` judge with these two, and a play judges its own
-//! recording with the second.
+//! with the reference. This crate has no simulator: [`judge`] calls back for each play. `frixel scene check`, the page and
+//! `frixel score` judge with these two.
 //!
 //! A change of friction that a fingertip resolves, 2 mm, is judged as a step, in Weber fractions of the total friction; a
 //! faster one as a texture, against the threshold of touch at its frequency and against the noise of the finger itself.
