@@ -3,17 +3,17 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{ByteStream, Device, DeviceError, PollingLink};
+use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_felt::fidelity::{FidelitySample, SAMPLE_HZ};
 use frixel_felt::judge::{self, Advice, Judgement};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{Board, BoardMemory, Rig, RigConfig, Stroke, TouchConfig, WorldConfig, WorldError};
+use frixel_hil_sim::{Board, BoardMemory, Rig, RigConfig, TouchConfig, WorldConfig, WorldError};
 use frixel_model::FrictionLaw;
 use frixel_scene::Program;
 use frixel_wire::hello::{BoardLimits, Hello};
 use thiserror::Error;
 
-use crate::{PlayError, Player, Recorded, SimStream};
+use crate::{PlayError, Player, SimStream};
 
 /// Seed of all that is random in the world, for every element and size.
 const SEED: u64 = 1;
@@ -35,8 +35,8 @@ impl From<DeviceError> for SimulationError {
     }
 }
 
-/// The rig that programs are judged on: a board in the world with every effect that was measured, and a touch source. It
-/// plays drafts: a tick may take longer than the board has time for.
+/// The rig on which programs are judged: a board in the world with every effect that was measured, and a touch source.
+/// It plays drafts: a tick may take longer than the board has time for.
 pub fn judged_rig(board: Board, touch: TouchConfig) -> RigConfig {
     let limits = BoardLimits { tick_cycles_max: u32::MAX, ..board.limits };
     let rig = RigConfig::of(Board { limits, ..board });
@@ -59,29 +59,24 @@ pub fn judge(
         if goes_on().is_break() {
             return Ok(Vec::new());
         }
-        let mut rig = rig_under(stroke, &mut memory, rig)?;
+        let mut rig = Rig::new(&mut memory, rig, stroke.clone(), SEED)?;
         if let Some(finger) = own_finger {
             rig.world_mut().set_own_finger(finger);
         }
-        felt_by(SimStream::new(rig, Recorder::default()), program, stroke, goes_on)
+        felt_by(rig, program, stroke.duration_s(), goes_on)
     })
 }
 
-/// The rig of a play that judges, under a stroke that begins when the program does.
-pub fn rig_under<'m>(stroke: &Stroke, memory: &'m mut BoardMemory, config: &RigConfig) -> Result<Rig<'m>, WorldError> {
-    Rig::new(memory, config, stroke.clone(), SEED)
-}
-
-/// What is felt of a program on the line to [such a rig](rig_under), under its whole stroke.
-pub fn felt_by<S: ByteStream + Recorded<Recorder = Recorder>>(
-    line: S,
+/// Samples of what the finger on a rig feels of a program, under its whole stroke.
+fn felt_by(
+    rig: Rig<'_>,
     program: &Program,
-    stroke: &Stroke,
+    duration_s: f64,
     goes_on: &dyn Fn() -> ControlFlow<()>,
 ) -> Result<Vec<FidelitySample>, SimulationError> {
-    let device = Device::connect(PollingLink::new(line))?;
+    let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default())))?;
     let Hello { limits, tick_hz, .. } = *device.hello();
-    let ticks = (stroke.duration_s() * f64::from(tick_hz)).round() as u64;
+    let ticks = (duration_s * f64::from(tick_hz)).round() as u64;
     let ticks_per_row = (f64::from(tick_hz) / SAMPLE_HZ).round().max(1.0) as u32;
     let recorder = Recorder::new(program, &limits, tick_hz, ticks, ticks_per_row);
     let recorder = recorder.map_err(PlayError::Finger)?.through_finger();

@@ -30,7 +30,7 @@ mod upload;
 pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
-pub use judged::{SimulationError, felt_by, judge, judged_rig, rig_under};
+pub use judged::{SimulationError, judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced};
 pub use recorded::Recorded;

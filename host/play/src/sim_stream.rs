@@ -5,7 +5,6 @@ use std::time::Duration;
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, TickRecord};
-
 use frixel_wire::fault::State;
 
 use crate::recorded::Recorded;

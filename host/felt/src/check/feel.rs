@@ -19,7 +19,7 @@ const NAMES_MAX: usize = 3;
 const ALIKE_LINES_MAX: usize = 2;
 
 /// A verdict on a layer, or on its click.
-struct Element {
+struct Finding {
     layer: LayerTitle,
     /// What of the layer it is: empty, or `click of `.
     part: &'static str,
@@ -30,7 +30,7 @@ struct Element {
 /// Lines of a name and a text. The first ones are named by a verdict: one for all elements of which the same is felt,
 /// what is least sure first. Then come layers that are alike, and notes.
 pub fn lines(judgement: &Judgement) -> Vec<(&'static str, String)> {
-    let mut elements: Vec<Element> = judgement.layers.iter().flat_map(elements).collect();
+    let mut elements: Vec<Finding> = judgement.layers.iter().flat_map(elements).collect();
     elements.sort_by_key(|element| element.verdict.sureness());
     let has_maybe = elements.iter().any(|element| element.verdict == Verdict::NearThreshold);
     let groups = grouped(elements);
@@ -55,7 +55,7 @@ pub fn lines(judgement: &Judgement) -> Vec<(&'static str, String)> {
 
 /// What a person will feel of a layer, a verdict and its reasons.
 pub fn sentence(layer: &LayerVerdict) -> String {
-    let texts = elements(layer).map(|Element { part, verdict, text, .. }| {
+    let texts = elements(layer).map(|Finding { part, verdict, text, .. }| {
         if part.is_empty() {
             format!("{}: {text}", verdict.words())
         } else {
@@ -66,11 +66,11 @@ pub fn sentence(layer: &LayerVerdict) -> String {
 }
 
 /// The verdict on a layer, and that on its click where it is less sure.
-fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Element> {
+fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Finding> {
     let title = &layer.layer;
-    let whole = Element { layer: title.clone(), part: "", verdict: layer.verdict, text: reasons(layer) };
+    let whole = Finding { layer: title.clone(), part: "", verdict: layer.verdict, text: reasons(layer) };
     let click = layer.click.filter(|click| click.verdict.sureness() < layer.verdict.sureness());
-    let click = click.map(|click| Element {
+    let click = click.map(|click| Finding {
         layer: title.clone(),
         part: "click of ",
         verdict: click.verdict,
@@ -89,13 +89,13 @@ struct Group {
     verdict: Verdict,
     text: String,
     /// The first of the copies of a layer, and how many more there are.
-    members: Vec<(Element, usize)>,
+    members: Vec<(Finding, usize)>,
 }
 
 impl Group {
     fn line(&self) -> (&'static str, String) {
-        let member = |(element, copies): &(Element, usize)| {
-            let Element { layer, part, .. } = element;
+        let member = |(element, copies): &(Finding, usize)| {
+            let Finding { layer, part, .. } = element;
             if *copies == 0 { format!("{part}{layer}") } else { format!("{part}{layer} and {copies} alike") }
         };
         let members: Vec<String> = self.members.iter().take(NAMES_MAX).map(member).collect();
@@ -113,10 +113,10 @@ impl Group {
 
 /// Joins the elements of the same verdict that have the same text, and those that are copies of one layer, for which the
 /// first one stands.
-fn grouped(elements: Vec<Element>) -> Vec<Group> {
+fn grouped(elements: Vec<Finding>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for element in elements {
-        let is_copy = |(other, _): &(Element, usize)| {
+        let is_copy = |(other, _): &(Finding, usize)| {
             other.part == element.part && other.layer.number().table == element.layer.number().table
         };
         let mut of_verdict = groups.iter_mut().filter(|group| group.verdict == element.verdict);
@@ -144,7 +144,7 @@ fn rest(groups: &[Group]) -> Option<String> {
     (!counts.is_empty()).then(|| format!("{} (--json has them all)", counts.join(", ")))
 }
 
-/// What is felt of a layer as surely as all of it, why no more is, and what would do.
+/// Reasons of a layer's verdict: the steps and the texture that are felt, what keeps it from being felt, and advice.
 fn reasons(layer: &LayerVerdict) -> String {
     let LayerVerdict { verdict, over, contrast, speed_mm_per_s, reasons, advice, burst, .. } = layer;
     if *over == Over::Samples {
@@ -248,7 +248,7 @@ fn reason_text(reason: &Reason) -> Option<String> {
             two_digits(1e-3 * touch_ms)
         ),
         Reason::Buzz => "a buzz, not stripes in place".to_owned(),
-        // What is felt says it.
+        // The steps and textures before it say this.
         Reason::Flat | Reason::NotStudied => return None,
     };
     Some(text)

@@ -8,8 +8,9 @@ use frixel_scene::reference::{Context, Reference};
 
 use super::fingertip::Fingertip;
 use super::likeness::Likeness;
-use super::measure::{FINGERTIP_M, Sums};
-use super::moment::{MOMENT_HZ, Moment};
+use super::measure::FINGERTIP_M;
+use super::moment::{Moment, ways_m};
+use super::touch::Sums;
 use super::{Step, total_n, visible_layers};
 
 /// Longest way on either side of a border, m.
@@ -38,8 +39,8 @@ pub(super) struct MetBorder {
 }
 
 impl Borders {
-    /// Borders are met with vibrations at their largest, without clicks, streams, and ridges on what lies below: a ridge
-    /// is felt by itself, and its region ends where nothing is felt.
+    /// Borders are met with vibrations at their largest, without clicks, streams, and ridges on what lies below: a
+    /// ridge is felt by itself, and its region ends where nothing is felt.
     pub(super) fn new(program: &Program, layer: usize, joins: bool, starts_on: impl Fn(usize) -> bool) -> Self {
         let is_ridge_on_ground = |layer: usize| {
             let record = program.records.get(layer);
@@ -111,11 +112,7 @@ impl Borders {
 
 /// The moments of one side that count, from the border away; `None` for a corner. `same` moments have the same layers.
 fn side<'m>(moments: impl Iterator<Item = &'m Moment>, same: usize) -> Option<Range<usize>> {
-    let ways_m = moments.scan(0.0, |way_m, moment| {
-        *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
-        Some(*way_m)
-    });
-    let ways_m = ways_m.take(same.min(SIDE_MAX)).take_while(|way_m| *way_m < SIDE_MAX_M);
+    let ways_m = ways_m(moments).take(same.min(SIDE_MAX)).take_while(|way_m| *way_m < SIDE_MAX_M);
     let (near, all) = ways_m.fold((0, 0), |(near, all), way_m| (near + usize::from(way_m < FINGERTIP_M), all + 1));
     (all >= SIDE_MIN).then(|| near.min(all - SIDE_MIN)..all)
 }

@@ -1,9 +1,9 @@
-//! What a fingertip resolves of a change along its way.
+//! The spatial resolution of a fingertip: changes along a way, averaged over it.
 
 use std::ops::Range;
 
 use super::measure::FINGERTIP_M;
-use super::moment::{MOMENT_HZ, Moment};
+use super::moment::{Moment, ways_m};
 
 /// Longest time over which changes are averaged, in moments on either side: 50 ms, half a period at 10 Hz.
 const SIDE_MAX: usize = 100;
@@ -15,11 +15,7 @@ pub(super) struct Fingertip {
 
 impl Fingertip {
     pub(super) fn of(run: &[Moment]) -> Self {
-        let ways_m = run.iter().scan(0.0, |way_m, moment| {
-            *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
-            Some(*way_m)
-        });
-        let ways_m: Vec<f64> = ways_m.collect();
+        let ways_m: Vec<f64> = ways_m(run.iter()).collect();
         let (mut start, mut end) = (0, 0);
         let window = |(number, way_m): (usize, &f64)| {
             while ways_m.get(start).is_some_and(|other_m| way_m - other_m > 0.5 * FINGERTIP_M) {

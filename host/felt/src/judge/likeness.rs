@@ -32,8 +32,8 @@ impl Likeness {
         }
     }
 
-    /// Slope of felt friction on the signal, at the delay at which it is largest, and at most 1: what a display adds is no
-    /// contrast of the scene; 0 for a signal that does not change.
+    /// Slope of felt friction on the signal, at the delay at which it is largest; 0 for a signal that does not change. At
+    /// most 1, since friction that a display adds is no contrast of the scene.
     pub(super) fn slope(&self) -> f64 {
         if self.variance > 0.0 { (self.felt.iter().copied().fold(0.0, f64::max) / self.variance).min(1.0) } else { 0.0 }
     }

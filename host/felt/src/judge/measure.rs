@@ -1,23 +1,24 @@
 //! What a finger felt of one element in a play: its contrast, its texture, the step onto it and its click.
 //!
-//! A contrast counts as far as it comes back in what was felt: the contrast of the scene along the way, times the slope
-//! of felt friction on it. So neither what lies beside an element, nor what lies above it, nor the finger's own load and
-//! noise is contrast of the element, and a display that plays it in the wrong place has less of it. A delay that is not
-//! noticed takes nothing. Textures are compared by power, since phase is not perceived.
+//! A felt contrast is the contrast of the scene along the way, times the slope of felt friction on it. So the neighbours of
+//! an element, the layers above it, and the finger's own load and noise add no contrast, and a display that plays it in
+//! the wrong place has less of it. A delay that is not noticed takes nothing. Textures are compared by power, since phase
+//! is not perceived.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use frixel_layers::{Direction, Layer};
+use frixel_layers::{Direction, Interval, Layer};
 use frixel_scene::Program;
 use frixel_scene::reference::Reference;
 
 use super::border::{Borders, MetBorder};
 use super::fingertip::Fingertip;
 use super::likeness::Likeness;
-use super::moment::{MOMENT_HZ, Moment, electric_n, runs};
+use super::moment::{Moment, context, electric_n, runs};
 use super::texture;
 use super::thresholds::{TEXTURE_MAX_HZ, TEXTURE_MIN_HZ};
+use super::touch::{Sums, Touch, inner, stretches, ways};
 use super::{Element, Level, Step, Texture, contrast_within, has_texture, total_n};
 use crate::fidelity::FidelitySample;
 
@@ -47,8 +48,8 @@ pub(super) struct Measure<'e> {
 /// What was felt of an element in a play.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
-    /// The largest felt contrast on a way of at most 50 mm within the element; of a layer that depends on the direction,
-    /// between ways there and back. The step onto the element is not in it.
+    /// The largest felt contrast on a way of at most 50 mm within the element; between ways there and back if the layer
+    /// depends on the direction. Without the step onto the element.
     pub(super) contrast: Step,
     /// Whether friction is the same almost everywhere in the element, but for a narrow place that makes the contrast.
     pub(super) is_narrow: bool,
@@ -328,128 +329,13 @@ pub(super) fn surest<T>(one: Option<T>, other: Option<T>, step: impl Fn(&T) -> S
     one.into_iter().chain(other).max_by(|one, other| step(one).cmp_felt(&step(other)))
 }
 
-/// What was felt on a stretch of a run.
-#[derive(Clone, Copy, Debug)]
-struct Touch {
-    contrast: Step,
-    is_narrow: bool,
-    texture: Option<Texture>,
-    /// The largest contrast of the scene on a way: least and largest friction of its own, electric, N.
-    widest_n: [f64; 2],
-    /// The part of it that was felt.
-    slope: f64,
-    scene: SceneContrast,
-}
-
-impl Touch {
-    /// The surest of both; the contrast over the direction is one between touches.
-    fn united(self, other: Self) -> Self {
-        let surer = |one: Step, other: Step| if other.cmp_felt(&one).is_gt() { other } else { one };
-        let contrast = surer(self.contrast, other.contrast);
-        let textures = self.texture.into_iter().chain(other.texture);
-        Self {
-            contrast,
-            is_narrow: if contrast == self.contrast { self.is_narrow } else { other.is_narrow },
-            texture: textures.max_by(|one, other| one.salience().total_cmp(&other.salience())),
-            widest_n: [self.widest_n[0].min(other.widest_n[0]), self.widest_n[1].max(other.widest_n[1])],
-            slope: self.slope.max(other.slope),
-            scene: SceneContrast {
-                sharp: surer(self.scene.sharp, other.scene.sharp),
-                whole: self.scene.whole,
-                visible: self.scene.visible | other.scene.visible,
-            },
-        }
-    }
-}
-
-/// Sums of electric and natural friction, N.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sums {
-    count: f64,
-    scene_n: f64,
-    felt_n: f64,
-    natural_n: f64,
-}
-
-impl Sums {
-    pub(super) fn add(&mut self, moment: &Moment) {
-        self.count += 1.0;
-        self.scene_n += moment.scene_n;
-        self.felt_n += moment.felt_n;
-        self.natural_n += moment.natural_n;
-    }
-
-    /// The step between two electric frictions, of whose distance from `mean_n` a part is felt.
-    fn felt_step(&self, [from_n, to_n]: [f64; 2], mean_n: f64, part: f64) -> Step {
-        let [felt_n, natural_n] = [self.felt_n, self.natural_n].map(|sum| sum / self.count);
-        let total_n = |electric_n: f64| natural_n + (felt_n + part * (electric_n - mean_n)).max(0.0);
-        Step::new(total_n(from_n), total_n(to_n))
-    }
-
-    /// The step between two electric frictions of the scene, of which a part is felt.
-    pub(super) fn felt_part(&self, sides_n: [f64; 2], part: f64) -> Step {
-        self.felt_step(sides_n, self.scene_n / self.count, part)
-    }
-}
-
-/// The stretches of a run of which all moments are wanted.
-pub(super) fn stretches(run: &[Moment], is_wanted: impl Fn(&Moment) -> bool) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = None;
-    for (number, moment) in run.iter().enumerate() {
-        match (is_wanted(moment), start) {
-            (true, None) => start = Some(number),
-            (false, Some(first)) => {
-                found.push(first..number);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    found.extend(start.map(|first| first..run.len()));
-    found
-}
-
-/// The moments of a stretch that are farther from both of its ends than a fingertip's resolution.
-fn inner(stretch: &[Moment]) -> &[Moment] {
-    let from = near_count(stretch.iter(), FINGERTIP_M);
-    let to = stretch.len() - near_count(stretch.iter().rev(), FINGERTIP_M);
-    stretch.get(from..to).unwrap_or_default()
-}
-
-/// How many moments of a way are nearer to its beginning than a distance.
-fn near_count<'m>(way: impl Iterator<Item = &'m Moment>, distance_m: f64) -> usize {
-    let ways_m = way.scan(0.0, |way_m, moment| {
-        *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
-        Some(*way_m)
-    });
-    ways_m.take_while(|way_m| *way_m < distance_m).count()
-}
-
-/// Parts of a touch that are at most [`WAY_MAX_M`] long.
-fn ways(touch: &[Moment]) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let (mut start, mut way_m) = (0, 0.0);
-    for (number, moment) in touch.iter().enumerate() {
-        way_m += moment.context.speed_m_per_s / MOMENT_HZ;
-        if way_m > WAY_MAX_M {
-            found.push(start..number);
-            (start, way_m) = (number, 0.0);
-        }
-    }
-    found.push(start..touch.len());
-    found
-}
-
 /// From one place at which a change of the scene is sought to the next, in samples: 1 ms.
 const PLACE_SAMPLES: usize = 4;
 
 /// Whether the friction of a scene changes along the way of a play.
 pub fn changes_along(program: &Program, samples: &[FidelitySample]) -> bool {
     let scene = Reference::at_start(program);
-    let places = samples.chunks(PLACE_SAMPLES).filter_map(super::moment::context);
-    let places = places.map(|context| electric_n(&scene, program, &context));
-    let (least_n, most_n) =
-        places.fold((f64::INFINITY, f64::NEG_INFINITY), |(least_n, most_n), n| (least_n.min(n), most_n.max(n)));
-    most_n - least_n > CHANGE_MIN_N
+    let places = samples.chunks(PLACE_SAMPLES).filter_map(context);
+    let Interval { low, high } = Interval::of(places.map(|context| electric_n(&scene, program, &context)));
+    high - low > CHANGE_MIN_N
 }

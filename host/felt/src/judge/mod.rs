@@ -1,11 +1,11 @@
 //! The judge: what a person will feel of each element of a scene, as far as published studies can tell.
 //!
-//! [`strokes`] sends a finger across an element, at 20, 50 and 100 mm/s; [`verdict`] compares what it felt in these plays
-//! with the reference. This crate has no simulator: [`judge`] calls back for each play. `frixel scene check`, the page and
-//! `frixel score` judge with these two.
+//! [`strokes`] sends a finger across an element, at 20, 50 and 100 mm/s; [`verdict`] compares what it felt in these
+//! plays with the reference. This crate has no simulator: [`judge`] calls back for each play. `frixel scene check`, the
+//! page and `frixel score` judge with these two.
 //!
-//! A change of friction that a fingertip resolves, 2 mm, is judged as a step, in Weber fractions of the total friction; a
-//! faster one as a texture, against the threshold of touch at its frequency and against the noise of the finger itself.
+//! A change of friction that a fingertip resolves, 2 mm, is judged as a step, in Weber fractions of the total friction.
+//! A faster one is judged as a texture, against the threshold of touch at its frequency and the finger's own noise.
 //! An element is felt by its contrast, its texture, its border or its click, at the best of the three speeds. The
 //! thresholds and their sources stand in one file, `thresholds.rs`.
 
@@ -24,6 +24,7 @@ mod step;
 mod tests;
 mod texture;
 mod thresholds;
+mod touch;
 mod way;
 
 use std::cmp::Ordering;
@@ -88,8 +89,7 @@ pub struct LayerVerdict {
     pub is_narrow: bool,
     /// The most noticeable texture; absent where there is none.
     pub texture: Option<Texture>,
-    /// Of the borders where the layer ends, that which is felt most surely, as a step onto it; absent for a layer without
-    /// any.
+    /// The border of the layer that is felt most surely, as a step onto it; absent for a layer without any.
     pub border: Option<BorderStep>,
     /// The bursts of a vibration, during which contrast and texture hold; absent if they hold all the time.
     pub burst: Option<BurstTimes>,
@@ -129,8 +129,7 @@ pub enum Advice {
     Sought,
 }
 
-/// Plays a program under a stroke, from which the board drives the scene: [`fidelity::SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ)
-/// samples a second.
+/// Plays a program under a stroke, and returns [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ) samples a second.
 pub type Play<'p, E> = dyn FnMut(&Program, &Stroke) -> Result<Vec<FidelitySample>, E> + 'p;
 
 /// Judges every layer of a program. Copies of a layer are judged once.
@@ -152,22 +151,35 @@ pub fn judge<E>(program: &Program, advice: Advice, play: &mut Play<'_, E>) -> Re
 }
 
 fn judge_element<E>(element: &Element, advice: Advice, play: &mut Play<'_, E>) -> Result<LayerVerdict, E> {
-    let mut judged = |element: &Element| {
-        let strokes = if element.is_streamed() { Vec::new() } else { strokes(element) };
-        let felt = strokes.iter().map(|stroke| play(element.program(), stroke)).collect::<Result<Vec<_>, E>>()?;
-        Ok(verdict(element, &felt))
-    };
-    let found = judged(element)?;
+    let strokes = if element.is_streamed() { Vec::new() } else { strokes(element) };
+    let felt = strokes.iter().map(|stroke| play(element.program(), stroke)).collect::<Result<Vec<_>, E>>()?;
+    let found = verdict(element, &felt);
     if advice == Advice::Omitted || !found.reasons.iter().any(Reason::is_size_or_strength) {
         return Ok(found);
     }
     for change in advice::changes(element, &found) {
-        if judged(&change.element)?.verdict == Verdict::Felt {
+        if is_felt(&change.element, play)? {
             return Ok(LayerVerdict { advice: Some(format!("felt with {}", change.text)), ..found });
         }
     }
     let advice = Some("no size or strength within the drive's reach was found that is felt".to_owned());
     Ok(LayerVerdict { advice, ..found })
+}
+
+/// Whether an element is felt at one of the speeds. The fastest stroke takes an eighth of the time of all, and is played
+/// first.
+fn is_felt<E>(element: &Element, play: &mut Play<'_, E>) -> Result<bool, E> {
+    let strokes = strokes(element);
+    let mut felt = vec![Vec::new(); strokes.len()];
+    for (number, stroke) in strokes.iter().enumerate().rev() {
+        if let Some(samples) = felt.get_mut(number) {
+            *samples = play(element.program(), stroke)?;
+        }
+        if verdict(element, &felt).verdict == Verdict::Felt {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Judges an element by what was felt on its [`strokes`]. The samples hold the reference as well.

@@ -53,6 +53,14 @@ impl Moment {
     }
 }
 
+/// How far the finger has slid at each of some moments since before the first one, m.
+pub(super) fn ways_m<'m>(moments: impl Iterator<Item = &'m Moment>) -> impl Iterator<Item = f64> {
+    moments.scan(0.0, |way_m, moment| {
+        *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
+        Some(*way_m)
+    })
+}
+
 /// The finger at the last of some samples, sliding the way from the first one to it; `None` without any, or with the
 /// finger off the screen.
 pub(super) fn context(samples: &[FidelitySample]) -> Option<Context> {

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use frixel_hil_sim::{Point, Stroke};
+use frixel_layers::Interval;
 use frixel_scene::reference::{Context, Reference, direction_of};
 
 use super::visible_layers;
@@ -148,18 +149,15 @@ impl Way {
         let [there_n, back_n] = [[x, y], [-x, -y]]
             .map(|direction| (0..=count).map(|number| friction_n(direction, number)).collect::<Vec<f64>>());
         let window = ((LENGTH_MAX_M / STEP_M) as usize).min(count) + 1;
-        let change_n = |friction_n: &[f64]| {
-            let (least_n, most_n) = friction_n
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least_n, most_n), n| (least_n.min(*n), most_n.max(*n)));
-            most_n - least_n
-        };
         let step = (window / 8).max(1);
         let last = there_n.len() - window;
         let starts = (0..last).step_by(step).chain([last]);
         let change_n = |from: usize| {
-            let [there_n, back_n] = [&there_n, &back_n].map(|friction_n| friction_n.get(from..from + window));
-            Some(change_n(there_n?).max(change_n(back_n?)))
+            let spread_n = |friction_n: &[f64]| {
+                let Interval { low, high } = Interval::of(friction_n.get(from..from + window)?.iter().copied());
+                Some(high - low)
+            };
+            Some(spread_n(&there_n)?.max(spread_n(&back_n)?))
         };
         let changes = starts.filter_map(|start| Some((start, change_n(start)?)));
         let best = changes.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best });

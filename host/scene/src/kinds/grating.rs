@@ -87,18 +87,16 @@ impl Words for Grating {
             _ => (0.0, 0.0),
         };
         let origin_turns = f64::from(cycles_per_m_x) * x_m + f64::from(cycles_per_m_y) * y_m;
-        Some(
-            RecordLayer::Grating(Record {
-                wave: self.wave,
-                cycles_per_m_x,
-                cycles_per_m_y,
-                phase_turns: (self.phase_deg / 360.0 - origin_turns).rem_euclid(1.0) as f32,
-                trough_n: lowering.amount(layer, self.amounts.low),
-                crest_n: lowering.amount(layer, self.amounts.high),
-                drift_hz: drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32,
-            })
-            .into(),
-        )
+        let record = Record {
+            wave: self.wave,
+            cycles_per_m_x,
+            cycles_per_m_y,
+            phase_turns: (self.phase_deg / 360.0 - origin_turns).rem_euclid(1.0) as f32,
+            trough_n: lowering.amount(layer, self.amounts.low),
+            crest_n: lowering.amount(layer, self.amounts.high),
+            drift_hz: drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32,
+        };
+        Some(RecordLayer::Grating(record).into())
     }
 }
 

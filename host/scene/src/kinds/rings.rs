@@ -63,18 +63,16 @@ impl Words for Rings {
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
-        Some(
-            RecordLayer::Rings(Record {
-                wave: self.wave,
-                x_m: (self.x_mm * MM) as f32,
-                y_m: (self.y_mm * MM) as f32,
-                cycles_per_m: (1.0 / (self.wavelength_mm * MM)) as f32,
-                trough_n: lowering.amount(layer, self.amounts.low),
-                crest_n: lowering.amount(layer, self.amounts.high),
-                drift_hz: drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32,
-            })
-            .into(),
-        )
+        let record = Record {
+            wave: self.wave,
+            x_m: (self.x_mm * MM) as f32,
+            y_m: (self.y_mm * MM) as f32,
+            cycles_per_m: (1.0 / (self.wavelength_mm * MM)) as f32,
+            trough_n: lowering.amount(layer, self.amounts.low),
+            crest_n: lowering.amount(layer, self.amounts.high),
+            drift_hz: drift::drift_hz(self.drift_mm_per_s, self.wavelength_mm) as f32,
+        };
+        Some(RecordLayer::Rings(record).into())
     }
 }
 
