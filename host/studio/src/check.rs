@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
-use frixel_felt::judge::{self, Advice, Judgement};
+use frixel_felt::judge::{Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::{SimulationError, felt_by, judged_rig, load, rig_under};
+use frixel_play::{judge, judged_rig, load};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
@@ -21,14 +21,23 @@ use crate::rig_stream::RigStream;
 /// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel scene check`), and in newtons `lowN`,
 /// `highN` (what the scene asks for), `reachN` and `naturalN`.
 pub fn check(request: &Request) -> Value {
-    match checked(request) {
+    answer(request, true)
+}
+
+/// The same without what is felt, which takes most of the time.
+pub fn compile(request: &Request) -> Value {
+    answer(request, false)
+}
+
+fn answer(request: &Request, is_judged: bool) -> Value {
+    match checked(request, is_judged) {
         Ok(answer) => answer,
         Err(HostError::Program(error)) => json!({ "ok": false, "problems": problems(&error, &request.entry) }),
         Err(error) => crate::answer::error(&error, &request.entry),
     }
 }
 
-fn checked(request: &Request) -> Result<Value, HostError> {
+fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
     let (scene, program) = drafted(request)?;
@@ -39,8 +48,12 @@ fn checked(request: &Request) -> Result<Value, HostError> {
         Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
         costs => costs?,
     };
-    let rig = judged_rig(config.board, touch);
-    let judgement = judge(&program, &rig).map_err(HostError::Simulation)?;
+    let judgement = if is_judged {
+        let rig = judged_rig(config.board, touch);
+        judge(&program, &rig, None, Advice::Sought, &|| ControlFlow::Continue(())).map_err(HostError::Simulation)?
+    } else {
+        Judgement::default()
+    };
     let check = SceneCheck::of(&program, &config.board.limits, &costs, judgement);
     let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
     Ok(json!({
@@ -59,15 +72,6 @@ fn checked(request: &Request) -> Result<Value, HostError> {
 
 fn screen(scene: &Scene) -> Value {
     json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
-}
-
-/// As [`frixel_play::judge`], on the line of the page: the module has the code of one kind of line to a rig.
-fn judge(program: &Program, rig: &RigConfig) -> Result<Judgement, SimulationError> {
-    let mut memory = BoardMemory::new();
-    judge::judge(program, Advice::Sought, &mut |program, stroke| {
-        let line = RigStream::under_stroke(rig_under(stroke, &mut memory, rig)?, rig);
-        felt_by(line, program, stroke, &|| ControlFlow::Continue(()))
-    })
 }
 
 /// What a simulated board needs for a program: uploads it once, without playing it.

@@ -75,6 +75,12 @@ pub extern "C" fn check() -> i32 {
     respond(|| Ok(crate::check(&request()?)))
 }
 
+/// [`crate::compile`].
+#[unsafe(no_mangle)]
+pub extern "C" fn compile() -> i32 {
+    respond(|| Ok(crate::compile(&request()?)))
+}
+
 /// The friction map; the answer is numbers, as `map.rs` says.
 #[unsafe(no_mangle)]
 pub extern "C" fn map() -> i32 {

@@ -34,7 +34,7 @@ mod simulator;
 mod touched;
 mod used_files;
 
-pub use check::check;
+pub use check::{check, compile};
 pub use host_error::HostError;
 pub use program::ProgramError;
 pub use request::{Numbers, Request, RequestError};

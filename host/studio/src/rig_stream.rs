@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
-use frixel_felt::recorder::{Observation, Recorder};
+use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
 use frixel_play::Recorded;
 use frixel_wire::fault::{Fault, State};
@@ -25,8 +25,6 @@ pub(crate) struct RigStream<'a> {
     touched: TouchedPlaces,
     /// The record of the last tick.
     last: Option<TickRecord>,
-    /// Whether the world's own stroke moves the finger, from when a scene first plays.
-    stroke: Stroking,
     /// Is called with every tick.
     observer: Option<Observer>,
 }
@@ -34,39 +32,20 @@ pub(crate) struct RigStream<'a> {
 /// Is called with a tick.
 type Observer = Box<dyn FnMut(&TickRecord)>;
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Stroking {
-    /// The pointer moves the finger.
-    Never,
-    /// No scene has played yet.
-    Waiting,
-    Begun,
-}
-
 impl<'a> RigStream<'a> {
     pub(crate) fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
         // The pointer moves the finger; the world's own stroke never starts.
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
         let rig = Rig::new(memory, config, stroke, seed).map_err(HostError::World)?;
-        Ok(Self::of(rig, config, Stroking::Never))
-    }
-
-    /// A line to a rig that [judges](frixel_play::rig_under): its stroke and its record begin when a scene first plays.
-    pub(crate) fn under_stroke(rig: Rig<'a>, config: &RigConfig) -> Self {
-        Self::of(rig, config, Stroking::Waiting)
-    }
-
-    fn of(rig: Rig<'a>, config: &RigConfig, stroke: Stroking) -> Self {
-        Self {
+        Ok(Self {
             felt: FeltSampler::new(rig.tick_hz()),
             rig,
             pointer: Pointer::default(),
             touch: TouchFollower::new(&config.board),
             touched: TouchedPlaces::default(),
             last: None,
-            stroke,
             observer: None,
-        }
+        })
     }
 
     /// Calls `observer` with every tick.
@@ -105,28 +84,6 @@ impl<'a> RigStream<'a> {
 
     /// Passes one tick.
     pub(crate) fn step(&mut self) -> TickRecord {
-        let record = if self.stroke == Stroking::Never { self.step_pointer() } else { self.step_stroke() };
-        if let Some(observer) = &mut self.observer {
-            observer(&record);
-        }
-        self.last = Some(record);
-        record
-    }
-
-    fn step_stroke(&mut self) -> TickRecord {
-        let record = self.rig.step();
-        let recorder = self.felt.recorder_mut();
-        if self.stroke == Stroking::Begun {
-            recorder.record(&Observation::of_tick(&record));
-        } else if record.status.telemetry.state == State::Active {
-            recorder.start(record.tick as u32);
-            self.rig.world_mut().start_stroke();
-            self.stroke = Stroking::Begun;
-        }
-        record
-    }
-
-    fn step_pointer(&mut self) -> TickRecord {
         let tick_hz = f64::from(self.rig.tick_hz());
         let finger = self.pointer.at(self.rig.tick() as f64);
         let world = self.world_mut();
@@ -144,6 +101,10 @@ impl<'a> RigStream<'a> {
         let record = self.rig.step();
         self.touched = self.touch.advance(touch, record.status.telemetry.tick);
         self.felt.add(&record, self.touched, self.rig.world_mut().finger_law());
+        if let Some(observer) = &mut self.observer {
+            observer(&record);
+        }
+        self.last = Some(record);
         record
     }
 }

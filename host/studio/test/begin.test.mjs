@@ -13,7 +13,7 @@ const problems = (page, text) =>
   page.evaluate(async (text) => {
     const files = { "new.toml": text };
     for (const name of studio.names("scenes/textures/")) files[name.slice("scenes/".length)] = await studio.bytes(name);
-    const check = await studioPage.engine.check(files, "new.toml", {});
+    const check = await studioPage.engine.compile(files, "new.toml", {});
     return { isDraft: check.isDraft, layers: check.layers?.length, said: check.problems.map(({ message }) => message) };
   }, text);
 
@@ -100,7 +100,7 @@ test("what is no picture is named, and a card of the gallery has the place of it
   assert.match(await page.locator("#notice span").textContent(), /^notes\.txt: expected /);
   // Nothing is drawn yet.
   const shapes = await page.evaluate(() => {
-    studioPage.engine.check = () => new Promise(() => {});
+    studioPage.engine.compile = () => new Promise(() => {});
     document.getElementById("open-gallery").click();
     return [...document.querySelectorAll("#gallery canvas")].map((each) => each.clientWidth / each.clientHeight);
   });

@@ -74,7 +74,7 @@ function lensDrawn(page) {
     for (let y = 14; y < radiusPx - 12; y += 1) {
       if (colourAt(radiusPx, radiusPx - y).every((value) => value > 170)) contact.push(y);
     }
-    const { highN } = await engine.check({ "scene.toml": editor.text }, "scene.toml", {});
+    const { highN } = await engine.compile({ "scene.toml": editor.text }, "scene.toml", {});
     return { contact, force: boxOf("felt"), voltage: boxOf("voltage"), last, voltageV, highN };
   }, LENS.radiusPx);
 }

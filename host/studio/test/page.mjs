@@ -59,14 +59,15 @@ function addHelpers() {
     listeners.add(listen);
     return () => listeners.delete(listen);
   };
+  /** Types a text, and resolves once the board plays it and its check is shown. */
   globalThis.played = (text) =>
     new Promise((resolve) => {
       const { player, editor } = studioPage;
-      const before = player.onPlay;
-      player.onPlay = (now) => {
-        before(now);
-        if (now !== text) return;
-        player.onPlay = before;
+      const before = player.onStatus;
+      player.onStatus = (status) => {
+        before(status);
+        if (status !== "loaded" || editor.text !== text) return;
+        player.onStatus = before;
         resolve();
       };
       editor.text = text;

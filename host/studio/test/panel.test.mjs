@@ -54,7 +54,7 @@ test("the right end of a slider of newtons is no more than the drive gives, and 
   const [, high] = /high_n = ([\d.]+)\n/.exec(await textOf(page));
   const { reachN, naturalN, isDraft } = await page.evaluate(async () => {
     const { engine, editor } = studioPage;
-    return engine.check({ "a.toml": editor.text }, "a.toml", {});
+    return engine.compile({ "a.toml": editor.text }, "a.toml", {});
   });
   const limitN = reachN - naturalN;
   assert.ok(!isDraft && high <= limitN && high > limitN - 2e-4, `${high} of ${limitN}`);

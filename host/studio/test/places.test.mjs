@@ -80,7 +80,7 @@ async function changeAll(more) {
       studio.names("scenes/textures/").map(async (name) => [name.slice("scenes/".length), await studio.bytes(name)]),
     ),
   );
-  const check = (text) => studioPage.engine.check({ ...textures, "a.toml": text }, "a.toml", {});
+  const check = (text) => studioPage.engine.compile({ ...textures, "a.toml": text }, "a.toml", {});
   const list = (box) => [box.x, box.y, box.width, box.height];
   const found = [];
   for (const [name, text] of [...gallery, ...Object.entries(more)]) {

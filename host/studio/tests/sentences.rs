@@ -32,6 +32,12 @@ fn the_report_is_that_of_the_command() {
         let answer = check(&request);
         assert_eq!(answer["report"], expected, "{}: {answer}", request.entry);
         assert_eq!(answer["ok"], true);
+        // At once, and without verdicts.
+        let compiled = frixel_studio::compile(&request);
+        for key in ["ok", "isDraft", "problems", "screen", "lowN", "highN", "reachN", "naturalN"] {
+            assert_eq!(compiled[key], answer[key], "{key}");
+        }
+        assert!(compiled["layers"].as_array().unwrap().iter().all(|layer| layer["perceived"].is_null()));
         let layers = answer["layers"].as_array().unwrap();
         assert!(!layers.is_empty() && layers.iter().all(|layer| layer["from"][0].as_u64() > Some(0)), "{answer}");
     }

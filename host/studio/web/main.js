@@ -184,7 +184,6 @@ function showWhatPlays(parts, scene) {
     if (felt !== project.opened) scope.clear();
     felt = project.opened;
     lag.played();
-    if (!compare.isRunning && shown) layers.show(shown.layers, shown);
   };
   layers.onLive = (changes) => {
     const note = byId("map-note");
@@ -212,6 +211,7 @@ function showWhatPlays(parts, scene) {
     board.allowArm(status);
     layers.isSceneLoading = status === "loading";
     showStatus(status);
+    if (status === "loaded" && !compare.isRunning && shown) layers.show(shown.layers, shown);
     if (status === "mistaken" || status === "failed") lag.failed();
     // A blind comparison shows no map. What is loaded has its map once that is drawn.
     if (compare.isRunning || status === "loaded") return;

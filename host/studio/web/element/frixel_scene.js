@@ -132,7 +132,7 @@ class FrixelScene extends HTMLElement {
    */
   #scene;
   /** @type {Checked | undefined} */
-  #check;
+  #reach;
 
   connectedCallback() {
     present.add(this);
@@ -157,7 +157,7 @@ class FrixelScene extends HTMLElement {
     // An engine that ends meanwhile has stopped.
     if (playing === this) this.#parts?.engine.stop().catch(() => {});
     if (playing === this) playing = undefined;
-    this.#parts = this.#samples = this.#scene = this.#check = undefined;
+    this.#parts = this.#samples = this.#scene = this.#reach = undefined;
     this.#root?.replaceChildren();
     // An element that takes the place of this one, or this one in another place, keeps the engine.
     queueMicrotask(endUnused);
@@ -218,7 +218,7 @@ class FrixelScene extends HTMLElement {
   }
 
   /**
-   * Reads the scene, checks it and draws its map.
+   * Reads the scene, compiles it and draws its map.
    * @param {Parts} parts
    */
   async #load(parts) {
@@ -230,21 +230,21 @@ class FrixelScene extends HTMLElement {
       touch: this.getAttribute("touch") ?? undefined,
     };
     const { files, entry } = await this.#read(engine);
-    const check = await engine.check(files, entry, profiles);
-    if (!isPlayable(check)) {
-      const places = check.problems.map(({ file, line, message }) => `${file ?? entry}:${line ?? 1}: ${message}`);
+    const compiled = await engine.compile(files, entry, profiles);
+    if (!isPlayable(compiled)) {
+      const places = compiled.problems.map(({ file, line, message }) => `${file ?? entry}:${line ?? 1}: ${message}`);
       throw new Error(places.join("\n"));
     }
-    const sizePx = mapSizePx(check.screen, MAP_LONG_SIDE_PX);
+    const sizePx = mapSizePx(compiled.screen, MAP_LONG_SIDE_PX);
     const drawn = await engine.map(files, entry, profiles, { ...sizePx, speedMmPerS: 100 });
     // It has left the document, or another scene was given to it meanwhile.
     if (this.#parts !== parts || this.#loads !== load) return;
     this.#scene = [files, entry, profiles];
-    this.#check = check;
-    map.show(drawn, check);
+    this.#reach = compiled;
+    map.show(drawn, compiled);
     this.#line.className = "line fine";
-    this.#line.textContent = check.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;
-    this.dispatchEvent(new CustomEvent("ready", { detail: check }));
+    this.#line.textContent = compiled.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;
+    this.dispatchEvent(new CustomEvent("ready", { detail: compiled }));
     if (playing === this) {
       playing = undefined;
       await this.#play(parts);
@@ -305,7 +305,7 @@ class FrixelScene extends HTMLElement {
    */
   feel(frame) {
     this.#samples?.add(frame);
-    if (this.#check) this.#parts?.finger.feel(frame, this.#check);
+    if (this.#reach) this.#parts?.finger.feel(frame, this.#reach);
     this.dispatchEvent(new CustomEvent("feel", { detail: frame }));
   }
 

@@ -14,6 +14,7 @@ serve({
   },
 
   check: ({ scene }) => checker.call("check", requestOf(scene)),
+  compile: ({ scene }) => checker.call("compile", requestOf(scene)),
   usedFiles: ({ scene }) => checker.call("used_files", requestOf(scene)),
   seeded: ({ scene }) => checker.call("seeded_hash", requestOf(scene)),
 

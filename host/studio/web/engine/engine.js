@@ -172,13 +172,42 @@ export class Engine {
   }
 
   /**
+   * Compiles a scene and judges what is felt of it, which can take seconds: in a worker of its own. Another check ends
+   * it, and so does `endCheck`; it then resolves to undefined.
+   * @param {T.Files} files
+   * @param {string} entry
+   * @param {T.Profiles} profiles
+   * @returns {Promise<T.Check | undefined>}
+   */
+  async check(files, entry, profiles) {
+    this.endCheck();
+    /** @type {WorkerClient<T.FromChecker>} */
+    const judge = new WorkerClient("checker", (message) => this.onFailure(message));
+    const ended = new Promise((resolve) => (this.#endCheck = () => resolve(undefined)));
+    const start = judge.start({ module: this.#module });
+    const judged = start.then(() => judge.ask({ type: "check", scene: { files, entry, ...profiles } }));
+    try {
+      return await Promise.race([judged, ended]);
+    } finally {
+      judge.terminate("the check has ended");
+    }
+  }
+  #endCheck = () => {};
+
+  /** Ends the check under way, if there is one. */
+  endCheck() {
+    this.#endCheck();
+  }
+
+  /**
+   * As `check`, at once and without what is felt.
    * @param {T.Files} files
    * @param {string} entry
    * @param {T.Profiles} profiles
    * @returns {Promise<T.Check>}
    */
-  check(files, entry, profiles) {
-    return this.#checker.ask({ type: "check", scene: { files, entry, ...profiles } });
+  compile(files, entry, profiles) {
+    return this.#checker.ask({ type: "compile", scene: { files, entry, ...profiles } });
   }
 
   /**
@@ -362,6 +391,7 @@ export class Engine {
   close() {
     this.#closed.abort();
     this.#line?.close();
+    this.endCheck();
     for (const worker of [this.#board, this.#host, this.#checker]) worker.terminate();
   }
 }

@@ -49,7 +49,7 @@ export type Layer = {
   kind: string;
   /** A sentence, or "". */
   felt: string;
-  /** Null for a layer that is not felt anywhere. */
+  /** Null for a layer that is not felt anywhere, and before the scene is judged. */
   perceived: Perceived | null;
   isLive: boolean;
   whyNotLive: string;
@@ -144,6 +144,7 @@ export type Questions = {
   /** The time that a test's clock shows. */
   time: { asked: { epochMs: number }; answer: Nothing };
   check: { asked: { scene: Request }; answer: Check };
+  compile: { asked: { scene: Request }; answer: Check };
   usedFiles: { asked: { scene: Request }; answer: { names: string[]; isWhole: boolean } };
   map: { asked: { scene: Request }; answer: FrictionField };
   seeded: { asked: { scene: Request }; answer: { hash: string } };

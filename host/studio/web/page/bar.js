@@ -80,7 +80,7 @@ async function save(scene, project, editor) {
 async function share(engine, project, text) {
   const { name, entry, profiles } = project;
   // The check that is shown may be of an older text.
-  const checking = project.filesFor(text).then((files) => engine.check(files, entry, { ...profiles }));
+  const checking = project.filesFor(text).then((files) => engine.compile(files, entry, { ...profiles }));
   const link = linkOf(name, text, await project.filesForLink(text));
   history.replaceState(null, "", new URL(link).hash);
   const place = await navigator.clipboard.writeText(link).then(

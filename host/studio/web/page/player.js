@@ -130,6 +130,8 @@ export class Player {
     clock.cancel(this.#timer);
     this.#timer = undefined;
     this.#next = text;
+    // What is felt of an older text interests nobody.
+    if (this.#isBusy) this.#engine.endCheck();
     this.#report();
     await this.#playOn();
   }
@@ -183,16 +185,26 @@ export class Player {
     const { entry, profiles, opened } = this.#project;
     /** @type {Parameters<Engine["play"]>} */
     const scene = [files, entry, { ...profiles }];
-    const check = await this.#engine.check(...scene);
-    this.onCheck(check, files);
-    if (!isPlayable(check)) this.#settle("mistaken");
-    else if (this.isHeld) await this.#draw(scene, check, HELD_LONG_SIDE_PX, opened);
-    // A board that was disarmed for another scene gets none but that.
-    else if (!this.#isOutdated && (await this.#load(scene, check))) {
-      this.onPlay(text);
-      this.#settle("loaded");
-      if (this.#next === undefined) await this.#draw(scene, check, MAP_LONG_SIDE_PX, opened);
+    const compiled = await this.#engine.compile(...scene);
+    if (!isPlayable(compiled)) {
+      this.onCheck(compiled, files);
+      this.#settle("mistaken");
+      return;
     }
+    if (this.isHeld) await this.#draw(scene, compiled, HELD_LONG_SIDE_PX, opened);
+    // The board plays while a worker judges what is felt.
+    const judging = this.#engine.check(...scene);
+    // A load that fails comes first.
+    judging.catch(() => {});
+    // A board that was disarmed for another scene gets none but that.
+    const isLoaded = !this.#isOutdated && (await this.#load(scene, compiled));
+    if (isLoaded) this.onPlay(text);
+    const check = await judging;
+    if (!check || !isPlayable(check)) return;
+    this.onCheck(check, files);
+    if (!isLoaded) return;
+    this.#settle("loaded");
+    if (this.#next === undefined) await this.#draw(scene, check, MAP_LONG_SIDE_PX, opened);
   }
 
   /**

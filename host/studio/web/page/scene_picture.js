@@ -18,7 +18,7 @@ import { mapSizePx } from "./map.js";
 export async function drawScene(engine, text, canvas, longSidePx) {
   const entry = "offered.toml";
   const files = { ...(await carriedFiles()), [entry]: text };
-  const check = await engine.check(files, entry, {});
+  const check = await engine.compile(files, entry, {});
   if (!("screen" in check)) throw new Error(check.problems.map(({ message }) => message).join("\n"));
   const size = mapSizePx(check.screen, longSidePx);
   Object.assign(canvas, { width: size.widthPx, height: size.heightPx });
