@@ -7,7 +7,7 @@ use cortex_m_semihosting::{debug, hprintln, nr, syscall1};
 /// Room for the emulator's command line.
 pub(crate) const COMMAND_LINE_MAX_LEN: usize = 256;
 
-/// Returns the command line of the image, or an empty text if there is none.
+/// Returns the command line of the image, which may be empty.
 pub(crate) fn command_line(buffer: &mut [u8; COMMAND_LINE_MAX_LEN]) -> &[u8] {
     let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
     // SAFETY: the block is a pointer and the length behind it, as `SYS_GET_CMDLINE` of the semihosting specification

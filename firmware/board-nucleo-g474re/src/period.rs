@@ -53,6 +53,14 @@ impl hardware::Period for Period {
     }
 }
 
+impl Period {
+    /// Waits for the start of the next period. For programs without a tick.
+    pub fn wait_for_next(&mut self) {
+        let _ = hardware::Period::has_begun(self);
+        while !hardware::Period::has_begun(self) {}
+    }
+}
+
 /// Starts the timer, with SYNC high and without interrupts.
 pub fn start(_: &Boot) -> Period {
     TIM3.arr().write(|w| w.set_arr((PERIOD_CYCLES - 1) as u16));

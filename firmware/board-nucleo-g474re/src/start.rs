@@ -8,7 +8,7 @@ use crate::output::Output;
 use crate::period::Period;
 use crate::{clock, fault, output, period};
 
-/// What has started: the output is zero, and nothing drives the DAC.
+/// Parts of a board that has started: the output is zero, and nothing drives the DAC.
 pub struct Started {
     /// For the other parts of the tick.
     pub boot: Boot,

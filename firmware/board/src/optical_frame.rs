@@ -92,7 +92,7 @@ pub async fn read<B: I2c, R: InputPin, D: DelayNs>(
 /// Time in ticks. As a delay, it is as long as asked for, and up to two ticks longer.
 #[derive(Clone, Copy)]
 pub struct TickTime {
-    /// What counts the ticks.
+    /// The counter of ticks.
     pub shared: &'static TickShared,
     /// Ticks a second.
     pub tick_hz: u32,
@@ -148,8 +148,8 @@ pub trait I2cPort {
         true
     }
 
-    /// Begins to transfer the bytes of an operation, 1 to [`MESSAGE_MAX_LEN`]. Flags of an earlier transfer must not end
-    /// this one.
+    /// Begins to transfer the bytes of an operation, 1 to [`MESSAGE_MAX_LEN`]. Flags of an earlier transfer must not
+    /// end this one.
     fn begin(&mut self, address: u8, operation: &Operation<'_>);
 
     /// Continues the transfer, and returns its result once it has ended. All bytes that were read are in the operation
@@ -187,8 +187,8 @@ impl i2c::Error for BusError {
     }
 }
 
-/// The bus of the frame, over a board's peripheral: one transfer in a transaction, within a time limit, on a bus that is
-/// cleared before if a transfer was cut off.
+/// The bus of the frame, over a board's peripheral. A transaction is one transfer within a time limit. Before it, the
+/// bus is cleared if a transfer was cut off.
 pub struct FrameBus<P> {
     port: P,
     time: TickTime,

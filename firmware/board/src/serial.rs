@@ -23,7 +23,7 @@ pub trait Uart {
     /// Whether [`Self::send`] takes a byte.
     fn takes_bytes(&self) -> bool;
 
-    /// Begins to send bytes, without waiting, and returns the number of those that were taken.
+    /// Begins to send bytes and returns how many were taken, without waiting.
     fn send(&mut self, bytes: &[u8]) -> usize;
 
     /// Whether everything has been sent.

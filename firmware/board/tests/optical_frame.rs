@@ -65,7 +65,7 @@ fn a_frame_that_does_not_answer_is_asked_again_after_a_tenth_of_a_second() {
     assert_eq!(errors.get(), 3, "each is said after its pause");
 }
 
-/// What a port was told.
+/// Calls of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Told {
     TakeClock,

@@ -62,8 +62,8 @@ impl<const LEN: usize> RingReader<LEN> {
 pub struct InterruptRing<const LEN: usize> {
     /// The bytes.
     pub bytes: [AtomicU8; LEN],
-    /// Where the next byte goes. Only the interrupt writes it. It counts from zero, so that the initial value of a static
-    /// is all zeros, which takes no flash.
+    /// Place of the next byte. Only the interrupt writes it. It counts from zero, so that a static is all zeros at first,
+    /// which takes no flash.
     next: AtomicUsize,
 }
 
@@ -108,7 +108,7 @@ mod tests {
         assert_eq!(reader.take(7, LEN), 0..1);
     }
 
-    /// What an interrupt stores is read in order, over the end of the ring, and into a place that is shorter.
+    /// Also over the end of the ring, and into a buffer that is shorter than what has arrived.
     #[test]
     fn bytes_of_an_interrupt_are_read_in_order() {
         const LEN: usize = 8;

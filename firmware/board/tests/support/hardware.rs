@@ -48,7 +48,7 @@ pub(crate) struct Wires {
     pub(crate) light: Cell<bool>,
     /// What the DAC answers when it is read back.
     pub(crate) dac: Cell<Result<(), u32>>,
-    /// What the serial port answers.
+    /// Result of the serial port's calls.
     pub(crate) port: Cell<Result<(), ErrorKind>>,
     pub(crate) received: RefCell<Vec<u8>>,
     pub(crate) transmitted: RefCell<Vec<u8>>,

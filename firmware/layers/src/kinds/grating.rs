@@ -13,8 +13,8 @@ use crate::region::ActiveRegion;
 use crate::wave::{CentredWave, Phase, Wave};
 
 parameters! {
-    /// Stripes: `trough + (crest - trough) w(kx x + ky y + phase - drift t)`, with `w` between 0 and 1 and one period a
-    /// turn, and the time `t` since power-on.
+    /// Stripes: `trough + (crest - trough) w(kx x + ky y + phase - drift t)` at the time `t` since power-on, with `w`
+    /// between 0 and 1 and one period a turn.
     pub struct Grating {
         /// Shape of the stripes.
         wave: Wave = 44,

@@ -1,4 +1,5 @@
-//! Rings around a middle: `trough + (crest - trough) w(k d - drift t)` at the distance `d`, with the wave `w` from 0 to 1.
+//! Rings around a middle: `trough + (crest - trough) w(k d - drift t)` at the distance `d`, with the wave `w` from 0 to
+//! 1.
 
 use frixel_wire::message::Refusal;
 
@@ -14,8 +15,8 @@ use crate::square_root::square_root;
 use crate::wave::{CentredWave, Phase, Wave};
 
 parameters! {
-    /// Rings: `trough + (crest - trough) w(k d - drift t)` at the distance `d` from the middle, with `w` between 0 and 1
-    /// and one period a turn, and the time `t` since power-on.
+    /// Rings: `trough + (crest - trough) w(k d - drift t)` at the distance `d` from the middle and the time `t` since
+    /// power-on, with `w` between 0 and 1 and one period a turn.
     pub struct Rings {
         /// Shape of the rings, from the middle outwards.
         wave: Wave = 44,

@@ -11,7 +11,7 @@ use board_nucleo_g474re::pins::Pin;
 use board_nucleo_g474re::{tick, watchdog};
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{Sync, TestOutput};
-use frixel_board::hardware::{DacFrames as _, Period as _};
+use frixel_board::hardware::DacFrames as _;
 use frixel_cortex_m::Boot;
 use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_wire::dac_code::DacCode;
@@ -42,8 +42,7 @@ impl Still {
     /// Waits for the next period, and puts `output` out at its end; zero as long as the amplifier is ready.
     pub(crate) fn next_period(&mut self, output: TestOutput) {
         watchdog::feed();
-        let _ = self.period.has_begun();
-        while !self.period.has_begun() {}
+        self.period.wait_for_next();
         match output {
             _ if tick::inputs().0 => self.output.disable(),
             TestOutput::Dac(volts) if self.frames.send(code(volts)).is_ok() => self.output.kick_dac_alone(),
@@ -66,8 +65,7 @@ impl Still {
     /// Sets the output to zero. The last frame has been latched before, so that CLEAR comes after it.
     pub(crate) fn zero(&mut self) {
         for _ in 0..2 {
-            let _ = self.period.has_begun();
-            while !self.period.has_begun() {}
+            self.period.wait_for_next();
         }
         self.output.disable();
     }

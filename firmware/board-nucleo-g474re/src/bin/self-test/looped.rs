@@ -10,7 +10,7 @@ use board_nucleo_g474re::dac::{DacBus, Frames};
 use board_nucleo_g474re::output::{LIFE_US, Output};
 use board_nucleo_g474re::period::{LATCH_CYCLES, Period};
 use board_nucleo_g474re::{tick, watchdog};
-use frixel_board::hardware::{DacFrames as _, Period as _};
+use frixel_board::hardware::DacFrames as _;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
@@ -65,8 +65,7 @@ impl Still {
 
     fn next_period(&mut self) {
         watchdog::feed();
-        let _ = self.period.has_begun();
-        while !self.period.has_begun() {}
+        self.period.wait_for_next();
     }
 }
 
