@@ -1,6 +1,7 @@
 //! `cargo xtask ci`: the checks that must pass, beside `cargo test`, before a change is merged.
 
 use std::fs;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use crate::bench::programs::{self, Pace};
@@ -95,8 +96,15 @@ fn lints() -> Result<(), String> {
 
 /// The tests that `cargo test` leaves out and that need no other program.
 fn tests() -> Result<(), String> {
-    let packages = BESIDE_DEFAULT.iter().flat_map(|package| ["--package", package]);
-    cargo("tests", ".", &["test", "--locked"].into_iter().chain(packages).collect::<Vec<_>>(), &[])
+    run("tests", &mut beside_default("test"))
+}
+
+/// This command of cargo for the packages beside the default ones: with their features, so that nothing is compiled
+/// once more than for [`tests`].
+pub(crate) fn beside_default(command: &str) -> Command {
+    let mut cargo = cargo_in(".");
+    cargo.args([command, "--locked"]).args(BESIDE_DEFAULT.iter().flat_map(|package| ["--package", package]));
+    cargo
 }
 
 /// The test programs named `emulated`, which plain `cargo test` leaves out.

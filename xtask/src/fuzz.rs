@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use std::time::Duration;
 
+use crate::ci;
 use crate::command::{cargo_in, root, run, target_folder, text_of};
 
 const TARGETS: [&str; 6] = ["scene_text", "scene_bytes", "scene_load", "parquet", "scenario", "plan"];
@@ -20,8 +21,7 @@ const PROFILE: &str = "fuzz";
 /// Runs every target for this time, all at once. Inputs that are worth starting from the next time are kept in
 /// `target/fuzz`.
 pub(crate) fn run_for(time: Duration) -> Result<(), String> {
-    // With the features of the whole workspace, as the tests are built: nothing is compiled twice.
-    run("seeds", cargo_in(".").args(["build", "--locked", "--workspace", "--bin", "seeds"]))?;
+    run("seeds", ci::beside_default("build").args(["--bin", "seeds"]))?;
     let folder = target_folder().join("fuzz");
     let host = text_of(Command::new("rustc").args(["--print", "host-tuple"]))?;
     let mut build = cargo_in(".");

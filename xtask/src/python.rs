@@ -42,8 +42,8 @@ pub(crate) fn check() -> Result<(), String> {
     run("installation", in_environment("pip").args(install).args(["--no-index", "--no-deps"]).arg(wheel))?;
     run("types", in_environment("mypy").args(["--package", "frixel"]))?;
     run("types of tests", in_environment("mypy").args(["tests", "examples"]))?;
-    // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
-    run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--workspace", "--bin", "frixel"]))?;
+    // With the features of `cargo test`, which has built it.
+    run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--bin", "frixel"]))?;
     let frixel = absolute(&target_folder().join("debug/frixel"))?;
     studio_tests::install(&studio_tests::folder())?;
     let mut tests = in_environment("pytest");

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
 use crate::needs::{self, Need};
-use crate::{pico_rig, studio};
+use crate::{ci, pico_rig, studio};
 
 /// What types and lints need.
 pub(crate) const SCRIPT_NEEDS: [Need; 2] = [Need::Node, Need::Npm];
@@ -38,7 +38,7 @@ pub(crate) fn check_scripts() -> Result<(), String> {
 /// Builds the page, and runs the tests in it that need no command: they are not told where it is.
 pub(crate) fn run_page() -> Result<(), String> {
     let tests: Vec<String> = tests()?.into_iter().filter(|name| name != COMMAND_TESTS).collect();
-    let mut runner = runner(&["--example", HASHES])?;
+    let mut runner = runner(&[HASHES])?;
     let hashes = target_folder().join("studio/hashes.json");
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
     fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
@@ -48,7 +48,8 @@ pub(crate) fn run_page() -> Result<(), String> {
 
 /// Builds the page and the command, and runs the tests in which one meets the other.
 pub(crate) fn run_beside_command() -> Result<(), String> {
-    let mut runner = runner(&["--bin", "frixel"])?;
+    run("command", cargo_in(".").args(["build", "--locked", "--bin", "frixel"]))?;
+    let mut runner = runner(&[])?;
     run("studio beside the command", runner.env("FRIXEL", built("frixel")?).arg(COMMAND_TESTS))
 }
 
@@ -81,12 +82,11 @@ pub(crate) fn take_shots() -> Result<(), String> {
     run("pictures of the studio", node.current_dir(&folder).arg(SHOTS).env("STUDIO_PAGE", page))
 }
 
-/// The runner of tests, with the page and the virtual board that says it is real. Builds these programs, too.
-fn runner(programs: &[&str]) -> Result<Command, String> {
+/// The runner of tests, with the page and the virtual board that says it is real. Builds these and further examples.
+fn runner(examples: &[&str]) -> Result<Command, String> {
     let page = studio::build()?;
-    // With the features of the whole workspace, as the other tests are built: nothing is compiled twice.
-    let native = ["build", "--locked", "--workspace", "--example", REAL_BOARD];
-    run("programs", cargo_in(".").args(native).args(programs))?;
+    let names = [REAL_BOARD].iter().chain(examples).flat_map(|name| ["--example", name]);
+    run("examples", ci::beside_default("build").args(names))?;
     let folder = folder();
     install(&folder)?;
     let mut node = Command::new("node");

@@ -26,9 +26,15 @@ function boot(packed, entry, folder) {
   /** @param {string} name */
   async function bytes(name) {
     if (!(name in packed)) return fetched(name);
-    const zipped = Uint8Array.from(atob(packed[name]), (character) => character.charCodeAt(0));
-    const stream = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
+    const characters = atob(packed[name]);
+    // `Uint8Array.from` takes half a second for the engine.
+    const zipped = new Uint8Array(characters.length);
+    for (let at = 0; at < zipped.length; at += 1) zipped[at] = characters.charCodeAt(at);
+    const unpacking = new DecompressionStream("gzip");
+    const unpacked = new Response(unpacking.readable).arrayBuffer();
+    const writer = unpacking.writable.getWriter();
+    await Promise.all([writer.write(zipped), writer.close()]);
+    return new Uint8Array(await unpacked);
   }
 
   /** @param {string} name */
