@@ -44,6 +44,12 @@ export class Engine {
   /** @type {WorkerClient<T.FromChecker>} */
   #checker;
   /**
+   * The worker of checks, from the first one on, and its start.
+   * @type {{ worker: WorkerClient<T.FromChecker>, start: Promise<void> } | undefined}
+   */
+  #judge;
+  #endCheck = () => {};
+  /**
    * The line to the board outside of the page, if there is one.
    * @type {T.Line | null}
    */
@@ -179,24 +185,32 @@ export class Engine {
    * @param {T.Profiles} profiles
    * @returns {Promise<T.Check | undefined>}
    */
-  async check(files, entry, profiles) {
+  check(files, entry, profiles) {
     this.endCheck();
-    /** @type {WorkerClient<T.FromChecker>} */
-    const judge = new WorkerClient("checker", (message) => this.onFailure(message));
-    const ended = new Promise((resolve) => (this.#endCheck = () => resolve(undefined)));
-    const start = judge.start({ module: this.#module });
-    const judged = start.then(() => judge.ask({ type: "check", scene: { files, entry, ...profiles } }));
-    try {
-      return await Promise.race([judged, ended]);
-    } finally {
-      judge.terminate("the check has ended");
-    }
+    this.#judge ??= this.#newJudge();
+    const { worker, start } = this.#judge;
+    return new Promise((resolve, reject) => {
+      let isUnderWay = true;
+      this.#endCheck = () => {
+        if (!isUnderWay) return;
+        worker.terminate("the check was ended");
+        this.#judge = undefined;
+        resolve(undefined);
+      };
+      const judged = start.then(() => worker.ask({ type: "check", scene: { files, entry, ...profiles } }));
+      judged.finally(() => (isUnderWay = false)).then(resolve, reject);
+    });
   }
-  #endCheck = () => {};
 
   /** Ends the check under way, if there is one. */
   endCheck() {
     this.#endCheck();
+  }
+
+  #newJudge() {
+    /** @type {WorkerClient<T.FromChecker>} */
+    const worker = new WorkerClient("checker", (message) => this.onFailure(message));
+    return { worker, start: worker.start({ module: this.#module }) };
   }
 
   /**
@@ -392,7 +406,7 @@ export class Engine {
     this.#closed.abort();
     this.#line?.close();
     this.endCheck();
-    for (const worker of [this.#board, this.#host, this.#checker]) worker.terminate();
+    for (const worker of [this.#board, this.#host, this.#checker, this.#judge?.worker]) worker?.terminate();
   }
 }
 

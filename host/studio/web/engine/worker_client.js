@@ -47,6 +47,7 @@ export class WorkerClient {
     const name = this.#name;
     // One classic script: from a file, a browser starts no worker that imports modules.
     const source = await Promise.all(SCRIPTS[name].map((script) => studio.text(`engine/${script}`)));
+    if (this.#whyEnded !== undefined) throw new Error(this.#whyEnded);
     const url = URL.createObjectURL(new Blob([source.join("\n")], { type: "text/javascript" }));
     const worker = new Worker(url, { name });
     this.#worker = worker;

@@ -191,18 +191,22 @@ export class Player {
       this.#settle("mistaken");
       return;
     }
-    if (this.isHeld) await this.#draw(scene, compiled, HELD_LONG_SIDE_PX, opened);
+    const { isHeld } = this;
+    if (isHeld) await this.#draw(scene, compiled, HELD_LONG_SIDE_PX, opened);
+    // A board that was disarmed for another scene gets none but that.
+    if (isHeld ? this.#next !== undefined : this.#isOutdated) return;
     // The board plays while a worker judges what is felt.
     const judging = this.#engine.check(...scene);
-    // A load that fails comes first.
+    // A load that fails is what a person is told.
     judging.catch(() => {});
-    // A board that was disarmed for another scene gets none but that.
-    const isLoaded = !this.#isOutdated && (await this.#load(scene, compiled));
-    if (isLoaded) this.onPlay(text);
+    if (!isHeld) {
+      if (!(await this.#load(scene, compiled))) return;
+      this.onPlay(text);
+    }
     const check = await judging;
     if (!check || !isPlayable(check)) return;
     this.onCheck(check, files);
-    if (!isLoaded) return;
+    if (isHeld) return;
     this.#settle("loaded");
     if (this.#next === undefined) await this.#draw(scene, check, MAP_LONG_SIDE_PX, opened);
   }
