@@ -34,8 +34,8 @@ mod stages {
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World};
     use frixel_lab::default_stroke::default_stroke;
-    use frixel_lab::simulation::{SimStream, Simulation, simulate_through_finger};
     use frixel_play::Player;
+    use frixel_play::{SimStream, Simulation, TO_THE_END, simulate};
     use frixel_scene::{Program, compile};
     use frixel_wire::dac_code::DacCode;
     use rustix::time::{ClockId, clock_gettime};
@@ -148,8 +148,9 @@ mod stages {
         fn recorded(&self) -> Outcome<()> {
             let ticks_per_row = self.rig.board.tick_hz / 1000;
             let (rig, stroke, seconds) = (self.rig, self.stroke.clone(), self.seconds);
-            let simulation = Simulation { rig, stroke, seconds, seed: SEED, ticks_per_row };
-            black_box(simulate_through_finger(&self.program, &simulation, None)?);
+            let simulation =
+                Simulation { rig, stroke, seconds, seed: SEED, ticks_per_row, own_finger: None, through_finger: true };
+            black_box(simulate(&self.program, &simulation, None, TO_THE_END)?);
             Ok(())
         }
     }

@@ -1,13 +1,12 @@
 //! `frixel scene check` and `frixel score` judge with one judge: for the same finger, source and seed they agree.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use frixel::scene_file;
 use frixel_felt::judge::{Advice, LayerVerdict, Verdict};
 use frixel_hil_sim::{Board, RigConfig, TouchConfig};
-use frixel_play::{judge, judged_rig};
+use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::compile;
 use serde_json::Value;
 
@@ -18,7 +17,7 @@ fn checked(path: &Path) -> Vec<LayerVerdict> {
     let rig = RigConfig::default();
     let program = compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz).unwrap();
     let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-    judge(&program, &rig, None, Advice::Omitted, &|| ControlFlow::Continue(())).unwrap().layers
+    judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap().layers
 }
 
 /// The score of the scene's own finger has the verdicts of the check.

@@ -9,7 +9,7 @@ use std::path::Path;
 use frixel::scene_file;
 use frixel_felt::metrics::MetricsSummary;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_lab::simulation::{Simulated, Simulation, simulate};
+use frixel_play::{Simulated, Simulation, TO_THE_END, simulate};
 use frixel_scene::{Program, compile};
 
 const START: Point = Point { x_m: 0.004, y_m: 0.03 };
@@ -44,7 +44,9 @@ fn minimum_jerk() -> Stroke {
 
 fn play(program: &Program, rig: &RigConfig, stroke: Stroke, seed: u64) -> Simulated {
     let seconds = stroke.duration_s();
-    simulate(program, &Simulation { rig: *rig, stroke, seconds, seed, ticks_per_row: 1 }, None).unwrap()
+    let simulation =
+        Simulation { rig: *rig, stroke, seconds, seed, ticks_per_row: 1, own_finger: None, through_finger: false };
+    simulate(program, &simulation, None, TO_THE_END).unwrap()
 }
 
 fn errors(prediction: bool, stroke: Stroke, seed: u64) -> MetricsSummary {

@@ -12,6 +12,7 @@ use std::ops::RangeInclusive;
 use frixel_felt::fidelity::{Fidelity, FidelityMean, FidelitySample, Goal, SAMPLE_HZ};
 use frixel_hil_sim::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, RigConfig, Stroke, TouchConfig};
 use frixel_lab::score::Trial;
+use frixel_play::TO_THE_END;
 use frixel_scene::{Program, Scene, compile};
 
 const SECONDS: f64 = 8.5;
@@ -72,7 +73,7 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
 fn record(rig: &RigConfig, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
     let stroke = hand(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
     let trial = Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None };
-    trial.play(program, rig).unwrap()
+    trial.play(program, rig, TO_THE_END).unwrap()
 }
 
 fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> FidelityMean {

@@ -13,8 +13,8 @@ use frixel_felt::judge::{weber_steps, weber_steps_safe};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
 use frixel_lab::default_stroke::default_stroke;
-use frixel_lab::simulation::{Simulation, simulate};
 use frixel_layers::{Header, Scene as WireScene};
+use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::reference::{Context, Reference, direction_of};
 use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};
 use frixel_testkit::golden;
@@ -76,8 +76,17 @@ impl Entry {
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("under the {finger} finger: {error}"));
         let stroke = default_stroke(&program, None).unwrap();
-        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
-        let simulated = simulate(&program, &simulation, None).unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        let simulation = Simulation {
+            rig,
+            seconds: stroke.duration_s(),
+            stroke,
+            seed: 1,
+            ticks_per_row: 40,
+            own_finger: None,
+            through_finger: false,
+        };
+        let simulated =
+            simulate(&program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{}: {error}", self.name));
         let sliding = simulated.recorder.rows().iter().filter(|row| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
         let mut wanted_n: Vec<f64> = sliding.filter_map(|row| row.wanted_n).collect();
         wanted_n.sort_by(f64::total_cmp);
@@ -128,8 +137,17 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
         let rig = RigConfig::default();
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::sweep(width_m, height_m, 2.0).unwrap();
-        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40 };
-        let simulated = simulate(program, &simulation, None).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let simulation = Simulation {
+            rig,
+            seconds: stroke.duration_s(),
+            stroke,
+            seed: 1,
+            ticks_per_row: 40,
+            own_finger: None,
+            through_finger: false,
+        };
+        let simulated =
+            simulate(program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{name}: {error}"));
         let rows = simulated.recorder.rows();
         let felt =
             rows.iter().filter_map(|row| row.felt_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0)));
@@ -173,10 +191,19 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
         cut += 1;
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::sweep(width_m, height_m, 1.0).unwrap();
-        let simulation = Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10 };
+        let simulation = Simulation {
+            rig,
+            seconds: stroke.duration_s(),
+            stroke,
+            seed: 1,
+            ticks_per_row: 10,
+            own_finger: None,
+            through_finger: false,
+        };
         let whole = Program { header: Header { electric_friction_max_n: None, ..program.header }, ..program.clone() };
         let [with_cut, without] = [program, &whole].map(|program| {
-            let simulated = simulate(program, &simulation, None).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let simulated =
+                simulate(program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{name}: {error}"));
             simulated.recorder.rows().to_vec()
         });
         assert!(program.header.electric_friction_max_n.is_some() && with_cut == without, "{name}");

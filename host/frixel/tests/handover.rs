@@ -8,7 +8,7 @@ use frixel::scene_file;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-use frixel_lab::simulation::SimStream;
+use frixel_play::SimStream;
 use frixel_scene::compile;
 use frixel_wire::fault::State;
 

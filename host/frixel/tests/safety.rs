@@ -3,7 +3,6 @@
 
 use std::fmt::Write;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
@@ -11,7 +10,7 @@ use frixel::scene_file::SceneFolder;
 use frixel_felt::judge::{Advice, Verdict, weber_steps};
 use frixel_hil_sim::{Board, TouchConfig};
 use frixel_model::TouchBound;
-use frixel_play::{judge, judged_rig};
+use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::{FingerProfile, Program, Scene, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
@@ -213,7 +212,7 @@ fn gallery() -> String {
         let cells = drives.each_ref().map(|drive| {
             let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
             let program = draft(&scene, "example", drive);
-            let judgement = judge(&program, &rig, None, Advice::Omitted, &|| ControlFlow::Continue(())).unwrap();
+            let judgement = judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap();
             let count = |verdict| judgement.layers.iter().filter(|layer| layer.verdict == verdict).count();
             let counts = [
                 (Verdict::Felt, "felt"),

@@ -8,6 +8,7 @@ use std::process::Command;
 use frixel::scene_file;
 use frixel_hil_sim::{RigConfig, Stroke};
 use frixel_lab::score::{Score, Trial};
+use frixel_play::TO_THE_END;
 use frixel_scene::{Program, Scene, compile};
 use serde_json::Value;
 
@@ -28,7 +29,7 @@ fn mean(program: &Program, key: &str) -> f64 {
             Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None }
         })
         .collect();
-    let score = Score::of(program, &RigConfig::default(), &trials).unwrap();
+    let score = Score::of(program, &RigConfig::default(), &trials, TO_THE_END).unwrap();
     score.metrics.iter().find(|metric| metric.key == key).unwrap().mean
 }
 
@@ -51,7 +52,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
     let trial = Trial { stroke_name: "human 1".to_owned(), stroke: stroke.into(), seed: 1, finger: None };
     let rig = RigConfig { world: rig.world.realistic(), ..rig };
-    let score = Score::of(&program, &rig, &[trial]).unwrap();
+    let score = Score::of(&program, &rig, &[trial], TO_THE_END).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
     assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }

@@ -15,8 +15,8 @@ use std::time::Duration;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
-use frixel_lab::simulation::SimStream;
 use frixel_play::Player;
+use frixel_play::SimStream;
 use frixel_scene::{Scene, compile};
 
 const SCENE: &str = r#"

@@ -12,7 +12,7 @@ use std::{env, fs};
 
 use frixel_hil_sim::RigConfig;
 use frixel_lab::default_stroke::default_stroke;
-use frixel_lab::simulation::{Simulation, simulate_through_finger};
+use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{FileUnavailable, Files, Scene, compile};
 
 /// The pictures and profiles that a scene names, in its folder.
@@ -47,7 +47,9 @@ fn play() -> Result<(), Box<dyn Error>> {
     let stroke = default_stroke(&program, None)?;
     let seconds = stroke.duration_s();
     let ticks_per_row = rig.board.tick_hz / 1000;
-    let played = simulate_through_finger(&program, &Simulation { rig, stroke, seconds, seed: 1, ticks_per_row }, None)?;
+    let simulation =
+        Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, own_finger: None, through_finger: true };
+    let played = simulate(&program, &simulation, None, TO_THE_END)?;
 
     let rows = played.recorder.rows();
     let felt_n: Vec<f64> = rows.iter().filter_map(|row| row.felt_n).collect();

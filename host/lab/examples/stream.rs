@@ -15,8 +15,8 @@ use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_lab::simulation::{Simulation, simulate};
 use frixel_play::Feed;
+use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{Scene, compile};
 
 const SCENE: &str = "version = 1\n[[layer]]\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = 0.1\n";
@@ -48,8 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         Ok(count.get() < SAMPLES)
     });
-    let simulation = Simulation { rig, stroke, seconds, seed: 1, ticks_per_row };
-    let played = simulate(&program, &simulation, Some(feed))?;
+    let simulation =
+        Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, own_finger: None, through_finger: false };
+    let played = simulate(&program, &simulation, Some(feed), TO_THE_END)?;
 
     let status = played.stream.ok_or("nothing was streamed")?;
     println!("the closure gave {} samples, the board took {}", given.get(), status.sent);

@@ -11,7 +11,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use frixel_hil_sim::{Point, RigConfig, Stroke, TouchConfig};
-use frixel_lab::simulation::{Simulation, simulate};
+use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{Scene, compile};
 
 const SCENE: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\nlow_n = 0.0\nhigh_n = 0.1\n";
@@ -36,8 +36,9 @@ fn error_mn(touch: TouchConfig) -> Result<f64, Box<dyn Error>> {
     let scene = Scene::parse(SCENE, "grating.toml", &BTreeMap::<String, Vec<u8>>::new())?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let (stroke, ticks_per_row) = (Stroke::through(&places())?, rig.board.tick_hz / 1000);
-    let simulation = Simulation { rig, stroke, seconds: SECONDS, seed: 1, ticks_per_row };
-    let error = simulate(&program, &simulation, None)?.recorder.summary().friction_error;
+    let simulation =
+        Simulation { rig, stroke, seconds: SECONDS, seed: 1, ticks_per_row, own_finger: None, through_finger: false };
+    let error = simulate(&program, &simulation, None, TO_THE_END)?.recorder.summary().friction_error;
     Ok(1e3 * error.ok_or("the finger was never down")?.rms_n)
 }
 

@@ -3,7 +3,7 @@
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.
 //! - [`default_stroke`]: the stroke of a play that names none.
-//! - [`simulation`]: a play on a simulated board under a simulated finger, in virtual time.
+//! - [`board_costs`]: memory, table and line bytes that a board needs for a scene.
 //! - [`scenario`]: what happens to a board while a scene plays, on any rig, and what has to be seen of it.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
@@ -24,10 +24,12 @@ pub mod hash;
 pub mod input;
 pub mod model_csv;
 pub mod recording;
+mod rehearsal;
 pub mod scenario;
 pub mod score;
-pub mod simulation;
 mod statistics;
 pub mod stroke_file;
 pub mod sweep;
 pub mod table;
+
+pub use rehearsal::{RehearsalError, board_costs};

@@ -9,7 +9,8 @@
 //! - [`LiveLayers`]: the settings of the layers while they play.
 //! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
 //! - [`SimStream`]: the line to the simulated board in this process.
-//! - [`judge`]: judges a program by strokes that a simulated board plays.
+//! - [`simulate`]: plays a program on that board under a simulated finger, in virtual time.
+//! - [`judge`]: judges a program by strokes that are simulated so.
 //! - [`Recorded`]: a link with a record of what the board plays.
 //!
 //! The crate opens no file, reads no clock and starts no thread: time is the link's clock. It compiles for
@@ -24,15 +25,17 @@ mod live_layers;
 mod player;
 mod recorded;
 mod sim_stream;
+mod simulation;
 mod trigger;
 mod upload;
 
 pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
-pub use judged::{SimulationError, judge, judged_rig};
+pub use judged::{judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced};
 pub use recorded::Recorded;
 pub use sim_stream::SimStream;
+pub use simulation::{GoesOn, SimPlayer, Simulated, Simulation, SimulationError, TO_THE_END, simulate, simulate_by};
 pub use upload::{load, start};

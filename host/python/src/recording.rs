@@ -154,7 +154,7 @@ pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str)
 pub(crate) fn replay(py: Python<'_>, recording: Vec<u8>, name: &str) -> PyResult<usize> {
     let replayed = interruptible(py, |goes_on| {
         let recorded = Recording::read_parquet(recording).map_err(|error| format!(": {error}"))?;
-        let played = recorded.replay(&mut || goes_on());
+        let played = recorded.replay(goes_on);
         let played = played.map_err(|error| format!(" cannot be played again: {error}"))?;
         match recorded.first_difference(&played) {
             None => Ok(recorded.rows()),

@@ -4,16 +4,15 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::Advice;
 use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_lab::board_costs;
 use frixel_lab::input::{is_same_name, read_named};
-use frixel_lab::simulation::board_costs;
-use frixel_play::{judge, judged_rig};
+use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -137,8 +136,7 @@ impl Scene {
         let program = program.map_err(|error| scene_error(py, &error))?;
         let json = py.detach(|| {
             let costs = board_costs(&program, &rig).map_err(|error| error.to_string())?;
-            let goes_on = || ControlFlow::Continue(());
-            let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, &goes_on);
+            let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, TO_THE_END);
             let judgement = judgement.map_err(|error| error.to_string())?;
             let check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
             Ok((if with_board { check.with_board(&program, rig.board.kind) } else { check }).to_json())

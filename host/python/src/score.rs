@@ -82,8 +82,8 @@ pub(crate) fn score_scene(
     let pool = ThreadPoolBuilder::new().num_threads(settings.jobs).build();
     let pool = pool.map_err(|error| failed(format!("the threads of `jobs` cannot start ({error}): give fewer")))?;
     let scored = interruptible(py, |goes_on| {
-        let trials = plan.of_people_while(settings.people, scene.parsed(), &program, settings.ideal, goes_on)?;
-        Ok(pool.install(|| Score::of_while(&program, &rig, &trials, goes_on)))
+        let trials = plan.of_people(settings.people, scene.parsed(), &program, settings.ideal, goes_on)?;
+        Ok(pool.install(|| Score::of(&program, &rig, &trials, goes_on)))
     })?;
     let scored = scored.map_err(|error| match error {
         TrialsError::Screen(error) => scene_error(py, &error),

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
 use frixel_lab::recording::{
-    Metadata, PlayOptions, PreparedPlay, PreparedPlayError, SourceFile, StrokeOptions, play_fields, play_values,
+    Metadata, PlayOptions, PlayOptionsError, SourceFile, StrokeOptions, play_fields, play_values,
 };
-use frixel_lab::simulation::{Simulated, Simulation};
 use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
+use frixel_play::{Simulated, Simulation};
 use frixel_scene::Program;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -111,7 +111,7 @@ struct Play<'s> {
     options: PlayOptions,
     /// Texts of finger, screen, touch source and stroke.
     files: BTreeMap<String, String>,
-    prepared: PreparedPlay,
+    simulation: Simulation,
 }
 
 impl Settings<'_> {
@@ -129,20 +129,19 @@ impl Settings<'_> {
         let stroke = stroke.map_err(|error| parameter_error(py, error))?.flatten();
         let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
         let options = self.options(scene, seconds);
-        let prepared = PreparedPlay::new(&options, scene.parsed(), program, stroke, touch);
-        let prepared = prepared.map_err(|error| match error {
-            PreparedPlayError::Screen(error) => scene_error(py, &error),
+        let simulation = options.simulation(scene.parsed(), program, (stroke, touch), RigConfig::default());
+        let simulation = simulation.map_err(|error| match error {
+            PlayOptionsError::Screen(error) => scene_error(py, &error),
             error => parameter_error(py, error),
         })?;
-        let Simulation { stroke, seconds, .. } = &prepared.simulation;
-        check(*seconds)?;
-        if !is_on_screen(stroke, screen_m(program), *seconds) {
+        check(simulation.seconds)?;
+        if !is_on_screen(&simulation.stroke, screen_m(program), simulation.seconds) {
             let (width_mm, height_mm) = (scene.parsed().screen().width_mm, scene.parsed().screen().height_mm);
             let message =
                 format!("the stroke is never on the screen of {width_mm} mm by {height_mm} mm: move it there");
             return Err(parameter_error(py, message));
         }
-        Ok(Play { program, options, files: self.files(scene), prepared })
+        Ok(Play { program, options, files: self.files(scene), simulation })
     }
 
     /// The options that a recording has, with which `frixel replay` plays the same.
@@ -198,12 +197,12 @@ pub(crate) fn simulate<'py>(
     settings: Settings<'py>,
     seconds: Option<f64>,
 ) -> PyResult<(Bound<'py, PyDict>, String)> {
-    let Play { program, options, files, prepared } = settings.play(py, scene, seconds)?;
-    let played = interruptible(py, |goes_on| prepared.run(program, &mut || goes_on()))?;
+    let Play { program, options, files, simulation } = settings.play(py, scene, seconds)?;
+    let played = interruptible(py, |goes_on| frixel_play::simulate(program, &simulation, None, goes_on))?;
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (error.to_string(),));
     let Simulated { recorder, board, .. } = played.map_err(|error| failed(&error))?;
     let metadata = Metadata {
-        ticks_per_row: prepared.simulation.ticks_per_row,
+        ticks_per_row: simulation.ticks_per_row,
         play: serde_json::to_value(&options).map_err(|error| failed(&error))?,
         ..Metadata::new("sim", Some(&board), true, None)
     };

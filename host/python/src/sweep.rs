@@ -90,7 +90,7 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     // Cells are played side by side, and each on one thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|error| raised(py, "PlayError", (format!("no thread could be started: {error}"),)))?;
-    let played = interruptible(py, |goes_on| pool.install(|| cell.play_while(goes_on)))?;
+    let played = interruptible(py, |goes_on| pool.install(|| cell.play(goes_on)))?;
     played.map(|result| result.to_json()).map_err(|error| exception(py, &cell, error))
 }
 

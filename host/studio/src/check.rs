@@ -6,7 +6,7 @@ use frixel_driver::{Device, PollingLink};
 use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_felt::judge::{Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::{judge, judged_rig, load};
+use frixel_play::{TO_THE_END, judge, judged_rig, load};
 use frixel_scene::{Program, Scene};
 use serde_json::{Value, json};
 
@@ -50,7 +50,7 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
     };
     let judgement = if is_judged {
         let rig = judged_rig(config.board, touch);
-        judge(&program, &rig, None, Advice::Sought, &|| ControlFlow::Continue(())).map_err(HostError::Simulation)?
+        judge(&program, &rig, None, Advice::Sought, TO_THE_END).map_err(HostError::Simulation)?
     } else {
         Judgement::default()
     };

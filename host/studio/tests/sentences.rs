@@ -1,15 +1,14 @@
 //! The page says of a scene what `frixel scene check` says.
 #![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use frixel::scene_file;
 use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::Advice;
 use frixel_hil_sim::{RigConfig, TouchConfig};
-use frixel_lab::simulation::board_costs;
-use frixel_play::{judge, judged_rig};
+use frixel_lab::board_costs;
+use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::compile;
 use frixel_studio::{Request, check, used_files};
 use serde_json::json;
@@ -27,7 +26,7 @@ fn the_report_is_that_of_the_command() {
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
         let costs = board_costs(&program, &rig).unwrap();
         let judged = judged_rig(rig.board, TouchConfig::REALISTIC);
-        let judgement = judge(&program, &judged, None, Advice::Sought, &|| ControlFlow::Continue(())).unwrap();
+        let judgement = judge(&program, &judged, None, Advice::Sought, TO_THE_END).unwrap();
         let expected = SceneCheck::of(&program, &rig.board.limits, &costs, judgement).summary();
         let answer = check(&request);
         assert_eq!(answer["report"], expected, "{}: {answer}", request.entry);

@@ -15,7 +15,6 @@ mod record_file;
 mod recorded;
 pub(super) mod replay;
 mod rigs;
-mod simulated_world;
 mod stream_args;
 mod target;
 mod watch;
@@ -27,6 +26,7 @@ use anyhow::Result;
 use clap::Args;
 
 use crate::output::{Effects, Report};
+use frixel_lab::recording::PlayOptions;
 
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
@@ -140,6 +140,28 @@ impl PlayArgs {
     }
 
     /// The effects that the simulated world has beside the contact model.
+    /// The options as a recording has them, but for the names of finger and screen.
+    fn options(&self, stream_s: Option<f64>) -> PlayOptions {
+        let touch = self.touch.bundled_name().or(self.touch.file().map(|_| PlayOptions::FILE));
+        PlayOptions {
+            seconds: self.seconds,
+            seed: self.seed,
+            ideal: self.ideal,
+            no_leakage: self.no_leakage,
+            finger_seed: self.finger_seed,
+            rows_hz: self.csv_hz,
+            finger: None,
+            screen: None,
+            touch: touch.map(str::to_owned),
+            stroke: self.stroke.options(),
+            control: self.control,
+            stream: self.stream.is_given(),
+            lines: None,
+            stream_s,
+            interrupted: false,
+        }
+    }
+
     fn effects(&self) -> Effects {
         match (self.ideal, self.no_leakage) {
             (true, _) => Effects::None,

@@ -45,14 +45,14 @@ impl TouchArgs {
         self.touch.as_deref().filter(|name| TouchConfig::bundled(name).is_none()).map(Path::new)
     }
 
-    /// The source, if it is given. In an ideal world it loses nothing.
-    pub(super) fn source(&self, is_ideal: bool) -> Result<Option<TouchConfig>, SceneFileError> {
-        let source = self.touch.as_deref().map(scene_file::touch_source).transpose()?;
-        Ok(source.map(|source| if is_ideal { source.without_losses() } else { source }))
+    /// The source, if it is given.
+    pub(super) fn source(&self) -> Result<Option<TouchConfig>, SceneFileError> {
+        self.touch.as_deref().map(scene_file::touch_source).transpose()
     }
 
     /// A world with this source, which is ideal or realistic already.
     pub(super) fn applied_to(&self, world: WorldConfig, is_ideal: bool) -> Result<WorldConfig, SceneFileError> {
-        Ok(WorldConfig { touch: self.source(is_ideal)?.unwrap_or(world.touch), ..world })
+        let source = self.source()?.map(|source| if is_ideal { source.without_losses() } else { source });
+        Ok(WorldConfig { touch: source.unwrap_or(world.touch), ..world })
     }
 }

@@ -9,6 +9,7 @@ use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::RigConfig;
 use frixel_lab::score::{Score, TrialPlan, Way};
+use frixel_play::TO_THE_END;
 use frixel_scene::compile;
 
 use super::argument::number;
@@ -67,9 +68,9 @@ pub(super) fn run(args: &ScoreArgs) -> Result<()> {
     let (csv, layers, svg) = (file("score.csv")?, file("score-layers.csv")?, file("score.svg")?);
     let scene = scene?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
-    let trials = trial_plan(args)?.of_people(args.people, &scene, &program, args.ideal)?;
+    let trials = trial_plan(args)?.of_people(args.people, &scene, &program, args.ideal, TO_THE_END)?;
     let _folder = OutputFolder::open(&args.out)?;
-    let score = args.jobs.run(|| Score::of(&program, &rig, &trials))?.map_err(of_simulation)?;
+    let score = args.jobs.run(|| Score::of(&program, &rig, &trials, TO_THE_END))?.map_err(of_simulation)?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
     let filled = [(&csv, score.to_csv()), (&layers, score.layers_csv()), (&svg, drawn)]

@@ -79,15 +79,18 @@ impl StrokeArgs {
         if let Some(path) = self.file() {
             return from_file(path).map(Some);
         }
-        self.options().generated(screen_m, seconds, seed).map_err(|error| match error {
-            StrokeOptionsError::InPlace => {
-                anyhow!("--from and --to are the same place: give two places that differ")
-            }
+        self.options().generated(screen_m, seconds, seed).map_err(|error| self.error(error))
+    }
+
+    /// The error in the words of the options.
+    pub(super) fn error(&self, error: StrokeOptionsError) -> anyhow::Error {
+        match error {
+            StrokeOptionsError::InPlace => anyhow!("--from and --to are the same place: give two places that differ"),
             StrokeOptionsError::TooLong { seconds } => too_long(&self.name(), seconds),
             StrokeOptionsError::TooOften { .. } => anyhow!("--times: {error}"),
             StrokeOptionsError::Straight(source) => anyhow!("--from and --to: {source}; give two places that differ"),
             StrokeOptionsError::Human(source) => of_generated_stroke(source),
-        })
+        }
     }
 
     /// What the stroke is called in messages.

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
 use frixel_lab::sweep::{Cell, CellResult, KEYS_FILE, Keys, Plan, Study, json, result_file};
+use frixel_play::TO_THE_END;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -90,7 +91,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     let bar = stderr().is_terminal().then(|| ProgressBar::new(left.len() as u64));
     args.jobs.run(|| {
         left.par_iter().try_for_each(|(number, cell)| {
-            let result = cell.play().map_err(at(cell.title()))?;
+            let result = cell.play(TO_THE_END).map_err(at(cell.title()))?;
             write_shared(&OutputFile::new(&path(*number), "-o", &inputs)?, &result.to_json())?;
             if let Some(bar) = &bar {
                 bar.inc(1);

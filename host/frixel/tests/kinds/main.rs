@@ -18,7 +18,7 @@ use expected::{At, Expected};
 use frixel::scene_file::SceneFolder;
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_lab::simulation::{Simulation, simulate};
+use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{Program, Scene, compile};
 
 use crate::processes::HEAD;
@@ -49,8 +49,16 @@ fn stroke(path: StrokePath) -> Stroke {
 fn play(program: &Program, path: StrokePath) -> Vec<FeltRow> {
     let stroke = stroke(path);
     let seconds = stroke.duration_s();
-    let simulation = Simulation { rig: RigConfig::default(), stroke, seconds, seed: 1, ticks_per_row: 1 };
-    simulate(program, &simulation, None).unwrap().recorder.rows().to_vec()
+    let simulation = Simulation {
+        rig: RigConfig::default(),
+        stroke,
+        seconds,
+        seed: 1,
+        ticks_per_row: 1,
+        own_finger: None,
+        through_finger: false,
+    };
+    simulate(program, &simulation, None, TO_THE_END).unwrap().recorder.rows().to_vec()
 }
 
 /// Electric friction that the case expects at each row, in mN, when the stroke began so many ticks after power-on.

@@ -7,8 +7,8 @@ use std::time::Duration;
 use frixel_driver::{Device, PollingLink, StreamSettings};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
-use frixel_lab::simulation::SimStream;
 use frixel_play::Recorded as _;
+use frixel_play::SimStream;
 use frixel_scene::Program;
 
 use super::cases::Path;

@@ -1,18 +1,16 @@
 //! Plays a recording again.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
 use frixel_felt::recorder::MarkedEvent;
 use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
-use frixel_play::Feed;
+use frixel_play::{Feed, GoesOn, SimulationError, simulate_by};
 use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, brief, compile_draft, parse_touch_source};
 use thiserror::Error;
 
-use super::prepared_play::{PreparedPlay, PreparedPlayError};
 use super::replayed_changes::ReplayedChanges;
+use super::simulation::PlayOptionsError;
 use super::{Metadata, PlayOptions, Recording, SourceFile};
-use crate::simulation::SimulationError;
 use crate::stroke_file::{StrokeFile, StrokeFileError};
 
 /// What messages call the scene.
@@ -76,7 +74,7 @@ pub enum ReplayError {
     Stroke(#[from] StrokeFileError),
     /// Its options describe no play.
     #[error(transparent)]
-    Options(#[from] PreparedPlayError),
+    Options(#[from] PlayOptionsError),
     /// The play failed.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -86,24 +84,25 @@ impl Recording {
     /// Plays a simulated recording of this version again, with the lines, scenes and samples that it has: until the
     /// tick at which it was interrupted, or as many rows as it has, if it is cut off. `goes_on` is asked many times a
     /// second of the play; when it breaks, the result ends there.
-    pub fn replay(&self, goes_on: &mut dyn FnMut() -> ControlFlow<()>) -> Result<Self, ReplayError> {
+    pub fn replay(&self, goes_on: GoesOn<'_>) -> Result<Self, ReplayError> {
         let options = options(&self.metadata)?;
         let files = files(&self.metadata.files)?;
         let scene = scene(&self.metadata.scene, &of_scene(&files), &options, &files)?;
         let program = compile(&scene)?;
         let stroke = stroke(&options, &files)?;
         let feed = feed(&self.metadata, &options, &files)?;
-        let mut play = PreparedPlay::new(&options, &scene, &program, stroke, touch(&options, &files)?)?;
+        let inputs = (stroke, touch(&options, &files)?);
+        let mut simulation = options.simulation(&scene, &program, inputs, RigConfig::default())?;
         let is_short = options.interrupted || self.is_cut_off;
         let stopped_at_tick = stopped_at_tick(&self.metadata).filter(|_| is_short);
-        let tick_hz = play.simulation.rig.board.tick_hz;
+        let tick_hz = simulation.rig.board.tick_hz;
         // Never more than a row beyond those of the file, which may ask for any duration.
         let rows = self.rows() + usize::from(!is_short || stopped_at_tick.is_some());
-        let rows_s = rows as f64 * f64::from(play.simulation.ticks_per_row) / f64::from(tick_hz);
-        play.simulation.seconds = play.simulation.seconds.min(rows_s);
+        let rows_s = rows as f64 * f64::from(simulation.ticks_per_row) / f64::from(tick_hz);
+        simulation.seconds = simulation.seconds.min(rows_s);
         let later = later_programs(&self.metadata, &options, &files)?;
         let mut changes = ReplayedChanges::new(options.lines, later, stopped_at_tick, tick_hz);
-        let played = play.run_by(&program, feed, &mut |player| changes.play(player, goes_on));
+        let played = simulate_by(&program, &simulation, feed, &mut |player| changes.play(player, goes_on));
         Ok(Self::of_rows(self.metadata.clone(), &played?.recorder.take_rows()))
     }
 }

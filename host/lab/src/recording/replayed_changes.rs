@@ -1,13 +1,10 @@
 //! What changed a recorded play while it went on, made again.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 use std::vec;
 
-use frixel_play::{Control, Next, PlayError};
+use frixel_play::{Control, GoesOn, Next, PlayError, SimPlayer};
 use frixel_scene::Program;
-
-use crate::simulation::SimPlayer;
 
 /// The changes of a play, in the order of their time.
 pub(super) struct ReplayedChanges {
@@ -33,11 +30,7 @@ impl ReplayedChanges {
 
     /// Plays until the record is full, the tick of the interruption, a line that ends the play, or until `goes_on`
     /// breaks. It takes the steps that `frixel play` takes, because what a line changes depends on the tick.
-    pub(super) fn play(
-        &mut self,
-        player: &mut SimPlayer<'_>,
-        goes_on: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<(), PlayError> {
+    pub(super) fn play(&mut self, player: &mut SimPlayer<'_>, goes_on: GoesOn<'_>) -> Result<(), PlayError> {
         while player.recorder_mut().ticks_left() > 0 && goes_on().is_continue() {
             let ticks = player.recorder_mut().ticks();
             let ticks_left = self.stopped_at_tick.map_or(u64::MAX, |stopped_at| stopped_at.saturating_sub(ticks));

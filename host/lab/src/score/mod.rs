@@ -10,14 +10,13 @@ mod sentence;
 mod text;
 mod trials;
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use frixel_felt::fidelity::{Fidelity, FidelitySample, SAMPLE_HZ};
+use frixel_felt::fidelity::{Fidelity, FidelitySample};
 use frixel_felt::judge::{Advice, Judgement, changes_along};
 use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
 use frixel_model::{FrictionLaw, LoadedContact};
-use frixel_play::judge;
+use frixel_play::{GoesOn, Simulation, SimulationError, judge, simulate};
 use frixel_scene::{LayerTitle, Program, TouchSource};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -29,13 +28,8 @@ pub use metric::{Goal, Human, MetricScore};
 pub(crate) use metric::{interval, metric_keys};
 pub use trials::{TrialPlan, TrialsError, Way};
 
-use crate::simulation::{Simulation, SimulationError, simulate_while};
-
 /// Plays of which a thread's samples wait in memory: those of all plays together would not fit.
 const PLAYS_PER_THREAD: usize = 4;
-
-/// Is asked many times a second of each play, by several threads; when it breaks, the plays end.
-type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// One play to score.
 #[derive(Clone, Debug)]
@@ -64,28 +58,17 @@ pub struct TrialFinger {
 impl Trial {
     /// Plays the trial on the simulated board of `rig`, and returns what the finger felt and the reference: a sample
     /// for every quarter of a millisecond.
-    pub fn play(&self, program: &Program, rig: &RigConfig) -> Result<Vec<FidelitySample>, SimulationError> {
-        self.play_while(program, rig, &|| ControlFlow::Continue(()))
-    }
-
-    fn play_while(
+    pub fn play(
         &self,
         program: &Program,
         rig: &RigConfig,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<FidelitySample>, SimulationError> {
         let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
-        let simulation = Simulation {
-            rig: RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig },
-            stroke: Stroke::clone(&self.stroke),
-            seconds: self.stroke.duration_s(),
-            seed: self.seed,
-            ticks_per_row: (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32,
-        };
+        let rig = RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig };
         let own_finger = self.finger.map(|finger| finger.contact.into());
-        let mut recorder = simulate_while(program, &simulation, own_finger, true, &mut || goes_on())?.recorder;
-        let start_s = recorder.start_s().unwrap_or(0.0);
-        Ok(recorder.take_rows().iter().map(|row| FidelitySample::of_row(row, start_s)).collect())
+        let simulation = Simulation::of_stroke(rig, Stroke::clone(&self.stroke), self.seed, own_finger);
+        Ok(simulate(program, &simulation, None, goes_on)?.samples())
     }
 }
 
@@ -131,18 +114,12 @@ impl Score {
     /// Plays trials of a program on the simulated board of `rig`, and scores them.
     ///
     /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number
-    /// of threads.
-    pub fn of(program: &Program, rig: &RigConfig, trials: &[Trial]) -> Result<Self, SimulationError> {
-        Self::of_while(program, rig, trials, &|| ControlFlow::Continue(()))
-    }
-
-    /// As [`Self::of`]. `goes_on` is asked many times a second of each play, by several threads; when it breaks, the
-    /// plays end there, and the score is that of what was played.
-    pub fn of_while(
+    /// of threads. When `goes_on` breaks, it is that of what was played.
+    pub fn of(
         program: &Program,
         rig: &RigConfig,
         trials: &[Trial],
-        goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+        goes_on: GoesOn<'_>,
     ) -> Result<Self, SimulationError> {
         let fingers = judgements(program, rig, trials, goes_on)?;
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
@@ -151,7 +128,7 @@ impl Score {
                 break;
             }
             let felt = |trial: &Trial| {
-                trial.play_while(program, rig, goes_on).map(|samples| {
+                trial.play(program, rig, goes_on).map(|samples| {
                     let fidelity = Fidelity::of(&samples);
                     (samples, fidelity)
                 })

@@ -1,14 +1,14 @@
 //! The trials of one finger: its strokes, each as often as it is repeated.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use frixel_hil_sim::{Person, Stroke, StrokeError};
 use frixel_model::ParameterError;
+use frixel_play::GoesOn;
 use frixel_scene::{CompileError, Program, Scene};
 use thiserror::Error;
 
-use super::{GoesOn, Trial, TrialFinger};
+use super::{Trial, TrialFinger};
 
 /// Makes the stroke of a person, as [`Stroke::human`] does.
 type Generator = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
@@ -57,49 +57,33 @@ pub struct TrialPlan {
 
 impl TrialPlan {
     /// The trials of so many simulated people, the first of an assumed population, whom the board does not know;
-    /// without a number, of the finger that `program`, compiled from `scene`, is meant for.
+    /// without a number, of the finger that `program`, compiled from `scene`, is meant for. `goes_on` is asked before each
+    /// stroke; when it breaks, the result is what was made so far.
     pub fn of_people(
         &self,
         people: Option<u64>,
         scene: &Scene,
         program: &Program,
         is_ideal: bool,
+        goes_on: GoesOn<'_>,
     ) -> Result<Vec<Trial>, TrialsError> {
-        self.of_people_while(people, scene, program, is_ideal, &|| ControlFlow::Continue(()))
-    }
-
-    /// As [`Self::of_people`]. `goes_on` is asked before each stroke; when it breaks, the result is what was made so
-    /// far.
-    pub fn of_people_while(
-        &self,
-        people: Option<u64>,
-        scene: &Scene,
-        program: &Program,
-        is_ideal: bool,
-        goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
-    ) -> Result<Vec<Trial>, TrialsError> {
-        let Some(people) = people else { return Ok(self.trials_while(program, None, goes_on)?) };
+        let Some(people) = people else { return Ok(self.trials(program, None, goes_on)?) };
         let coating_gap_um = scene.screen().coating_gap_um();
         let of_person = |person| {
             let finger = TrialFinger::of_person(person, coating_gap_um, is_ideal)?;
-            Ok(self.trials_while(program, Some(finger), goes_on)?)
+            Ok(self.trials(program, Some(finger), goes_on)?)
         };
         let trials = (1..=people).take_while(|_| goes_on().is_continue()).map(of_person);
         Ok(trials.collect::<Result<Vec<_>, TrialsError>>()?.into_iter().flatten().collect())
     }
 
     /// The trials of a finger: without one, of that which the scene is meant for. Each person makes strokes of their
-    /// own, and each play has a world seed of its own.
-    pub fn trials(&self, program: &Program, finger: Option<TrialFinger>) -> Result<Vec<Trial>, StrokeError> {
-        self.trials_while(program, finger, &|| ControlFlow::Continue(()))
-    }
-
-    /// As [`Self::trials`]. `goes_on` is asked before each stroke; when it breaks, the result is what was made so far.
-    pub fn trials_while(
+    /// own, and each play has a world seed of its own. `goes_on` is as for [`Self::of_people`].
+    pub fn trials(
         &self,
         program: &Program,
         finger: Option<TrialFinger>,
-        goes_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+        goes_on: GoesOn<'_>,
     ) -> Result<Vec<Trial>, StrokeError> {
         let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * self.strokes);
         let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));

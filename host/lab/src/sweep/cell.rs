@@ -1,11 +1,11 @@
 //! One simulated finger on one scene: all that its plays need, and what it noticed.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
 use frixel_felt::judge::Verdict;
 use frixel_hil_sim::{Person, RigConfig, StrokeError, TouchConfig};
 use frixel_model::ParameterError as ContactError;
+use frixel_play::{GoesOn, SimulationError};
 use frixel_scene::{CompileError, Program, Scene, Screen, compile, parse_touch_source};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -13,7 +13,6 @@ use thiserror::Error;
 use super::parameter::Value;
 use crate::hash::sha256;
 use crate::score::{Score, TrialFinger, TrialPlan, Verdicts, Way};
-use crate::simulation::SimulationError;
 
 /// Digits of a hash that make a key.
 const KEY_DIGITS: usize = 32;
@@ -166,14 +165,9 @@ impl Cell {
         format!("{}{with}", self.scene)
     }
 
-    /// Plays the cell. The result is the same on every machine and for any number of threads.
-    pub fn play(&self) -> Result<CellResult, CellError> {
-        self.play_while(&|| ControlFlow::Continue(()))
-    }
-
-    /// As [`Self::play`]. `goes_on` is asked many times a second of each play; when it breaks, the plays end there, and
-    /// the result is that of what was played.
-    pub fn play_while(&self, goes_on: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Result<CellResult, CellError> {
+    /// Plays the cell. The result is the same on every machine and for any number of threads. When `goes_on` breaks, it
+    /// is that of what was played.
+    pub fn play(&self, goes_on: GoesOn<'_>) -> Result<CellResult, CellError> {
         if self.version != env!("CARGO_PKG_VERSION") {
             return Err(CellError::OtherVersion { found: self.version.clone() });
         }
@@ -193,8 +187,8 @@ impl Cell {
             seconds: self.seconds,
             median_speed_m_per_s: self.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
         };
-        let trials = trials.trials_while(&program, Some(finger), goes_on)?;
-        let score = Score::of_while(&program, &rig, &trials, goes_on)?;
+        let trials = trials.trials(&program, Some(finger), goes_on)?;
+        let score = Score::of(&program, &rig, &trials, goes_on)?;
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 

@@ -10,7 +10,7 @@ use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::default_stroke::REPEAT_PAUSE_S;
-use frixel_lab::simulation::SimStream;
+use frixel_play::SimStream;
 use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
 use frixel_scene::Program;
 use frixel_wire::fault::State;

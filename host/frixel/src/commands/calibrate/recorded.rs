@@ -8,8 +8,8 @@ use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger, simulation_seed};
-use frixel_lab::simulation::SimStream;
 use frixel_model::LoadedContact;
+use frixel_play::SimStream;
 use frixel_wire::hello::Hello;
 
 use super::plan::{Plan, ROW_HZ};

@@ -7,14 +7,13 @@ use crate::rigs::{EmulatedStream, PicoStream};
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoRig};
-use frixel_hil_sim::{Board, World, WorldConfig};
+use frixel_hil_sim::{Board, RigConfig, World, WorldConfig};
 use frixel_scene::Scene;
 
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
 use super::plan::Plan;
-use super::simulated_world::SimulatedWorld;
 use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
@@ -57,12 +56,12 @@ pub(super) fn play_on_pico(
 /// one that the scene was made for.
 fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World)> {
     let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
-    let stroke = plan.choose_stroke(args)?;
-    let simulated = SimulatedWorld::new(args, scene)?;
-    plan.world = Some(simulated.report());
-    plan.has_own_reference = simulated.has_own_reference(&stroke);
-    let mut world = World::new(simulated.config(WorldConfig::of(board)), stroke, args.seed)?;
+    let rig = RigConfig { board: *board, world: WorldConfig::of(board), ..RigConfig::default() };
+    let simulation = plan.simulation(args, scene, rig)?;
+    let mut world = World::new(simulation.rig.world, simulation.stroke, simulation.seed)?;
     world.set_finger(plan.program.header.friction_law().map_err(of_finger)?);
-    simulated.set_finger(&mut world);
+    if let Some(finger) = simulation.own_finger {
+        world.set_own_finger(finger);
+    }
     Ok((plan, world))
 }

@@ -194,7 +194,7 @@ mod tests {
     use frixel_driver::{Device, PollingLink};
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-    use frixel_lab::simulation::SimStream;
+    use frixel_play::SimStream;
     use frixel_scene::{TargetRange, compile};
     use tempfile::TempDir;
 

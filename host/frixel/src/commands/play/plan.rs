@@ -2,17 +2,17 @@
 
 use std::time::Duration;
 
-use crate::commands::error::{of_finger, of_generated_stroke};
+use crate::commands::error::of_finger;
 use crate::output::{Effects, WorldReport};
 use anyhow::{Result, bail};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::Stroke;
-use frixel_lab::default_stroke::{REPEAT_PAUSE_S, default_stroke};
-use frixel_play::Feed;
+use frixel_hil_sim::RigConfig;
+use frixel_lab::recording::PlayOptionsError;
+use frixel_play::{Feed, Simulation};
 use frixel_scene::{Program, Scene, Shown};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
-use super::super::stroke::check_on_screen;
+use super::super::stroke::{check_on_screen, from_file};
 use super::target::Target;
 use super::{PlayArgs, note, note_refusals};
 
@@ -124,27 +124,26 @@ impl Plan {
         })
     }
 
-    /// Chooses the path of the simulated finger over the screen. Without `--seconds`, the play lasts as long as the
-    /// file of `--stream`, while the finger repeats its stroke, or else as long as the stroke.
-    pub(super) fn choose_stroke(&mut self, args: &PlayArgs) -> Result<Stroke> {
-        let header = &self.program.header;
-        let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
-        let seconds = args.seconds.or(self.stream_s);
-        let given = args.stroke.stroke([width_m, height_m], seconds, args.seed)?;
-        let stroke = match &given {
-            Some(stroke) => stroke.clone(),
-            None => default_stroke(&self.program, seconds).map_err(of_generated_stroke)?,
-        };
-        let seconds = seconds.unwrap_or(stroke.duration_s());
-        check_seconds(seconds, self.tick_hz)?;
-        if given.is_some() {
-            check_on_screen(&args.stroke.name(), &stroke, width_m, height_m, seconds)?;
+    /// What the options simulate around the board of `rig`. Without `--seconds`, the play lasts as long as the file of
+    /// `--stream`, while the finger repeats its stroke, or else as long as the stroke.
+    pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: RigConfig) -> Result<Simulation> {
+        let inputs = (args.stroke.file().map(from_file).transpose()?, args.touch.source()?);
+        let simulation = args.options(self.stream_s).simulation(scene, &self.program, inputs, rig);
+        let simulation = simulation.map_err(|error| match error {
+            PlayOptionsError::Stroke(error) => args.stroke.error(error),
+            error => error.into(),
+        })?;
+        check_seconds(simulation.seconds, self.tick_hz)?;
+        if args.stroke.is_given() {
+            let header = &self.program.header;
+            let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
+            check_on_screen(&args.stroke.name(), &simulation.stroke, width_m, height_m, simulation.seconds)?;
         }
-        self.seconds = Some(seconds);
-        if args.seconds.is_none() && stroke.duration_s() < seconds {
-            return stroke.looped(REPEAT_PAUSE_S).map_err(of_generated_stroke);
-        }
-        Ok(stroke)
+        self.seconds = Some(simulation.seconds);
+        self.has_own_reference = simulation.through_finger;
+        let touch_source = (&simulation.rig.world.touch).into();
+        self.world = Some(WorldReport { effects: args.effects(), touch_source, finger_seed: args.finger_seed });
+        Ok(simulation)
     }
 
     /// Ticks between two rows.

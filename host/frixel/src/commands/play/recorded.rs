@@ -56,24 +56,7 @@ impl Sources {
     }
 
     fn options(&self, args: &PlayArgs, stream_s: Option<f64>) -> PlayOptions {
-        let touch = args.touch.bundled_name().or(args.touch.file().map(|_| PlayOptions::FILE));
-        PlayOptions {
-            seconds: args.seconds,
-            seed: args.seed,
-            ideal: args.ideal,
-            no_leakage: args.no_leakage,
-            finger_seed: args.finger_seed,
-            rows_hz: args.csv_hz,
-            finger: self.finger.clone(),
-            screen: self.screen.clone(),
-            touch: touch.map(str::to_owned),
-            stroke: args.stroke.options(),
-            control: args.control,
-            stream: args.stream.is_given(),
-            lines: None,
-            stream_s,
-            interrupted: false,
-        }
+        PlayOptions { finger: self.finger.clone(), screen: self.screen.clone(), ..args.options(stream_s) }
     }
 }
 

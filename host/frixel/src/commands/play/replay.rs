@@ -1,11 +1,11 @@
 //! `frixel replay`: plays a simulated recording again, and compares it bit by bit.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::Args;
 use frixel_lab::recording::Recording;
+use frixel_play::TO_THE_END;
 
 use crate::commands::error::{at, reading};
 use crate::input;
@@ -28,7 +28,7 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     if recorded.is_cut_off {
         note(format_args!("{}: it ends in a part of a row group, which is left out", path.display()));
     }
-    let played = recorded.replay(&mut || ControlFlow::Continue(()));
+    let played = recorded.replay(TO_THE_END);
     let played = played.map_err(at(format!("{} cannot be played again", path.display())))?;
     if let Some(difference) = recorded.first_difference(&played) {
         bail!(

@@ -3,8 +3,8 @@
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
-use frixel_lab::simulation::SimStream;
+use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_play::SimStream;
 use frixel_scene::Scene;
 
 use super::super::experiment;
@@ -15,7 +15,6 @@ use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
 use super::plan::{Plan, check_measured};
-use super::simulated_world::SimulatedWorld;
 use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
@@ -40,18 +39,10 @@ pub(super) fn simulator<'a>(
     scene: &Scene,
     memory: &'a mut BoardMemory,
 ) -> Result<(Plan, Simulator<'a>)> {
-    let world = SimulatedWorld::new(args, scene)?;
-    let mut config = RigConfig::default();
-    config.world = world.config(config.world);
+    let config = RigConfig::default();
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
-    let stroke = plan.choose_stroke(args)?;
-    // A draft may take longer than a board has time for.
-    config.board.limits.tick_cycles_max = u32::MAX;
-    plan.has_own_reference = world.has_own_reference(&stroke);
-    let mut rig = Rig::new(memory, &config, stroke, args.seed)?;
-    world.set_finger(rig.world_mut());
-    plan.world = Some(world.report());
+    let rig = plan.simulation(args, scene, config)?.rig(memory)?;
     let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default())))?;
     Ok((plan, device))
 }

@@ -1,6 +1,5 @@
 //! `frixel scene check`: prints the cost of a scene and the friction that can be felt of it.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use anyhow::Result;
@@ -9,9 +8,9 @@ use clap::builder::PossibleValuesParser;
 use frixel_felt::check::{SceneCheck, feel};
 use frixel_felt::judge::{Advice, weber_steps, weber_steps_text};
 use frixel_hil_sim::{Board, RigConfig, TouchConfig};
-use frixel_lab::simulation::board_costs;
+use frixel_lab::board_costs;
 use frixel_layers::Header;
-use frixel_play::{judge, judged_rig};
+use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
 
@@ -48,7 +47,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     let board = args.board.as_deref().and_then(Board::named);
     let board = board.map(|board| behind(board, args.series_kohm)).transpose()?;
     let rig = board.map_or_else(RigConfig::default, RigConfig::of);
-    let touch = args.touch.source(false)?.unwrap_or(TouchConfig::REALISTIC);
+    let touch = args.touch.source()?.unwrap_or(TouchConfig::REALISTIC);
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let compiled = scene.and_then(|scene| {
         compile(&scene, &rig.board.limits, rig.board.tick_hz).map_err(|error| {
@@ -66,7 +65,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
         }
         compiled => compiled?,
     };
-    let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, &|| ControlFlow::Continue(()));
+    let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, TO_THE_END);
     let judgement = judgement.map_err(of_simulation)?;
     let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, judgement);
     check.notes.extend(files.outside().map(|path| {
@@ -105,7 +104,7 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
 /// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
 fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
-    let judgement = judge(&draft, &judged_rig(rig.board, *touch), None, Advice::Omitted, &|| ControlFlow::Continue(()));
+    let judgement = judge(&draft, &judged_rig(rig.board, *touch), None, Advice::Omitted, TO_THE_END);
     let lines = feel::lines(&judgement.map_err(of_simulation)?);
     let felt = lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"));
     print(board_line(&rig.board, &draft, "refuses it; clamped to what it can give") + &felt)

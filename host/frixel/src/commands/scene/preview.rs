@@ -1,6 +1,5 @@
 //! `frixel scene preview`: draws the friction map of a scene, and says what a person will feel.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use crate::output::{draft_line, draw_preview_png};
@@ -11,7 +10,7 @@ use frixel_felt::Preview;
 use frixel_felt::check::feel;
 use frixel_felt::judge::Advice;
 use frixel_hil_sim::{RigConfig, TouchConfig};
-use frixel_play::{judge, judged_rig};
+use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::compile_draft;
 
 use super::super::argument::number;
@@ -54,7 +53,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
         print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals().count())))?;
     }
     let rig = judged_rig(board, TouchConfig::REALISTIC);
-    let judgement = judge(&program, &rig, None, Advice::Omitted, &|| ControlFlow::Continue(()));
+    let judgement = judge(&program, &rig, None, Advice::Omitted, TO_THE_END);
     for (name, text) in feel::lines(&judgement.map_err(of_simulation)?) {
         print_line(format_args!("  {name:<16} {text}"))?;
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::scene_file;
 use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel, RGBColor};
 use frixel_hil_sim::{Point, RigConfig, Stroke};
-use frixel_lab::simulation::{Simulation, simulate};
+use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{Program, compile};
 use frixel_testkit::golden;
 
@@ -53,8 +53,9 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
     let summaries = SEEDS.map(|seed| {
         let stroke = stroke(name, seed);
         let seconds = stroke.duration_s();
-        let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000 };
-        simulate(program, &simulation, None).unwrap().recorder.summary()
+        let simulation =
+            Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000, own_finger: None, through_finger: false };
+        simulate(program, &simulation, None, TO_THE_END).unwrap().recorder.summary()
     });
     let squares = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n.powi(2));
     let inversion = summaries.iter().map(|summary| summary.inversion_error.unwrap().max_n);

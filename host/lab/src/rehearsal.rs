@@ -2,15 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
-use thiserror::Error;
-
-use super::SimStream;
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_felt::check::BoardCosts;
 use frixel_felt::recorder::Recorder;
-use frixel_play::load;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
+use frixel_play::{SimStream, load};
 use frixel_scene::Program;
+use thiserror::Error;
 
 /// Why a simulated board did not accept a scene.
 #[derive(Debug, Error)]

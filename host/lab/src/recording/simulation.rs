@@ -1,0 +1,91 @@
+//! From the options of a play to its board, world, stroke and finger.
+
+use frixel_hil_sim::{Person, RigConfig, Stroke, StrokeError, TouchConfig, WorldConfig};
+use frixel_model::ParameterError;
+use frixel_play::Simulation;
+use frixel_scene::{CompileError, Program, Scene};
+use thiserror::Error;
+
+use super::play_options::{PlayOptions, StrokeOptionsError};
+use crate::default_stroke::{REPEAT_PAUSE_S, default_stroke};
+
+/// Why options describe no play.
+#[derive(Debug, Error)]
+pub enum PlayOptionsError {
+    /// Rows are not a whole number of ticks apart.
+    #[error("rows_per_s divides {tick_hz} evenly, found {found}")]
+    RowRate {
+        /// Rows a second.
+        found: u32,
+        /// Ticks a second.
+        tick_hz: u32,
+    },
+    /// The options describe no stroke.
+    #[error(transparent)]
+    Stroke(#[from] StrokeOptionsError),
+    /// The scene's screen has no default stroke, or it cannot be repeated.
+    #[error("no stroke can be generated for this scene's screen: {0}")]
+    DefaultStroke(#[from] StrokeError),
+    /// The scene's screen is not known without its own finger.
+    #[error(transparent)]
+    Screen(#[from] CompileError),
+    /// The contact model refuses the person on this screen.
+    #[error("the contact model rejects the finger of this person: {0}")]
+    Person(#[from] ParameterError),
+}
+
+impl PlayOptions {
+    /// The play of `program`, which was compiled from `scene`, on the simulated board of `rig`: its world is that of
+    /// `rig` with the effects of the options. `stroke` is that of a file, and `touch` the touch source, where the
+    /// options name one.
+    pub fn simulation(
+        &self,
+        scene: &Scene,
+        program: &Program,
+        (stroke, touch): (Option<Stroke>, Option<TouchConfig>),
+        mut rig: RigConfig,
+    ) -> Result<Simulation, PlayOptionsError> {
+        let tick_hz = rig.board.tick_hz;
+        if self.rows_hz == 0 || !tick_hz.is_multiple_of(self.rows_hz) {
+            return Err(PlayOptionsError::RowRate { found: self.rows_hz, tick_hz });
+        }
+        let stroke = match stroke {
+            Some(stroke) => Some(stroke),
+            None => self.stroke.generated(screen_m(program), self.seconds.or(self.stream_s), self.seed)?,
+        };
+        let stroke = stroke.map_or_else(|| default_stroke(program, self.seconds.or(self.stream_s)), Ok)?;
+        let seconds = self.seconds.or(self.stream_s).unwrap_or(stroke.duration_s());
+        let is_repeated = self.seconds.is_none() && stroke.duration_s() < seconds;
+        let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
+        let person = self.finger_seed.map(Person::drawn);
+        let contact =
+            person.as_ref().map(|person| person.contact(1e-6 * scene.screen().coating_gap_um())).transpose()?;
+        rig.world = self.world(rig.world, person.as_ref(), touch);
+        // A draft may take longer than a board has time for.
+        rig.board.limits.tick_cycles_max = u32::MAX;
+        Ok(Simulation {
+            rig,
+            seconds,
+            seed: self.seed,
+            ticks_per_row: tick_hz / self.rows_hz,
+            own_finger: contact.map(Into::into),
+            // In steady sliding, the simulated finger is then more than the scene's under its load.
+            through_finger: !self.ideal || person.is_some() || stroke.has_loads(),
+            stroke,
+        })
+    }
+
+    fn world(&self, ideal: WorldConfig, person: Option<&Person>, touch: Option<TouchConfig>) -> WorldConfig {
+        if self.ideal {
+            return WorldConfig { touch: touch.map_or(ideal.touch, TouchConfig::without_losses), ..ideal };
+        }
+        let realistic = ideal.realistic();
+        let fingertip = person.map_or(realistic.fingertip, |person| person.fingertip);
+        let fingertip = if self.no_leakage { fingertip.without_leakage() } else { fingertip };
+        WorldConfig { fingertip, touch: touch.unwrap_or(realistic.touch), ..realistic }
+    }
+}
+
+fn screen_m(program: &Program) -> [f64; 2] {
+    [program.header.screen_width_m.into(), program.header.screen_height_m.into()]
+}

@@ -1,0 +1,181 @@
+//! Plays compiled scenes on the simulated board, and records the plays.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus};
+use frixel_felt::fidelity::{FidelitySample, SAMPLE_HZ};
+use frixel_felt::recorder::Recorder;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_model::FrictionLaw;
+use frixel_scene::Program;
+use frixel_wire::hello::Hello;
+use thiserror::Error;
+
+use crate::{Feed, PlayError, Player, SimStream};
+
+/// Is asked many times a second of a play, perhaps by several threads at once. When it breaks, the play ends there.
+pub type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
+
+/// Lets every play go on to its end.
+pub const TO_THE_END: GoesOn<'static> = &|| ControlFlow::Continue(());
+
+/// Settings of a play on the simulator.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// The simulated board, world and serial line.
+    pub rig: RigConfig,
+    /// Path of the simulated finger.
+    pub stroke: Stroke,
+    /// Duration, in seconds from the beginning of the stroke.
+    pub seconds: f64,
+    /// Seed of every random process.
+    pub seed: u64,
+    /// Ticks between two rows of the record.
+    pub ticks_per_row: u32,
+    /// The finger that slides, in place of the one that the program is compiled for.
+    pub own_finger: Option<FrictionLaw>,
+    /// Whether the reference goes through the simulated finger.
+    pub through_finger: bool,
+}
+
+/// A simulated board on which a program plays.
+pub type SimPlayer<'a> = Player<PollingLink<SimStream<'a>>>;
+
+/// Results of a simulation.
+pub struct Simulated {
+    /// Recorder with the felt friction and its reference.
+    pub recorder: Recorder,
+    /// What the board said of itself.
+    pub board: Hello,
+    /// Traffic counters of the serial line.
+    pub counters: Counters,
+    /// Final status of the stream; `None` without one.
+    pub stream: Option<StreamStatus>,
+}
+
+/// Why a play on the simulator ended early.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// The simulated world could not be built.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The play failed.
+    #[error(transparent)]
+    Play(#[from] PlayError),
+}
+
+impl From<DeviceError> for SimulationError {
+    fn from(error: DeviceError) -> Self {
+        Self::Play(error.into())
+    }
+}
+
+impl Simulation {
+    /// Under one stroke from its beginning to its end, with a reference that goes through the finger, and a row for each
+    /// [`FidelitySample`].
+    pub fn of_stroke(rig: RigConfig, stroke: Stroke, seed: u64, own_finger: Option<FrictionLaw>) -> Self {
+        let seconds = stroke.duration_s();
+        let ticks_per_row = (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32;
+        Self { rig, stroke, seconds, seed, ticks_per_row, own_finger, through_finger: true }
+    }
+
+    /// The board, switched on, in its world.
+    pub fn rig<'a>(&self, memory: &'a mut BoardMemory) -> Result<Rig<'a>, WorldError> {
+        let mut rig = Rig::new(memory, &self.rig, self.stroke.clone(), self.seed)?;
+        if let Some(finger) = self.own_finger {
+            rig.world_mut().set_own_finger(finger);
+        }
+        Ok(rig)
+    }
+}
+
+impl Simulated {
+    /// What the finger felt and the reference, row by row.
+    pub fn samples(&mut self) -> Vec<FidelitySample> {
+        let start_s = self.recorder.start_s().unwrap_or(0.0);
+        self.recorder.take_rows().iter().map(|row| FidelitySample::of_row(row, start_s)).collect()
+    }
+}
+
+/// Plays `program` on the simulated board under a simulated finger. `feed` supplies the samples of its stream layers.
+///
+/// The program must have been compiled for the limits and the tick rate of the simulation's board.
+pub fn simulate(
+    program: &Program,
+    simulation: &Simulation,
+    feed: Option<Feed>,
+    goes_on: GoesOn<'_>,
+) -> Result<Simulated, SimulationError> {
+    simulate_by(program, simulation, feed, &mut |player| play_on(player, goes_on))
+}
+
+/// As [`simulate`], while `play` lets the time pass, and changes what plays.
+pub fn simulate_by(
+    program: &Program,
+    simulation: &Simulation,
+    feed: Option<Feed>,
+    play: &mut dyn FnMut(&mut SimPlayer<'_>) -> Result<(), PlayError>,
+) -> Result<Simulated, SimulationError> {
+    let board = &simulation.rig.board;
+    let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
+    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row);
+    let recorder = recorder.map_err(PlayError::Finger)?;
+    let recorder = if simulation.through_finger { recorder.through_finger() } else { recorder };
+    let mut memory = BoardMemory::new();
+    let stream = SimStream::new(simulation.rig(&mut memory)?, Recorder::default());
+    let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
+    player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
+    if let Some(feed) = feed {
+        player.stream(feed)?;
+    }
+    play(&mut player)?;
+    player.stop()?;
+    let device = player.device();
+    let (board, counters, stream) = (*device.hello(), device.counters(), device.stream_status());
+    Ok(Simulated { recorder: player.into_recorder(), board, counters, stream })
+}
+
+/// Plays until the record is full, or `goes_on` breaks.
+fn play_on(player: &mut SimPlayer<'_>, goes_on: GoesOn<'_>) -> Result<(), PlayError> {
+    while player.recorder_mut().ticks_left() > 0 && goes_on().is_continue() {
+        player.step(Duration::MAX)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use frixel_hil_sim::WorldFault;
+    use frixel_scene::{Scene, compile};
+    use frixel_wire::fault::Fault;
+
+    use super::*;
+    use crate::StopReason;
+
+    /// In virtual time as on a serial port, a fault ends the play, and the record holds everything up to the fault.
+    #[test]
+    fn a_board_that_stops_by_itself_ends_the_play() {
+        let config = RigConfig::default();
+        let board = &config.board;
+        let text = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
+        let scene = Scene::parse(text, "constant.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+        let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
+        let mut memory = BoardMemory::new();
+        let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
+        rig.world_mut().schedule_fault(20_000..u64::MAX, WorldFault::AmplifierNotReady).unwrap();
+        let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
+        let mut player = Player::recording(
+            Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap(),
+            recorder,
+        );
+        player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+        let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
+        assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
+        let recorder = player.into_recorder();
+        assert!((10_000..25_000).contains(&recorder.ticks()), "{} ticks", recorder.ticks());
+        assert!(!recorder.rows().is_empty());
+    }
+}
