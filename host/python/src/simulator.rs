@@ -129,7 +129,7 @@ impl Settings<'_> {
         let stroke = stroke.map_err(|error| parameter_error(py, error))?.flatten();
         let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
         let options = self.options(scene, seconds);
-        let simulation = options.simulation(scene.parsed(), program, (stroke, touch), RigConfig::default());
+        let simulation = options.simulation(scene.parsed(), program, (stroke, touch), &RigConfig::default());
         let simulation = simulation.map_err(|error| match error {
             PlayOptionsError::Screen(error) => scene_error(py, &error),
             error => parameter_error(py, error),

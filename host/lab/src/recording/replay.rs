@@ -92,7 +92,7 @@ impl Recording {
         let stroke = stroke(&options, &files)?;
         let feed = feed(&self.metadata, &options, &files)?;
         let inputs = (stroke, touch(&options, &files)?);
-        let mut simulation = options.simulation(&scene, &program, inputs, RigConfig::default())?;
+        let mut simulation = options.simulation(&scene, &program, inputs, &RigConfig::default())?;
         let is_short = options.interrupted || self.is_cut_off;
         let stopped_at_tick = stopped_at_tick(&self.metadata).filter(|_| is_short);
         let tick_hz = simulation.rig.board.tick_hz;

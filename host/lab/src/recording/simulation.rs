@@ -43,18 +43,20 @@ impl PlayOptions {
         scene: &Scene,
         program: &Program,
         (stroke, touch): (Option<Stroke>, Option<TouchConfig>),
-        mut rig: RigConfig,
+        rig: &RigConfig,
     ) -> Result<Simulation, PlayOptionsError> {
+        let mut rig = *rig;
         let tick_hz = rig.board.tick_hz;
         if self.rows_hz == 0 || !tick_hz.is_multiple_of(self.rows_hz) {
             return Err(PlayOptionsError::RowRate { found: self.rows_hz, tick_hz });
         }
+        let seconds = self.seconds.or(self.stream_s);
         let stroke = match stroke {
             Some(stroke) => Some(stroke),
-            None => self.stroke.generated(screen_m(program), self.seconds.or(self.stream_s), self.seed)?,
+            None => self.stroke.generated(screen_m(program), seconds, self.seed)?,
         };
-        let stroke = stroke.map_or_else(|| default_stroke(program, self.seconds.or(self.stream_s)), Ok)?;
-        let seconds = self.seconds.or(self.stream_s).unwrap_or(stroke.duration_s());
+        let stroke = stroke.map_or_else(|| default_stroke(program, seconds), Ok)?;
+        let seconds = seconds.unwrap_or(stroke.duration_s());
         let is_repeated = self.seconds.is_none() && stroke.duration_s() < seconds;
         let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
         let person = self.finger_seed.map(Person::drawn);

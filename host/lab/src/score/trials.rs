@@ -57,8 +57,8 @@ pub struct TrialPlan {
 
 impl TrialPlan {
     /// The trials of so many simulated people, the first of an assumed population, whom the board does not know;
-    /// without a number, of the finger that `program`, compiled from `scene`, is meant for. `goes_on` is asked before each
-    /// stroke; when it breaks, the result is what was made so far.
+    /// without a number, of the finger that `program`, compiled from `scene`, is meant for. `goes_on` is asked before
+    /// each stroke; when it breaks, the result is what was made so far.
     pub fn of_people(
         &self,
         people: Option<u64>,

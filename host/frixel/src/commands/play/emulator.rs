@@ -57,7 +57,7 @@ pub(super) fn play_on_pico(
 fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World)> {
     let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
     let rig = RigConfig { board: *board, world: WorldConfig::of(board), ..RigConfig::default() };
-    let simulation = plan.simulation(args, scene, rig)?;
+    let simulation = plan.simulation(args, scene, &rig)?;
     let mut world = World::new(simulation.rig.world, simulation.stroke, simulation.seed)?;
     world.set_finger(plan.program.header.friction_law().map_err(of_finger)?);
     if let Some(finger) = simulation.own_finger {

@@ -126,7 +126,7 @@ impl Plan {
 
     /// What the options simulate around the board of `rig`. Without `--seconds`, the play lasts as long as the file of
     /// `--stream`, while the finger repeats its stroke, or else as long as the stroke.
-    pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: RigConfig) -> Result<Simulation> {
+    pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: &RigConfig) -> Result<Simulation> {
         let inputs = (args.stroke.file().map(from_file).transpose()?, args.touch.source()?);
         let simulation = args.options(self.stream_s).simulation(scene, &self.program, inputs, rig);
         let simulation = simulation.map_err(|error| match error {

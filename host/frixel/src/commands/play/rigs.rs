@@ -42,7 +42,7 @@ pub(super) fn simulator<'a>(
     let config = RigConfig::default();
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
-    let rig = plan.simulation(args, scene, config)?.rig(memory)?;
+    let rig = plan.simulation(args, scene, &config)?.rig(memory)?;
     let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default())))?;
     Ok((plan, device))
 }
