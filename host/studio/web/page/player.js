@@ -194,16 +194,11 @@ export class Player {
     const { isHeld } = this;
     if (isHeld) await this.#draw(scene, compiled, HELD_LONG_SIDE_PX, opened);
     // A board that was disarmed for another scene gets none but that.
-    if (isHeld ? this.#next !== undefined : this.#isOutdated) return;
-    // The board plays while a worker judges what is felt.
-    const judging = this.#engine.check(...scene);
-    // A load that fails is what a person is told.
-    judging.catch(() => {});
-    if (!isHeld) {
-      if (!(await this.#load(scene, compiled))) return;
-      this.onPlay(text);
-    }
-    const check = await judging;
+    else if (this.#isOutdated || !(await this.#load(scene, compiled))) return;
+    else this.onPlay(text);
+    if (this.#next !== undefined) return;
+    // The board plays while a worker judges what is felt. A judge beside an upload would take the processor from it.
+    const check = await this.#engine.check(...scene);
     if (!check || !isPlayable(check)) return;
     this.onCheck(check, files);
     if (isHeld) return;
