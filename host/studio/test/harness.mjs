@@ -180,6 +180,29 @@ export const stateOf = {
 /** The clock of a virtual board that says it is real is so much slower than the machine's (examples/real_board.rs). */
 export const BOARD_SLOWNESS = 4;
 
+/**
+ * As `init` of `openPage`: the clock of the worker that talks to such a board is as slow as the board's, so that a busy
+ * machine has as much time to carry an answer as the board has to give it.
+ */
+export const slowHost = {
+  content: `(${(slowness) => {
+    const create = URL.createObjectURL.bind(URL);
+    const sources = new Map();
+    URL.createObjectURL = (blob) => {
+      const url = create(blob);
+      sources.set(url, blob);
+      return url;
+    };
+    const slow = `{ const now = performance.now.bind(performance); performance.now = () => now() / ${slowness}; }\n`;
+    const Native = Worker;
+    globalThis.Worker = class extends Native {
+      constructor(url, options) {
+        super(options?.name === "host" ? create(new Blob([slow, sources.get(url)])) : url, options);
+      }
+    };
+  }})(${BOARD_SLOWNESS})`,
+};
+
 /** Waits until so much time has passed on the clock of such a board, ms. */
 export const boardTime = (ms) => new Promise((resolve) => setTimeout(resolve, BOARD_SLOWNESS * ms));
 

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
 import {
-  addSerialPort, boardTime, cleanUp, CONSTANT, openPage, setVisibility, startRealBoard, stateOf,
+  addSerialPort, boardTime, cleanUp, CONSTANT, openPage, setVisibility, slowHost, startRealBoard, stateOf,
 } from "./harness.mjs";
 
 const FOUR_LAYERS = CONSTANT + '[[layer]]\nkind = "constant"\nabove = "natural"\nfriction_n = 0.01\n'.repeat(3);
@@ -25,9 +25,9 @@ const linkTo = (text) => deflateRawSync(JSON.stringify({ name: "foreign", text, 
 const openLink = (page, text) => page.evaluate((hash) => (location.hash = hash), `scene=${linkTo(text)}`);
 
 /** The page with a board that is connected and has this scene, as a person does it. */
-async function connected({ init } = {}) {
+async function connected() {
   const board = await startRealBoard();
-  const opened = await openPage(undefined, { init });
+  const opened = await openPage(undefined, { init: slowHost });
   const { page } = opened;
   await page.waitForFunction(() => globalThis.studioPage);
   await checkSays(page, "plays");
