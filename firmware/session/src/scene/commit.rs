@@ -17,7 +17,7 @@ use super::{BitmapNames, Committed, Scenes};
 use crate::states::Orders;
 
 /// Records that a step of a commit checks.
-const RECORDS_PER_STEP: usize = 13;
+const RECORDS_PER_STEP: usize = 16;
 
 /// A commit under way.
 pub(super) struct Commit {
