@@ -24,9 +24,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
+use frixel_lab::recording::PlayOptions;
 
 use crate::output::{Effects, Report};
-use frixel_lab::recording::PlayOptions;
 
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
@@ -139,7 +139,6 @@ impl PlayArgs {
         }
     }
 
-    /// The effects that the simulated world has beside the contact model.
     /// The options as a recording has them, but for the names of finger and screen.
     fn options(&self, stream_s: Option<f64>) -> PlayOptions {
         let touch = self.touch.bundled_name().or(self.touch.file().map(|_| PlayOptions::FILE));
@@ -162,6 +161,7 @@ impl PlayArgs {
         }
     }
 
+    /// The effects that the simulated world has beside the contact model.
     fn effects(&self) -> Effects {
         match (self.ideal, self.no_leakage) {
             (true, _) => Effects::None,

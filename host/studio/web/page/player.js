@@ -130,7 +130,7 @@ export class Player {
     clock.cancel(this.#timer);
     this.#timer = undefined;
     this.#next = text;
-    // What is felt of an older text interests nobody.
+    // The newer text needs the worker.
     if (this.#isBusy) this.#engine.endCheck();
     this.#report();
     await this.#playOn();

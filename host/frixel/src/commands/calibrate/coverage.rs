@@ -21,8 +21,7 @@ use frixel_hil_sim::{
 use frixel_lab::calibration::{align, write_csv};
 use frixel_lab::fit::{self, Estimate, Fit, FitError, Settings};
 use frixel_model::{Contact, Finger};
-use frixel_play::Player;
-use frixel_play::SimStream;
+use frixel_play::{Player, SimStream};
 use frixel_scene::{Scene, Screen, compile};
 
 use super::recorded::Simulated;
