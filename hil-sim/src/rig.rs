@@ -9,7 +9,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::notice;
 use frixel_wire::message::Refusal;
 
-use crate::{Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
+use crate::{AmplifierConfig, Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
 /// Room in a board's receive buffer beyond the host's credit: for hello requests, which need no credit, and for noise.
 const RECEIVE_MARGIN_LEN: usize = 512;
@@ -55,20 +55,17 @@ pub struct RigConfig {
 }
 
 impl Default for RigConfig {
+    /// The simulator's own board behind [`AmplifierConfig::IDEAL`].
     fn default() -> Self {
-        Self::of(Board::SIMULATOR)
+        let rig = Self::of(Board::SIMULATOR);
+        Self { world: WorldConfig { amplifier: AmplifierConfig::IDEAL, ..rig.world }, ..rig }
     }
 }
 
 impl RigConfig {
-    /// A rig of a board in the default world.
+    /// A rig of a board in [the world that the board expects](WorldConfig::of).
     pub fn of(board: Board) -> Self {
-        let world = WorldConfig {
-            tick_hz: board.tick_hz,
-            full_scale_v_peak: f64::from(board.limits.full_scale_v_peak),
-            ..WorldConfig::default()
-        };
-        Self { board, world, baud: 2_000_000 }
+        Self { board, world: WorldConfig::of(&board), baud: 2_000_000 }
     }
 }
 

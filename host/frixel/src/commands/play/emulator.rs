@@ -7,7 +7,7 @@ use crate::rigs::{EmulatedStream, PicoStream};
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoRig};
-use frixel_hil_sim::{Board, RigConfig, World, WorldConfig};
+use frixel_hil_sim::{Board, RigConfig, World};
 use frixel_scene::Scene;
 
 use super::follow::follow;
@@ -56,8 +56,7 @@ pub(super) fn play_on_pico(
 /// one that the scene was made for.
 fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World)> {
     let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
-    let rig = RigConfig { board: *board, world: WorldConfig::of(board), ..RigConfig::default() };
-    let simulation = plan.simulation(args, scene, &rig)?;
+    let simulation = plan.simulation(args, scene, &RigConfig::of(*board))?;
     let mut world = World::new(simulation.rig.world, simulation.stroke, simulation.seed)?;
     world.set_finger(plan.program.header.friction_law().map_err(of_finger)?);
     if let Some(finger) = simulation.own_finger {
