@@ -68,25 +68,15 @@ impl Bench {
         Self::of(PicoRig::start(image, world()).unwrap())
     }
 
-    /// As [`Self::new`], in a world like this whose finger will make `stroke`.
-    pub(super) fn in_world(image: &Image, config: &WorldConfig, stroke: Stroke, seed: u64) -> Self {
-        let bench = Self::just_on_in_world(image, config, stroke, seed);
-        bench.pass(SWITCH_TIME);
-        bench
-    }
-
-    /// The same for an image that takes the finger's place from a touch frame.
+    /// As [`Self::new`], in a world like this whose finger will make `stroke`, for an image that takes the finger's place
+    /// from a touch frame.
     pub(super) fn in_world_with_frame(image: &Image, config: &WorldConfig, stroke: Stroke, seed: u64) -> Self {
-        let bench = Self::just_on_in_world(image, config, stroke, seed);
+        let mut world = World::new(*config, stroke, seed).unwrap();
+        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+        let bench = Self::of(PicoRig::start(image, world).unwrap());
         bench.with(PicoRig::attach_frame);
         bench.pass(SWITCH_TIME);
         bench
-    }
-
-    fn just_on_in_world(image: &Image, config: &WorldConfig, stroke: Stroke, seed: u64) -> Self {
-        let mut world = World::new(*config, stroke, seed).unwrap();
-        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
-        Self::of(PicoRig::start(image, world).unwrap())
     }
 
     /// Switches a board on whose image takes the finger's place from a touch frame.

@@ -49,12 +49,9 @@ fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
     Fidelity::of(&recorder.rows().iter().map(sample).collect::<Vec<_>>()).unwrap()
 }
 
-/// How to switch a board on: with its image, in a world like this, with a finger that makes a stroke, and a seed.
-type SwitchOn = fn(&Image, &WorldConfig, Stroke, u64) -> Bench;
-
 /// The fidelity of a stroke on the Pico, and the tick of the world at which the stroke begins.
-fn on_the_pico(image: &Image, switch_on: SwitchOn, seconds: f64, seed: u64) -> (Fidelity, u64) {
-    let bench = switch_on(image, &world(), stroke(seconds, seed), seed);
+fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> (Fidelity, u64) {
+    let bench = Bench::in_world_with_frame(image, &world(), stroke(seconds, seed), seed);
     let mut host = bench.connect();
     frixel_play::start(&mut host, &program(GRATING), &mut |_| ControlFlow::Continue(())).unwrap();
     bench.take_records();
@@ -89,9 +86,10 @@ fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
     }))
 }
 
-fn is_felt_within_the_goal(image: &Image, switch_on: SwitchOn, seconds: f64, seeds: impl Iterator<Item = u64>) {
+fn is_felt_within_the_goal(seconds: f64, seeds: impl Iterator<Item = u64>) {
+    let Some(image) = emulator::pico_image_with_frame() else { return };
     let stroke = |seed| {
-        let (found, start_tick) = on_the_pico(image, switch_on, seconds, seed);
+        let (found, start_tick) = on_the_pico(&image, seconds, seed);
         let beside = in_process(seconds, seed, start_tick);
         for (rig, felt) in [("Pico", &found), ("in-process", &beside)] {
             println!("{rig}, seed {seed}: {:.3?}", FidelityMean::of(slice::from_ref(felt)));
@@ -105,20 +103,12 @@ fn is_felt_within_the_goal(image: &Image, switch_on: SwitchOn, seconds: f64, see
 }
 
 #[test]
-fn a_grating_is_felt_within_the_goal() {
-    let Some(image) = emulator::pico_image() else { return };
-    is_felt_within_the_goal(&image, Bench::in_world, 1.5, HUMAN_TEST_SEEDS.take(1));
-}
-
-#[test]
 fn a_grating_is_felt_within_the_goal_under_a_finger_that_a_touch_frame_sees() {
-    let Some(image) = emulator::pico_image_with_frame() else { return };
-    is_felt_within_the_goal(&image, Bench::in_world_with_frame, 1.5, HUMAN_TEST_SEEDS.take(1));
+    is_felt_within_the_goal(1.5, HUMAN_TEST_SEEDS.take(1));
 }
 
 #[test]
 #[ignore = "takes minutes: `cargo xtask soak pico`"]
 fn a_grating_is_felt_within_the_goal_on_long_strokes() {
-    let Some(image) = emulator::pico_image() else { return };
-    is_felt_within_the_goal(&image, Bench::in_world, 8.5, HUMAN_TEST_SEEDS.take(4));
+    is_felt_within_the_goal(8.5, HUMAN_TEST_SEEDS.take(4));
 }

@@ -118,19 +118,3 @@ fn the_monitor_is_read_before_the_newest_code_has_moved_it() {
     let latest = reads.iter().max().unwrap();
     assert!(*latest <= MONITOR_READ_MAX, "the monitor is read {latest:?} after a code was latched");
 }
-
-#[test]
-fn a_finger_feels_the_friction_that_the_scene_asks_for() {
-    let Some(image) = emulator::pico_image() else { return };
-    let bench = Bench::new(&image);
-    let mut host = bench.play(CONSTANT);
-    let law = program(CONSTANT).header.friction_law().unwrap();
-    bench.take_records();
-    host.wait(Duration::from_millis(200), &mut |_| ()).unwrap();
-    let records = bench.take_records();
-    let mean_n = records.iter().map(|record| record.felt.electric_friction_n).sum::<f64>() / records.len() as f64;
-    let reach_n = law.electric_friction_n(f64::from(program(CONSTANT).header.voltage_max_v_rms));
-    let error = mean_n / (0.9 * reach_n) - 1.0;
-    // The edges of the carrier take a part of the mean square that varies with the tick rate's rounding.
-    assert!(error.abs() < 0.02, "{mean_n} N is {error} from what was asked for");
-}

@@ -18,6 +18,8 @@ import { addSimulatedClock } from "./simulated_clock.mjs";
 const FLAGS = [
   "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync",
+  // Without a process that waits for a page of another site: none comes.
+  "--disable-features=SpareRendererForSitePerProcess",
 ];
 
 /** Longest wait for something that has no time limit of its own: a busy machine may be slow, ms. */

@@ -7,7 +7,6 @@
 mod bench;
 mod cable;
 mod command;
-mod credit;
 #[path = "../../../../hil-sim/tests/emulator/mod.rs"]
 mod emulator;
 #[path = "../scenario_page/example.rs"]

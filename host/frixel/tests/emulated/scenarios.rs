@@ -19,7 +19,7 @@ const NOT_ON_PICO: [(&str, &str); 3] = [
 /// The ones that run on the emulated boards with every change. All of them take half an hour on the Pico, and need a
 /// machine that does nothing else on `qemu`, which lags by more than its 20 ms on a busy one.
 const FEW_ON_QEMU: [&str; 5] = ["cable-cut", "amplifier-over-current", "finger-lifted", "late-tick", "bytes-lost"];
-const FEW_ON_PICO: [&str; 5] = ["monitor-dead", "switch-let-go", "reset-in-upload", "switch-welded", "cable-cut"];
+const FEW_ON_PICO: [&str; 1] = ["cable-cut"];
 
 /// Runs scenarios on a rig: those of `names`, and the ones that are `lacking`, which fail for the reason given.
 fn check(rig: &str, lacking: &[(&str, &str)], names: impl Fn(&str) -> bool) {

@@ -84,11 +84,15 @@ export class Samples {
    * @returns {Stored<number[]>}
    */
   since(fromS) {
-    const step = (/** @type {number} */ index) => (this.#next - this.count + index + CAPACITY) % CAPACITY;
+    const oldest = this.#next - this.count + CAPACITY;
     let first = this.count;
-    while (first > 0 && this.#data.timeS[step(first - 1)] >= fromS) first -= 1;
-    const length = this.count - first;
-    return forEach((name) => Array.from({ length }, (_, index) => this.#data[name][step(first + index)]));
+    while (first > 0 && this.#data.timeS[(oldest + first - 1) % CAPACITY] >= fromS) first -= 1;
+    return forEach((name) => {
+      const column = this.#data[name];
+      const values = [];
+      for (let at = first; at < this.count; at += 1) values.push(column[(oldest + at) % CAPACITY]);
+      return values;
+    });
   }
 
   /**
