@@ -3,7 +3,6 @@
 mod amplifier;
 mod chips;
 mod dac;
-mod link_credit;
 mod live;
 mod looped_board;
 mod properties;

@@ -24,7 +24,7 @@ mod safety;
 mod scenario_page;
 mod scene_command;
 mod score;
-mod server_credit;
+mod slow_reader;
 mod stream;
 mod sweep;
 mod untrusted_text;
