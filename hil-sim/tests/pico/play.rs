@@ -12,7 +12,7 @@ use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
 use frixel_wire::message::{ConfigField, Refusal};
 
-use super::bench::{BOARD, Bench, CONSTANT, TICK, program, program_for};
+use super::bench::{BOARD, Bench, CONSTANT, TICK, program_for};
 use crate::emulator;
 
 /// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.

@@ -43,7 +43,7 @@ impl Line<'_> {
         let mut line = self.0.borrow_mut();
         let end = line.now() + time;
         while line.now() < end {
-            let left = end - line.now();
+            let left = end.saturating_sub(line.now());
             line.read(&mut Vec::new(), left).unwrap();
         }
     }
