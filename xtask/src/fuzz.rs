@@ -15,7 +15,7 @@ const INPUT_MAX: Duration = Duration::from_secs(30);
 const RUSTFLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
                          -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
                          -Cllvm-args=-sanitizer-coverage-pc-table \
-                         -Cllvm-args=-sanitizer-coverage-trace-compares";
+                         -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
 const PROFILE: &str = "fuzz";
 
 /// Runs every target for this time, all at once. Inputs that are worth starting from the next time are kept in
