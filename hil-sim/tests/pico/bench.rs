@@ -68,8 +68,8 @@ impl Bench {
         Self::of(PicoRig::start(image, world()).unwrap())
     }
 
-    /// As [`Self::new`], in a world like this whose finger will make `stroke`, for an image that takes the finger's place
-    /// from a touch frame.
+    /// As [`Self::new`], in a world like this whose finger will make `stroke`, for an image that takes the finger's
+    /// place from a touch frame.
     pub(super) fn in_world_with_frame(image: &Image, config: &WorldConfig, stroke: Stroke, seed: u64) -> Self {
         let mut world = World::new(*config, stroke, seed).unwrap();
         world.set_finger(program(CONSTANT).header.friction_law().unwrap());

@@ -134,6 +134,11 @@ test("what was changed is in Open after New, the gallery, a link and a closed ta
   await other.waitForFunction((text) => studioPage.editor.text === text, GRATING_OF_3_MM);
   assert.ok(await other.locator("#open").isHidden());
   const picture = () => document.querySelector("#open article img")?.naturalWidth > 0;
+  // The dialog shows what is kept when it opens, and the map's picture is kept once the map is drawn.
+  await other.waitForFunction(async () => {
+    const { Works } = await import(await studio.moduleUrl("page/works.js"));
+    return (await new Works().all()).some((work) => work.picture);
+  });
   await other.click("#open-files");
   await other.waitForFunction(picture);
   await other.click("#open article:has(h3:text-is('theirs')) >> text=Delete");

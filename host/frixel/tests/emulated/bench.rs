@@ -21,6 +21,9 @@ const NAP: Duration = Duration::from_millis(2);
 /// Two minutes of naps: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 60_000;
 
+/// A minute of the board's time, in which the finger comes over every part of a scene.
+const FELT_WITHIN_TICKS: usize = 60 * BOARD.tick_hz as usize;
+
 /// One emulator at a time: it takes more than a core.
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -86,9 +89,11 @@ impl Bench {
     /// Waits until the finger has felt so much electric friction, for a host that is there all the time.
     pub(crate) fn until_felt<L: Link>(&self, device: &mut Device<L>, electric_friction_n: f64) {
         let mut checked = 0;
-        self.until("the finger feels the scene", |_| {
+        let end = self.records.lock().unwrap().len() + FELT_WITHIN_TICKS;
+        self.until("the finger feels the scene", |board| {
             device.keep_alive().unwrap();
             let records = self.records.lock().unwrap();
+            assert!(records.len() < end, "the finger does not feel the scene; the board puts out {:?}", board.output());
             let new = &records[checked..];
             checked = records.len();
             new.iter().any(|record| record.felt.electric_friction_n >= electric_friction_n)

@@ -1,4 +1,5 @@
-//! The link: hello, upload, play and stop over the emulated serial port, rubbish in between, and a host that hangs.
+//! The link: hello, upload, play and stop over the emulated serial port, rubbish in between, a cable that is cut,
+//! and a host that hangs.
 
 use std::ops::ControlFlow;
 
@@ -7,9 +8,13 @@ use frixel_driver::Device;
 use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, ResetCause};
 
-use crate::bench::{Bench, program};
+use crate::bench::{Bench, HOST_TIMEOUT_TICKS, program};
 use crate::cable::Cable;
 use crate::emulator;
+
+/// Ticks of the millisecond within which a board acts on the host timeout (docs/safety.md). The last frame is heard
+/// after 2 to 6: a turn of the main loop takes one or two, and a sign of life waits for one order of the finger.
+const HEARD_WITHIN_TICKS: u32 = 40;
 
 #[test]
 fn a_picture_goes_up_plays_and_stops() {
@@ -44,6 +49,26 @@ fn rubbish_between_frames_does_no_harm() {
     bench.until_driven(&mut device);
     device.stop().unwrap();
     assert_eq!(device.counters().frames_rejected, 0, "the board's own frames arrive whole");
+}
+
+#[test]
+fn a_cut_cable_puts_the_output_to_zero_within_the_host_timeout() {
+    let Some(image) = emulator::image() else { return };
+    let bench = Bench::new(&image);
+    let device = bench.play("constant.toml");
+    drop(device);
+    bench.until("the board falls silent", |board| {
+        board.tick().unwrap().wrapping_sub(board.received_at_tick().unwrap()) > HOST_TIMEOUT_TICKS + 1_000
+    });
+    let last_byte = bench.board.received_at_tick().unwrap();
+    let records = bench.records();
+    let last_driven = records.iter().rev().find(|record| record.drive != Drive::default()).unwrap();
+    let ticks = last_driven.tick - last_byte;
+    assert!(ticks <= HOST_TIMEOUT_TICKS + HEARD_WITHIN_TICKS, "driven for {ticks} ticks after the last byte");
+    assert!(ticks >= HOST_TIMEOUT_TICKS, "driven for {ticks} ticks only");
+
+    let hello = *Device::connect(Cable::plug(&bench.board)).unwrap().hello();
+    assert_eq!((hello.state, hello.last_fault), (State::Disarmed, None));
 }
 
 /// It is connected, and makes no call any more: the emulated clock waits for it for 10 s, and then runs on.
