@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::bench::programs::{self, Pace};
 use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, cargo_in, root, run};
+use crate::fuzz::Extent;
 use crate::needs::{Machine, Missing, Need};
 use crate::{bench, budgets, fuzz, pico_rig, portability, python, studio_tests};
 
@@ -15,8 +16,6 @@ const SESSION: &str = "firmware/session";
 /// features as for `cargo test`, and so only once.
 const BESIDE_DEFAULT: [&str; 7] =
     ["frixel-board", "frixel-drivers", "frixel-exchange", "frixel-fuzz", "frixel-studio", "frixel-testkit", "xtask"];
-/// How long each fuzz target runs.
-const FUZZ_TIME: Duration = Duration::from_secs(40);
 
 /// One check.
 struct Step {
@@ -55,7 +54,7 @@ const STEPS: [Step; 15] = [
     Step { name: "budgets", needs: &EMULATED, run: check_budgets },
     Step { name: "python", needs: &python::NEEDS, run: python::check },
     Step { name: "other-systems", needs: &portability::NEEDS, run: portability::other_systems },
-    Step { name: "fuzz", needs: &[Need::CppCompiler], run: || fuzz::run_for(FUZZ_TIME) },
+    Step { name: "fuzz", needs: &[Need::CppCompiler], run: || fuzz::run_all(Extent::Fixed) },
 ];
 
 /// Checks what the machine has, runs every step, and prints the time of each. A step whose needs are missing is skipped;

@@ -8,7 +8,15 @@ use std::time::Duration;
 use crate::ci;
 use crate::command::{cargo_in, root, run, target_folder, text_of};
 
-const TARGETS: [&str; 6] = ["scene_text", "scene_bytes", "scene_load", "parquet", "scenario", "plan"];
+/// The targets, each with its number of inputs in [`Extent::Fixed`].
+const TARGETS: [(&str, u32); 6] = [
+    ("scene_text", 30_000),
+    ("scene_bytes", 2_000_000),
+    ("scene_load", 30_000),
+    ("parquet", 100_000),
+    ("scenario", 100_000),
+    ("plan", 150_000),
+];
 /// Longest time of one input: beyond it, the target hangs.
 const INPUT_MAX: Duration = Duration::from_secs(30);
 /// Coverage as libFuzzer reads it. The compiler's own option for it is unstable; these are not.
@@ -18,9 +26,18 @@ const RUSTFLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanit
                          -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
 const PROFILE: &str = "fuzz";
 
-/// Runs every target for this time, all at once. Inputs that are worth starting from the next time are kept in
-/// `target/fuzz`.
-pub(crate) fn run_for(time: Duration) -> Result<(), String> {
+/// How far a target is run.
+#[derive(Clone, Copy)]
+pub(crate) enum Extent {
+    /// As many inputs as [`TARGETS`] says, drawn from one seed and what a target starts from: much the same at every run,
+    /// whatever the machine's speed. What goes through hash maps differs a little.
+    Fixed,
+    /// Other inputs at every run, for this time. Those that reach new code are where the next such run begins.
+    For(Duration),
+}
+
+/// Runs every target, all at once.
+pub(crate) fn run_all(extent: Extent) -> Result<(), String> {
     run("seeds", ci::beside_default("build").args(["--bin", "seeds"]))?;
     let folder = target_folder().join("fuzz");
     let host = text_of(Command::new("rustc").args(["--print", "host-tuple"]))?;
@@ -28,13 +45,13 @@ pub(crate) fn run_for(time: Duration) -> Result<(), String> {
     build.args(["build", "--locked", "--package", "frixel-fuzz", "--features", "libfuzzer", "--profile", PROFILE]);
     // With a target, what runs in the compiler carries no instrumentation.
     build.args(["--target", host.trim(), "--target-dir"]).arg(&folder).env("RUSTFLAGS", RUSTFLAGS);
-    for target in TARGETS {
+    for (target, _) in TARGETS {
         build.args(["--bin", target]);
     }
     run("fuzz targets", &mut build)?;
     let programs = folder.join(host.trim()).join(PROFILE);
-    let running: Vec<Fuzzer> =
-        TARGETS.iter().map(|name| Fuzzer::start(name, &programs, &folder, time)).collect::<Result<_, _>>()?;
+    let start = |(name, inputs)| Fuzzer::start(name, inputs, &programs, &folder, extent);
+    let running: Vec<Fuzzer> = TARGETS.into_iter().map(start).collect::<Result<_, _>>()?;
     let failures: Vec<String> = running.into_iter().filter_map(|fuzzer| fuzzer.end().err()).collect();
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
@@ -48,9 +65,15 @@ struct Fuzzer {
 }
 
 impl Fuzzer {
-    fn start(name: &'static str, programs: &Path, folder: &Path, time: Duration) -> Result<Self, String> {
+    fn start(name: &'static str, inputs: u32, programs: &Path, folder: &Path, extent: Extent) -> Result<Self, String> {
         let explain = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
-        let corpus = folder.join("corpus").join(name);
+        let corpus = match extent {
+            Extent::Fixed => folder.join("fixed").join(name),
+            Extent::For(_) => folder.join("corpus").join(name),
+        };
+        if matches!(extent, Extent::Fixed) && corpus.exists() {
+            fs::remove_dir_all(&corpus).map_err(|error| explain(&corpus, error))?;
+        }
         fs::create_dir_all(&corpus).map_err(|error| explain(&corpus, error))?;
         let mut command = Command::new(programs.join(name));
         command.arg(&corpus);
@@ -65,14 +88,18 @@ impl Fuzzer {
         let found = folder.join("found");
         fs::create_dir_all(&found).map_err(|error| explain(&found, error))?;
         command.arg(format!("-artifact_prefix={}/{name}-", found.display()));
-        command.arg(format!("-max_total_time={}", time.as_secs())).arg(format!("-timeout={}", INPUT_MAX.as_secs()));
+        command.arg(format!("-timeout={}", INPUT_MAX.as_secs()));
+        match extent {
+            Extent::Fixed => command.arg(format!("-runs={inputs}")).arg("-seed=1"),
+            Extent::For(time) => command.arg(format!("-max_total_time={}", time.as_secs())),
+        };
         let log = folder.join(format!("{name}.log"));
         let file = File::create(&log).map_err(|error| explain(&log, error))?;
         let process = command.stderr(file).spawn().map_err(|error| format!("{command:?}: {error}"))?;
         Ok(Self { name, process, log })
     }
 
-    /// Waits until its time is over, and prints how many inputs it has tried.
+    /// Waits until it ends, and prints how many inputs it has tried.
     fn end(mut self) -> Result<(), String> {
         let status = self.process.wait().map_err(|error| format!("{}: {error}", self.name))?;
         let said = fs::read(&self.log).map_err(|error| format!("{}: {error}", self.log.display()))?;

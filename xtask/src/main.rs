@@ -27,6 +27,7 @@ use std::time::Duration;
 
 use bench::programs::{self, Pace};
 use ci::{EMULATED, M4F_TARGET, WASM_TARGET};
+use fuzz::Extent;
 use needs::{Need, require};
 
 const USAGE: &str = "\
@@ -75,7 +76,10 @@ fn main() -> ExitCode {
         ["hardware"] => hardware::write(),
         ["numbers"] => numbers::write(),
         ["fuzz", seconds] => match seconds.parse() {
-            Ok(seconds) => require(&[Need::CppCompiler]).and_then(|()| fuzz::run_for(Duration::from_secs(seconds))),
+            Ok(seconds) => {
+                let extent = Extent::For(Duration::from_secs(seconds));
+                require(&[Need::CppCompiler]).and_then(|()| fuzz::run_all(extent))
+            }
             Err(_) => Err(format!("expected a number of seconds, found `{seconds}`\n{USAGE}")),
         },
         ["programs", pace, first, count] => match (Pace::named(pace), first.parse(), count.parse()) {

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::bench::programs::{self, Pace};
 use crate::ci::{M0_PLUS_TARGET, M4F_TARGET};
 use crate::command::{WASM, cargo_in, run as run_command};
+use crate::fuzz::Extent;
 use crate::needs::{self, Need};
 use crate::{fuzz, packages, studio_tests};
 
@@ -147,7 +148,7 @@ fn pico() -> Result<(), String> {
 }
 
 fn fuzz_targets() -> Result<(), String> {
-    fuzz::run_for(FUZZ_TIME)
+    fuzz::run_all(Extent::For(FUZZ_TIME))
 }
 
 #[cfg(test)]
