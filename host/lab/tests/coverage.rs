@@ -53,6 +53,7 @@ fn smoothed_recordings_are_refused_or_right() {
         Filter::Mean(11),
         Filter::Mean(21),
         Filter::Mean(51),
+        Filter::SavitzkyGolay(7),
         Filter::SavitzkyGolay(11),
         Filter::SavitzkyGolay(21),
     ] {

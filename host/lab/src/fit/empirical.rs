@@ -10,7 +10,9 @@ use super::least_squares::Solution;
 use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels, mean_and_error};
 use super::profile::rounded;
 use super::summary::NAMED_V_RMS;
-use super::{Data, Division, FittedData, HeldOut, Point, Preparation, Settings, StrokeResult, results, verdict};
+use super::{
+    Data, Division, FittedData, HeldOut, Point, Preparation, Settings, StrokeResult, results, sensor, verdict,
+};
 use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
 
@@ -79,9 +81,18 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
         fitted => fitted?,
     };
     let FittedData {
-        normal_load_n, division, rows, voltage_range_v_rms, load_range_n, bandwidth_hz, preparation, ..
+        normal_load_n,
+        division,
+        rows,
+        voltage_range_v_rms,
+        load_range_n,
+        bandwidth_hz,
+        settling_error,
+        preparation,
+        ..
     } = data;
     verdict::check_estimates(division, &strokes, &friction_coefficient, &highest.electric_friction_n, normal_load_n)?;
+    sensor::check_settling_error(settling_error)?;
     let strokes = strokes.len();
     Ok(EmpiricalFit {
         friction_coefficient,

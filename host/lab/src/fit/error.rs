@@ -350,6 +350,16 @@ pub enum FitError {
         /// Bandwidth with this rise time, in Hz.
         bandwidth_hz: f64,
     },
+    /// Noise hides whether electric friction depends on how many rows beside a switch of the drive are left out.
+    #[error(
+        "the drive adds so little friction that noise hides whether friction was smoothed: electric friction may change \
+         by {percent:.0} % with the rows that are left out beside each switch; fit what the sensor gave, without a mean \
+         or a filter behind it, and check that the electrode is driven"
+    )]
+    SettlingUnknown {
+        /// The 99.9 % half-interval of the change, in percent of electric friction.
+        percent: f64,
+    },
     /// Electric friction depends on how many rows beside a switch of the drive are left out.
     #[error(
         "electric friction comes out {:.1} % {} if rows within {edge} {side} each switch of the drive are left \

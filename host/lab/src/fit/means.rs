@@ -158,6 +158,7 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, F
         has_time: false,
         has_speed: false,
         bandwidth_hz: None,
+        settling_error: 0.0,
         held_out: None,
         preparation: Preparation::default(),
     })

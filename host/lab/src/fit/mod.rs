@@ -175,6 +175,8 @@ struct FittedData {
     has_time: bool,
     has_speed: bool,
     bandwidth_hz: Option<f64>,
+    /// What [`sensor::check_settled`] could not see, as a part of electric friction. Zero for means.
+    settling_error: f64,
     held_out: Option<HeldOut>,
     preparation: Preparation,
 }
@@ -219,7 +221,7 @@ impl FittedData {
         rules::check_natural(&mut strokes, faults)?;
         rules::check_forces(&recording)?;
         let bandwidth_hz = sensor::check_bandwidth(&phases)?;
-        sensor::check_settled(&phases, &used)?;
+        let settling_error = sensor::check_settled(&phases, &used)?;
         rules::check_stated_load(settings, load_range_n)?;
         let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
 
@@ -244,6 +246,7 @@ impl FittedData {
             has_time: recording.has_time,
             has_speed: recording.has_speed,
             bandwidth_hz,
+            settling_error,
             held_out,
             preparation: Preparation::default(),
             strokes,
@@ -301,6 +304,7 @@ fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
     };
     let Fit { friction_coefficient, electric_friction_n, .. } = &fit;
     verdict::check_estimates(fit.division, &fit.strokes, friction_coefficient, electric_friction_n, normal_load_n)?;
+    sensor::check_settling_error(data.settling_error)?;
     verdict::check_gap(&fit, settings)?;
     Ok(fit)
 }

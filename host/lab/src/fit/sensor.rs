@@ -14,15 +14,20 @@ use crate::bootstrap::{GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
 
 /// Edges that leave out more than [`Edges::USED`] on one side of a switch. What comes after a slow or ringing sensor
-/// and what comes before a smoothed switch decays differently, so each side has two.
-const WIDER: [(Side, Edge); 4] = [
+/// and what comes before a smoothed switch decays differently, so each side has several. What reaches ahead by few rows
+/// of a millisecond stands out where little else is left out.
+const WIDER: [(Side, Edge); 5] = [
+    (Side::Before, Edge { duration_s: 4e-3, share: 0.16 }),
     (Side::Before, Edge { duration_s: 5e-3, share: 0.2 }),
     (Side::Before, Edge { duration_s: 8e-3, share: 0.35 }),
     (Side::After, Edge { duration_s: 8e-3, share: 0.35 }),
     (Side::After, Edge { duration_s: 12e-3, share: 0.5 }),
 ];
-/// Change of electric friction under wider edges that is allowed, as a part of it, beside the 99.9 % interval of noise.
-const SETTLED_SHARE: f64 = 3e-3;
+/// Change of electric friction under wider edges that is allowed, as a part of it. Noise is allowed its 99.9 % interval.
+const SETTLED_SHARE: f64 = 5e-3;
+/// Widest 99.9 % half-interval of such a change, as a part of electric friction, with which it tells something. A mean
+/// over whole periods of the drive leaves next to nothing of electric friction, and that depends on no edge.
+const SETTLING_ERROR_MAX: f64 = 0.5;
 
 /// Means of a voltage over other rows differ by less than this part of it.
 const SAME_VOLTAGE: f64 = 0.01;
@@ -66,8 +71,8 @@ pub(super) enum Side {
 }
 
 /// Fails if electric friction depends on how many rows beside a switch are left out; `used` are the means without
-/// [`Edges::USED`].
-pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<(), FitError> {
+/// [`Edges::USED`]. Returns the widest 99.9 % half-interval of its changes, as a part of it.
+pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<f64, FitError> {
     let shifts = WIDER.iter().filter_map(|(side, edge)| {
         let edges = match side {
             Side::Before => Edges { before: *edge, ..Edges::USED },
@@ -75,12 +80,12 @@ pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<(),
         };
         Some((side, edge, shift(used, &phases.means(&edges))?))
     });
-    let excess = |shift: &Shift| (shift.share.abs() - SETTLED_SHARE) / shift.error;
-    let largest = shifts.max_by(|(_, _, one), (_, _, other)| excess(one).total_cmp(&excess(other)));
-    let Some((side, edge, shift)) = largest else { return Ok(()) };
-    if excess(&shift) <= 1.0 {
-        return Ok(());
-    }
+    let shifts: Vec<(&Side, &Edge, Shift)> = shifts.collect();
+    let excess = |shift: &Shift| shift.share.abs() / shift.error.max(SETTLED_SHARE);
+    let largest = shifts.iter().max_by(|(_, _, one), (_, _, other)| excess(one).total_cmp(&excess(other)));
+    let Some((side, edge, shift)) = largest.filter(|(_, _, shift)| excess(shift) > 1.0) else {
+        return Ok(shifts.iter().map(|(_, _, shift)| shift.error).fold(0.0, f64::max));
+    };
     let edge = match usual_interval_s(phases.rows()) {
         interval_s if interval_s.is_nan() => format!("{:.0} % of a phase", 1e2 * edge.share),
         _ => format!("{:.0} ms", 1e3 * edge.duration_s),
@@ -90,6 +95,11 @@ pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<(),
         Side::After => ("after", SLOWNESS),
     };
     Err(FitError::NotSettled { edge, side, percent: 1e2 * shift.share, cause })
+}
+
+/// Fails if the changes of [`check_settled`] say nothing. Asked last: noise that widens them widens what else is judged.
+pub(super) fn check_settling_error(error: f64) -> Result<(), FitError> {
+    if error > SETTLING_ERROR_MAX { Err(FitError::SettlingUnknown { percent: 1e2 * error }) } else { Ok(()) }
 }
 
 const FORESIGHT: &str = "friction changes before its switch, as behind a centred mean, filtfilt or a Savitzky-Golay \
