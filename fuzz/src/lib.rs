@@ -9,6 +9,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -168,7 +169,8 @@ pub fn scene_load(bytes: &[u8]) -> bool {
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
     let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
-    let taken = device.upload(&upload, &mut |_| {}).and_then(|()| device.commit(upload.scene_crc32()));
+    let taken =
+        device.upload(&upload, &mut |_| ControlFlow::Continue(())).and_then(|()| device.commit(upload.scene_crc32()));
     match taken {
         Ok(()) => {
             let scene = WireScene::parse(bytes).expect("the board has read it");

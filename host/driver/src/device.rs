@@ -117,17 +117,9 @@ impl<L: Link> Device<L> {
     }
 
     /// Uploads the scene, and those of its bitmaps that the board does not hold. The playing scene does not change
-    /// before [`Self::commit`].
-    pub fn upload(&mut self, upload: &Upload, progress: &mut dyn FnMut(Progress)) -> Result<(), DeviceError> {
-        self.upload_while(upload, &mut |now| {
-            progress(now);
-            ControlFlow::Continue(())
-        })
-    }
-
-    /// Like [`Self::upload`], until `progress`, which is called several times a second, breaks the upload off with
+    /// before [`Self::commit`]. `progress` is called several times a second, and may break the upload off with
     /// [`DeviceError::Interrupted`].
-    pub fn upload_while(
+    pub fn upload(
         &mut self,
         upload: &Upload,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,

@@ -17,12 +17,16 @@
 //! ```no_run
 //! # #[cfg(feature = "native")]
 //! # fn play(scene: &[u8]) -> Result<(), Box<dyn std::error::Error>> {
+//! use std::ops::ControlFlow;
 //! use std::time::Duration;
 //! use frixel_driver::{DEFAULT_BAUD, Device, Event, SerialLink, Upload};
 //!
 //! let mut board = Device::connect(SerialLink::open("/dev/ttyACM0", DEFAULT_BAUD)?)?;
 //! let upload = Upload { scene, bitmaps: Vec::new() };
-//! board.upload(&upload, &mut |progress| println!("{} of {} bytes", progress.done_bytes, progress.total_bytes))?;
+//! board.upload(&upload, &mut |progress| {
+//!     println!("{} of {} bytes", progress.done_bytes, progress.total_bytes);
+//!     ControlFlow::Continue(())
+//! })?;
 //! board.commit(upload.scene_crc32())?;
 //! board.arm()?;
 //! board.play()?;

@@ -4,6 +4,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
@@ -133,7 +134,9 @@ fn measured(bit_error_rate: f64, stream_s: f64) -> Row {
     let picture = Bitmap { crc32: bitmap_crc32(width, height, &samples), width, height, samples: &samples };
     let upload = Upload { scene: &scene, bitmaps: vec![picture] };
     let (failed, took_s) = on_line(&mut |device| {
-        let uploaded = device.upload(&upload, &mut |_| {}).and_then(|()| device.commit(upload.scene_crc32()));
+        let uploaded = device
+            .upload(&upload, &mut |_| ControlFlow::Continue(()))
+            .and_then(|()| device.commit(upload.scene_crc32()));
         let failed = uploaded.err().map(|error| error.to_string());
         if failed.is_none() {
             assert_eq!(device.link_mut().stream_mut().rig.scene(), Some(&program.header));
@@ -147,7 +150,7 @@ fn measured(bit_error_rate: f64, stream_s: f64) -> Row {
     let alone = Upload { scene: &scene, bitmaps: Vec::new() };
     let (failed, took_s) = on_line(&mut |device| {
         let mut play = || {
-            device.upload(&alone, &mut |_| {})?;
+            device.upload(&alone, &mut |_| ControlFlow::Continue(()))?;
             device.commit(alone.scene_crc32())?;
             device.arm()?;
             device.play()?;

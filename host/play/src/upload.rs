@@ -54,6 +54,6 @@ pub(crate) fn upload<L: Link>(
         samples: &bitmap.samples,
     });
     let upload = Upload { scene: &scene, bitmaps: bitmaps.collect() };
-    device.upload_while(&upload, progress)?;
+    device.upload(&upload, progress)?;
     device.commit(upload.scene_crc32())
 }

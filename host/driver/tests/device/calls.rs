@@ -1,5 +1,6 @@
 //! Commands, answers, pings and events when all is well, and when a frame gets lost.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, PollingLink, Upload};
@@ -37,7 +38,7 @@ fn a_scene_goes_from_upload_to_play_and_back() {
     let mut device = virtual_board();
     let scene = scene(0.25);
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-    device.upload(&upload, &mut |_| {}).unwrap();
+    device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
     device.arm().unwrap();
     device.play().unwrap();
@@ -76,7 +77,8 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
         let mut board = FakeBoard::new();
         board.hello.features = features;
         let mut device = connected(VirtualLine::new(board));
-        let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).err();
+        let error =
+            device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| ControlFlow::Continue(())).err();
         let said = error.map(|error| error.to_string());
         assert_eq!(said.is_some(), refused, "{said:?}");
         assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.0")));
@@ -159,7 +161,7 @@ fn pings_follow_the_committed_scenes_host_timeout() {
         let mut device = virtual_board();
         let scene = scene(host_timeout_s);
         let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-        device.upload(&upload, &mut |_| {}).unwrap();
+        device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
         device.commit(upload.scene_crc32()).unwrap();
         device.arm().unwrap();
         let silence = silence_of(&mut device);
@@ -177,7 +179,7 @@ fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
             let mut device = virtual_board();
             let scene = scene(host_timeout_ms as f32 / 1000.0);
             let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-            device.upload(&upload, &mut |_| {}).unwrap();
+            device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
             device.commit(upload.scene_crc32()).unwrap();
             device.arm().unwrap();
             device.play().unwrap();
@@ -202,9 +204,9 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     armed.arm().unwrap();
     let mut uploaded = virtual_board();
     uploaded.arm().unwrap();
-    uploaded.upload(&upload, &mut |_| {}).unwrap();
+    uploaded.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
     let mut refused = virtual_board();
-    refused.upload(&upload, &mut |_| {}).unwrap();
+    refused.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
     refused.commit(upload.scene_crc32() + 1).unwrap_err();
     refused.arm().unwrap();
     for mut device in [armed, uploaded, refused] {

@@ -1,6 +1,7 @@
 //! The serial link over a pseudo-terminal, in real time. Nothing here is measured by the clock.
 
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{
@@ -41,7 +42,7 @@ fn a_scene_plays_over_a_serial_port() {
     let samples: Vec<u8> = (0..62_500_u64).map(|n| (n * n / 7) as u8).collect();
     let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap] };
-    device.upload(&upload, &mut |_| {}).unwrap();
+    device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
     device.arm().unwrap();
     device.play().unwrap();
@@ -154,6 +155,7 @@ fn a_cable_pulled_in_an_upload_ends_it() {
         if progress.done_bytes > 20_000 {
             board.unplug();
         }
+        ControlFlow::Continue(())
     });
     let error = outcome.unwrap_err();
     assert!(matches!(error, DeviceError::Vanished { command: "upload of a bitmap", .. }), "{error}");

@@ -29,7 +29,8 @@ fn uploaded(time_per_frame: Duration) -> (Result<(), DeviceError>, u64, u32, Dur
     let samples = vec![7; 25_000];
     let mut device = slow(time_per_frame);
     let (frames, started) = (device.counters().frames_sent, device.now());
-    let result = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![picture(&samples)] }, &mut |_| {});
+    let result = device
+        .upload(&Upload { scene: &scene(0.25), bitmaps: vec![picture(&samples)] }, &mut |_| ControlFlow::Continue(()));
     let (frames, took) = (device.counters().frames_sent - frames, device.now().saturating_sub(started));
     println!("{time_per_frame:?} a frame: {frames} frames in {took:?}, {result:?}");
     (result, frames, line_of(&mut device).board.pings, took)
@@ -53,7 +54,7 @@ fn a_picture_arrives_on_a_board_that_takes_a_tenth_of_a_second_a_frame() {
     let scene = scene(0.25);
     let mut device = slow(SECOND / 10);
     let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
-    device.upload(&upload, &mut |_| {}).unwrap();
+    device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
     let counters = device.counters();
     assert!(counters.wire_bytes < 30_000, "{counters:?}");
     assert_eq!(line_of(&mut device).board.bitmaps.get(&crc32(&samples)), Some(&samples));
@@ -94,7 +95,7 @@ fn an_upload_ends_10_s_after_the_last_acknowledged_byte() {
     let started = device.now();
     line_of(&mut device).board.chunks_per_progress = None;
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-    let error = device.upload(&upload, &mut |_| {}).unwrap_err();
+    let error = device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(matches!(error, DeviceError::UploadTooSlow { arrived_bytes: 0, .. }), "{error}");
     let took = device.now().saturating_sub(started);
     assert!(took >= 10 * SECOND && took < 11 * SECOND, "{took:?}");

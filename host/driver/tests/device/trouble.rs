@@ -2,6 +2,7 @@
 //! time.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -153,7 +154,7 @@ fn hellos_that_are_answered_late_do_not_confuse_the_credit() {
     line.board_delay = Duration::from_millis(200);
     let mut device = connected(line);
     let scene = scene(0.25);
-    device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).unwrap();
+    device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(line_of(&mut device).board.hellos, 2);
 }
 
@@ -204,7 +205,9 @@ fn a_board_that_falls_silent_in_an_upload_is_known_within_a_second() {
     let mut device = connected(line);
     let samples = vec![7; 62_500];
     let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
-    let error = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| {}).unwrap_err();
+    let error = device
+        .upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap_err();
     assert!(matches!(error, DeviceError::Silent { .. }), "{error}");
     assert!(device.now() < SECOND);
 }
@@ -239,7 +242,9 @@ fn a_pulled_cable_ends_every_call_at_once() {
     let mut device = connected(pulled_at(100));
     let samples = vec![7; 62_500];
     let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
-    let error = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| {}).unwrap_err();
+    let error = device
+        .upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap_err();
     assert!(matches!(error, DeviceError::Vanished { command: "upload of a bitmap", .. }), "{error}");
     assert!(error.to_string().starts_with("the virtual line vanished (pulled) during: upload of a bitmap; "));
     let line = line_of(&mut device);

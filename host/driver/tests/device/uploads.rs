@@ -35,7 +35,7 @@ fn upload_over(line: VirtualLine) -> Device<VirtualLink> {
     let (samples, scene) = (samples(62_500), scene(0.25));
     let mut device = connected(line);
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
-    device.upload(&upload, &mut |_| {}).unwrap();
+    device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
     let board = &line_of(&mut device).board;
     assert_eq!(board.bitmaps.get(&crc32(&samples)), Some(&samples));
@@ -49,7 +49,9 @@ fn at_least_95_percent_of_the_line_is_payload() {
     let scene = scene(0.25);
     let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let before = device.counters();
-    device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
+    device
+        .upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap();
     let after = device.counters();
 
     assert_eq!(after.payload_bytes, (samples.len() + scene.len()) as u64);
@@ -70,7 +72,9 @@ fn an_upload_takes_the_time_of_its_bytes() {
     let bytes_before = device.counters().wire_bytes;
     let started = device.now();
     device = reconnected(device);
-    device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
+    device
+        .upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap();
     let line_time_s = (device.counters().wire_bytes - bytes_before) as f64 / 200_000.0;
     let took_s = device.now().as_secs_f64() - started.as_secs_f64();
     let line = line_of(&mut device);
@@ -102,7 +106,7 @@ fn pings_have_credit_of_their_own() {
         }
         let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
         let pings_before = line_of(&mut device).board.pings;
-        device.upload(&upload, &mut |_| {}).unwrap();
+        device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
         assert!(device.now() > Duration::from_millis(800), "the board paused in the upload");
         let pings = line_of(&mut device).board.pings - pings_before;
         assert!(pings >= 2, "{pings} pings");
@@ -122,7 +126,7 @@ fn a_board_with_room_for_one_frame_takes_an_upload() {
 fn an_upload_alone_commits_no_scene() {
     let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let scene = scene(0.25);
-    device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| {}).unwrap();
+    device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(line_of(&mut device).board.scene, None);
 }
 
@@ -131,7 +135,9 @@ fn a_bitmap_that_the_board_holds_is_not_sent_again() {
     let mut device = upload_over(VirtualLine::new(FakeBoard::new()));
     let payload_before = device.counters().payload_bytes;
     let (samples, scene) = (samples(62_500), scene(0.25));
-    device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap();
+    device
+        .upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap();
     assert_eq!(device.counters().payload_bytes - payload_before, scene.len() as u64);
 }
 
@@ -141,7 +147,11 @@ fn progress_only_grows_and_ends_with_all() {
     let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let mut steps = Vec::new();
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
-    device.upload(&upload, &mut |progress| steps.push(progress)).unwrap();
+    let mut note = |progress| {
+        steps.push(progress);
+        ControlFlow::Continue(())
+    };
+    device.upload(&upload, &mut note).unwrap();
     assert!(steps.iter().all(|step| step.total_bytes == samples.len() + scene.len()));
     assert!(steps.windows(2).all(|pair| pair[0].done_bytes <= pair[1].done_bytes));
     assert_eq!(steps.last().unwrap().done_bytes, samples.len() + scene.len());
@@ -226,7 +236,7 @@ fn an_upload_that_does_not_get_on_ends_within_a_second() {
     let mut device = connected(line);
     let (samples, scene) = (samples(62_500), scene(0.25));
     let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
-    let error = device.upload(&upload, &mut |_| {}).unwrap_err();
+    let error = device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap_err();
     let expected = DeviceError::UploadStalled {
         port: "the virtual line".into(),
         arrived_bytes: 50 * 184,
@@ -244,7 +254,9 @@ fn a_refused_upload_is_not_sent() {
     board.refuse = Some(Box::new(move |command| matches!(command, Command::UploadBitmap { .. }).then_some(full)));
     let mut device = connected(VirtualLine::new(board));
     let (samples, scene) = (samples(62_500), scene(0.25));
-    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap_err();
+    let error = device
+        .upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap_err();
     assert!(matches!(error, DeviceError::Refused { refusal, .. } if refusal == full), "{error}");
     assert!(device.counters().wire_bytes < 200);
 }
@@ -256,7 +268,8 @@ fn a_bitmap_of_another_size_is_refused_before_anything_is_sent() {
     let mut device = connected(VirtualLine::new(FakeBoard::new()));
     let before = device.counters();
     let wrong = Bitmap { height: 249, ..bitmap(&samples) };
-    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut |_| {}).unwrap_err();
+    let error =
+        device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(matches!(error, DeviceError::BitmapSize { found: 62_500, .. }), "{error}");
     assert_eq!(device.counters(), before);
 }
@@ -272,7 +285,9 @@ fn a_board_that_forgets_every_upload_is_given_up() {
     board.refuse = Some(Box::new(forgets));
     let mut device = connected(VirtualLine::new(board));
     let (samples, scene) = (samples(6_250), scene(0.25));
-    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| {}).unwrap_err();
+    let error = device
+        .upload(&Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] }, &mut |_| ControlFlow::Continue(()))
+        .unwrap_err();
     assert!(matches!(error, DeviceError::UploadForgotten { total_bytes: 6_250, times: 4, .. }), "{error}");
     assert!(error.to_string().contains("reset the board"), "{error}");
     assert!(device.now() < Duration::from_secs(1));
@@ -287,7 +302,7 @@ fn a_slow_line_uploads_in_the_end() {
         line.bytes_per_s = bytes_per_s;
         let mut device = connected(line);
         let upload = Upload { scene: &scene, bitmaps: vec![bitmap(&samples)] };
-        device.upload(&upload, &mut |_| {}).unwrap();
+        device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
         device.commit(upload.scene_crc32()).unwrap();
         let written = device.counters().wire_bytes;
         let line = line_of(&mut device);
@@ -306,7 +321,7 @@ fn an_upload_ends_when_its_caller_breaks_it_off() {
     let started = device.now();
     let deadline = started + Duration::from_millis(100);
     let mut calls = 0;
-    let error = device.upload_while(&upload, &mut |progress| {
+    let error = device.upload(&upload, &mut |progress| {
         calls += 1;
         let enough = progress.done_bytes > 10_000 || calls > 1_000;
         if enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
