@@ -14,14 +14,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, PollingLink, Upload};
-use frixel_felt::recorder::{FeltRow, Recorder};
+use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::board_costs;
 use frixel_lab::recording::{Metadata, Recording};
 use frixel_lab::sweep::{Plan, PlanError, Source};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
-use frixel_play::SimStream;
+use frixel_play::RigStream;
 use frixel_scene::{FileUnavailable, Files, Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
@@ -167,7 +167,7 @@ pub fn scene_load(bytes: &[u8]) -> bool {
     let mut memory = BoardMemory::new();
     let stroke = Stroke::sweep(0.12, 0.08, 1.0).expect("a stroke");
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
-    let mut device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).expect("a board");
+    let mut device = Device::connect(PollingLink::new(RigStream::new(rig))).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
     let taken =
         device.upload(&upload, &mut |_| ControlFlow::Continue(())).and_then(|()| device.commit(upload.scene_crc32()));

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use frixel_control::{Board, Drive};
+use frixel_control::{Board, Drive, Status};
 use thiserror::Error;
 
 use crate::{Felt, OutOfRange, WorldFault};
@@ -34,6 +34,20 @@ pub struct RigTick {
     pub drive: Drive,
     /// What the finger felt.
     pub felt: Felt,
+    /// What the rig sees of the board itself.
+    pub board: BoardView,
+}
+
+/// What a rig sees of a board after a tick, beside its pins.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "the in-process rig, the fast one, always has it")]
+pub enum BoardView {
+    /// All that the board could report.
+    Status(Status),
+    /// The board's own count of the tick.
+    Tick(u32),
+    /// Nothing.
+    None,
 }
 
 /// Why a rig does not do what it is asked for.
@@ -82,7 +96,12 @@ pub trait BoardRig {
     /// Sends bytes from the host.
     fn send(&mut self, bytes: &[u8]) -> Result<(), RigError>;
 
-    /// Lets the rig run until bytes have arrived at the host, which it appends to `received`, until there are
+    /// Whether each tick comes with a [`BoardView::Status`].
+    fn sees_board(&self) -> bool {
+        false
+    }
+
+    /// Lets the rig run until bytes have arrived at the host in this call, which it appends to `received`, until there are
     /// [touch frames](Self::take_touch_frames), or until `until_tick`. Passes each tick to `watch`.
     fn run(&mut self, until_tick: u64, received: &mut Vec<u8>, watch: &mut dyn FnMut(&RigTick))
     -> Result<(), RigError>;

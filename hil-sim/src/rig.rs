@@ -9,10 +9,15 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::notice;
 use frixel_wire::message::Refusal;
 
+use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
 use crate::{AmplifierConfig, Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
 /// Room in a board's receive buffer beyond the host's credit: for hello requests, which need no credit, and for noise.
 const RECEIVE_MARGIN_LEN: usize = 512;
+/// Cycles of a late tick, as the board reports them: above the 4,250 that a tick at 40 kHz has on the G474.
+const LATE_TICK_CYCLES: u32 = 4_300;
+/// Name of the rig in messages.
+const NAME: &str = "sim";
 
 /// Memory of a simulated board, which a real board has in statics. It is large, so it is boxed.
 pub struct BoardMemory {
@@ -96,6 +101,8 @@ pub struct Rig<'a> {
     journal: Option<Journal>,
     tick: u64,
     board: Board,
+    /// Memory for the starts to come: that of the start before is still borrowed.
+    spare: core::slice::IterMut<'a, Box<BoardMemory>>,
 }
 
 impl<'a> Rig<'a> {
@@ -118,7 +125,14 @@ impl<'a> Rig<'a> {
             journal: None,
             tick: 0,
             board: config.board,
+            spare: [].iter_mut(),
         })
+    }
+
+    /// Adds memory for the starts after a [`RigFault::Reset`] or [`RigFault::OptionBytes`], which take one each.
+    #[must_use]
+    pub fn with_spare_memories(self, memories: &'a mut [Box<BoardMemory>]) -> Self {
+        Self { spare: memories.iter_mut(), ..self }
     }
 
     /// Resets the board, which starts with `memory`. World and line go on.
@@ -128,20 +142,9 @@ impl<'a> Rig<'a> {
         self.scene = None;
     }
 
-    /// Makes the board's option bytes wrong, which it finds at its next start.
-    pub fn change_option_bytes(&mut self) {
-        self.board.notices |= notice::OPTION_BYTES;
-    }
-
     /// Lets the board find a fault of its own, as a late tick does.
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         self.ticker.raise(fault, detail);
-    }
-
-    /// Sets the board's tick count, whose 32 bits wrap around after 30 hours. [`Self::tick`] goes on as before.
-    pub fn set_board_tick(&mut self, tick: u32) {
-        self.ticker.set_tick(tick);
-        self.status = self.ticker.status();
     }
 
     /// Ticks since power-on.
@@ -293,4 +296,69 @@ fn started(board: Board, memory: &mut BoardMemory) -> (Session<'_>, Ticker<'_>) 
     let mut session = Session::new(board, pool, second);
     session.attach_stream(stream);
     (session, ticker)
+}
+
+impl BoardRig for Rig<'_> {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn board(&self) -> &Board {
+        &self.board
+    }
+
+    fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    fn sees_board(&self) -> bool {
+        true
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
+        self.to_board.send(bytes);
+        Ok(())
+    }
+
+    fn run(
+        &mut self,
+        until_tick: u64,
+        received: &mut Vec<u8>,
+        watch: &mut dyn FnMut(&RigTick),
+    ) -> Result<(), RigError> {
+        while !self.has_received() && self.tick < until_tick {
+            let TickRecord { tick, status, drive, felt } = self.step();
+            watch(&RigTick { tick, drive, felt, board: BoardView::Status(status) });
+        }
+        self.receive(received);
+        Ok(())
+    }
+
+    fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
+        match fault {
+            RigFault::World(fault) => {
+                let now = self.world.tick();
+                self.world.schedule_fault(now..now.saturating_add(ticks), fault)?;
+            }
+            RigFault::Reset | RigFault::OptionBytes => {
+                let reason = "its board has no memory left for another start";
+                let memory = self.spare.next().ok_or(RigError::FaultUnavailable { rig: NAME, reason })?;
+                if fault == RigFault::OptionBytes {
+                    // The board finds them at its next start.
+                    self.board.notices |= notice::OPTION_BYTES;
+                }
+                self.reset(memory);
+            }
+            RigFault::LateTick => self.raise(Fault::Deadline, LATE_TICK_CYCLES),
+            RigFault::WrapSoon { ticks } => {
+                self.ticker.set_tick(0_u32.wrapping_sub(ticks));
+                self.status = self.ticker.status();
+            }
+        }
+        Ok(())
+    }
+
+    fn start_stroke(&mut self) {
+        self.world.start_stroke();
+    }
 }

@@ -90,7 +90,8 @@ impl Fuzzer {
         command.arg(format!("-artifact_prefix={}/{name}-", found.display()));
         command.arg(format!("-timeout={}", INPUT_MAX.as_secs()));
         match extent {
-            Extent::Fixed => command.arg(format!("-runs={inputs}")).arg("-seed=1"),
+            // Read again while it runs, the corpus would depend on the time.
+            Extent::Fixed => command.arg(format!("-runs={inputs}")).args(["-seed=1", "-reload=0"]),
             Extent::For(time) => command.arg(format!("-max_total_time={}", time.as_secs())),
         };
         let log = folder.join(format!("{name}.log"));

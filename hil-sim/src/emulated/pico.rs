@@ -130,11 +130,6 @@ impl PicoRig {
         self.now
     }
 
-    /// Time between two ticks.
-    pub fn tick_period(&self) -> Duration {
-        self.tick_period
-    }
-
     /// Number of ticks of the world since the board was first switched on, modulo 2^32. The board's own count begins
     /// when its beat does, anew at each start.
     pub fn tick(&self) -> u32 {

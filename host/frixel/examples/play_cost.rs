@@ -31,11 +31,10 @@ mod stages {
 
     use frixel_control::Drive;
     use frixel_driver::{Device, PollingLink};
-    use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World};
     use frixel_lab::default_stroke::default_stroke;
     use frixel_play::Player;
-    use frixel_play::{SimStream, Simulation, TO_THE_END, simulate};
+    use frixel_play::{RigStream, Simulation, TO_THE_END, simulate};
     use frixel_scene::{Program, compile};
     use frixel_wire::dac_code::DacCode;
     use rustix::time::{ClockId, clock_gettime};
@@ -137,7 +136,7 @@ mod stages {
         fn board(&self) -> Outcome<()> {
             let mut memory = BoardMemory::new();
             let rig = Rig::new(&mut memory, &self.rig, self.stroke.clone(), SEED)?;
-            let link = PollingLink::new(SimStream::new(rig, Recorder::default()));
+            let link = PollingLink::new(RigStream::new(rig));
             let mut player = Player::new(Device::connect(link)?);
             player.start(self.program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
             player.wait(Duration::from_secs_f64(self.seconds))?;

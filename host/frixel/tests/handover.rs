@@ -9,9 +9,8 @@ use std::time::Duration;
 
 use frixel::scene_file;
 use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink};
-use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-use frixel_play::SimStream;
+use frixel_play::RigStream;
 use frixel_scene::{Program, compile};
 use frixel_testkit::Random;
 use frixel_wire::fault::State;
@@ -35,7 +34,7 @@ fn program(config: &RigConfig) -> Program {
 
 /// The board's serial line, which one client after the other opens.
 #[derive(Clone)]
-struct Line<'a>(Rc<RefCell<SimStream<'a>>>);
+struct Line<'a>(Rc<RefCell<RigStream<'a, Rig<'a>>>>);
 
 impl Line<'_> {
     /// Lets time pass without a client.
@@ -98,7 +97,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
     let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 60.0).unwrap(), 1).unwrap();
     let driven_at_tick = Rc::new(Cell::new(0));
     let seen = Rc::clone(&driven_at_tick);
-    let stream = SimStream::new(rig, Recorder::default()).observed(move |record| {
+    let stream = RigStream::new(rig).observed(move |record| {
         if record.drive.amplifier_enable {
             seen.set(record.tick);
         }
@@ -134,7 +133,7 @@ fn a_hello_disarms_what_another_client_played() {
     let config = RigConfig::default();
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
-    let mut first = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap();
+    let mut first = Device::connect(PollingLink::new(RigStream::new(rig))).unwrap();
     frixel_play::start(&mut first, &program(&config), &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(Device::connect(first.into_link()).unwrap().hello().state, State::Disarmed);
 }

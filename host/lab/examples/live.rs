@@ -16,7 +16,7 @@ use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_play::Player;
-use frixel_play::SimStream;
+use frixel_play::RigStream;
 use frixel_scene::{Scene, compile};
 
 const SCENE: &str = r#"
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let recorder = Recorder::new(&program, limits, tick_hz, ticks, tick_hz / 1000)?;
 
     let mut memory = BoardMemory::new();
-    let stream = SimStream::new(Rig::new(&mut memory, &rig, stroke, 1)?, Recorder::default());
+    let stream = RigStream::new(Rig::new(&mut memory, &rig, stroke, 1)?);
     let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
     player.start(program, 0, &mut |_| ControlFlow::Continue(()))?;
     player.wait(Duration::from_millis(200))?;

@@ -4,9 +4,8 @@ use std::ops::ControlFlow;
 
 use frixel_driver::{Device, DeviceError, PollingLink};
 use frixel_felt::check::BoardCosts;
-use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
-use frixel_play::{SimStream, load};
+use frixel_play::{RigStream, load};
 use frixel_scene::Program;
 use thiserror::Error;
 
@@ -29,7 +28,7 @@ pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, Reh
     let mut memory = BoardMemory::new();
     let header = &program.header;
     let stroke = Stroke::sweep(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
-    let stream = SimStream::new(Rig::new(&mut memory, rig, stroke, 1)?, Recorder::default());
+    let stream = RigStream::new(Rig::new(&mut memory, rig, stroke, 1)?);
     let mut device = Device::connect(PollingLink::new(stream))?;
     let wire_bytes = load(&mut device, program, &mut |_| ControlFlow::Continue(()))?;
     Ok(BoardCosts::of(program, rig, wire_bytes))

@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use frixel_hil_sim::{
-    Board, BoardMemory, BoardRig, Felt, InProcessRig, NoiseConfig, RigConfig, RigError, RigFault, RigTick,
-};
+use frixel_hil_sim::{Board, BoardMemory, BoardRig, Felt, NoiseConfig, Rig, RigConfig, RigError, RigFault, RigTick};
 use frixel_lab::scenario::{ScenarioError, ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
 use frixel_scene::{Action, Cause, Expectation, LineDamage, Scenario, Scene, Seen};
 use frixel_wire::dac_code::DacCode;
@@ -106,7 +104,7 @@ const LATENESS_TICKS: u64 = 200;
 const BREAKS: [Break; 4] = [Break::Driven, Break::Dead, Break::Mute, Break::Harmless];
 
 struct Broken<'a> {
-    rig: InProcessRig<'a>,
+    rig: Rig<'a>,
     how: Break,
 }
 
@@ -124,7 +122,7 @@ impl BoardRig for Broken<'_> {
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
-        self.rig.send(bytes)
+        BoardRig::send(&mut self.rig, bytes)
     }
 
     fn run(
@@ -183,9 +181,10 @@ fn run_broken(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, how: Break)
     let config = RigConfig::default();
     let programs = programs(&scenario, scenes, &config.board).unwrap();
     let (stroke, world) = stroke_and_world(&scenario, &programs, config.world).unwrap();
-    let mut memories: Vec<_> = (0..=scenario.resets()).map(|_| BoardMemory::new()).collect();
-    let rig = InProcessRig::new(&mut memories, &RigConfig { world, ..config }, stroke, scenario.seed).unwrap();
-    run(&scenario, &programs, &mut Broken { rig, how }).unwrap()
+    let (mut memory, mut spare) = (BoardMemory::new(), vec![]);
+    spare.resize_with(scenario.resets(), BoardMemory::new);
+    let rig = Rig::new(&mut memory, &RigConfig { world, ..config }, stroke, scenario.seed).unwrap();
+    run(&scenario, &programs, &mut Broken { rig: rig.with_spare_memories(&mut spare), how }).unwrap()
 }
 
 /// An expectation that no broken rig leaves unmet would be met by anything.

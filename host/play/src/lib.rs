@@ -8,8 +8,8 @@
 //! - [`Control`]: carries out lines of text that change its layers and the program.
 //! - [`LiveLayers`]: the settings of the layers while they play.
 //! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
-//! - [`SimStream`]: the line to the simulated board in this process.
-//! - [`simulate`]: plays a program on that board under a simulated finger, in virtual time.
+//! - [`RigStream`]: the line to a board in a simulated world, on its clock.
+//! - [`simulate`]: plays a program on the simulated board of this process under a simulated finger, in virtual time.
 //! - [`judge`]: judges a program by strokes that are simulated so.
 //! - [`Recorded`]: a link with a record of what the board plays.
 //!
@@ -24,7 +24,7 @@ mod judged;
 mod live_layers;
 mod player;
 mod recorded;
-mod sim_stream;
+mod rig_stream;
 mod simulation;
 mod trigger;
 mod upload;
@@ -36,6 +36,6 @@ pub use judged::{judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced};
 pub use recorded::Recorded;
-pub use sim_stream::SimStream;
+pub use rig_stream::RigStream;
 pub use simulation::{GoesOn, SimPlayer, Simulated, Simulation, SimulationError, TO_THE_END, simulate, simulate_by};
 pub use upload::{load, start};

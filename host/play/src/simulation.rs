@@ -12,7 +12,7 @@ use frixel_scene::Program;
 use frixel_wire::hello::Hello;
 use thiserror::Error;
 
-use crate::{Feed, PlayError, Player, SimStream};
+use crate::{Feed, PlayError, Player, RigStream};
 
 /// Is asked many times a second of a play, perhaps by several threads at once. When it breaks, the play ends there.
 pub type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
@@ -40,7 +40,7 @@ pub struct Simulation {
 }
 
 /// A simulated board on which a program plays.
-pub type SimPlayer<'a> = Player<PollingLink<SimStream<'a>>>;
+pub type SimPlayer<'a> = Player<PollingLink<RigStream<'a, Rig<'a>>>>;
 
 /// Results of a simulation.
 pub struct Simulated {
@@ -123,7 +123,7 @@ pub fn simulate_by(
     let recorder = recorder.map_err(PlayError::Finger)?;
     let recorder = if simulation.through_finger { recorder.through_finger() } else { recorder };
     let mut memory = BoardMemory::new();
-    let stream = SimStream::new(simulation.rig(&mut memory)?, Recorder::default());
+    let stream = RigStream::new(simulation.rig(&mut memory)?);
     let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
     player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
     if let Some(feed) = feed {
@@ -167,10 +167,7 @@ mod tests {
         let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
         rig.world_mut().schedule_fault(20_000..u64::MAX, WorldFault::AmplifierNotReady).unwrap();
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
-        let mut player = Player::recording(
-            Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap(),
-            recorder,
-        );
+        let mut player = Player::recording(Device::connect(PollingLink::new(RigStream::new(rig))).unwrap(), recorder);
         player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");

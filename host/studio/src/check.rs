@@ -13,9 +13,9 @@ use serde_json::{Value, json};
 use crate::answer::{problems, problems_of};
 use crate::host_error::HostError;
 use crate::layers::layers;
+use crate::pointer_stream::PointerStream;
 use crate::program::{drafted, for_drafts, touch_source};
 use crate::request::Request;
-use crate::rig_stream::RigStream;
 
 /// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
 /// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel scene check`), and in newtons `lowN`,
@@ -77,7 +77,7 @@ fn screen(scene: &Scene) -> Value {
 /// What a simulated board needs for a program: uploads it once, without playing it.
 fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
     let mut memory = BoardMemory::new();
-    let mut device = Device::connect(PollingLink::new(RigStream::new(&mut memory, config, 1)?))?;
+    let mut device = Device::connect(PollingLink::new(PointerStream::new(&mut memory, config, 1)?))?;
     let loaded = load(&mut device, program, &mut |_| ControlFlow::Continue(()));
     let wire_bytes = loaded.map_err(|error| HostError::Refused(error.into()))?;
     Ok(BoardCosts::of(program, config, wire_bytes))

@@ -68,7 +68,7 @@ impl FeltSampler {
 
     /// Adds a tick, in which the board had the finger at `places`, and its friction by `law`.
     pub(crate) fn add(&mut self, record: &TickRecord, places: TouchedPlaces, law: &FrictionLaw) {
-        self.recorder.record(&Observation::of_tick(record));
+        self.recorder.record(&Observation::of_tick(record.tick as u32, &record.felt, &record.status.telemetry));
         if let Some(row) = self.recorder.rows().get(self.touched.len()) {
             let radius_m = |voltage_v_rms| contact_radius_m(law, voltage_v_rms);
             let contact_radius_m = row.x_mm.and(row.electrode_v_rms).map_or(f64::NAN, radius_m);

@@ -69,14 +69,14 @@ mod tests {
     use frixel_wire::fault::State;
 
     use super::*;
-    use crate::rig_stream::RigStream;
+    use crate::pointer_stream::PointerStream;
 
     const BRICK: &[u8] = include_bytes!("../../../scenes/brick.toml");
     const LEATHER: &[u8] = include_bytes!("../../../scenes/leather.toml");
 
     /// The rig at the end of a line that may be cut.
     struct Line<'a> {
-        rig: RigStream<'a>,
+        rig: PointerStream<'a>,
         /// Bytes to the board until the line is dead, in both directions.
         left: usize,
         /// Times and lengths of what was written.
@@ -122,7 +122,7 @@ mod tests {
     }
 
     fn host(memory: &mut BoardMemory) -> Host<Line<'_>> {
-        let rig = RigStream::new(memory, &RigConfig::default(), 1).unwrap();
+        let rig = PointerStream::new(memory, &RigConfig::default(), 1).unwrap();
         connect(Line { rig, left: usize::MAX, written: Vec::new() }).unwrap()
     }
 

@@ -11,9 +11,9 @@ use frixel_layers::Header;
 use crate::host::{connect, load, stream_mut};
 use crate::host_error::HostError;
 use crate::pointer::PointerSample;
+use crate::pointer_stream::PointerStream;
 use crate::program::touch_source;
 use crate::request::Request;
-use crate::rig_stream::RigStream;
 
 /// Duration of the finger's way over the screen, ms. It repeats.
 const STROKE_MS: u32 = 400;
@@ -31,7 +31,7 @@ pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
     let mut memory = BoardMemory::new();
     let hash = Rc::new(RefCell::new(Hash::new()));
     let observed = Rc::clone(&hash);
-    let line = RigStream::new(&mut memory, &config, request.numbers.seed)?;
+    let line = PointerStream::new(&mut memory, &config, request.numbers.seed)?;
     let mut host = connect(line.observed(move |record| observed.borrow_mut().add(record)))?;
     load(&mut host, request)?;
     let Some(header) = host.playing().map(|playing| playing.program().header) else { return Err(HostError::NoBoard) };
@@ -45,7 +45,7 @@ pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
 }
 
 /// Samples of the pointer from now on.
-fn slide(rig: &mut RigStream, header: &Header, duration_ms: u32, tick_hz: f64) {
+fn slide(rig: &mut PointerStream, header: &Header, duration_ms: u32, tick_hz: f64) {
     let start_tick = rig.tick() as f64;
     for t_ms in (0..=duration_ms).step_by(SAMPLE_MS as usize) {
         let part = f64::from(t_ms % STROKE_MS) / f64::from(STROKE_MS);

@@ -11,9 +11,9 @@ use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
 use crate::host::{self, Host, stream_mut};
 use crate::host_error::HostError;
 use crate::pointer::{Pointer, PointerSample};
+use crate::pointer_stream::PointerStream;
 use crate::program::{drafted, for_drafts, touch_source};
 use crate::request::Request;
-use crate::rig_stream::RigStream;
 
 /// Line rate of the simulated port, bits a second: as fast as the rig's line takes bytes. A scene that is replaced is
 /// uploaded in virtual time, ahead of the page's clock, so the upload has to be shorter than the pointer's delay.
@@ -25,7 +25,7 @@ pub(crate) const FRAME_HEAD: [&str; 8] =
 
 /// The simulated board, its world, and its host.
 pub(crate) struct Simulator {
-    host: Host<RigStream<'static>>,
+    host: Host<PointerStream<'static>>,
     /// Whether the page wants the scene to play.
     is_wanted: bool,
     /// The world's touch source.
@@ -40,7 +40,7 @@ impl Simulator {
         let config = RigConfig::default();
         let config = RigConfig { world: config.world.realistic(), board: for_drafts(config.board), baud: BAUD };
         let touch = config.world.touch;
-        let stream = RigStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
+        let stream = PointerStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
         Ok(Self { host: host::connect(stream)?, is_wanted: false, touch })
     }
 
@@ -60,7 +60,7 @@ impl Simulator {
     }
 
     /// The board's host, for control lines.
-    pub(crate) fn host_mut(&mut self) -> &mut Host<RigStream<'static>> {
+    pub(crate) fn host_mut(&mut self) -> &mut Host<PointerStream<'static>> {
         &mut self.host
     }
 

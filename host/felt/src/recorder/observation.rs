@@ -1,6 +1,6 @@
 //! The input of a recorder.
 
-use frixel_hil_sim::{Felt, FingerState, TickRecord};
+use frixel_hil_sim::{Felt, FingerState};
 use frixel_wire::fault::Flags;
 use frixel_wire::message::Telemetry;
 
@@ -22,10 +22,8 @@ pub struct Observation {
 
 impl Observation {
     /// An observation of a simulated board and its world, of which everything is known.
-    pub fn of_tick(record: &TickRecord) -> Self {
-        let telemetry = record.status.telemetry;
-        let tick = record.tick as u32;
-        Self { telemetry: Some(telemetry), ..Self::of_world(tick, &record.felt, telemetry.dac_code) }
+    pub fn of_tick(tick: u32, felt: &Felt, telemetry: &Telemetry) -> Self {
+        Self { telemetry: Some(*telemetry), ..Self::of_world(tick, felt, telemetry.dac_code) }
     }
 
     /// An observation of a simulated finger under a board that does not report its state in this tick.

@@ -79,11 +79,9 @@ fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result
     let (programs, world) = prepare(scenario, scenes, &BOARD)?;
     let image = Image::find(EmulatedBoard::Mps2An386)?;
     let (sender, records) = mpsc::channel();
-    let mut tick = 0_u32;
     let mut board = LinkBoard::start(&image, world, move |record| {
-        tick = tick.wrapping_add(1);
         // The receiver is gone once the scenario has ended.
-        let _ = sender.send((tick, *record));
+        let _ = sender.send(*record);
     })?;
     let outcome = scenario::run(scenario, &programs, &mut EmulatedRig::open(&board, records)?)?;
     board.check()?;

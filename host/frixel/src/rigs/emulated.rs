@@ -1,52 +1,50 @@
-//! The host's side of an emulated board: its serial port with the board's clock, and the record of the felt friction.
+//! The firmware in an emulator, with its serial port and the world around it.
 
 use std::cell::Cell;
 use std::sync::mpsc::Receiver;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use frixel_driver::{ByteStream, DEFAULT_BAUD, Link as _, LinkClosed, PortError, SerialLink};
-use frixel_felt::recorder::Recorder;
+use frixel_driver::{DEFAULT_BAUD, Link as _, LinkClosed, PortError, SerialLink};
 use frixel_hil_sim::emulated::{BOARD, EmulatorError, InjectedFault, LinkBoard, LinkRecord};
-use frixel_play::Recorded;
-use frixel_wire::message::Telemetry;
+use frixel_hil_sim::{Board, BoardRig, BoardView, RigError, RigFault, RigTick};
 
-use super::held_ticks::HeldTicks;
-
+const NAME: &str = "the emulated board";
 /// Wall time between two readings of the board's clock.
 const POLL_PERIOD: Duration = Duration::from_millis(1);
 /// Ticks that the board may run ahead of this host: 5 ms, so that a ping is in time for every host timeout.
 const SLICE_TICKS: u32 = 200;
 /// Wall time after which a clock that does not advance counts as stopped.
 const PATIENCE: Duration = Duration::from_mins(2);
-/// Number of ticks that are held until their telemetry arrives: 0.2 s.
-const HELD_TICKS: usize = 8_000;
+/// The board runs 5 ms ahead of a host that answers, its world follows it in steps of a millisecond, and a busy machine
+/// takes longer for either: 20 ms.
+const LATENESS_TICKS: u64 = 800;
 
-/// The serial port of an emulated board, with a clock that follows the board's ticks.
+/// An emulated board with a host's end of its serial port, on a clock that follows the board's ticks.
 ///
 /// The clock stands still while bytes are on their way to the board, because the speed at which the emulator transfers
 /// them depends on the load of the machine. The board's own clock stands still while this host has not answered for its
 /// slice of time: sent the pings that are due in it, and seen all that it has sent arrive. Without that, a busy machine
-/// would let the board run into the host timeout while the host does not run. A link that is dropped lets the board
-/// run on, and the host timeout acts; so does a host that hangs for 10 s.
-///
-/// The record has every tick of the world. The emulated serial port is too slow for telemetry in every row: values that
-/// only the board knows are in those rows for which a telemetry message arrived.
-pub struct EmulatedStream<'b> {
+/// would let the board run into the host timeout while the host does not run. A rig that is dropped lets the board run
+/// on, and the host timeout acts; so does a host that hangs for 10 s.
+pub struct EmulatedRig<'b> {
     serial: SerialLink,
     board: &'b LinkBoard,
-    /// Bytes that the board had received before the link was opened.
+    /// Bytes that the board had received before the port was opened.
     received_before: u32,
-    /// Tick count of the board when it was last read.
-    seen_ticks: Cell<u32>,
-    /// Ticks that have passed on the link's clock.
+    /// Ticks of the board since power-on, when they were last read.
+    ticks: Cell<u64>,
+    /// Ticks that have passed on the host's clock.
     clock_ticks: Cell<u64>,
+    /// When the host's clock last advanced, or bytes were sent for which it stands still.
+    advanced_at: Cell<Instant>,
     records: Receiver<LinkRecord>,
-    held: HeldTicks,
+    /// Ticks of the world that were taken from `records`.
+    watched_ticks: u64,
 }
 
-impl<'b> EmulatedStream<'b> {
-    /// Opens the board's serial port. `records` receives the ticks that [`LinkBoard::start`] reports.
+impl<'b> EmulatedRig<'b> {
+    /// Opens the board's serial port. `records` receives all ticks that [`LinkBoard::start`] reports.
     pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, PortError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
         let counts = board.received_bytes().and_then(|received| Ok((received, board.ticks()?)));
@@ -55,114 +53,123 @@ impl<'b> EmulatedStream<'b> {
             reason: error.to_string(),
         };
         let (received_before, ticks) = counts.map_err(not_opened)?;
-        let link = Self {
+        let opened = board.host_answers_to(ticks.wrapping_add(SLICE_TICKS)).and_then(|()| board.set_host_open(true));
+        opened.map_err(not_opened)?;
+        Ok(Self {
             serial,
             board,
             received_before,
-            seen_ticks: Cell::new(ticks),
+            ticks: Cell::new(u64::from(ticks)),
             clock_ticks: Cell::new(0),
+            advanced_at: Cell::new(Instant::now()),
             records,
-            held: HeldTicks::default(),
-        };
-        let opened = board.host_answers_to(ticks.wrapping_add(SLICE_TICKS)).and_then(|()| board.set_host_open(true));
-        opened.map(|()| link).map_err(not_opened)
+            watched_ticks: 0,
+        })
     }
 
-    /// Advances the clock with the board's. Returns whether all that was sent has arrived.
+    /// Takes over the board's count of ticks. Returns whether all that was sent has arrived.
     fn follow(&self) -> Result<bool, EmulatorError> {
-        let ticks = self.board.ticks()?;
-        let passed = ticks.wrapping_sub(self.seen_ticks.replace(ticks));
+        let passed = self.board.ticks()?.wrapping_sub(self.ticks.get() as u32);
+        self.ticks.update(|ticks| ticks + u64::from(passed));
         let received = self.board.received_bytes()?.wrapping_sub(self.received_before);
         // Both counts wrap at 2^32; their difference always fits in an `i32`.
         let has_arrived = (self.serial.written().bytes as u32).wrapping_sub(received) as i32 <= 0;
-        if has_arrived {
+        if has_arrived && passed > 0 {
             self.clock_ticks.update(|clock| clock + u64::from(passed));
+            self.advanced_at.set(Instant::now());
         }
         Ok(has_arrived)
     }
 
-    /// Answers for the next slice of the board's time once all that was sent has arrived.
-    fn answer(&self) -> Result<(), EmulatorError> {
-        if self.follow()? {
-            self.board.host_answers_to(self.seen_ticks.get().wrapping_add(SLICE_TICKS))?;
+    /// Answers for the next slice of the board's time if all that was sent `has_arrived`.
+    fn answer(&self, has_arrived: bool) -> Result<(), EmulatorError> {
+        if has_arrived {
+            self.board.host_answers_to((self.ticks.get() as u32).wrapping_add(SLICE_TICKS))?;
+        }
+        if self.advanced_at.get().elapsed() > PATIENCE {
+            return Err(EmulatorError::Silent { what: "a tick", seconds: PATIENCE.as_secs() });
         }
         Ok(())
     }
 
     /// Resets the board, and returns when it has started again. Nothing is on its way to the board meanwhile: the
     /// emulator would lose it, and the clock would wait for it.
-    pub(super) fn reset_board(&self) -> Result<(), EmulatorError> {
+    fn reset(&self) -> Result<(), EmulatorError> {
         let starts = self.board.starts()?;
         wait_for("all bytes", || self.follow())?;
         self.board.inject(InjectedFault::Reset)?;
         wait_for("a start", || Ok(self.board.starts()? != starts))
     }
-
-    /// Records all ticks so far except the last `held`.
-    fn record_ticks(&mut self, held: usize) {
-        self.held.hold(self.records.try_iter());
-        self.held.record(held);
-    }
 }
 
-impl Recorded for EmulatedStream<'_> {
-    type Recorder = Recorder;
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.held.recorder
+impl BoardRig for EmulatedRig<'_> {
+    fn name(&self) -> &'static str {
+        NAME
     }
 
-    fn begin(&mut self) -> Result<(), LinkClosed> {
-        self.board.start_stroke();
-        self.held.recorder.start(self.board.tick().map_err(|error| closed(self.board, &error))?);
-        Ok(())
+    fn board(&self) -> &Board {
+        &BOARD
     }
 
-    fn record(&mut self, telemetry: &[Telemetry]) {
-        self.held.hear(telemetry.iter().copied());
-        self.record_ticks(HELD_TICKS);
-    }
-
-    fn record_rest(&mut self) {
-        self.record_ticks(0);
-    }
-}
-
-impl ByteStream for EmulatedStream<'_> {
-    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
-        self.serial.write(bytes).map(|_| ())
-    }
-
-    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        let end = self.now() + wait;
-        let before = buffer.len();
-        let (mut moved_at, mut seen) = (Instant::now(), self.now());
-        // At its end the caller may have a ping to send, and the board waits for it.
-        while buffer.len() == before && self.now() < end {
-            self.answer().map_err(|error| closed(self.board, &error))?;
-            self.serial.read(buffer, POLL_PERIOD)?;
-            if self.now() != seen {
-                (moved_at, seen) = (Instant::now(), self.now());
-            } else if moved_at.elapsed() > PATIENCE {
-                let silent = EmulatorError::Silent { what: "a tick", seconds: PATIENCE.as_secs() };
-                return Err(closed(self.board, &silent));
-            }
-        }
-        Ok(())
+    fn tick(&self) -> u64 {
+        self.ticks.get()
     }
 
     fn now(&self) -> Duration {
-        // If the emulator has exited, the clock stands still, and the next read returns the error.
+        // If the emulator has exited, the clock stands still, and the next run returns the error.
         let _ = self.follow();
         Duration::from_secs(self.clock_ticks.get()) / BOARD.tick_hz
     }
 
-    fn name(&self) -> &str {
-        self.serial.name()
+    fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
+        self.advanced_at.set(Instant::now());
+        self.serial.write(bytes).map(|_| ()).map_err(|error| closed(&error))
+    }
+
+    fn run(
+        &mut self,
+        until_tick: u64,
+        received: &mut Vec<u8>,
+        watch: &mut dyn FnMut(&RigTick),
+    ) -> Result<(), RigError> {
+        let before = received.len();
+        loop {
+            let has_arrived = self.follow().map_err(|error| ended(&error))?;
+            for LinkRecord { tick, drive, felt } in self.records.try_iter() {
+                self.watched_ticks += 1;
+                watch(&RigTick { tick: self.watched_ticks, drive, felt, board: BoardView::Tick(tick) });
+            }
+            // At its end the caller may have a ping to send, and the board waits for it.
+            if self.ticks.get() >= until_tick || received.len() > before {
+                return Ok(());
+            }
+            self.answer(has_arrived).map_err(|error| ended(&error))?;
+            self.serial.read(received, POLL_PERIOD).map_err(|error| closed(&error))?;
+        }
+    }
+
+    fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
+        let injected = match fault {
+            RigFault::World(fault) => return Ok(self.board.cause(fault, ticks)?),
+            RigFault::LateTick => InjectedFault::Overrun,
+            RigFault::Reset => return self.reset().map_err(|error| ended(&error)),
+            RigFault::OptionBytes | RigFault::WrapSoon { .. } => {
+                return Err(RigError::FaultUnavailable { rig: NAME, reason: "its emulator has no input for it" });
+            }
+        };
+        self.board.inject(injected).map_err(|error| ended(&error))
+    }
+
+    fn start_stroke(&mut self) {
+        self.board.start_stroke();
+    }
+
+    fn lateness_ticks(&self) -> u64 {
+        LATENESS_TICKS
     }
 }
 
-impl Drop for EmulatedStream<'_> {
+impl Drop for EmulatedRig<'_> {
     fn drop(&mut self) {
         // If the emulator has exited, there is no clock to start.
         let _ = self.board.set_host_open(false);
@@ -181,6 +188,10 @@ fn wait_for(what: &'static str, is_done: impl Fn() -> Result<bool, EmulatorError
     Ok(())
 }
 
-fn closed(board: &LinkBoard, error: &EmulatorError) -> LinkClosed {
-    LinkClosed { port: board.serial_path().to_owned(), reason: error.to_string() }
+fn ended(error: &EmulatorError) -> RigError {
+    RigError::Ended { rig: NAME, reason: error.to_string() }
+}
+
+fn closed(closed: &LinkClosed) -> RigError {
+    RigError::Ended { rig: NAME, reason: closed.reason.clone() }
 }

@@ -1,8 +1,6 @@
-//! The boards with a clock of their own that a scene can play on, each behind a
-//! [`ByteStream`](frixel_driver::ByteStream) or a [`Link`] that records the play.
+//! The boards with a clock of their own that a scene can play on.
 //!
-//! - [`EmulatedStream`]: the firmware in an emulator, on the emulator's clock; `EmulatedRig` for scenarios.
-//! - [`PicoStream`]: the image of the Pico in an emulator, whose clock waits for the host.
+//! - [`EmulatedRig`]: the firmware in an emulator, on the emulator's clock.
 //! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
@@ -10,15 +8,9 @@
 
 #[cfg(unix)]
 mod emulated;
-#[cfg(unix)]
-mod emulated_rig;
 mod event_log;
 #[cfg(unix)]
-mod held_ticks;
-#[cfg(unix)]
 mod pace;
-#[cfg(unix)]
-mod pico;
 mod port;
 #[cfg(unix)]
 mod server;
@@ -26,14 +18,10 @@ mod server;
 mod server_log;
 
 #[cfg(unix)]
-pub use emulated::EmulatedStream;
-#[cfg(unix)]
-pub(crate) use emulated_rig::EmulatedRig;
+pub use emulated::EmulatedRig;
 pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;
-#[cfg(unix)]
-pub use pico::PicoStream;
 pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::Server;

@@ -65,11 +65,11 @@ impl ServerLog {
             self.frames = frames;
             self.last_frame_at_tick = record.tick;
         }
-        self.recorder.record(&Observation::of_tick(record));
+        self.recorder.record(&Observation::of_tick(record.tick as u32, &record.felt, &record.status.telemetry));
         for row in self.recorder.take_rows() {
             self.felt_csv.write(&row)?;
         }
-        self.sensor.measure(record);
+        self.sensor.measure(record.tick, &record.felt);
         for row in self.sensor.take_rows() {
             self.forces_csv.write(&row)?;
         }

@@ -3,13 +3,14 @@
 use std::sync::mpsc;
 use std::time::Duration;
 
-use frixel::rigs::EmulatedStream;
+use frixel::rigs::EmulatedRig;
 use frixel_driver::{Link, LinkClosed, PollingLink, Written};
 use frixel_hil_sim::emulated::LinkBoard;
+use frixel_play::RigStream;
 
 /// A serial link to an emulated board. Dropped, it is cut: nothing is said to the board any more.
 pub(crate) struct Cable<'b> {
-    link: PollingLink<EmulatedStream<'b>>,
+    link: PollingLink<RigStream<'b, EmulatedRig<'b>>>,
     /// Sent in front of every frame, one after the other.
     rubbish: Vec<Vec<u8>>,
     frames: usize,
@@ -17,8 +18,8 @@ pub(crate) struct Cable<'b> {
 
 impl<'b> Cable<'b> {
     pub(crate) fn plug(board: &'b LinkBoard) -> Self {
-        let stream = EmulatedStream::open(board, mpsc::channel().1).unwrap();
-        Self { link: PollingLink::new(stream), rubbish: Vec::new(), frames: 0 }
+        let rig = EmulatedRig::open(board, mpsc::channel().1).unwrap();
+        Self { link: PollingLink::new(RigStream::new(rig)), rubbish: Vec::new(), frames: 0 }
     }
 
     /// With rubbish in front of every frame.

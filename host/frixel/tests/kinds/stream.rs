@@ -8,7 +8,7 @@ use frixel_driver::{Device, PollingLink, StreamSettings};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_play::Recorded as _;
-use frixel_play::SimStream;
+use frixel_play::RigStream;
 use frixel_scene::Program;
 
 use super::cases::Path;
@@ -32,7 +32,9 @@ fn play(program: &Program) -> Vec<FeltRow> {
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).unwrap();
     let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, 1).unwrap();
-    let mut device = Device::connect(PollingLink::new(SimStream::new(rig, recorder))).unwrap();
+    let mut stream = RigStream::new(rig);
+    *stream.recorder_mut() = recorder;
+    let mut device = Device::connect(PollingLink::new(stream)).unwrap();
     frixel_play::start(&mut device, program, &mut |_| ControlFlow::Continue(())).unwrap();
     device.start_stream(StreamSettings::new(SAMPLE_HZ)).unwrap();
     let sample = |number: u32| {

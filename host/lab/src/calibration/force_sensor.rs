@@ -1,6 +1,6 @@
 //! A force sensor under the simulated screen.
 
-use frixel_hil_sim::TickRecord;
+use frixel_hil_sim::Felt;
 
 use super::ForceRow;
 
@@ -39,14 +39,14 @@ impl ForceSensor {
     }
 
     /// Measures during a tick.
-    pub fn measure(&mut self, record: &TickRecord) {
-        self.normal_force_n += record.felt.normal_load_n;
-        self.friction_n += record.felt.friction_n;
+    pub fn measure(&mut self, tick: u64, felt: &Felt) {
+        self.normal_force_n += felt.normal_load_n;
+        self.friction_n += felt.friction_n;
         self.ticks += 1;
         if self.ticks == self.ticks_per_row {
             let count = f64::from(self.ticks);
             self.rows.push(ForceRow {
-                time_s: record.tick as f64 / self.tick_hz,
+                time_s: tick as f64 / self.tick_hz,
                 normal_force_n: self.normal_force_n / count,
                 friction_n: self.friction_n / count,
             });

@@ -175,7 +175,7 @@ struct FittedData {
     has_time: bool,
     has_speed: bool,
     bandwidth_hz: Option<f64>,
-    /// What [`sensor::check_settled`] could not see, as a part of electric friction. Zero for means.
+    /// Widest half-interval in [`sensor::check_settled`], as a part of electric friction. Zero for means.
     settling_error: f64,
     held_out: Option<HeldOut>,
     preparation: Preparation,

@@ -97,7 +97,8 @@ pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<f64
     Err(FitError::NotSettled { edge, side, percent: 1e2 * shift.share, cause })
 }
 
-/// Fails if the changes of [`check_settled`] say nothing. Asked last: noise that widens them widens what else is judged.
+/// Fails if the intervals of [`check_settled`] are too wide to show anything. This check comes behind that of the
+/// estimates' intervals, which the same noise widens, and whose sentence says more.
 pub(super) fn check_settling_error(error: f64) -> Result<(), FitError> {
     if error > SETTLING_ERROR_MAX { Err(FitError::SettlingUnknown { percent: 1e2 * error }) } else { Ok(()) }
 }
@@ -129,8 +130,12 @@ fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
     let count = pairs.len() as f64;
     let deviation = (count / (count - 1.0) * square).sqrt() / total.abs();
     let error = student_quantile(Z_999, count - 1.0) * deviation;
+    if !(share.is_finite() && error.is_finite()) {
+        // Without electric friction there is nothing to compare.
+        return Some(Shift { share: 0.0, error: f64::INFINITY });
+    }
     // Recordings without noise have none.
-    (share.is_finite() && error.is_finite()).then_some(Shift { share, error: error.max(f64::MIN_POSITIVE) })
+    Some(Shift { share, error: error.max(f64::MIN_POSITIVE) })
 }
 
 /// Attractions of a stroke under both edges, weighted by the squares of their voltages, as least squares does for a

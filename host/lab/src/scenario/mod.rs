@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use frixel_hil_sim::{
-    BoardMemory, BoardRig, InProcessError, InProcessRig, Point, RigConfig, RigError, Stroke, StrokeError, WorldConfig,
+    BoardMemory, BoardRig, Point, Rig, RigConfig, RigError, Stroke, StrokeError, WorldConfig, WorldError,
 };
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
@@ -84,9 +84,9 @@ pub enum ScenarioError {
         /// The reason.
         source: StrokeError,
     },
-    /// The rig cannot be made.
+    /// The world cannot be made.
     #[error(transparent)]
-    InProcess(#[from] InProcessError),
+    World(#[from] WorldError),
     /// The rig has ended, or cannot cause a fault.
     #[error("{file}: {source}")]
     Rig {
@@ -150,10 +150,10 @@ pub fn run_in_process(
     config: &RigConfig,
 ) -> Result<ScenarioOutcome, ScenarioError> {
     let (stroke, world) = stroke_and_world(scenario, programs, config.world)?;
-    let mut memories: Vec<_> = (0..=scenario.resets()).map(|_| BoardMemory::new()).collect();
-    let config = RigConfig { world, ..*config };
-    let mut rig = InProcessRig::new(&mut memories, &config, stroke, scenario.seed)?;
-    run(scenario, programs, &mut rig)
+    let (mut memory, mut spare) = (BoardMemory::new(), vec![]);
+    spare.resize_with(scenario.resets(), BoardMemory::new);
+    let rig = Rig::new(&mut memory, &RigConfig { world, ..*config }, stroke, scenario.seed)?;
+    run(scenario, programs, &mut rig.with_spare_memories(&mut spare))
 }
 
 /// A time in ticks of a board: the next whole number of them.

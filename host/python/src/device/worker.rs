@@ -7,10 +7,9 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration;
 
 use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting};
-use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::default_stroke::REPEAT_PAUSE_S;
-use frixel_play::SimStream;
+use frixel_play::RigStream;
 use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
 use frixel_scene::Program;
 use frixel_wire::fault::State;
@@ -168,7 +167,7 @@ fn simulated(
     config.board.limits.tick_cycles_max = u32::MAX;
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke.map_err(failed)?, SEED).map_err(failed)?;
-    let link = Observed::new(PollingLink::new(SimStream::new(rig, Recorder::default())));
+    let link = Observed::new(PollingLink::new(RigStream::new(rig)));
     serve(Device::connect(link).map_err(failed)?, opened, ends, interrupted);
     Ok(())
 }

@@ -16,12 +16,13 @@ use clap::Parser;
 use frixel_driver::{Device, PollingLink};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{
-    BoardMemory, FingertipConfig, Person, Point, Rig, RigConfig, Stroke, TickRecord, TouchConfig, example_finger,
+    BoardMemory, BoardView, FingertipConfig, Person, Point, Rig, RigConfig, RigTick, Stroke, TouchConfig,
+    example_finger,
 };
 use frixel_lab::calibration::{align, write_csv};
 use frixel_lab::fit::{self, Estimate, Fit, FitError, Settings};
 use frixel_model::{Contact, Finger};
-use frixel_play::{Player, SimStream};
+use frixel_play::{Player, RigStream};
 use frixel_scene::{Scene, Screen, compile};
 
 use super::recorded::Simulated;
@@ -96,15 +97,16 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     let hz = f64::from(config.board.tick_hz);
     let (ticks, measured) = ((STEADY_S * hz) as u64, (MEASURED_S * hz) as u64);
     let (mut tick, mut sum_n, mut volts) = (0, 0.0, 0.0);
-    let observe = |record: &TickRecord| {
+    let observe = |record: &RigTick| {
         tick += 1;
         if (ticks - measured..ticks).contains(&tick) {
             sum_n += record.felt.electric_friction_n / measured as f64;
-            volts += f64::from(record.status.telemetry.voltage_v_rms) / measured as f64;
+            let BoardView::Status(status) = &record.board else { panic!("the simulator sees its board") };
+            volts += f64::from(status.telemetry.voltage_v_rms) / measured as f64;
         }
     };
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, ticks, 40).unwrap();
-    let line = SimStream::new(rig, Recorder::default()).observed(observe);
+    let line = RigStream::new(rig).observed(observe);
     let mut player = Player::recording(Device::connect(PollingLink::new(line)).unwrap(), recorder);
     player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
     while player.recorder_mut().ticks_left() > 0 {

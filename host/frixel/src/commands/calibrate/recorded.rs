@@ -5,11 +5,10 @@ use std::time::Duration;
 
 use anyhow::{Result, bail};
 use frixel_driver::{Device, PollingLink};
-use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger, simulation_seed};
 use frixel_model::LoadedContact;
-use frixel_play::SimStream;
+use frixel_play::RigStream;
 use frixel_wire::hello::Hello;
 
 use super::plan::{Plan, ROW_HZ};
@@ -62,7 +61,7 @@ impl Simulated {
         let mut rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
         rig.world_mut().set_own_finger(self.contact);
         let mut sensor = ForceSensor::new(ROW_HZ, self.config.board.tick_hz);
-        let line = SimStream::new(rig, Recorder::default()).observed(|record| sensor.measure(record));
+        let line = RigStream::new(rig).observed(|tick| sensor.measure(tick.tick, &tick.felt));
         let mut player = self.plan.start(Device::connect(PollingLink::new(line))?, 0)?;
         // What is simulated needs no file until it is whole.
         let board = self.plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;

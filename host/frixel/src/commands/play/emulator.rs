@@ -3,11 +3,12 @@
 use std::sync::mpsc;
 
 use crate::commands::error::of_finger;
-use crate::rigs::{EmulatedStream, PicoStream};
+use crate::rigs::EmulatedRig;
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
-use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoRig};
+use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
 use frixel_hil_sim::{Board, RigConfig, World};
+use frixel_play::RigStream;
 use frixel_scene::Scene;
 
 use super::follow::follow;
@@ -31,7 +32,7 @@ pub(super) fn play_on_emulator(
         // The receiver is gone once the play has ended.
         let _ = sender.send(*record);
     })?;
-    let device = Device::connect(PollingLink::new(EmulatedStream::open(&board, records)?))?;
+    let device = Device::connect(PollingLink::new(RigStream::new(EmulatedRig::open(&board, records)?)))?;
     let mut played = follow(args, plan, device, outputs, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(anyhow::Error::from));
@@ -47,8 +48,8 @@ pub(super) fn play_on_pico(
     interrupt: &Interrupt,
 ) -> Result<Played> {
     let (plan, world) = prepare(args, scene, Target::Pico, &Board::PICO)?;
-    let rig = PicoRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
-    let device = Device::connect(PollingLink::new(PicoStream::new(rig)))?;
+    let rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
+    let device = Device::connect(PollingLink::new(RigStream::new(rig)))?;
     follow(args, plan, device, outputs, interrupt)
 }
 

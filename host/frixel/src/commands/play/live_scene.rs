@@ -194,7 +194,7 @@ mod tests {
     use frixel_driver::{Device, PollingLink};
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-    use frixel_play::SimStream;
+    use frixel_play::RigStream;
     use frixel_scene::{TargetRange, compile};
     use tempfile::TempDir;
 
@@ -210,7 +210,7 @@ mod tests {
     /// A simulated board that plays `scene.toml`, watched as at a port: the play does not wait for the compiler.
     struct Watched<'a> {
         folder: TempDir,
-        player: Player<PollingLink<SimStream<'a>>>,
+        player: Player<PollingLink<RigStream<'a, Rig<'a>>>>,
         live: LiveScene,
     }
 
@@ -227,7 +227,7 @@ mod tests {
             let program = compile(&scene.unwrap(), &limits, tick_hz).unwrap();
             let rig = Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
             let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
-            let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default()))).unwrap();
+            let device = Device::connect(PollingLink::new(RigStream::new(rig))).unwrap();
             let mut player = Player::recording(device, recorder);
             player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
             let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
@@ -264,8 +264,9 @@ mod tests {
         /// Refreshes until a scene with this friction plays.
         fn until_plays(&mut self, friction_n: f64) {
             let begin = Instant::now();
-            let plays =
-                |player: &Player<PollingLink<SimStream>>| TargetRange::of(player.playing().unwrap().program()).most_n;
+            let plays = |player: &Player<PollingLink<RigStream<Rig>>>| {
+                TargetRange::of(player.playing().unwrap().program()).most_n
+            };
             while (plays(&self.player) - friction_n).abs() > 1e-6 {
                 assert!(begin.elapsed() < Duration::from_secs(20), "{friction_n} N never plays");
                 self.refresh();

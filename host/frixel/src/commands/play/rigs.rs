@@ -2,9 +2,8 @@
 
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
-use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::SimStream;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_play::RigStream;
 use frixel_scene::Scene;
 
 use super::super::experiment;
@@ -19,7 +18,7 @@ use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
 /// A simulated board under a simulated finger.
-pub(super) type Simulator<'a> = Device<PollingLink<SimStream<'a>>>;
+pub(super) type Simulator<'a> = Device<PollingLink<RigStream<'a, Rig<'a>>>>;
 
 /// Plays on the simulated board, under a simulated finger.
 pub(super) fn play_on_simulator(
@@ -43,7 +42,7 @@ pub(super) fn simulator<'a>(
     let board = (&config.board.limits, config.board.tick_hz);
     let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
     let rig = plan.simulation(args, scene, &config)?.rig(memory)?;
-    let device = Device::connect(PollingLink::new(SimStream::new(rig, Recorder::default())))?;
+    let device = Device::connect(PollingLink::new(RigStream::new(rig)))?;
     Ok((plan, device))
 }
 

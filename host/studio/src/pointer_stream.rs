@@ -14,7 +14,7 @@ use crate::pointer::{Finger, Pointer};
 use crate::touched::{TouchFollower, TouchedPlaces};
 
 /// The line to a simulated board. Each tick of virtual time passes in [`Self::step`].
-pub(crate) struct RigStream<'a> {
+pub(crate) struct PointerStream<'a> {
     rig: Rig<'a>,
     /// The finger on the screen.
     pub(crate) pointer: Pointer,
@@ -32,7 +32,7 @@ pub(crate) struct RigStream<'a> {
 /// Is called with a tick.
 type Observer = Box<dyn FnMut(&TickRecord)>;
 
-impl<'a> RigStream<'a> {
+impl<'a> PointerStream<'a> {
     pub(crate) fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
         // The pointer moves the finger; the world's own stroke never starts.
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
@@ -109,7 +109,7 @@ impl<'a> RigStream<'a> {
     }
 }
 
-impl Recorded for RigStream<'_> {
+impl Recorded for PointerStream<'_> {
     type Recorder = Recorder;
 
     fn recorder_mut(&mut self) -> &mut Recorder {
@@ -117,7 +117,7 @@ impl Recorded for RigStream<'_> {
     }
 }
 
-impl ByteStream for RigStream<'_> {
+impl ByteStream for PointerStream<'_> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
         self.rig.send(bytes);
         Ok(())
