@@ -34,11 +34,11 @@ pub struct RigTick {
     pub drive: Drive,
     /// What the finger felt.
     pub felt: Felt,
-    /// What the rig sees of the board itself.
+    /// What is known of the board beyond its pins.
     pub board: BoardView,
 }
 
-/// What a rig sees of a board after a tick, beside its pins.
+/// What a rig knows of its board after a tick, beyond the levels of the pins.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "the in-process rig, the fast one, always has it")]
 pub enum BoardView {
@@ -101,8 +101,8 @@ pub trait BoardRig {
         false
     }
 
-    /// Lets the rig run until bytes have arrived at the host in this call, which it appends to `received`, until there are
-    /// [touch frames](Self::take_touch_frames), or until `until_tick`. Passes each tick to `watch`.
+    /// Lets the rig run until bytes have arrived at the host in this call, which it appends to `received`, until there
+    /// are [touch frames](Self::take_touch_frames), or until `until_tick`. Passes each tick to `watch`.
     fn run(&mut self, until_tick: u64, received: &mut Vec<u8>, watch: &mut dyn FnMut(&RigTick))
     -> Result<(), RigError>;
 

@@ -29,8 +29,8 @@ const PROFILE: &str = "fuzz";
 /// How far a target is run.
 #[derive(Clone, Copy)]
 pub(crate) enum Extent {
-    /// As many inputs as [`TARGETS`] says, drawn from one seed and what a target starts from: much the same at every run,
-    /// whatever the machine's speed. What goes through hash maps differs a little.
+    /// As many inputs as [`TARGETS`] says, drawn from one seed and from what a target starts with. They are nearly the
+    /// same at every run, on fast and slow machines; only targets with hash maps differ a little.
     Fixed,
     /// Other inputs at every run, for this time. Those that reach new code are where the next such run begins.
     For(Duration),

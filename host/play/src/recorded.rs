@@ -12,8 +12,8 @@ pub trait Recorded {
     /// What records the play.
     fn recorder_mut(&mut self) -> &mut Self::Recorder;
 
-    /// The scene begins to play. At the first time, the record starts, and the stroke of a finger that is simulated beside
-    /// the board.
+    /// The scene begins to play. The first time, this starts the record, and the stroke of a finger that is simulated
+    /// beside the board.
     fn begin(&mut self) -> Result<(), LinkClosed> {
         Ok(())
     }

@@ -19,15 +19,15 @@ type Observer<'a> = Box<dyn FnMut(&RigTick) + 'a>;
 
 /// The host's end of the serial line to a rig, with the record of what its finger feels.
 ///
-/// Stroke and record start when the scene first plays. A rig that sees the board starts them in that tick, any other rig
-/// when the board acknowledges `play`. Without a view of the board, only rows with a telemetry message have the board's
-/// values.
+/// Stroke and record start when the scene first plays: in that tick if the rig [sees the board](BoardRig::sees_board),
+/// and otherwise when the board acknowledges `play`. On a rig that does not see the board, only rows with a telemetry
+/// message have the board's values.
 pub struct RigStream<'a, R> {
     rig: R,
     record: Record<'a>,
 }
 
-/// What is recorded of the ticks of a rig.
+/// The recorder, and the ticks that it has not got yet.
 #[derive(Default)]
 struct Record<'a> {
     recorder: Recorder,

@@ -352,9 +352,9 @@ pub enum FitError {
     },
     /// Noise hides whether electric friction depends on how many rows beside a switch of the drive are left out.
     #[error(
-        "the drive adds too little friction for the noise to tell whether friction was smoothed: electric friction may change \
-         by {percent:.0} % with the rows that are left out beside each switch; fit what the sensor gave, without a mean \
-         or a filter behind it, and check that the electrode is driven"
+        "the drive adds too little friction for the noise to tell whether friction was smoothed: electric friction may \
+         change by {percent:.0} % with the rows that are left out beside each switch; fit what the sensor gave, without \
+         a mean or a filter behind it, and check that the electrode is driven"
     )]
     SettlingUnknown {
         /// The 99.9 % half-interval of the change, in percent of electric friction.

@@ -23,7 +23,8 @@ const WIDER: [(Side, Edge); 5] = [
     (Side::After, Edge { duration_s: 8e-3, share: 0.35 }),
     (Side::After, Edge { duration_s: 12e-3, share: 0.5 }),
 ];
-/// Change of electric friction under wider edges that is allowed, as a part of it. Noise is allowed its 99.9 % interval.
+/// Largest change of electric friction under wider edges that is allowed, as a part of it. A change within its 99.9 %
+/// interval is noise.
 const SETTLED_SHARE: f64 = 5e-3;
 /// Widest 99.9 % half-interval of such a change, as a part of electric friction, with which it tells something. A mean
 /// over whole periods of the drive leaves next to nothing of electric friction, and that depends on no edge.
