@@ -336,10 +336,7 @@ impl BoardRig for Rig<'_> {
 
     fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
         match fault {
-            RigFault::World(fault) => {
-                let now = self.world.tick();
-                self.world.schedule_fault(now..now.saturating_add(ticks), fault)?;
-            }
+            RigFault::World(fault) => self.world.cause(fault, ticks)?,
             RigFault::Reset | RigFault::OptionBytes => {
                 let reason = "its board has no memory left for another start";
                 let memory = self.spare.next().ok_or(RigError::FaultUnavailable { rig: NAME, reason })?;

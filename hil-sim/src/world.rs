@@ -273,6 +273,12 @@ impl World {
         self.faults.add(ticks, fault, self.healthy_amplifier)
     }
 
+    /// Causes `fault` for `ticks` ticks, from the current one on.
+    pub(crate) fn cause(&mut self, fault: WorldFault, ticks: u64) -> Result<(), OutOfRange> {
+        let now = self.tick();
+        self.schedule_fault(now..now.saturating_add(ticks), fault)
+    }
+
     /// Gives the amplifier other properties from now on, such as those of a broken one. Its voltages stay.
     pub fn set_amplifier(&mut self, config: &AmplifierConfig) -> Result<(), WorldError> {
         self.amplifier = self.amplifier.reconfigured(config, self.full_scale_v_peak, self.tick_hz)?;

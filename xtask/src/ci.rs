@@ -1,11 +1,12 @@
 //! `cargo xtask ci`: the checks that must pass, beside `cargo test`, before a change is merged.
 
 use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
 use crate::bench::programs::{self, Pace};
-use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, cargo_in, root, run};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, cargo_in, root, run, target_folder};
 use crate::fuzz::Extent;
 use crate::needs::{Machine, Missing, Need};
 use crate::{bench, budgets, fuzz, pico_rig, portability, python, studio_tests};
@@ -104,6 +105,14 @@ pub(crate) fn beside_default(command: &str) -> Command {
     let mut cargo = cargo_in(".");
     cargo.args([command, "--locked"]).args(BESIDE_DEFAULT.iter().flat_map(|package| ["--package", package]));
     cargo
+}
+
+/// Builds the command, and returns its path. With tests beside it, it has the features of `cargo test`, so that nothing
+/// is compiled twice.
+pub(crate) fn command() -> Result<PathBuf, String> {
+    run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--bin", "frixel", "--test", "main"]))?;
+    let command = target_folder().join("debug/frixel");
+    command.canonicalize().map_err(|error| format!("{}: {error}", command.display()))
 }
 
 /// The test programs named `emulated`, which plain `cargo test` leaves out.

@@ -6,7 +6,7 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use crate::ci;
-use crate::command::{cargo_in, root, run, target_folder, text_of};
+use crate::command::{root, run, target_folder};
 
 /// The targets, each with its number of inputs in [`Extent::Fixed`].
 const TARGETS: [(&str, u32); 6] = [
@@ -19,12 +19,9 @@ const TARGETS: [(&str, u32); 6] = [
 ];
 /// Longest time of one input: beyond it, the target hangs.
 const INPUT_MAX: Duration = Duration::from_secs(30);
-/// Coverage as libFuzzer reads it. The compiler's own option for it is unstable; these are not.
-const RUSTFLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
-                         -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
-                         -Cllvm-args=-sanitizer-coverage-pc-table \
-                         -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1";
-const PROFILE: &str = "fuzz";
+/// The compiler of the workspace's crates, whose coverage guides libFuzzer. What they depend on is shared with
+/// `cargo test`.
+const COMPILER: &str = "fuzz/rustc-with-coverage";
 
 /// How far a target is run.
 #[derive(Clone, Copy)]
@@ -39,17 +36,12 @@ pub(crate) enum Extent {
 /// Runs every target, all at once.
 pub(crate) fn run_all(extent: Extent) -> Result<(), String> {
     run("seeds", ci::beside_default("build").args(["--bin", "seeds"]))?;
-    let folder = target_folder().join("fuzz");
-    let host = text_of(Command::new("rustc").args(["--print", "host-tuple"]))?;
-    let mut build = cargo_in(".");
-    build.args(["build", "--locked", "--package", "frixel-fuzz", "--features", "libfuzzer", "--profile", PROFILE]);
-    // With a target, what runs in the compiler carries no instrumentation.
-    build.args(["--target", host.trim(), "--target-dir"]).arg(&folder).env("RUSTFLAGS", RUSTFLAGS);
-    for (target, _) in TARGETS {
-        build.args(["--bin", target]);
-    }
-    run("fuzz targets", &mut build)?;
-    let programs = folder.join(host.trim()).join(PROFILE);
+    let mut build = ci::beside_default("build");
+    build.args(["--features", "frixel-fuzz/libfuzzer"]).args(TARGETS.iter().flat_map(|(target, _)| ["--bin", target]));
+    let compiler = root().join(COMPILER);
+    let compiler = compiler.canonicalize().map_err(|error| format!("{}: {error}", compiler.display()))?;
+    run("fuzz targets", build.env("RUSTC_WORKSPACE_WRAPPER", compiler))?;
+    let (programs, folder) = (target_folder().join("debug"), target_folder().join("fuzz"));
     let start = |(name, inputs)| Fuzzer::start(name, inputs, &programs, &folder, extent);
     let running: Vec<Fuzzer> = TARGETS.into_iter().map(start).collect::<Result<_, _>>()?;
     let failures: Vec<String> = running.into_iter().filter_map(|fuzzer| fuzzer.end().err()).collect();
@@ -81,7 +73,7 @@ impl Fuzzer {
             "scene_text" => drop(command.arg(root().join("scenes"))),
             "scenario" => drop(command.arg(root().join("hil-sim/scenarios"))),
             _ => {
-                let seeds = target_folder().join("debug/seeds");
+                let seeds = programs.join("seeds");
                 run(&format!("seeds of {name}"), Command::new(seeds).arg(name).arg(&corpus))?;
             }
         }

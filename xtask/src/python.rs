@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{WASM, cargo_in, root, run, target_folder};
+use crate::command::{WASM, root, run, target_folder};
 use crate::needs::Need;
-use crate::{studio, studio_tests};
+use crate::{ci, studio, studio_tests};
 
 /// The folder of the module.
 const FOLDER: &str = "host/python";
@@ -42,9 +42,7 @@ pub(crate) fn check() -> Result<(), String> {
     run("installation", in_environment("pip").args(install).args(["--no-index", "--no-deps"]).arg(wheel))?;
     run("types", in_environment("mypy").args(["--package", "frixel"]))?;
     run("types of tests", in_environment("mypy").args(["tests", "examples"]))?;
-    // With the features of `cargo test`, which has built it.
-    run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--bin", "frixel"]))?;
-    let frixel = absolute(&target_folder().join("debug/frixel"))?;
+    let frixel = ci::command()?;
     studio_tests::install(&studio_tests::folder())?;
     let mut tests = in_environment("pytest");
     run("tests of the Python module", tests.arg("--quiet").env("FRIXEL", frixel).env("STUDIO_PAGE", page))

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
+use crate::command::{WASM, root, run, target_folder, text_of};
 use crate::needs::{self, Need};
 use crate::{ci, pico_rig, studio};
 
@@ -48,9 +48,8 @@ pub(crate) fn run_page() -> Result<(), String> {
 
 /// Builds the page and the command, and runs the tests in which one meets the other.
 pub(crate) fn run_beside_command() -> Result<(), String> {
-    run("command", cargo_in(".").args(["build", "--locked", "--bin", "frixel"]))?;
-    let mut runner = runner(&[])?;
-    run("studio beside the command", runner.env("FRIXEL", built("frixel")?).arg(COMMAND_TESTS))
+    let command = ci::command()?;
+    run("studio beside the command", runner(&[])?.env("FRIXEL", command).arg(COMMAND_TESTS))
 }
 
 /// Builds the site, and opens it in Firefox.

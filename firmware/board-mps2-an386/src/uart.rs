@@ -155,7 +155,6 @@ extern "C" fn receive() {
     while read(STATE) & STATE_RX_FULL != 0 {
         // A host that respects its credit never fills the queue. Bytes beyond it are lost, and the frame's CRC fails.
         let _ = receiver.enqueue(read(DATA) as u8);
-        shared::set(layout::RECEIVED_AT_TICK, shared::get(layout::TICK));
         shared::set(layout::RECEIVED_BYTES, shared::get(layout::RECEIVED_BYTES).wrapping_add(1));
     }
 }

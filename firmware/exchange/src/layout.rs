@@ -54,8 +54,6 @@ pub const OUTPUT: usize = 4;
 pub const TICK: usize = 5;
 /// Number of starts of the firmware since power-on.
 pub const STARTS: usize = 6;
-/// Tick at which the last byte arrived on the serial port.
-pub const RECEIVED_AT_TICK: usize = 7;
 /// Number of bytes that have arrived on the serial port since power-on, modulo 2^32.
 pub const RECEIVED_BYTES: usize = 15;
 

@@ -5,6 +5,7 @@ mod serial;
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -47,6 +48,8 @@ pub struct LinkRecord {
     /// Ticks since the board's last reset, this one included. Of a [`PicoRig`](super::PicoRig), ticks since the board
     /// was first switched on.
     pub tick: u32,
+    /// Ticks of the world since power-on, this one included.
+    pub world_tick: u64,
     /// The board's output.
     pub drive: Drive,
     /// What the finger felt.
@@ -63,17 +66,13 @@ pub struct LinkBoard {
     machine: Machine,
     serial_path: String,
     world: Option<JoinHandle<Result<(), EmulatorError>>>,
+    records: Receiver<LinkRecord>,
     flags: Arc<ControlFlags>,
 }
 
 impl LinkBoard {
-    /// Starts the board in a world whose finger is up until [`Self::start_stroke`]. The world's own thread passes
-    /// every tick to `watch`.
-    pub fn start(
-        image: &Image,
-        world: World,
-        watch: impl FnMut(&LinkRecord) + Send + 'static,
-    ) -> Result<Self, EmulatorError> {
+    /// Starts the board in a world whose finger is up until [`Self::start_stroke`].
+    pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut machine = Machine::start(image, layout::MODE_LINK, &ARGUMENTS)?;
         wait_for(&mut machine, layout::TICK, "its first tick")?;
         let output = machine.output()?;
@@ -84,14 +83,21 @@ impl LinkBoard {
         wait_for(&mut machine, layout::RECEIVED_BYTES, "to take a byte from its serial port")?;
         let flags = Arc::new(ControlFlags::default());
         let memory = machine.memory.try_clone()?;
-        let follower = Follower::new(memory, serial, world, watch, Arc::clone(&flags));
+        let (sender, records) = mpsc::channel();
+        let follower = Follower::new(memory, serial, world, sender, Arc::clone(&flags));
         let world = thread::spawn(move || follower.run());
-        Ok(Self { machine, serial_path, world: Some(world), flags })
+        Ok(Self { machine, serial_path, world: Some(world), records, flags })
     }
 
     /// The pseudo-terminal that a host opens as its serial port.
     pub fn serial_path(&self) -> &str {
         &self.serial_path
+    }
+
+    /// Takes the ticks that the world has followed since the last call, oldest first. They queue without bound until
+    /// then.
+    pub fn records(&self) -> impl Iterator<Item = LinkRecord> {
+        self.records.try_iter()
     }
 
     /// Starts the finger's stroke.
@@ -131,16 +137,6 @@ impl LinkBoard {
     /// Lets the clock of a board with an open connection run up to this tick, in [`Self::ticks`].
     pub fn host_answers_to(&self, ticks: u32) -> Result<(), EmulatorError> {
         self.machine.memory.set(layout::HOST_ANSWERED_TO, ticks)
-    }
-
-    /// Returns the number of ticks since the board's last reset.
-    pub fn tick(&self) -> Result<u32, EmulatorError> {
-        self.machine.memory.get(layout::TICK)
-    }
-
-    /// Returns the tick at which the last byte arrived on the serial port.
-    pub fn received_at_tick(&self) -> Result<u32, EmulatorError> {
-        self.machine.memory.get(layout::RECEIVED_AT_TICK)
     }
 
     /// Returns the number of bytes that have arrived on the serial port since power-on, modulo 2^32. The first one

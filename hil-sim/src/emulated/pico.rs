@@ -289,7 +289,7 @@ impl PicoRig {
         if let Some(touch) = self.world.touch() {
             self.report(touch);
         }
-        LinkRecord { tick: self.tick(), drive, felt }
+        LinkRecord { tick: self.tick(), world_tick: self.world.tick(), drive, felt }
     }
 
     /// Sends a touch report to the board.

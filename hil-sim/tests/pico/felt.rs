@@ -18,6 +18,10 @@ use crate::script::Script;
 const LINE_ERROR_MAX: f64 = 0.02;
 /// Ticks between two pings of the in-process rig's host: less than its timeout of 250 ms.
 const PING_TICKS: u64 = 800;
+/// Number of strokes.
+const STROKES: usize = 4;
+/// Duration of a stroke.
+const STROKE_S: f64 = 8.5;
 /// Median speed of the touches, in m/s.
 const SPEED_M_PER_S: f64 = 0.05;
 
@@ -86,29 +90,20 @@ fn in_process(seconds: f64, seed: u64, start_tick: u64) -> Fidelity {
     }))
 }
 
-fn is_felt_within_the_goal(seconds: f64, seeds: impl Iterator<Item = u64>) {
+#[test]
+#[ignore = "takes minutes: `cargo xtask soak pico`"]
+fn a_grating_is_felt_within_the_goal_under_a_finger_that_a_touch_frame_sees() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let stroke = |seed| {
-        let (found, start_tick) = on_the_pico(&image, seconds, seed);
-        let beside = in_process(seconds, seed, start_tick);
+        let (found, start_tick) = on_the_pico(&image, STROKE_S, seed);
+        let beside = in_process(STROKE_S, seed, start_tick);
         for (rig, felt) in [("Pico", &found), ("in-process", &beside)] {
             println!("{rig}, seed {seed}: {:.3?}", FidelityMean::of(slice::from_ref(felt)));
         }
         assert!(found.error.unwrap() <= beside.error.unwrap() + LINE_ERROR_MAX, "{found:?}, in-process {beside:?}");
         found
     };
-    let mean = FidelityMean::of(&seeds.map(stroke).collect::<Vec<_>>()).unwrap();
+    let mean = FidelityMean::of(&HUMAN_TEST_SEEDS.take(STROKES).map(stroke).collect::<Vec<_>>()).unwrap();
     println!("{mean:.3?}");
     assert!(Goal::SLOW.is_met_by(&mean), "{mean:?}");
-}
-
-#[test]
-fn a_grating_is_felt_within_the_goal_under_a_finger_that_a_touch_frame_sees() {
-    is_felt_within_the_goal(1.5, HUMAN_TEST_SEEDS.take(1));
-}
-
-#[test]
-#[ignore = "takes minutes: `cargo xtask soak pico`"]
-fn a_grating_is_felt_within_the_goal_on_long_strokes() {
-    is_felt_within_the_goal(8.5, HUMAN_TEST_SEEDS.take(4));
 }

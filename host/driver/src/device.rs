@@ -258,7 +258,8 @@ impl<L: Link> Device<L> {
     /// have arrived for the next [`Self::wait`]. Does not wait, and therefore does not report a board that has stopped
     /// answering.
     ///
-    /// For a program that runs its own loop while a scene plays and has no other call to make.
+    /// For a program that runs its own loop while a scene plays and has no other call to make. On a link to a simulated
+    /// board, whose clock advances only while the program waits, no time passes: call [`Self::wait`] there.
     ///
     /// ```no_run
     /// # use frixel_driver::{Device, DeviceError, Link};

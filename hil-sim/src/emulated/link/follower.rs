@@ -1,6 +1,7 @@
 //! The world of a board that ticks by itself: it follows the board's output.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
@@ -33,11 +34,11 @@ impl ControlFlags {
 }
 
 /// A world that follows the board's output.
-pub(super) struct Follower<W> {
+pub(super) struct Follower {
     memory: Memory,
     serial: Serial,
     world: World,
-    watch: W,
+    records: Sender<LinkRecord>,
     /// Number of drives that have been processed.
     seen: u32,
     /// Number of touch reports that have been written.
@@ -47,9 +48,15 @@ pub(super) struct Follower<W> {
     flags: Arc<ControlFlags>,
 }
 
-impl<W: FnMut(&LinkRecord)> Follower<W> {
-    pub(super) fn new(memory: Memory, serial: Serial, world: World, watch: W, flags: Arc<ControlFlags>) -> Self {
-        Self { memory, serial, world, watch, seen: 0, reports: 0, broken: Vec::new(), flags }
+impl Follower {
+    pub(super) fn new(
+        memory: Memory,
+        serial: Serial,
+        world: World,
+        records: Sender<LinkRecord>,
+        flags: Arc<ControlFlags>,
+    ) -> Self {
+        Self { memory, serial, world, records, seen: 0, reports: 0, broken: Vec::new(), flags }
     }
 
     /// Follows the board until the owner requests the end.
@@ -70,13 +77,11 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
     /// Causes the faults that were asked for: in the world, and at the inputs that are simulated on the board.
     fn begin_faults(&mut self) -> Result<(), EmulatorError> {
         for (fault, ticks) in self.flags.take_faults() {
-            let now = self.world.tick();
-            let end = now.saturating_add(ticks);
             // `LinkBoard::cause` has checked the fault.
-            let _ = self.world.schedule_fault(now..end, fault);
+            let _ = self.world.cause(fault, ticks);
             if let Some((word, value)) = broken_input(fault) {
                 self.memory.set(word, value)?;
-                self.broken.push((end, word));
+                self.broken.push((self.world.tick().saturating_add(ticks), word));
             }
         }
         Ok(())
@@ -112,7 +117,8 @@ impl<W: FnMut(&LinkRecord)> Follower<W> {
     /// Advances the world by one tick, and sends its touch report to the board.
     fn tick(&mut self, tick: u32, drive: Drive) -> Result<(), EmulatorError> {
         let felt = self.world.apply(drive);
-        (self.watch)(&LinkRecord { tick, drive, felt });
+        // Cannot fail: `LinkBoard` joins this thread before it drops the receiver.
+        let _ = self.records.send(LinkRecord { tick, world_tick: self.world.tick(), drive, felt });
         match self.world.touch() {
             Some(touch) => self.report(StampedTouch { tick: tick.wrapping_add(1), touch }),
             None => Ok(()),

@@ -85,11 +85,7 @@ impl BoardRig for PicoBoardRig {
 
     fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
         match fault {
-            RigFault::World(fault) => {
-                let world = self.rig.world_mut();
-                let now = world.tick();
-                Ok(world.schedule_fault(now..now.saturating_add(ticks), fault)?)
-            }
+            RigFault::World(fault) => Ok(self.rig.world_mut().cause(fault, ticks)?),
             RigFault::Reset => self.rig.pull_run_pin().map_err(|error| ended(&error)),
             RigFault::LateTick | RigFault::OptionBytes | RigFault::WrapSoon { .. } => {
                 let reason = "an unmodified image has no input for it";

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-#[cfg(unix)]
-use std::sync::mpsc;
 
 use anyhow::{Result, anyhow, bail};
 use clap::ValueEnum;
@@ -77,13 +75,8 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
 #[cfg(unix)]
 fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome> {
     let (programs, world) = prepare(scenario, scenes, &BOARD)?;
-    let image = Image::find(EmulatedBoard::Mps2An386)?;
-    let (sender, records) = mpsc::channel();
-    let mut board = LinkBoard::start(&image, world, move |record| {
-        // The receiver is gone once the scenario has ended.
-        let _ = sender.send(*record);
-    })?;
-    let outcome = scenario::run(scenario, &programs, &mut EmulatedRig::open(&board, records)?)?;
+    let mut board = LinkBoard::start(&Image::find(EmulatedBoard::Mps2An386)?, world)?;
+    let outcome = scenario::run(scenario, &programs, &mut EmulatedRig::open(&board)?)?;
     board.check()?;
     Ok(outcome)
 }

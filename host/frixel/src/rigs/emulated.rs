@@ -1,7 +1,6 @@
 //! The firmware in an emulator, with its serial port and the world around it.
 
 use std::cell::Cell;
-use std::sync::mpsc::Receiver;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -38,14 +37,11 @@ pub struct EmulatedRig<'b> {
     clock_ticks: Cell<u64>,
     /// When the host's clock last advanced, or bytes were sent for which it stands still.
     advanced_at: Cell<Instant>,
-    records: Receiver<LinkRecord>,
-    /// Ticks of the world that were taken from `records`.
-    watched_ticks: u64,
 }
 
 impl<'b> EmulatedRig<'b> {
-    /// Opens the board's serial port. `records` receives all ticks that [`LinkBoard::start`] reports.
-    pub fn open(board: &'b LinkBoard, records: Receiver<LinkRecord>) -> Result<Self, PortError> {
+    /// Opens the board's serial port.
+    pub fn open(board: &'b LinkBoard) -> Result<Self, PortError> {
         let serial = SerialLink::open(board.serial_path(), DEFAULT_BAUD)?;
         let counts = board.received_bytes().and_then(|received| Ok((received, board.ticks()?)));
         let not_opened = |error: EmulatorError| PortError::NotOpened {
@@ -62,8 +58,6 @@ impl<'b> EmulatedRig<'b> {
             ticks: Cell::new(u64::from(ticks)),
             clock_ticks: Cell::new(0),
             advanced_at: Cell::new(Instant::now()),
-            records,
-            watched_ticks: 0,
         })
     }
 
@@ -135,9 +129,8 @@ impl BoardRig for EmulatedRig<'_> {
         let before = received.len();
         loop {
             let has_arrived = self.follow().map_err(|error| ended(&error))?;
-            for LinkRecord { tick, drive, felt } in self.records.try_iter() {
-                self.watched_ticks += 1;
-                watch(&RigTick { tick: self.watched_ticks, drive, felt, board: BoardView::Tick(tick) });
+            for LinkRecord { tick, world_tick, drive, felt } in self.board.records() {
+                watch(&RigTick { tick: world_tick, drive, felt, board: BoardView::Tick(tick) });
             }
             // At its end the caller may have a ping to send, and the board waits for it.
             if self.ticks.get() >= until_tick || received.len() > before {

@@ -2,27 +2,27 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use frixel::rigs::EmulatedRig;
 use frixel::scene_file;
-use frixel_driver::{Device, Link};
+use frixel_driver::{Device, Link, PollingLink};
 use frixel_exchange::BOARD;
-use frixel_hil_sim::emulated::{Image, LinkBoard, LinkRecord};
+use frixel_hil_sim::emulated::{Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
-use frixel_play::start;
+use frixel_play::{RigStream, start};
 use frixel_scene::{Program, compile};
-
-use crate::cable::Cable;
 
 /// Wall time between two checks of what is waited for.
 const NAP: Duration = Duration::from_millis(2);
-/// Two minutes of naps: whatever is waited for longer has hung.
-const NAPS_MAX: u32 = 60_000;
-
-/// A minute of the board's time, in which the finger comes over every part of a scene.
-const FELT_WITHIN_TICKS: usize = 60 * BOARD.tick_hz as usize;
+/// Wall time after which a line on which no byte arrives has none under way.
+const QUIET: Duration = Duration::from_millis(50);
+/// Wall time after which a wait has hung.
+const WALL_TIME_MAX: Duration = Duration::from_mins(2);
+/// Longest time of the board from a play to its first output.
+const DRIVEN_WITHIN: Duration = Duration::from_secs(1);
 
 /// One emulator at a time: it takes more than a core.
 static TURN: Mutex<()> = Mutex::new(());
@@ -33,7 +33,6 @@ pub(crate) fn turn() -> MutexGuard<'static, ()> {
 
 pub(crate) struct Bench {
     pub(crate) board: LinkBoard,
-    records: Arc<Mutex<Vec<LinkRecord>>>,
     _turn: MutexGuard<'static, ()>,
 }
 
@@ -47,76 +46,51 @@ impl Bench {
         };
         let stroke = Stroke::sweep(0.12, 0.08, 600.0).unwrap();
         let world = World::new(config, stroke, 1).unwrap();
-        let records = Arc::new(Mutex::new(Vec::new()));
-        let seen = Arc::clone(&records);
-        let board = LinkBoard::start(image, world, move |record| seen.lock().unwrap().push(*record)).unwrap();
+        let board = LinkBoard::start(image, world).unwrap();
         board.start_stroke();
-        Self { board, records, _turn: turn }
+        Self { board, _turn: turn }
+    }
+
+    /// Connects a host, once all that the one before has sent has arrived. Dropped, it stops and disarms the board.
+    pub(crate) fn connect(&self) -> Device<impl Link> {
+        self.until("the line is quiet", |board| {
+            let bytes = board.received_bytes().unwrap();
+            sleep(QUIET);
+            board.received_bytes().unwrap() == bytes
+        });
+        let rig = EmulatedRig::open(&self.board).unwrap();
+        Device::connect(PollingLink::new(RigStream::new(rig))).unwrap()
     }
 
     /// Plays one of the bundled scenes, and waits until the board drives.
-    pub(crate) fn play(&self, scene: &str) -> Device<Cable<'_>> {
-        let mut device = Device::connect(Cable::plug(&self.board)).unwrap();
+    pub(crate) fn play(&self, scene: &str) -> Device<impl Link> {
+        let mut device = self.connect();
         start(&mut device, &program(scene), &mut |_| ControlFlow::Continue(())).unwrap();
-        self.until_driven(&mut device);
+        let end = device.now() + DRIVEN_WITHIN;
+        while self.board.output().unwrap().dac_code.bits() == 0 {
+            assert!(device.now() < end, "the board does not drive");
+            device.wait(Duration::from_millis(1), &mut |_| ()).unwrap();
+        }
         device
     }
 
-    /// What happened so far, tick by tick.
-    pub(crate) fn records(&self) -> Vec<LinkRecord> {
-        self.records.lock().unwrap().clone()
-    }
-
-    /// Waits for something, in wall time.
+    /// Waits for something in wall time, without a call to a host.
     pub(crate) fn until(&self, what: &str, mut done: impl FnMut(&LinkBoard) -> bool) {
-        for _ in 0..NAPS_MAX {
-            if done(&self.board) {
-                return;
-            }
+        let begin = Instant::now();
+        while !done(&self.board) {
+            assert!(begin.elapsed() < WALL_TIME_MAX, "hung: {what}");
             sleep(NAP);
         }
-        panic!("hung: {what}");
-    }
-
-    /// Waits until the board drives, for a host that is there all the time.
-    pub(crate) fn until_driven<L: Link>(&self, device: &mut Device<L>) {
-        self.until("the board drives", |board| {
-            device.keep_alive().unwrap();
-            board.output().unwrap().dac_code.bits() != 0
-        });
-    }
-
-    /// Waits until the finger has felt so much electric friction, for a host that is there all the time.
-    pub(crate) fn until_felt<L: Link>(&self, device: &mut Device<L>, electric_friction_n: f64) {
-        let mut checked = 0;
-        let end = self.records.lock().unwrap().len() + FELT_WITHIN_TICKS;
-        self.until("the finger feels the scene", |board| {
-            device.keep_alive().unwrap();
-            let records = self.records.lock().unwrap();
-            assert!(records.len() < end, "the finger does not feel the scene; the board puts out {:?}", board.output());
-            let new = &records[checked..];
-            checked = records.len();
-            new.iter().any(|record| record.felt.electric_friction_n >= electric_friction_n)
-        });
-    }
-
-    /// Lets some of the board's ticks pass, for a host that is there all the time.
-    pub(crate) fn pass<L: Link>(&self, device: &mut Device<L>, ticks: u32) {
-        let start = self.board.ticks().unwrap();
-        self.until("ticks pass", |board| {
-            device.keep_alive().unwrap();
-            board.ticks().unwrap().wrapping_sub(start) >= ticks
-        });
     }
 }
 
 /// Host timeout of the scenes here, the longest that there is: on a busy machine pings are late.
-pub(crate) const HOST_TIMEOUT_TICKS: u32 = 40_000;
+const HOST_TIMEOUT_S: f32 = 1.0;
 
 /// One of the bundled scenes, for the emulated board.
-pub(crate) fn program(name: &str) -> Program {
+fn program(name: &str) -> Program {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let mut program = compile(&scene_file::load(&path).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
-    program.header.host_timeout_s = HOST_TIMEOUT_TICKS as f32 / BOARD.tick_hz as f32;
+    program.header.host_timeout_s = HOST_TIMEOUT_S;
     program
 }

@@ -1,55 +1,55 @@
 //! What ends the firmware leaves the output at zero, and the next hello says why.
 
-use std::ops::ControlFlow;
+use std::time::Duration;
 
 use frixel_control::Drive;
-use frixel_driver::Device;
 use frixel_hil_sim::emulated::InjectedFault;
-use frixel_wire::fault::Fault;
-use frixel_wire::hello::{Hello, ResetCause};
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::{BoardKind, Hello, ResetCause};
 
-use crate::bench::{Bench, program};
-use crate::cable::Cable;
+use crate::bench::Bench;
 use crate::emulator;
 
-/// Plays a scene, lets something happen, and returns the next hello.
-fn suffer(fault: InjectedFault) -> Option<Hello> {
-    let image = emulator::image()?;
-    let bench = Bench::new(&image);
+/// Plays a scene, injects a fault, and returns the next hello. The board has started `starts` times before.
+fn hello_after(fault: InjectedFault, bench: &Bench, starts: u32) -> Hello {
     let device = bench.play("constant.toml");
     bench.board.inject(fault).unwrap();
     bench.until("the output is off", |board| {
-        board.starts().unwrap() == 2 && board.output().unwrap() == Drive::default()
+        board.starts().unwrap() == starts + 1 && board.output().unwrap() == Drive::default()
     });
     assert_eq!(bench.board.output_at_start().unwrap(), Drive::default(), "off before the reset, not after it");
     drop(device);
 
-    let mut device = Device::connect(Cable::plug(&bench.board)).unwrap();
+    let mut device = bench.connect();
     let hello = *device.hello();
-    bench.pass(&mut device, 4_000);
+    device.wait(Duration::from_millis(100), &mut |_| ()).unwrap();
     assert_eq!(bench.board.output().unwrap(), Drive::default(), "nothing starts by itself");
-    frixel_play::start(&mut device, &program("constant.toml"), &mut |_| ControlFlow::Continue(())).unwrap();
-    bench.until_driven(&mut device);
-    Some(hello)
+    hello
 }
 
+/// The board plays again after each fault.
 #[test]
-fn a_panic_ends_the_drive_and_is_reported() {
-    let Some(hello) = suffer(InjectedFault::Panic) else { return };
-    assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::Panic)));
-    assert_ne!(hello.fault_detail, 0, "the line");
-}
-
-#[test]
-fn a_hard_fault_ends_the_drive_and_is_reported() {
-    let Some(hello) = suffer(InjectedFault::HardFault) else { return };
-    assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::HardFault)));
-    assert!((0x48..0x8_0000).contains(&hello.fault_detail), "{:#x} is no place in the code", hello.fault_detail);
-}
-
-#[test]
-fn a_stack_overflow_ends_the_drive_and_is_reported() {
-    let Some(hello) = suffer(InjectedFault::StackOverflow) else { return };
-    assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(Fault::StackOverflow)));
-    assert!(hello.fault_detail < 0x2000_0000, "{:#x} is above the stack's bottom", hello.fault_detail);
+fn what_ends_the_firmware_ends_the_drive_and_is_reported() {
+    let Some(image) = emulator::image() else { return };
+    let bench = Bench::new(&image);
+    let hello = *bench.connect().hello();
+    assert_eq!((hello.board, hello.reset_cause), (BoardKind::Mps2An386, ResetCause::PowerOn));
+    assert_eq!((hello.state, hello.last_fault), (State::Disarmed, None));
+    let expected = [
+        (InjectedFault::Panic, Fault::Panic),
+        (InjectedFault::HardFault, Fault::HardFault),
+        (InjectedFault::StackOverflow, Fault::StackOverflow),
+    ];
+    for (starts, (injected, fault)) in (1..).zip(expected) {
+        let hello = hello_after(injected, &bench, starts);
+        assert_eq!((hello.reset_cause, hello.last_fault), (ResetCause::Software, Some(fault)), "{injected:?}");
+        let detail = hello.fault_detail;
+        match fault {
+            Fault::Panic => assert_ne!(detail, 0, "the line"),
+            Fault::HardFault => assert!((0x48..0x8_0000).contains(&detail), "{detail:#x} is no place in the code"),
+            Fault::StackOverflow => assert!(detail < 0x2000_0000, "{detail:#x} is above the stack's bottom"),
+            other => panic!("{other:?} is not expected"),
+        }
+    }
+    drop(bench.play("constant.toml"));
 }

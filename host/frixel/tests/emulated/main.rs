@@ -5,7 +5,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 mod bench;
-mod cable;
 mod command;
 #[path = "../../../../hil-sim/tests/emulator/mod.rs"]
 mod emulator;

@@ -1,7 +1,5 @@
 //! Playing on the firmware in an emulator: the one for QEMU, and the image of the Pico.
 
-use std::sync::mpsc;
-
 use crate::commands::error::of_finger;
 use crate::rigs::EmulatedRig;
 use anyhow::Result;
@@ -26,13 +24,8 @@ pub(super) fn play_on_emulator(
     interrupt: &Interrupt,
 ) -> Result<Played> {
     let (plan, world) = prepare(args, scene, Target::Emulator, &BOARD)?;
-    let image = Image::find(EmulatedBoard::Mps2An386)?;
-    let (sender, records) = mpsc::channel();
-    let mut board = LinkBoard::start(&image, world, move |record| {
-        // The receiver is gone once the play has ended.
-        let _ = sender.send(*record);
-    })?;
-    let device = Device::connect(PollingLink::new(RigStream::new(EmulatedRig::open(&board, records)?)))?;
+    let mut board = LinkBoard::start(&Image::find(EmulatedBoard::Mps2An386)?, world)?;
+    let device = Device::connect(PollingLink::new(RigStream::new(EmulatedRig::open(&board)?)))?;
     let mut played = follow(args, plan, device, outputs, interrupt)?;
     if !interrupt.is_requested() {
         played.failure = played.failure.or(board.check().err().map(anyhow::Error::from));
