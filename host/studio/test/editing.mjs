@@ -39,13 +39,17 @@ export async function openEditing(text = PLATES) {
   return opened;
 }
 
-/** Waits until the map has found its place. */
+/** Waits until the map has found its place: the browser's frames and those of the page's clock go on meanwhile. */
 export function settled(page) {
   return page.evaluate(async () => {
-    const place = () => JSON.stringify(document.querySelector(".hands").getBoundingClientRect());
+    const parts = ["#map-finger", ".hands"].map((part) => document.querySelector(part));
+    const place = () => JSON.stringify(parts.map((part) => part.getBoundingClientRect()));
     for (let before = ""; before !== place(); ) {
       before = place();
-      for (let frames = 0; frames < 4; frames += 1) await new Promise(requestAnimationFrame);
+      for (let frames = 0; frames < 4; frames += 1) {
+        await new Promise(requestAnimationFrame);
+        await new Promise(studioClock.nextFrame);
+      }
     }
   });
 }

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
+import { settled } from "./editing.mjs";
 import { cleanUp, endLeftovers, setVisibility } from "./harness.mjs";
 import { WHOLE_SCREEN_GRATING, openStudio, showDrawer } from "./page.mjs";
 
@@ -220,6 +221,7 @@ test("a slide that begins on the words is one on the map, and leads to no other 
   const { page, errors, close } = await openAsStranger();
   for (const [width, height] of [[390, 844], [1366, 657]]) {
     await page.setViewportSize({ width, height });
+    await settled(page);
     const met = await page.evaluate(() =>
       ["first-sentence", "first-hint", "hear", "first-dismiss"].map((id) => {
         const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
