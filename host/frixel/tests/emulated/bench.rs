@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use frixel::rigs::EmulatedRig;
 use frixel::scene_file;
@@ -17,10 +17,10 @@ use frixel_scene::{Program, compile};
 
 /// Wall time between two checks of what is waited for.
 const NAP: Duration = Duration::from_millis(2);
-/// Wall time after which a line on which no byte arrives has none under way.
-const QUIET: Duration = Duration::from_millis(50);
-/// Wall time after which a wait has hung.
-const WALL_TIME_MAX: Duration = Duration::from_mins(2);
+/// Two minutes of naps, more on a busy machine: whatever is waited for longer has hung.
+const NAPS_MAX: u32 = 60_000;
+/// A count that is the same over so many naps stands still.
+const STILL_NAPS: u32 = 25;
 /// Longest time of the board from a play to its first output.
 const DRIVEN_WITHIN: Duration = Duration::from_secs(1);
 
@@ -53,11 +53,7 @@ impl Bench {
 
     /// Connects a host, once all that the one before has sent has arrived. Dropped, it stops and disarms the board.
     pub(crate) fn connect(&self) -> Device<impl Link> {
-        self.until("the line is quiet", |board| {
-            let bytes = board.received_bytes().unwrap();
-            sleep(QUIET);
-            board.received_bytes().unwrap() == bytes
-        });
+        self.until_still("no byte arrives", |board| board.received_bytes().unwrap());
         let rig = EmulatedRig::open(&self.board).unwrap();
         Device::connect(PollingLink::new(RigStream::new(rig))).unwrap()
     }
@@ -76,11 +72,24 @@ impl Bench {
 
     /// Waits for something in wall time, without a call to a host.
     pub(crate) fn until(&self, what: &str, mut done: impl FnMut(&LinkBoard) -> bool) {
-        let begin = Instant::now();
-        while !done(&self.board) {
-            assert!(begin.elapsed() < WALL_TIME_MAX, "hung: {what}");
+        for _ in 0..NAPS_MAX {
+            if done(&self.board) {
+                return;
+            }
             sleep(NAP);
         }
+        panic!("hung: {what}");
+    }
+
+    /// Waits until a count of the board has been the same for [`STILL_NAPS`].
+    pub(crate) fn until_still(&self, what: &str, count: impl Fn(&LinkBoard) -> u32) {
+        let (mut last, mut naps) = (None, 0);
+        self.until(what, |board| {
+            let now = Some(count(board));
+            naps = if now == last { naps + 1 } else { 0 };
+            last = now;
+            naps >= STILL_NAPS
+        });
     }
 }
 
