@@ -6,7 +6,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::bench::programs::{self, Pace};
-use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, cargo_in, root, run, target_folder};
+use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, absolute, cargo_in, root, run, target_folder};
 use crate::fuzz::Extent;
 use crate::needs::{Machine, Missing, Need};
 use crate::{bench, budgets, fuzz, pico_rig, portability, python, studio_tests};
@@ -112,7 +112,7 @@ pub(crate) fn beside_default(command: &str) -> Command {
 pub(crate) fn command() -> Result<PathBuf, String> {
     run("command", cargo_in(".").args(["build", "--quiet", "--locked", "--bin", "frixel", "--test", "main"]))?;
     let command = target_folder().join("debug/frixel");
-    command.canonicalize().map_err(|error| format!("{}: {error}", command.display()))
+    absolute(&command)
 }
 
 /// The test programs named `emulated`, which plain `cargo test` leaves out.

@@ -31,6 +31,11 @@ pub(crate) fn target_folder() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into)
 }
 
+/// The absolute path of a file that exists.
+pub(crate) fn absolute(path: &Path) -> Result<PathBuf, String> {
+    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
+}
+
 /// Makes a folder, which must be empty or new, and returns its absolute path.
 pub(crate) fn empty_folder(name: &str) -> Result<PathBuf, String> {
     let folder = std::path::absolute(name).map_err(|error| format!("{name}: {error}"))?;

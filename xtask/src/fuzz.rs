@@ -6,7 +6,7 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use crate::ci;
-use crate::command::{root, run, target_folder};
+use crate::command::{absolute, root, run, target_folder};
 
 /// The targets, each with its number of inputs in [`Extent::Fixed`].
 const TARGETS: [(&str, u32); 6] = [
@@ -39,7 +39,7 @@ pub(crate) fn run_all(extent: Extent) -> Result<(), String> {
     let mut build = ci::beside_default("build");
     build.args(["--features", "frixel-fuzz/libfuzzer"]).args(TARGETS.iter().flat_map(|(target, _)| ["--bin", target]));
     let compiler = root().join(COMPILER);
-    let compiler = compiler.canonicalize().map_err(|error| format!("{}: {error}", compiler.display()))?;
+    let compiler = absolute(&compiler)?;
     run("fuzz targets", build.env("RUSTC_WORKSPACE_WRAPPER", compiler))?;
     let (programs, folder) = (target_folder().join("debug"), target_folder().join("fuzz"));
     let start = |(name, inputs)| Fuzzer::start(name, inputs, &programs, &folder, extent);

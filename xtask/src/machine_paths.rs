@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{root, text_of};
+use crate::command::{absolute, root, text_of};
 
 /// Divides the flags in the variable below, so that they may have spaces.
 const BETWEEN_FLAGS: char = '\x1f';
@@ -25,7 +25,7 @@ struct MachinePath {
 fn machine_paths() -> Result<Vec<MachinePath>, String> {
     let sysroot = text_of(Command::new("rustc").current_dir(root()).args(["--print", "sysroot"]))?;
     let cargo_home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(env::home_dir()?.join(".cargo")));
-    let checkout = root().canonicalize().map_err(|error| format!("{}: {error}", root().display()))?;
+    let checkout = absolute(&root())?;
     let mut paths = vec![
         MachinePath { path: sysroot.trim().into(), name: "rust" },
         MachinePath { path: cargo_home.ok_or("neither CARGO_HOME nor a home folder is known")?, name: "cargo" },

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{root, run};
+use crate::command::{absolute, root, run};
 use crate::studio_tests::install;
 
 const FOLDER: &str = "hil-sim/pico";
@@ -21,7 +21,7 @@ fn folder() -> PathBuf {
 /// Checks the lints of the scripts, with the linter that the tests of the studio have in `linter`.
 pub(crate) fn check_scripts(linter: &Path) -> Result<(), String> {
     let linter = linter.join("node_modules/.bin/biome");
-    let linter = linter.canonicalize().map_err(|error| format!("{}: {error}", linter.display()))?;
+    let linter = absolute(&linter)?;
     let lint = ["lint", "--error-on-warnings"];
     run("scripts of the Pico's rig", Command::new(linter).current_dir(folder()).args(lint))
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{WASM, root, run, target_folder};
+use crate::command::{WASM, absolute, root, run, target_folder};
 use crate::needs::Need;
 use crate::{ci, studio, studio_tests};
 
@@ -56,8 +56,4 @@ fn only_file(folder: &Path) -> Result<PathBuf, String> {
         (Some(Ok(file)), None) => Ok(file.path()),
         _ => Err(format!("{}: expected one wheel", folder.display())),
     }
-}
-
-fn absolute(path: &Path) -> Result<PathBuf, String> {
-    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -21,7 +21,7 @@ use base64::engine::general_purpose::STANDARD;
 use page::Place;
 pub(crate) use site::build as build_site;
 
-use crate::command::{WASM, cargo_in, root, run, target_folder, text_of};
+use crate::command::{WASM, absolute, cargo_in, root, run, target_folder, text_of};
 use crate::{licences, machine_paths};
 
 /// Cargo profile of the module: small, fast, and without debug information.
@@ -67,7 +67,7 @@ pub(crate) fn build() -> Result<PathBuf, String> {
     write(&path, page)?;
     write(&folder.join("frixel-scene.js"), element::script(&files)?)?;
     write(&root().join(WIDGET_MODULE), element::script_without_pictures(&files)? + &text(&root().join(WIDGET))?)?;
-    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
+    absolute(&path)
 }
 
 /// Everything that the page carries.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{WASM, root, run, target_folder, text_of};
+use crate::command::{WASM, absolute, root, run, target_folder, text_of};
 use crate::needs::{self, Need};
 use crate::{ci, pico_rig, studio};
 
@@ -123,8 +123,4 @@ fn tests() -> Result<Vec<String>, String> {
 /// A program of the test build.
 fn built(name: &str) -> Result<PathBuf, String> {
     absolute(&target_folder().join("debug").join(name))
-}
-
-fn absolute(path: &Path) -> Result<PathBuf, String> {
-    path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
 }
