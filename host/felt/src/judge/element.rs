@@ -24,30 +24,29 @@ pub struct Element {
     pub(super) burst: Option<Burst>,
     /// Whether the layer is off until a program or a person switches it on.
     pub(super) is_triggered: bool,
-    pub(super) way: Way,
+    /// The way across it; absent for one that was played already.
+    pub(super) way: Option<Way>,
 }
 
 /// The three strokes across an element, at 20, 50 and 100 mm/s: over the part of it that no other layer replaces, and
 /// 10 mm beyond, within the screen; there and back if a layer of the scene depends on the direction.
 pub fn strokes(element: &Element) -> Vec<Stroke> {
     let there_and_back = element.program.records.iter().any(|record| matches!(record.layer, Layer::Direction(_)));
-    SPEEDS_M_PER_S.iter().filter_map(|speed| element.way.stroke(*speed, there_and_back)).collect()
+    let way = element.way.as_ref();
+    SPEEDS_M_PER_S.iter().filter_map(|speed| way?.stroke(*speed, there_and_back)).collect()
 }
 
 impl Element {
     /// A layer of a program, from the bottom; `None` if it is visible nowhere.
     pub fn of(program: &Program, layer: usize) -> Option<Self> {
         let record = program.records.get(layer)?;
-        let mut program = program.clone();
+        let mut element = Self::as_played(program, layer)?;
+        let program = &mut element.program;
         let start = program.start.get_mut(layer)?;
-        let is_triggered = !start.on;
+        element.is_triggered = !start.on;
         start.on = true;
         let axis_turns = match record.layer {
             Layer::Direction(Direction { angle_turns, .. }) => Some(f64::from(angle_turns)),
-            _ => None,
-        };
-        let burst = match record.layer {
-            Layer::Vibration(vibration) if vibration.burst.period_s > 0.0 => Some(vibration.burst),
             _ => None,
         };
         for record in &mut program.records {
@@ -56,12 +55,22 @@ impl Element {
             }
         }
         let screen_m = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        let reference = Reference::at_start(&program);
+        let reference = Reference::at_start(program);
         let joins = matches!(record.blend, Blend::Add | Blend::Max);
         let starts_on = |other: usize| program.start.get(other).is_none_or(|setting| setting.on);
         let below = reference.clone().with_only(|other| joins && other < layer && starts_on(other));
-        let way = Way::across(layer, axis_turns, [&reference, &below], screen_m)?;
-        Some(Self { layer, title: program.titles.get(layer)?.clone(), program, burst, is_triggered, way })
+        element.way = Some(Way::across(layer, axis_turns, [&reference, &below], screen_m)?);
+        Some(element)
+    }
+
+    /// A layer of a program that was played as it is.
+    pub(super) fn as_played(program: &Program, layer: usize) -> Option<Self> {
+        let burst = match program.records.get(layer)?.layer {
+            Layer::Vibration(vibration) if vibration.burst.period_s > 0.0 => Some(vibration.burst),
+            _ => None,
+        };
+        let title = program.titles.get(layer)?.clone();
+        Some(Self { layer, title, program: program.clone(), burst, is_triggered: false, way: None })
     }
 
     /// The program that plays while the element is judged: the element is on, and pauses between bursts are short.

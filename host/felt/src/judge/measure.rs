@@ -104,16 +104,20 @@ impl<'e> Measure<'e> {
         }
     }
 
-    /// Measures a play of [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ) samples a second, as far as the board drove the
-    /// scene; `None` if the finger was never on the element.
-    pub(super) fn of(&self, samples: &[FidelitySample]) -> Option<Measured> {
-        let runs = runs(samples, &self.scene, &self.element.program);
+    /// The moments of a play of [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ) samples a second in which the board drove the
+    /// scene.
+    pub(super) fn runs(&self, samples: &[FidelitySample]) -> Vec<Vec<Moment>> {
+        runs(samples, &self.scene, &self.element.program)
+    }
+
+    /// Measures a play; `None` if the finger was never on the element.
+    pub(super) fn of(&self, runs: &[Vec<Moment>]) -> Option<Measured> {
         let mut felt = Sums::default();
         let (mut uppermost, mut by_direction) = (Sums::default(), [Sums::default(); 2]);
         let mut touches: Vec<Touch> = Vec::new();
         let mut whole_n: Vec<f64> = Vec::new();
         let (mut border, mut click): (Option<MetBorder>, Option<Click>) = (None, None);
-        for run in &runs {
+        for run in runs {
             let fingertip = Fingertip::of(run);
             border = surest(border, self.borders.met(run, &fingertip), |border| border.step);
             click = surest(click, self.click(run), |click| click.step);
@@ -151,11 +155,14 @@ impl<'e> Measure<'e> {
         })
     }
 
-    /// The scene's electric friction along a run without the layers above, N; of a layer that adds to those below, what
-    /// it changes of theirs.
+    /// The scene's electric friction along a run without the layers above, N, while the finger is on the element; of a
+    /// layer that adds to those below, what it changes of theirs.
     fn own_n(&self, run: &[Moment]) -> Vec<f64> {
-        let program = &self.element.program;
+        let Element { program, layer, .. } = self.element;
         let own_n = |moment: &Moment| {
+            if !moment.is_on(*layer) {
+                return 0.0;
+            }
             let below_n = self.below.as_ref().map_or(0.0, |below| moment.electric_n(below, program));
             moment.electric_n(&self.uncovered, program) - below_n
         };

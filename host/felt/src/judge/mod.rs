@@ -1,8 +1,8 @@
 //! The judge: what a person will feel of each element of a scene, as far as published studies can tell.
 //!
 //! [`strokes`] sends a finger across an element, at 20, 50 and 100 mm/s; [`verdict`] compares what it felt in these
-//! plays with the reference. This crate has no simulator: [`judge`] calls back for each play. `frixel scene check`, the
-//! page and `frixel score` judge with these two.
+//! plays with the reference. This crate has no simulator: [`judge`] calls back for each play. `frixel check`, the page
+//! and `frixel score` judge with these two. `frixel play` judges its own recording with [`in_play`].
 //!
 //! A change of friction that a fingertip resolves, 2 mm, is judged as a step, in Weber fractions of the total friction.
 //! A faster one is judged as a texture, against the threshold of touch at its frequency and the finger's own noise.
@@ -41,6 +41,7 @@ use element::SPEEDS_M_PER_S;
 pub use element::{Element, strokes};
 pub use measure::changes_along;
 use measure::{Measure, Measured};
+use moment::Moment;
 pub use reason::{Reason, SizeLimit};
 pub(crate) use spectrum::component_power;
 pub use step::{BorderStep, BurstTimes, Level, Over, Step, Texture};
@@ -72,7 +73,8 @@ pub struct LayerVerdict {
     pub layer: LayerTitle,
     /// Whether a person feels the layer: the surest of contrast, texture, border and click, at the best of the speeds.
     pub verdict: Verdict,
-    /// The best of the speeds, mm/s; absent where friction depends on the speed, or nothing was played.
+    /// The best of the speeds, mm/s; absent where friction depends on the speed, in one play of any speed, or where
+    /// nothing was played.
     pub speed_mm_per_s: Option<f64>,
     /// Why it is not surely felt, or felt otherwise than it is written.
     pub reasons: Vec<Reason>,
@@ -184,22 +186,39 @@ fn is_felt<E>(element: &Element, play: &mut Play<'_, E>) -> Result<bool, E> {
 
 /// Judges an element by what was felt on its [`strokes`]. The samples hold the reference as well.
 pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict {
-    if let Some(Layer::Stream(stream)) = element.record().map(|record| record.layer) {
-        return of_stream(element, &stream);
-    }
     let measure = Measure::new(element);
     let speeds = SPEEDS_M_PER_S.iter().zip(felt);
-    let plays = speeds.filter_map(|(speed_m_per_s, samples)| {
-        let faultless: Vec<FidelitySample> =
-            samples.iter().map(|sample| FidelitySample { felt_n: sample.reference_n, ..*sample }).collect();
-        Some(Stroked { speed_m_per_s: *speed_m_per_s, felt: measure.of(samples)?, faultless: measure.of(&faultless)? })
-    });
-    let mut plays: Vec<Stroked> = plays.collect();
+    let mut plays: Vec<Stroked> = speeds
+        .filter_map(|(speed_m_per_s, samples)| Stroked::of(&measure, Some(*speed_m_per_s), &measure.runs(samples)))
+        .collect();
     let over = element.over();
     if over == Over::Speed {
         over_speed(element, &mut plays);
     }
-    let usual = plays.iter().find(|play| play.speed_m_per_s == SPEEDS_M_PER_S[1]).copied();
+    of_plays(element, over, &plays)
+}
+
+/// Judges the elements of a program by what was felt in one play that nothing changed. Elements that the finger never
+/// touched while the board drove the scene are left out.
+pub fn in_play(program: &Program, samples: &[FidelitySample]) -> Vec<LayerVerdict> {
+    let runs = moment::runs(samples, &Reference::at_start(program), program);
+    let touched = runs.iter().flatten().fold(0, |all, moment| all | moment.visible);
+    let layers = (0..program.records.len()).filter(|layer| touched >> layer & 1 == 1);
+    let judged = |element: Element| {
+        let play = Stroked::of(&Measure::new(&element), None, &runs);
+        // Within one play, speed changes along the way.
+        let over = if element.over() == Over::Speed { Over::Place } else { element.over() };
+        of_plays(&element, over, play.as_slice())
+    };
+    layers.filter_map(|layer| Element::as_played(program, layer)).map(judged).collect()
+}
+
+/// The verdict on an element by the play in which it was felt most surely.
+fn of_plays(element: &Element, over: Over, plays: &[Stroked]) -> LayerVerdict {
+    if let Some(Layer::Stream(stream)) = element.record().map(|record| record.layer) {
+        return of_stream(element, &stream);
+    }
+    let usual = plays.iter().find(|play| play.speed_m_per_s == Some(SPEEDS_M_PER_S[1])).copied();
     let Some(best) = plays.iter().copied().max_by(|one, other| one.felt.cmp_felt(&other.felt)) else {
         let step = Step::new(1.0, 1.0);
         return LayerVerdict { reasons: vec![Reason::TooWeak], ..LayerVerdict::new(element, step, over) };
@@ -214,7 +233,7 @@ pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict 
     });
     LayerVerdict {
         verdict,
-        speed_mm_per_s: (over != Over::Speed).then_some(1e3 * best.speed_m_per_s),
+        speed_mm_per_s: best.speed_m_per_s.filter(|_| over != Over::Speed).map(|speed_m_per_s| 1e3 * speed_m_per_s),
         reasons,
         is_narrow,
         texture,
@@ -236,12 +255,21 @@ pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict 
 /// A contrast of the scene below it, in Weber steps, is that of a flat layer.
 const FLAT_WEBER_STEPS: f64 = 0.1;
 
-/// What was felt on one of the strokes.
+/// What was felt of an element in one play.
 #[derive(Clone, Copy)]
 struct Stroked {
-    speed_m_per_s: f64,
+    /// Absent where the speed is not one of the three.
+    speed_m_per_s: Option<f64>,
     felt: Measured,
     faultless: Measured,
+}
+
+impl Stroked {
+    /// `None` if the finger was never on the element.
+    fn of(measure: &Measure, speed_m_per_s: Option<f64>, runs: &[Vec<Moment>]) -> Option<Self> {
+        let faultless = measure.of(&moment::faultless(runs))?;
+        Some(Self { speed_m_per_s, felt: measure.of(runs)?, faultless })
+    }
 }
 
 /// Makes the contrast of a layer that depends on the speed that between the slowest and the fastest play.

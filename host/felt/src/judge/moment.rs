@@ -75,6 +75,12 @@ pub(super) fn electric_n(reference: &Reference, program: &Program, context: &Con
     reference.electric_friction_at_n(context).clamp(0.0, program.reach.electric_friction_max_n)
 }
 
+/// The same moments under a display without fault.
+pub(super) fn faultless(runs: &[Vec<Moment>]) -> Vec<Vec<Moment>> {
+    let faultless = |moment: &Moment| Moment { felt_n: moment.wanted_n, ..*moment };
+    runs.iter().map(|run| run.iter().map(faultless).collect()).collect()
+}
+
 /// The stretches of a play in which the board drives the scene.
 pub(super) fn runs(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Vec<Vec<Moment>> {
     let moments = |run: &[FidelitySample]| {

@@ -2,11 +2,11 @@
 
 use std::convert::Infallible;
 
-use frixel_hil_sim::Stroke;
+use frixel_hil_sim::{Point, Stroke};
 use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference, direction_of};
 
-use super::{Advice, Judgement, LayerVerdict, Reason, Verdict, judge};
+use super::{Advice, Judgement, LayerVerdict, Reason, Verdict, in_play, judge};
 use crate::check::feel;
 use crate::fidelity::{FidelitySample, SAMPLE_HZ};
 use crate::tests::compiled;
@@ -208,4 +208,26 @@ fn what_only_one_direction_lets_through_is_felt_on_the_way_back() {
     );
     let notches = &FAULTLESS.judged(&ratchet).layers[0];
     assert_eq!(notches.verdict, Verdict::Felt, "{}", feel::sentence(notches));
+}
+
+#[test]
+fn a_play_is_judged_by_its_own_strokes() {
+    let plates = |left: &str| {
+        let right = plate(80, "kind = \"constant\"\nfriction_fraction = 0.9");
+        compiled(&format!("version = 1\n{}{right}", plate(40, left)))
+    };
+    let left = "kind = \"constant\"\nfriction_fraction = 0.9";
+    let stroke = Stroke::constant_speed(Point { x_m: 0.03, y_m: 0.03 }, Point { x_m: 0.075, y_m: 0.03 }, 0.07).unwrap();
+    let layers = |display: Display, left: &str| {
+        let program = plates(left);
+        in_play(&program, &display.play(&program, &stroke))
+    };
+    let verdicts = |layers: Vec<LayerVerdict>| -> Vec<(String, Verdict)> {
+        layers.into_iter().map(|found| (found.layer.to_string(), found.verdict)).collect()
+    };
+    let felt = verdicts(layers(FAULTLESS, left));
+    assert_eq!(felt, [("layer 1 (constant)".to_owned(), Verdict::Felt)], "the right one was not touched");
+    let forced_to_zero = verdicts(layers(Display { gain: 0.0, late_s: 0.0 }, left));
+    assert_eq!(forced_to_zero, [("layer 1 (constant)".to_owned(), Verdict::NotFelt)]);
+    assert_eq!(layers(FAULTLESS, &format!("{left}\nlive = true\nstart = \"off\"")), []);
 }

@@ -6,6 +6,7 @@
 //! absent cell or number in the output.
 
 mod inversion;
+mod judged;
 mod listener;
 mod marker;
 mod observation;
@@ -18,10 +19,12 @@ use frixel_model::ParameterError;
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::BoardLimits;
 
+use crate::fidelity::FidelitySample;
 use crate::metrics::{Metrics, MetricsSummary, Sample};
 use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_scene::{LayerSetting, Program};
 use inversion::Inversion;
+use judged::JudgedSamples;
 pub use listener::PlayListener;
 use marker::Markers;
 pub use marker::{MarkedEvent, Marker};
@@ -41,6 +44,8 @@ pub struct Recorder {
     finger: Option<ReferenceFriction>,
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
+    /// For the judge; `None` if they are not kept, or once something changed the scene.
+    judged: Option<JudgedSamples>,
     markers: Markers,
     /// The samples that were sent since they were last taken; `None` if they are not kept.
     sent_samples: Option<Vec<u16>>,
@@ -86,6 +91,7 @@ impl Recorder {
             finger: None,
             row_maker: RowMaker::new(tick_hz, ticks_per_row),
             rows: Vec::new(),
+            judged: None,
             markers: Markers::default(),
             sent_samples: None,
             tick_hz,
@@ -107,6 +113,12 @@ impl Recorder {
     #[must_use]
     pub fn keeping_samples(self) -> Self {
         Self { sent_samples: Some(Vec::new()), ..self }
+    }
+
+    /// Keeps what [`in_play`](crate::judge::in_play) judges, for [`Self::take_judged`].
+    #[must_use]
+    pub fn judged(self) -> Self {
+        Self { judged: Some(JudgedSamples::new(self.tick_hz)), ..self }
     }
 
     /// Makes `tick` time zero: the record begins with the tick after it, and earlier observations are ignored.
@@ -137,7 +149,11 @@ impl Recorder {
             Some(comparison) => comparison.add(observation, t_s, ticks_passed, self.finger.as_mut()),
             None => Frictions::without_reference(observation),
         };
-        self.rows.extend(self.row_maker.add(observation, self.ticks(), &frictions));
+        let (ticks, start_s) = (self.ticks(), self.start_s().unwrap_or(0.0));
+        self.rows.extend(self.row_maker.add(observation, ticks, &frictions));
+        if let Some(judged) = &mut self.judged {
+            judged.add(observation, ticks, &frictions, start_s);
+        }
     }
 
     /// Ticks of the record so far.
@@ -173,6 +189,12 @@ impl Recorder {
     /// Removes the samples of streams that were sent so far and returns them; none without [`Self::keeping_samples`].
     pub fn take_samples(&mut self) -> Vec<u16> {
         self.sent_samples.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Removes the samples of the play's first minute and returns them; `None` without [`Self::judged`], or if something
+    /// changed the scene while it played: a layer, a trigger, a stream or another scene.
+    pub fn take_judged(&mut self) -> Option<Vec<FidelitySample>> {
+        self.judged.take().map(JudgedSamples::into_samples)
     }
 
     /// What has happened so far, in its order. A marker has the time of the last observation before it.
@@ -223,6 +245,7 @@ impl PlayListener for Recorder {
         let reference = Reference::at_start(program).along_stroke();
         let inversion = Inversion::new(program, limits, self.tick_hz)?;
         if let Some(comparison) = &mut self.comparison {
+            self.judged = None;
             (comparison.reference, comparison.inversion) = (reference, inversion);
             comparison.metrics.set_half_period(program.half_period_ticks);
         } else {
@@ -238,16 +261,19 @@ impl PlayListener for Recorder {
         if let Some(comparison) = &mut self.comparison {
             comparison.reference.set_layer(record.into(), setting.on, setting.gain.into(), t_s);
         }
+        self.judged = None;
         self.mark(self.markers.changed(record, setting));
     }
 
     fn triggered(&mut self, record: u8) {
+        self.judged = None;
         let layer = self.markers.title(record);
         self.mark(MarkedEvent::Triggered { layer });
     }
 
     /// The reference has the stream once the board reports that it plays.
     fn stream_started(&mut self, sample_hz: u32) {
+        self.judged = None;
         self.with_stream(|stream| stream.start(sample_hz));
         self.mark(MarkedEvent::StreamStarted { sample_hz });
     }

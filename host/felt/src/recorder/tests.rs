@@ -250,3 +250,22 @@ fn a_code_of_zero_is_no_friction_whatever_voltage_was_commanded() {
     let with_steps_n = inversion.electric_friction_n(100.0, -inversion.code_of(100.0));
     assert!((with_steps_n / expected_n - 1.0).abs() < 1e-3);
 }
+
+#[test]
+fn a_play_is_judged_unless_something_changed_its_scene() {
+    let program = program(CONSTANT);
+    let judged = |change: &dyn Fn(&mut Recorder)| {
+        let mut recorder = recorder(&program, 40).judged();
+        recorder.start(0);
+        (1..=100).for_each(|tick| recorder.record(&simulated(tick, 0.26)));
+        change(&mut recorder);
+        recorder.take_judged().map(|samples| samples.len())
+    };
+    assert_eq!(judged(&|_| {}), Some(10), "4,000 samples a second");
+    let setting = LayerSetting { on: false, gain: 1.0 };
+    assert_eq!(judged(&|recorder| recorder.layer_changed(0, setting)), None);
+    assert_eq!(judged(&|recorder| recorder.triggered(0)), None);
+    assert_eq!(judged(&|recorder| recorder.stream_started(1000)), None);
+    assert_eq!(judged(&|recorder| recorder.scene_replaced(&program, &LIMITS).unwrap()), None);
+    assert_eq!(recorder(&program, 40).take_judged(), None);
+}

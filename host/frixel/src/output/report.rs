@@ -7,6 +7,8 @@ use std::path::Path;
 use serde::{Serialize, Serializer};
 
 use frixel_driver::{Counters, StreamStatus};
+use frixel_felt::check::feel;
+use frixel_felt::judge::{Judgement, LayerVerdict};
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
 use frixel_lab::hash::sha256;
 use frixel_scene::{LayerTitle, Origin, Reach, TouchSource, fold_copies};
@@ -79,6 +81,9 @@ pub(crate) struct Report {
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
+    /// What the finger felt of each layer that it touched in the first minute of this play; `null` if something changed
+    /// the scene while it played, or nobody knows what was felt.
+    pub in_this_play: Option<Vec<LayerVerdict>>,
     /// The layers of the last scene that the finger never touched.
     pub untouched_layers: Vec<LayerTitle>,
     /// When that scene replaced the one before, s; `null` if the first scene played to the end.
@@ -180,6 +185,7 @@ impl Report {
             stream_samples: None,
             stream_underruns: None,
             stream_gaps: None,
+            in_this_play: None,
             untouched_layers: Vec::new(),
             replaced_at_s: None,
             files: BTreeMap::new(),
@@ -221,6 +227,12 @@ impl Report {
         self.stream_underruns = stream.map(|stream| stream.underruns);
         self.stream_gaps = stream.map(|stream| stream.gaps);
         self
+    }
+
+    /// Adds what the finger felt of each layer, if the play was judged.
+    #[must_use]
+    pub(crate) fn with_verdicts(self, in_this_play: Option<Vec<LayerVerdict>>) -> Self {
+        Self { in_this_play, ..self }
     }
 
     /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
@@ -312,6 +324,14 @@ impl Report {
             (self.stream_samples, self.stream_underruns, self.stream_gaps)
         {
             line("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps"));
+        }
+        if let Some(layers) = &self.in_this_play {
+            for (name, text) in feel::lines(&Judgement { layers: layers.clone(), ..Judgement::default() }) {
+                match name {
+                    "more" | "note" => line(name, text),
+                    verdict => line("in this play", format!("{verdict}: {text}")),
+                }
+            }
         }
         if !self.untouched_layers.is_empty() {
             let since = |t_s: f64| format!("; since {t_s:.2} s, when the scene was replaced");

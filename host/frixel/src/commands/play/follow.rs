@@ -8,6 +8,7 @@ use crate::output::Report;
 use crate::rigs::RecordedLink;
 use anyhow::{Result, bail};
 use frixel_driver::Device;
+use frixel_felt::judge::in_play;
 use frixel_lab::recording::{check_length, play_fields};
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
@@ -191,7 +192,8 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_world(self.plan.world)
             .with_simulated(self.outputs.is_simulated())
             .with_stream(stream)
-            .with_refusals(self.refusals);
+            .with_refusals(self.refusals)
+            .with_verdicts(recorder.take_judged().map(|samples| in_play(program, &samples)));
         let rows = recorder.take_rows();
         self.outputs.keep_samples(&recorder.take_samples());
         if let Some(lines) = self.control.as_ref().and_then(Control::kept) {
