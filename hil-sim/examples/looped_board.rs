@@ -1,5 +1,5 @@
-//! A simulated board with the wires of the self-test, on a pseudo-terminal, in real time: for `frixel selftest --wires
-//! --port PATH` without a board.
+//! A simulated board with the wires of the self-test, on a pseudo-terminal, in real time: for `frixel board selftest
+//! --wires --port PATH` without a board.
 //!
 //!     cargo run --release -p frixel-hil-sim --example looped_board               # in order
 //!     cargo run --release -p frixel-hil-sim --example looped_board latch-late    # with one thing wrong

@@ -138,15 +138,19 @@ impl fmt::Display for Fault {
                  resistor and the monitor's wire, then clear the fault"
             }
             Self::Deadline => "a tick missed its deadline; clear the fault and play a scene with fewer layers",
-            Self::Panic => "the firmware panicked; report it with the output of `frixel info`, then clear the fault",
+            Self::Panic => {
+                "the firmware panicked; report it with the output of `frixel board info`, then clear the fault"
+            }
             Self::HardFault => {
-                "the processor took a hard fault; report it with the output of `frixel info`, then clear the fault"
+                "the processor took a hard fault; report it with the output of `frixel board info`, then clear the \
+                 fault"
             }
             Self::StackOverflow => {
-                "the firmware's stack overflowed; report it with the output of `frixel info`, then clear the fault"
+                "the firmware's stack overflowed; report it with the output of `frixel board info`, then clear the \
+                 fault"
             }
             Self::Watchdog => {
-                "the firmware hung until the watchdog restarted it; report it with the output of `frixel info`, \
+                "the firmware hung until the watchdog restarted it; report it with the output of `frixel board info`, \
                  then clear the fault"
             }
             Self::ArmSwitch => {

@@ -4,7 +4,7 @@
 //! opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`FrictionMap`]: the target friction of a program over its screen.
-//! - [`check`]: what a program costs and what will be felt of it, as `frixel scene check` prints it.
+//! - [`check`]: what a program costs and what will be felt of it, as `frixel check` prints it.
 //! - [`judge`]: what a person will feel of each element, with its sources.
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.

@@ -21,7 +21,7 @@ use commands::Cli;
 ///
 /// Exits with 2 when the command line is invalid; returns 1 when the command fails.
 pub fn main() -> ExitCode {
-    let cli = Cli::try_parse().unwrap_or_else(|error| commands::with_nested_tip(error).exit());
+    let cli = Cli::try_parse().unwrap_or_else(|error| commands::with_tip(error).exit());
     match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

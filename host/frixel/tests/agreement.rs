@@ -1,4 +1,4 @@
-//! `frixel scene check`, `frixel score` and `frixel play` judge with one judge: the first two agree for the same finger,
+//! `frixel check`, `frixel score` and `frixel play` judge with one judge: the first two agree for the same finger,
 //! source and seed, and the third judges what its own finger felt.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 

@@ -54,7 +54,7 @@ fn the_page_says_which_scenes_the_picos_take() {
 fn the_first_scene_after_bring_up_is_taken_and_drives_what_the_monitor_sees() {
     let path = "hardware/first_voltage.toml";
     assert!(fs::read_to_string(repository().join("docs/hardware.md")).unwrap().contains(path));
-    let said = succeed(&repository(), &["scene", "check", path, "--board", "nucleo-g474re"]);
+    let said = succeed(&repository(), &["check", path, "--board", "nucleo-g474re"]);
     assert!(said.contains("NUCLEO-G474RE behind 68 kOhm takes it"), "{said}");
     // A scene that asks for all that the drive gives has one target.
     let targets = said.lines().find_map(|line| line.trim().strip_prefix("targets")).unwrap();
@@ -92,7 +92,7 @@ fn a_pico_takes_a_grating_and_refuses_noise_by_name_and_cycles() {
 #[test]
 fn a_check_for_a_pico_says_what_it_allows_without_stored_limits() {
     for (board, says_so) in [("pico", true), ("pico-2", true), ("nucleo-g474re", false)] {
-        let text = succeed(&repository(), &["scene", "check", "hardware/first_voltage.toml", "--board", board]);
+        let text = succeed(&repository(), &["check", "hardware/first_voltage.toml", "--board", board]);
         assert!(text.contains("V rms at"), "{text}");
         assert_eq!(text.contains("nothing stores limits on this board yet: it allows 10 V peak"), says_so, "{text}");
         assert_eq!(text.contains("refuses it as it is, and would take it once limits are stored"), says_so, "{text}");
@@ -111,7 +111,7 @@ fn the_command_that_builds_the_smallest_image_is_that_of_the_board() {
              --features rp2040,",
         ),
     ] {
-        let arguments = ["scene", "check", "hardware/first_voltage.toml", "--image", "--board", board];
+        let arguments = ["check", "hardware/first_voltage.toml", "--image", "--board", board];
         let text = succeed(&repository(), &arguments);
         assert!(text.contains(command), "{text}");
     }
@@ -119,7 +119,7 @@ fn the_command_that_builds_the_smallest_image_is_that_of_the_board() {
 
 #[test]
 fn a_series_resistance_that_no_firmware_takes_is_refused() {
-    let arguments = ["scene", "check", "constant.toml", "--board", "nucleo-g474re", "--series-kohm"];
+    let arguments = ["check", "constant.toml", "--board", "nucleo-g474re", "--series-kohm"];
     for (kohm, said) in [("41", "no firmware takes a series resistance of 41 kOhm"), ("5", "mA")] {
         let output = run(&repository().join("scenes"), &[&arguments[..], &[kohm]].concat());
         assert_eq!(output.status.code(), Some(1));

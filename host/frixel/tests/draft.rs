@@ -1,4 +1,4 @@
-//! Drafts: scenes that a board refuses, drawn by `frixel scene preview` and played by the simulator, clamped, and
+//! Drafts: scenes that a board refuses, drawn by `frixel preview` and played by the simulator, clamped, and
 //! marked in every output.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -28,7 +28,7 @@ fn folder_with(scene: &str) -> TempDir {
 #[test]
 fn a_scene_out_of_reach_is_previewed_and_hatched_and_checked_as_before() {
     let folder = folder_with(OUT_OF_REACH);
-    let preview = run(folder.path(), &["scene", "preview", "scene.toml", "-o", "map.png"]);
+    let preview = run(folder.path(), &["preview", "scene.toml", "-o", "map.png"]);
     let (said, noted) = (text(&preview.stdout), text(&preview.stderr));
     assert_eq!(preview.status.code(), Some(0), "{noted}");
     assert!(
@@ -42,7 +42,7 @@ fn a_scene_out_of_reach_is_previewed_and_hatched_and_checked_as_before() {
         "{noted}"
     );
     assert!(fs::metadata(folder.path().join("map.png")).unwrap().len() > 10_000);
-    let check = run(folder.path(), &["scene", "check", "scene.toml"]);
+    let check = run(folder.path(), &["check", "scene.toml"]);
     assert_eq!(check.status.code(), Some(1));
     assert!(text(&check.stderr).contains(REFUSAL), "{}", text(&check.stderr));
 }

@@ -98,18 +98,18 @@ fn a_pipe_or_a_device_in_place_of_a_file_is_one_sentence() {
     for (arguments, what) in [
         (&["play", "pipe"][..], "pipe"),
         (&["play", "/dev/zero"], "device"),
-        (&["scene", "check", "pipe"], "pipe"),
-        (&["scene", "check", "include.toml"], "pipe"),
-        (&["scene", "check", "zero.toml"], "device"),
-        (&["scene", "check", "finger.toml"], "pipe"),
-        (&["scene", "check", "picture.toml"], "pipe"),
+        (&["check", "pipe"], "pipe"),
+        (&["check", "include.toml"], "pipe"),
+        (&["check", "zero.toml"], "device"),
+        (&["check", "finger.toml"], "pipe"),
+        (&["check", "picture.toml"], "pipe"),
         (&["play", "scene.toml", "--stroke", "pipe"], "pipe"),
         (&["play", "scene.toml", "--finger", "pipe"], "pipe"),
         (&["sim", "--stroke", "pipe"], "pipe"),
         (&["sim", "--finger", "pipe"], "pipe"),
-        (&["fit", "pipe"], "pipe"),
+        (&["finger", "fit", "pipe"], "pipe"),
         (&["model", "eval", "--input", "pipe"], "pipe"),
-        (&["calibrate", "--port", "sim", "--forces", "pipe", "-o", "data.csv"], "pipe"),
+        (&["finger", "calibrate", "--port", "sim", "--forces", "pipe", "-o", "data.csv"], "pipe"),
         (&["new", "wood", "--picture", "pipe"], "pipe"),
         (&["studio", "--no-browser", "--page", "pipe"], "pipe"),
     ] {
@@ -134,7 +134,7 @@ fn a_file_of_8_gb_is_refused_with_both_numbers() {
         &["play", "big.toml"][..],
         &["play", "scene.toml", "--stroke", "big.csv"],
         &["play", "stream.toml", "--stream", "big.wav"],
-        &["fit", "big.csv"],
+        &["finger", "fit", "big.csv"],
         &["model", "eval", "--input", "big.csv"],
         &["new", "wood", "--picture", "big.png"],
     ] {
@@ -153,10 +153,10 @@ fn a_list_of_mistakes_stops_at_100() {
         writeln!(scene, "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nwrong_{layer} = 1").unwrap();
     }
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let said = said(&run(folder.path(), &["scene", "check", "scene.toml"]));
+    let said = said(&run(folder.path(), &["check", "scene.toml"]));
     assert_eq!(said.lines().count(), 101, "{}", said.lines().take(5).collect::<String>());
     assert!(said.lines().last().unwrap().contains("these are 100 mistakes, and there are more"), "{said}");
-    let output = run(folder.path(), &["scene", "check", "scene.toml", "--json"]);
+    let output = run(folder.path(), &["check", "scene.toml", "--json"]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((json["mistakes"].as_array().unwrap().len(), json["has_more"].as_bool()), (100, Some(true)));
 }

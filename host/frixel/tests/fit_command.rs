@@ -1,4 +1,5 @@
-//! From a board to a profile: `frixel calibrate` on the in-process simulator, then `frixel fit` on what it wrote.
+//! From a board to a profile: `frixel finger calibrate` on the in-process simulator, then `frixel finger fit` on what
+//! it wrote.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write as _;
@@ -40,9 +41,9 @@ fn fail(folder: &Path, arguments: &[&str]) -> String {
 #[test]
 fn a_calibrated_person_is_recovered() {
     let folder = TempDir::new().unwrap();
-    let said = succeed(folder.path(), &["calibrate", "-o", "data.csv", "--finger-seed", "5"]);
+    let said = succeed(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--finger-seed", "5"]);
     assert!(said.contains("36 strokes") && said.contains("75, 106, 150 V rms"), "{said}");
-    let json = succeed(folder.path(), &["fit", "data.csv", "-o", "finger.toml", "--json"]);
+    let json = succeed(folder.path(), &["finger", "fit", "data.csv", "-o", "finger.toml", "--json"]);
     let fitted: Value = serde_json::from_str(&json).unwrap();
     let number = |key: &str| fitted[key].as_f64().unwrap_or_else(|| panic!("{key} in {json}"));
     let interval = |key: &str| {
@@ -51,7 +52,7 @@ fn a_calibrated_person_is_recovered() {
         ends
     };
 
-    // What is measured of fits in one process (`commands/calibrate/coverage.rs`) is what the command prints.
+    // What is measured of fits in one process (`commands/finger/calibrate/coverage.rs`) is what the command prints.
     let settings = Settings {
         voltage_v_rms: 150.0,
         normal_load_n: None,
@@ -86,15 +87,15 @@ fn a_calibrated_person_is_recovered() {
     assert!(fs::read_to_string(folder.path().join("finger.svg")).unwrap().contains("contact model, fitted"));
 
     // The same file in words, from standard columns in another order, without the stroke column.
-    let words = succeed(folder.path(), &["fit", "data.csv"]);
+    let words = succeed(folder.path(), &["finger", "fit", "data.csv"]);
     assert!(words.contains("cannot tell radius, stiffness and gap apart"), "{words}");
-    assert!(fail(folder.path(), &["fit", "data.csv", "--screen", "nowhere.toml"]).contains("nowhere.toml"));
+    assert!(fail(folder.path(), &["finger", "fit", "data.csv", "--screen", "nowhere.toml"]).contains("nowhere.toml"));
     fs::write(
         folder.path().join("thick.toml"),
         "width_mm = 120\nheight_mm = 80\n[[coating]]\nthickness_um = 40\npermittivity = 3.9\n",
     )
     .unwrap();
-    let thick = fail(folder.path(), &["fit", "data.csv", "--screen", "thick.toml"]);
+    let thick = fail(folder.path(), &["finger", "fit", "data.csv", "--screen", "thick.toml"]);
     assert!(thick.contains("the coating alone has 10.256 um"), "{thick}");
 }
 
@@ -111,10 +112,10 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
         writeln!(csv, "{volts},{load_n},{friction_n},{time_s},{stroke},{speed_mm_s}").unwrap();
     }
     fs::write(folder.path().join("data.csv"), csv).unwrap();
-    assert!(fail(folder.path(), &["fit", "data.csv", "-o", "z.toml"]).contains("--law empirical"));
+    assert!(fail(folder.path(), &["finger", "fit", "data.csv", "-o", "z.toml"]).contains("--law empirical"));
     assert!(!folder.path().join("z.toml").exists());
 
-    let empirical = ["fit", "data.csv", "-o", "z.toml", "--law", "empirical"];
+    let empirical = ["finger", "fit", "data.csv", "-o", "z.toml", "--law", "empirical"];
     let refused = fail(folder.path(), &[&empirical[..], &["--voltage", "100"]].concat());
     assert!(refused.contains("leave --voltage out") && !folder.path().join("z.toml").exists(), "{refused}");
     fs::write(folder.path().join("z.svg"), "plots of an earlier fit").unwrap();
@@ -129,7 +130,7 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
     let scene =
         "version = 1\nfinger = \"z.toml\"\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    assert!(succeed(folder.path(), &["scene", "check", "scene.toml"]).contains("empirical"));
+    assert!(succeed(folder.path(), &["check", "scene.toml"]).contains("empirical"));
     succeed(folder.path(), &["play", "scene.toml", "--out", "out", "--ideal"]);
     assert!(folder.path().join("out").is_dir());
 }
@@ -137,10 +138,10 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
 #[test]
 fn a_board_that_drives_less_gives_no_verdict_on_the_model() {
     let folder = TempDir::new().unwrap();
-    let said = succeed(folder.path(), &["calibrate", "-o", "data.csv", "--voltage", "80"]);
+    let said = succeed(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--voltage", "80"]);
     assert!(said.contains("below 100 V rms the recording cannot test the model"), "{said}");
-    assert!(fail(folder.path(), &["fit", "data.csv"]).contains("would be extrapolated"));
-    let json = succeed(folder.path(), &["fit", "data.csv", "--voltage", "80", "--json"]);
+    assert!(fail(folder.path(), &["finger", "fit", "data.csv"]).contains("would be extrapolated"));
+    let json = succeed(folder.path(), &["finger", "fit", "data.csv", "--voltage", "80", "--json"]);
     let fitted: Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&fitted["voltage_verdict"], &fitted["electric_friction_150_v_n"]), (&"none".into(), &Value::Null));
 }
@@ -148,9 +149,9 @@ fn a_board_that_drives_less_gives_no_verdict_on_the_model() {
 #[test]
 fn a_board_at_a_port_needs_forces() {
     let folder = TempDir::new().unwrap();
-    let said = fail(folder.path(), &["calibrate", "-o", "data.csv", "--port", "/dev/null"]);
+    let said = fail(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--port", "/dev/null"]);
     assert!(said.contains("--forces"), "{said}");
     fs::write(folder.path().join("forces.csv"), "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n").unwrap();
-    let said = fail(folder.path(), &["calibrate", "-o", "data.csv", "--forces", "forces.csv"]);
+    let said = fail(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--forces", "forces.csv"]);
     assert!(said.contains("start the sensor before the board"), "{said}");
 }

@@ -268,10 +268,10 @@ fn lines(paragraph: &str) -> String {
 }
 
 fn page(gallery: &[Entry]) -> String {
-    let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel scene preview`, \
-                    play it with `frixel play`. After `cargo xtask studio`,\n[gallery/index.html](gallery/index.html) lets \
-                    you slide over them in a browser. The pictures are made by\n`FRIXEL_BLESS=1 cargo test -p frixel \
-                    --test main gallery`, and the same test plays every scene on the simulator.\n"
+    let mut page = "# Gallery\n\nScenes to start from: copy one, change it, look at it with `frixel preview`, play it \
+                    with `frixel play`. After\n`cargo xtask studio`, [gallery/index.html](gallery/index.html) lets you \
+                    slide over them in a browser. The pictures are\nmade by `FRIXEL_BLESS=1 cargo test -p frixel --test \
+                    main gallery`, and the same test plays every scene on the\nsimulator.\n"
         .to_owned();
     page.push_str(
         "\n## Contrast\n\nFrom the 5th to the 95th percentile of friction on the stroke of `frixel play`, in Weber steps: factors of 1.11, \

@@ -215,9 +215,9 @@ fn the_shortest_play_is_one_tick() {
 #[test]
 fn help_is_printed_as_a_result_or_as_an_error() {
     let folder = TempDir::new().unwrap();
-    let output = run(folder.path(), &["scene"]);
+    let output = run(folder.path(), &["board"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("Usage: frixel scene"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("Usage: frixel board"));
     assert!(succeed(folder.path(), &["play", "--help"]).contains("--csv-hz <N>"));
     assert!(succeed(folder.path(), &["--version"]).starts_with("frixel "));
 }
@@ -248,7 +248,7 @@ fn a_wrong_scene_is_refused_with_file_line_and_cure() {
     ] {
         assert!(scene.contains(from));
         fs::write(folder.path().join("wrong.toml"), scene.replace(from, to)).unwrap();
-        refuse(folder.path(), &["scene", "check", "wrong.toml"], &parts);
+        refuse(folder.path(), &["check", "wrong.toml"], &parts);
         if from.starts_with("height_mm") {
             refuse(folder.path(), &["play", "wrong.toml"], &parts);
             continue;

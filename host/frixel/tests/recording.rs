@@ -345,14 +345,14 @@ fn a_calibration_is_parquet_by_its_name_and_fits_the_same() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
     for name in ["data.csv", "data.parquet"] {
-        succeed(folder, &["calibrate", "--strokes", "9", "-o", name]);
+        succeed(folder, &["finger", "calibrate", "--strokes", "9", "-o", name]);
     }
     let recording = read(folder, "data.parquet");
     assert_eq!((recording.columns.len(), recording.metadata.is_simulated), (6, true));
     let csv = fs::read(folder.join("data.csv")).unwrap();
     let of_csv = Recording::of_csv(recording.metadata.clone(), &csv, calibration_fields()).unwrap();
     assert_eq!(of_csv.first_difference(&recording), None);
-    let fit = |name: &str| succeed(folder, &["fit", name, "--json"]);
+    let fit = |name: &str| succeed(folder, &["finger", "fit", name, "--json"]);
     assert_eq!(fit("data.csv"), fit("data.parquet"));
 }
 

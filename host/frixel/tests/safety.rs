@@ -1,4 +1,4 @@
-//! `frixel safety`: the tables of touch currents, as a person prints them.
+//! `frixel board safety`: the tables of touch currents, as a person prints them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
@@ -18,7 +18,7 @@ use frixel_wire::hello::BoardLimits;
 use crate::processes::repository;
 
 fn frixel(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).arg("safety").args(args).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_frixel")).args(["board", "safety"]).args(args).output().unwrap()
 }
 
 fn printed(args: &[&str]) -> String {

@@ -44,8 +44,7 @@ impl Files {
     }
 
     fn check(&self, rest: &str) -> Value {
-        serde_json::from_str(&succeed(&repository(), &["scene", "check", &self.scene(rest), "--json", "--image"]))
-            .unwrap()
+        serde_json::from_str(&succeed(&repository(), &["check", &self.scene(rest), "--json", "--image"])).unwrap()
     }
 }
 
@@ -57,7 +56,7 @@ fn targets_in_reach_are_printed_in_reach() {
         let text = format!(
             "version = 1\n[drive]\nvoltage_max_v_rms = {voltage_v_rms}\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n"
         );
-        let summary = succeed(&repository(), &["scene", "check", &files.write("whole.toml", &text)]);
+        let summary = succeed(&repository(), &["check", &files.write("whole.toml", &text)]);
         let most = |name: &str| -> f64 {
             let line = summary.lines().find(|line| line.trim_start().starts_with(name)).unwrap();
             line.split(" N in total").next().unwrap().split(' ').next_back().unwrap().parse().unwrap()
@@ -70,7 +69,7 @@ fn targets_in_reach_are_printed_in_reach() {
 fn mistakes_are_json_where_that_is_asked_for() {
     let files = Files::new();
     let check = |scene: &str| {
-        let output = frixel(&["scene", "check", scene, "--json"]);
+        let output = frixel(&["check", scene, "--json"]);
         assert_eq!(output.status.code(), Some(1));
         serde_json::from_slice::<Value>(&output.stdout).unwrap()
     };
@@ -115,7 +114,7 @@ fn constant(rest: &str) -> String {
 fn bytes_are_those_that_a_play_sends() {
     let files = Files::new();
     let check: Value =
-        serde_json::from_str(&succeed(&repository(), &["scene", "check", "scenes/brick.toml", "--json"])).unwrap();
+        serde_json::from_str(&succeed(&repository(), &["check", "scenes/brick.toml", "--json"])).unwrap();
     let out = files.path("out");
     let played: Value = serde_json::from_str(&succeed(
         &repository(),
@@ -167,10 +166,10 @@ fn the_table_ends_where_the_scene_does_unless_a_layer_may_change() {
     assert_eq!(table("friction_fraction = 0.499\nlive = true"), [whole, whole, room]);
 
     let path = files.path("scene.toml");
-    let said = succeed(&repository(), &["scene", "check", &path]);
+    let said = succeed(&repository(), &["check", &path]);
     assert!(said.contains("nothing is cut"), "{said}");
     files.check(&constant("friction_fraction = 0.495"));
-    let said = succeed(&repository(), &["scene", "check", &path]);
+    let said = succeed(&repository(), &["check", &path]);
     assert!(said.contains(&format!("{} of {whole} bytes computed, 4 rows are cut", whole - 64)), "{said}");
 }
 
@@ -201,7 +200,7 @@ fn friction_out_of_reach_is_measured_and_its_layer_named() {
     near(&check["reach"]["natural_n"], 0.25);
     near(&check["reach"]["total_max_n"], 0.277_781_2);
 
-    let text = succeed(&repository(), &["scene", "check", &files.path("scene.toml")]);
+    let text = succeed(&repository(), &["check", &files.path("scene.toml")]);
     assert!(text.contains("25.0 % of the screen above, by layer 1 \"too rough\"; 25.0 %"), "{text}");
     let inside = files.check(&constant("friction_n = 0.26"));
     near(&inside["asked"]["most_n"], 0.26);
@@ -227,7 +226,7 @@ fn the_smallest_firmware_has_what_the_scene_asks_for() {
     let written = [files.scene(stream), files.write("empirical.toml", empirical), files.write("drift.toml", drift)];
     for scene in every.chain(written) {
         let check: Value =
-            serde_json::from_str(&succeed(&repository(), &["scene", "check", &scene, "--json", "--image"])).unwrap();
+            serde_json::from_str(&succeed(&repository(), &["check", &scene, "--json", "--image"])).unwrap();
         let names: Vec<String> = serde_json::from_value(check["board"]["features"].clone()).unwrap();
         let command = check["board"]["command"].as_str().unwrap();
         assert!(command.contains("--no-default-features") && command.ends_with(&names.join(",")), "{command}");
@@ -258,21 +257,20 @@ fn wrong_input_is_said_as_play_says_it() {
     let binary = files.write("binary.toml", [0x7f, b'E', b'L', b'F', 0xff, 0xfe, 0x00]);
     let (missing, folder) = (files.path("missing.toml"), files.path("."));
     for scene in [&wrong, &empty, &binary, &missing, &folder] {
-        let message = refused(&["scene", "check", scene]);
+        let message = refused(&["check", scene]);
         assert!(message.starts_with(&format!("frixel: {scene}:")), "{message}");
-        let json = frixel(&["scene", "check", scene, "--json", "--image"]);
+        let json = frixel(&["check", scene, "--json", "--image"]);
         assert_eq!((json.status.code(), String::from_utf8(json.stderr).unwrap()), (Some(1), message.clone()));
-        assert_eq!(message, refused(&["scene", "preview", scene, "-o", &files.path("map.png")]));
+        assert_eq!(message, refused(&["preview", scene, "-o", &files.path("map.png")]));
         assert_eq!(message, refused(&["play", scene, "--out", &files.path("out")]));
     }
-    let message = refused(&["scene", "check", &wrong]);
+    let message = refused(&["check", &wrong]);
     assert!(message.contains(":18:8: `kind = \"gratting\"` is not known; did you mean `grating`?\n"), "{message}");
     assert!(message.contains(":21:1: unknown field `friction_nn` in layer 2 (constant); did you mean `friction_n`?"));
     assert!(
-        refused(&["scene", "check", &empty])
-            .ends_with(":1:1: the scene has no `version`: write `version = 1` at the top\n")
+        refused(&["check", &empty]).ends_with(":1:1: the scene has no `version`: write `version = 1` at the top\n")
     );
-    assert!(refused(&["scene", "check", &binary]).contains("not UTF-8"));
+    assert!(refused(&["check", &binary]).contains("not UTF-8"));
     assert!(!Path::new(&files.path("map.png")).exists());
 }
 
@@ -281,7 +279,7 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
     let files = Files::new();
     let short = files.write("short.toml", "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n");
     let natural_n = |options: &[&str]| {
-        let json = succeed(&repository(), &[&["scene", "check", &short, "--json"], options].concat());
+        let json = succeed(&repository(), &[&["check", &short, "--json"], options].concat());
         let check: Value = serde_json::from_str(&json).unwrap();
         assert_eq!(check["finger"]["origin"], "assumed");
         (1e6 * check["reach"]["natural_n"].as_f64().unwrap()).round()
@@ -290,14 +288,14 @@ fn a_scene_is_checked_under_the_finger_of_an_option() {
     let anna = "friction_coefficient = 0.42\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 4\n";
     let anna = files.write("anna.toml", anna);
     assert_eq!(natural_n(&["--finger", &anna, "--screen", "example"]) as u64, 210_000);
-    let summary = succeed(&repository(), &["scene", "check", &short, "--finger", &anna]);
+    let summary = succeed(&repository(), &["check", &short, "--finger", &anna]);
     assert!(summary.contains(&format!("finger           finger \"{anna}\", assumed\n")), "{summary}");
     assert!(summary.contains(" V rms), assumed\n"), "{summary}");
-    let message = refused(&["scene", "check", &short, "--finger", "moost"]);
+    let message = refused(&["check", &short, "--finger", "moost"]);
     assert!(message.starts_with("frixel: moost: this finger cannot be read ("), "{message}");
     assert!(message.ends_with("): did you mean `moist`?\n"), "{message}");
     let broken = files.write("broken.toml", "friction_coefficient = 42\n");
-    let message = refused(&["scene", "check", &short, "--finger", &broken]);
+    let message = refused(&["check", &short, "--finger", &broken]);
     assert!(message.contains("broken.toml:1:24: `friction_coefficient = 42` is out of range: expected 0.001 to 10"));
 }
 
@@ -320,7 +318,7 @@ fn a_preview_never_replaces_a_picture_of_the_scene() {
         "[[layer]]\nkind = \"bitmap\"\npicture = \"brick.png\"\nx_mm = 10\ny_mm = 5\nwidth_mm = 60\nwhite_n = 0.01\n";
     fs::write(&scene, format!("{HEAD}{layer}")).unwrap();
     let before = fs::read(&picture).unwrap();
-    let output = frixel(&["scene", "preview", scene.to_str().unwrap(), "-o", picture.to_str().unwrap()]);
+    let output = frixel(&["preview", scene.to_str().unwrap(), "-o", picture.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stderr).unwrap().contains("brick.png is an input as well"));
     assert!(fs::read(&picture).unwrap() == before);
@@ -330,7 +328,7 @@ fn a_preview_never_replaces_a_picture_of_the_scene() {
 fn a_preview_is_a_png_of_the_asked_size() {
     let files = Files::new();
     let path = files.path("map.png");
-    let message = succeed(&repository(), &["scene", "preview", "scenes/ribs.toml", "-o", &path, "--map-width", "300"]);
+    let message = succeed(&repository(), &["preview", "scenes/ribs.toml", "-o", &path, "--map-width", "300"]);
     assert!(message.contains(&path), "{message}");
     let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).unwrap()));
     let reader = decoder.read_info().unwrap();
@@ -339,12 +337,12 @@ fn a_preview_is_a_png_of_the_asked_size() {
     let slow = files.path("slow.png");
     succeed(
         &repository(),
-        &["scene", "preview", "scenes/ribs.toml", "-o", &slow, "--map-width", "300", "--speed-mm-per-s", "15"],
+        &["preview", "scenes/ribs.toml", "-o", &slow, "--map-width", "300", "--speed-mm-per-s", "15"],
     );
     assert!(map(&slow) != map(&path), "the speed changes nothing");
-    let message = refused(&["scene", "preview", "scenes/ribs.toml", "-o", &files.path("map.jpg")]);
+    let message = refused(&["preview", "scenes/ribs.toml", "-o", &files.path("map.jpg")]);
     assert!(message.contains("map.jpg is no PNG file by its name"), "{message}");
-    let message = refused(&["scene", "preview", "scenes/ribs.toml", "-o", &files.path("no/map.png")]);
+    let message = refused(&["preview", "scenes/ribs.toml", "-o", &files.path("no/map.png")]);
     assert!(message.contains("no/map.png cannot be written"), "{message}");
 }
 
@@ -353,12 +351,12 @@ fn check_and_preview_say_what_a_person_feels() {
     let files = Files::new();
     let grating = "[[layer]]\nname = \"ridges\"\nkind = \"grating\"\nwavelength_mm = 1\nlow_n = 0.25\nhigh_n = 0.27\n";
     let scene = files.scene(&format!("{grating}above = \"zero\"\n"));
-    let text = succeed(&repository(), &["scene", "check", &scene]);
+    let text = succeed(&repository(), &["check", &scene]);
     let feel = text.lines().find(|line| line.trim_start().starts_with("felt ")).unwrap();
     assert!(feel.contains("layer 1 \"ridges\": ") && feel.contains(" Hz, felt from about "), "{feel}");
-    assert!(succeed(&repository(), &["scene", "preview", &scene, "-o", &files.path("map.png")]).contains(feel));
+    assert!(succeed(&repository(), &["preview", &scene, "-o", &files.path("map.png")]).contains(feel));
     // A touch source that keeps up with a millimetre: the one of 100 reports a second blurs a third of it.
-    let arguments = ["scene", "check", &scene, "--json", "--touch", "500"];
+    let arguments = ["check", &scene, "--json", "--touch", "500"];
     let json: Value = serde_json::from_str(&succeed(&repository(), &arguments)).unwrap();
     let layer = &json["judgement"]["layers"][0];
     let number = |value: &Value| value.as_f64().unwrap();

@@ -52,10 +52,10 @@ fn no_text_of_a_scene_controls_the_terminal() {
     ] {
         fs::write(&path, &text).unwrap();
         for arguments in [
-            &["scene", "check", "scene.toml"][..],
-            &["scene", "check", "scene.toml", "--json"],
+            &["check", "scene.toml"][..],
+            &["check", "scene.toml", "--json"],
             &["play", "scene.toml", "--seconds", "0.05"],
-            &["scene", "preview", "scene.toml", "-o", "map.png"],
+            &["preview", "scene.toml", "-o", "map.png"],
         ] {
             let output = run(folder.path(), arguments);
             let printed = clean(&output);
@@ -88,7 +88,7 @@ fn check_notes_the_files_outside_of_the_scene_s_folder() {
     fs::write(folder.path().join("outer.toml"), "version = 1\n").unwrap();
     fs::write(inner.join("own.toml"), "version = 1\n").unwrap();
     fs::write(inner.join("scene.toml"), format!("include = [\"../outer.toml\", \"own.toml\"]\n{}", layer(""))).unwrap();
-    let printed = clean(&run(&inner, &["scene", "check", "scene.toml"]));
+    let printed = clean(&run(&inner, &["check", "scene.toml"]));
     let notes: Vec<&str> = printed.lines().filter(|line| line.contains("outside of the scene's folder")).collect();
     assert!(matches!(notes[..], [note] if note.contains("../outer.toml")), "{printed}");
 }

@@ -1,4 +1,4 @@
-//! `frixel selftest --wires` against a simulated board behind a pseudo-terminal, as a stranger uses it.
+//! `frixel board selftest --wires` against a simulated board behind a pseudo-terminal, as a stranger uses it.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -24,7 +24,7 @@ fn self_test(wrong: Wrong, seconds: u32, typed: &str, report: &str) -> (Output, 
 
 fn command(port: &str, seconds: u32, typed: &str, report: &str) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
-        .args(["selftest", "--wires", "--port", port, "--seconds", &seconds.to_string(), "-o", report])
+        .args(["board", "selftest", "--wires", "--port", port, "--seconds", &seconds.to_string(), "-o", report])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

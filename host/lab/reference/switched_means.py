@@ -1,7 +1,7 @@
 """Electric friction of a recording by averages alone: no contact model, no code of frixel, Python's standard library.
 
-    frixel calibrate --finger-seed 3 --seed 103 -o recording.csv
-    frixel fit recording.csv -o finger.toml
+    frixel finger calibrate --finger-seed 3 --seed 103 -o recording.csv
+    frixel finger fit recording.csv -o finger.toml
     python3 host/lab/reference/switched_means.py recording.csv finger.toml
 
 prints the electric friction at the highest voltage with its standard error, and the 95 % interval of the fit. Several

@@ -128,7 +128,7 @@ impl Scene {
         self.program.warnings().map(ToString::to_string).chain(self.program.notes().map(str::to_owned)).collect()
     }
 
-    /// What `frixel scene check --json` prints.
+    /// What `frixel check --json` prints.
     fn check(&self, py: Python<'_>, touch: Option<ProfileText>, with_board: bool) -> PyResult<String> {
         let touch = touch.map_or(Ok(TouchConfig::REALISTIC), |touch| touch.touch_source(py))?;
         let rig = RigConfig::default();

@@ -36,7 +36,7 @@ def test_a_fit_is_that_of_the_command(tmp_path: Path) -> None:
         writer = csv.writer(file)
         writer.writerow(data)
         writer.writerows(zip(*(column.tolist() for column in data.values()), strict=True))
-    command = [os.environ["FRIXEL"], "fit", str(tmp_path / "data.csv"), "--json"]
+    command = [os.environ["FRIXEL"], "finger", "fit", str(tmp_path / "data.csv"), "--json"]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     assert json.loads(printed) == fitted.summary
     assert "2026-11-23" in (fitted.finger.text or "")
@@ -75,7 +75,8 @@ def test_a_number_that_is_missing_is_named_by_row_and_column(column: str, row: i
     with pytest.raises(FitError, match=f"^{re.escape(said)}$"):
         fit(pandas.DataFrame(data))
     pandas.DataFrame(data).to_csv(tmp_path / "data.csv", index=False, na_rep="nan")
-    refused = subprocess.run([os.environ["FRIXEL"], "fit", str(tmp_path / "data.csv")], capture_output=True, text=True)
+    command = [os.environ["FRIXEL"], "finger", "fit", str(tmp_path / "data.csv")]
+    refused = subprocess.run(command, capture_output=True, text=True)
     assert said in refused.stderr
 
 

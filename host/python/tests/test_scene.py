@@ -126,7 +126,7 @@ def test_a_check_says_what_the_command_says(scenes: Path) -> None:
     report = Scene.load(path).check(touch="200")
     assert report["layers"] > 0
     assert report["judgement"]
-    command = [os.environ["FRIXEL"], "scene", "check", str(path), "--touch", "200", "--json"]
+    command = [os.environ["FRIXEL"], "check", str(path), "--touch", "200", "--json"]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     assert json.loads(printed) == report
 

@@ -1,4 +1,4 @@
-//! What `frixel scene check` says of a scene.
+//! What `frixel check` says of a scene.
 
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ use crate::program::{drafted, for_drafts, touch_source};
 use crate::request::Request;
 
 /// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
-/// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel scene check`), and in newtons `lowN`,
+/// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel check`), and in newtons `lowN`,
 /// `highN` (what the scene asks for), `reachN` and `naturalN`.
 pub fn check(request: &Request) -> Value {
     answer(request, true)

@@ -1,5 +1,5 @@
 // The page beside the command: `frixel sim` behind a `navigator.serial` made of byte streams, and the sentences of
-// `frixel scene check`. Only these tests are told where the command is.
+// `frixel check`. Only these tests are told where the command is.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -102,7 +102,7 @@ test("a killed worker: the board is at zero within its host timeout", async () =
   await close();
 });
 
-test("a typed mistake shows the sentence of `frixel scene check`, and the mended scene plays on", async () => {
+test("a typed mistake shows the sentence of `frixel check`, and the mended scene plays on", async () => {
   const { page, errors, close } = await openStudio();
   const good = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
   await page.evaluate((text) => played(text), good);
@@ -118,7 +118,7 @@ test("a typed mistake shows the sentence of `frixel scene check`, and the mended
   fs.writeFileSync(file, bad);
   let said = "";
   try {
-    execFileSync(required("FRIXEL"), ["scene", "check", file], { encoding: "utf8", stdio: "pipe" });
+    execFileSync(required("FRIXEL"), ["check", file], { encoding: "utf8", stdio: "pipe" });
   } catch ({ stdout, stderr }) {
     said = stdout + stderr;
   }

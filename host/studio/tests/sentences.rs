@@ -1,4 +1,4 @@
-//! The page says of a scene what `frixel scene check` says.
+//! The page says of a scene what `frixel check` says.
 #![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use std::path::Path;

@@ -2,8 +2,8 @@
 //! `docs/first-board.md` describes it for the person who does it.
 //!
 //! [`run`] is the script. It drives and measures the pins through a [`LoopedBoard`], which the board implements, and
-//! says each [`Measurement`] in a line that a program can read: `frixel selftest --wires` writes them to a report.
-//! These hold whatever board and person do:
+//! says each [`Measurement`] in a line that a program can read: `frixel board selftest --wires` writes them to a
+//! report. These hold whatever board and person do:
 //!
 //! - It ends when the amplifier's ready is high or the arm switch is closed: at once during a pulse of the enable, else
 //!   before the next measurement. It ends, too, while the monitor's pin is driven or not at zero volts.

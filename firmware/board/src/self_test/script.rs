@@ -331,7 +331,7 @@ fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Cou
     load.rest(board)?;
     let wants_it = loop {
         board.say(format_args!(
-            "3. The line, against `frixel selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
+            "3. The line, against `frixel board selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
         ));
         match board.read_line().trim() {
             LINE_TEST => break true,

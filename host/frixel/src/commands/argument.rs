@@ -2,6 +2,8 @@
 
 use std::ops::{Bound, RangeBounds};
 
+/// Heading of the options that few people need, in the help of a command.
+pub(super) const RARE: &str = "Rare options";
 /// Longest code of a participant, in characters.
 const PARTICIPANT_MAX: usize = 32;
 

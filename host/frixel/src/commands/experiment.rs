@@ -8,7 +8,7 @@ use frixel_driver::Device;
 use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
-use super::ports;
+use super::port;
 use super::terminal::note;
 
 /// Highest voltage of an experiment, in volts rms.
@@ -20,7 +20,7 @@ const PEAK_SHARE: f64 = 0.99;
 /// Connects to the board at a serial port, says what a person should know of it, and rejects one whose electrode may
 /// not be driven. The command takes these boards in place of a port.
 pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>> {
-    let device = Device::connect(PortLink::new(ports::open(port, boards)?))?;
+    let device = Device::connect(PortLink::new(port::open(port, boards)?))?;
     for sentence in device.hello().notice_sentences() {
         note(format_args!("note: {sentence}"));
     }

@@ -1,29 +1,26 @@
 //! The command line: one module per command.
 
 mod argument;
-mod calibrate;
+mod board;
+mod check;
 mod completions;
 mod demo;
 mod error;
 mod experiment;
-mod faults;
-mod fit;
-mod info;
+mod finger;
 mod interrupt;
 mod jobs;
 mod model;
 mod new;
 mod parquet;
 mod play;
-mod ports;
+mod port;
+mod preview;
 mod profiles;
-mod record;
 mod report;
-mod safety;
 mod scenario;
-mod scene;
+mod schema;
 mod score;
-mod selftest;
 #[cfg(unix)]
 mod sim;
 mod stroke;
@@ -62,9 +59,15 @@ enum Command {
     New(new::NewArgs),
     /// Play a scene on a board or on the simulator.
     Play(play::PlayArgs),
-    /// Check a scene, or draw it, before it is played.
-    #[command(subcommand)]
-    Scene(scene::SceneCommand),
+    /// Report a scene's cost, reach and what can be felt of it.
+    ///
+    /// Every mistake is reported, with line and column. A scene that no board can play is refused by the number that is
+    /// exceeded.
+    Check(check::CheckArgs),
+    /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in millinewtons.
+    Preview(preview::PreviewArgs),
+    /// Print the JSON schema of the scene file, for editors.
+    Schema,
     /// Score how faithfully simulated fingers feel a scene.
     Score(score::ScoreArgs),
     /// Play every combination of scenes, people, screens and values, and draw which simulated fingers feel what.
@@ -73,30 +76,19 @@ enum Command {
     Sim(SimArgs),
     /// Open the studio, a page in which scenes are made, seen and heard.
     Studio(studio::StudioArgs),
-    /// List the serial ports.
-    Ports,
-    /// Identify the board at a port.
-    Info(info::InfoArgs),
-    /// Record the way of a finger on a board, as a stroke.
-    Record(record::RecordArgs),
     /// Play a simulated recording again, and say whether the bits are the same.
     Replay(play::replay::ReplayArgs),
-    /// Say what a board's last fault was.
-    Faults(faults::FaultsArgs),
-    /// Check link, clock and telemetry of a board, with its output at zero.
-    Selftest(selftest::SelftestArgs),
+    /// Find, check and record from a board at a serial port.
+    #[command(subcommand)]
+    Board(board::BoardCommand),
+    /// Measure a finger, and fit its profile.
+    #[command(subcommand)]
+    Finger(finger::FingerCommand),
     /// Print completions of commands and options for a shell.
     Completions(completions::CompletionsArgs),
     /// Evaluate or invert the contact model over rows of CSV.
     #[command(subcommand)]
     Model(model::ModelCommand),
-    /// Record a finger's friction while a board switches its drive on and off, for `frixel fit`.
-    Calibrate(calibrate::CalibrateArgs),
-    /// Fit a finger's profile to measured friction.
-    Fit(fit::FitArgs),
-    /// Compute the current through a finger on an intact, a scratched and a bridged coating, and the voltages that keep
-    /// it within its limit.
-    Safety(safety::SafetyArgs),
     /// Draw the contact model, its error and its cost on one page.
     Report(report::ReportArgs),
 }
@@ -118,8 +110,7 @@ struct SimArgs {
     screen: Option<String>,
     #[command(flatten)]
     touch: profiles::TouchArgs,
-    /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
-    /// all of them are simulated.
+    /// Leave out load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     #[arg(long)]
     ideal: bool,
     /// Output folder.
@@ -139,8 +130,8 @@ struct SimArgs {
     /// Fail, with exit code 1, unless all is seen that the scenario expects.
     #[arg(long, requires = "scenario")]
     expect: bool,
-    /// What the scenario runs on: the simulator in this process, or the firmware on an emulated board.
-    #[arg(long, value_enum, default_value_t, requires = "scenario")]
+    /// Rig of the scenario: `sim` in this process, or an emulated `qemu` or `pico`.
+    #[arg(long, value_enum, default_value_t, hide_possible_values = true, requires = "scenario")]
     rig: scenario::RigKind,
 }
 
@@ -151,7 +142,9 @@ impl Cli {
             Some(Command::Demo(args)) => demo::run(&args),
             Some(Command::New(args)) => new::run(&args),
             Some(Command::Play(args)) => play::run(&args),
-            Some(Command::Scene(command)) => scene::run(&command),
+            Some(Command::Check(args)) => check::run(&args),
+            Some(Command::Preview(args)) => preview::run(&args),
+            Some(Command::Schema) => schema::run(),
             Some(Command::Score(args)) => score::run(&args),
             Some(Command::Sweep(args)) => sweep::run(&args),
             Some(Command::Sim(SimArgs { scenario: Some(file), expect, rig, .. })) => scenario::run(&file, expect, rig),
@@ -160,35 +153,34 @@ impl Cli {
             #[cfg(not(unix))]
             Some(Command::Sim(_)) => Err(error::no_pseudo_terminal("frixel sim")),
             Some(Command::Studio(args)) => studio::run(&args),
-            Some(Command::Ports) => ports::run(),
-            Some(Command::Info(args)) => info::run(&args),
-            Some(Command::Record(args)) => record::run(&args),
             Some(Command::Replay(args)) => play::replay::run(&args),
-            Some(Command::Faults(args)) => faults::run(&args),
-            Some(Command::Selftest(args)) => selftest::run(&args),
+            Some(Command::Board(command)) => board::run(&command),
+            Some(Command::Finger(command)) => finger::run(&command),
             Some(Command::Completions(args)) => completions::run(&args),
             Some(Command::Model(command)) => model::run(&command),
-            Some(Command::Calibrate(args)) => calibrate::run(&args),
-            Some(Command::Fit(args)) => fit::run(&args),
-            Some(Command::Safety(args)) => safety::run(&args),
             Some(Command::Report(args)) => report::run(&args),
         }
     }
 }
 
-/// Tip for a detection threshold, which Python finds.
-const IN_PYTHON: &str = "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python";
+/// Tips for words that are no command and in no group of commands.
+const TIPS: [(&str, &str); 2] = [
+    ("scene", "write `frixel check`, `frixel preview` or `frixel schema`"),
+    ("threshold", "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python"),
+];
 
-/// The error of an invalid command line. A command that is part of another one is answered by its whole name,
-/// `frixel scene check` for `frixel check`, and a threshold by the Python module.
-pub(crate) fn with_nested_tip(mut error: clap::Error) -> clap::Error {
+/// The error of an invalid command line. A command without its group is answered by its whole name, `frixel board info`
+/// for `frixel info`.
+pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
-    let found = found.clone();
     let cli = Cli::command();
     let has_it = |group: &&clap::Command| group.get_subcommands().any(|command| command.get_name() == found);
     let group = cli.get_subcommands().find(has_it);
-    let tip = group.map(|group| format!("write `frixel {} {found}`", group.get_name()));
-    if let Some(tip) = tip.or_else(|| (found == "threshold").then(|| IN_PYTHON.to_owned())) {
+    let tip = group.map(|group| format!("write `frixel {} {found}`", group.get_name())).or_else(|| {
+        let tip = TIPS.into_iter().find(|(word, _)| word == found);
+        tip.map(|(_, tip)| tip.to_owned())
+    });
+    if let Some(tip) = tip {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         error.remove(ContextKind::SuggestedSubcommand);
     }
@@ -223,6 +215,50 @@ mod tests {
         for nested in command.get_subcommands() {
             paths(nested, &format!("{of}{} ", nested.get_name()), found);
         }
+    }
+
+    #[test]
+    fn a_command_without_its_group_is_answered_by_its_name() {
+        for (line, name) in [
+            ("scene check s.toml", "`frixel check`"),
+            ("scene preview s.toml", "`frixel preview`"),
+            ("scene schema", "`frixel schema`"),
+            ("ports", "`frixel board ports`"),
+            ("info --port p", "`frixel board info`"),
+            ("selftest", "`frixel board selftest`"),
+            ("faults", "`frixel board faults`"),
+            ("record -o r.csv", "`frixel board record`"),
+            ("safety", "`frixel board safety`"),
+            ("calibrate -o c.csv", "`frixel finger calibrate`"),
+            ("fit c.csv", "`frixel finger fit`"),
+        ] {
+            let words = ["frixel"].into_iter().chain(line.split(' '));
+            let error = with_tip(Cli::try_parse_from(words).unwrap_err());
+            assert_eq!(error.exit_code(), 2, "{line}");
+            assert!(error.to_string().contains(name), "{line}: {error}");
+        }
+    }
+
+    /// Lines and columns of a terminal that shows a command's help without scrolling.
+    const SCREEN: (usize, usize) = (40, 120);
+
+    fn check_help(command: &mut clap::Command, name: &str) {
+        for help in [command.render_help(), command.render_long_help()] {
+            let text = help.to_string();
+            let lines = text.lines().map(|line| line.chars().count().div_ceil(SCREEN.1).max(1)).sum::<usize>();
+            assert!(lines <= SCREEN.0, "{lines} lines of help of {name}:\n{text}");
+        }
+        for nested in command.get_subcommands_mut() {
+            let name = format!("{name} {}", nested.get_name());
+            check_help(nested, &name);
+        }
+    }
+
+    #[test]
+    fn the_help_of_each_command_fits_a_screen() {
+        let mut cli = Cli::command();
+        cli.build();
+        check_help(&mut cli, "frixel");
     }
 
     /// A command with a new output stands in the table that the tests of `tests/outputs` go through.

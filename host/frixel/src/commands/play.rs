@@ -28,6 +28,7 @@ use frixel_lab::recording::PlayOptions;
 
 use crate::output::{Effects, Report};
 
+use super::argument::RARE;
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke::StrokeArgs;
@@ -45,20 +46,18 @@ pub(super) struct PlayArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// `sim` for the simulator in this process, `qemu` for the firmware on an emulated Cortex-M4F, `pico` for the image
-    /// of the Pico on an emulated RP2040, or the path of a board's serial port.
+    /// `sim` in this process, an emulated `qemu` or `pico`, or a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
     #[command(flatten)]
     stroke: StrokeArgs,
-    /// How long to play. Without it, as long as the file of --stream or the stroke lasts; on a board without --stream,
-    /// until Ctrl-C.
+    /// Duration. Default: that of --stream or the stroke; on a board, until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Output folder. What an earlier play has left there is replaced.
+    /// Output folder. Replaces an earlier play there.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
-    /// Replace also what a finger did on a board that is not a simulator.
+    /// Also replace what a finger did on a real board.
     #[arg(long)]
     overwrite: bool,
     /// Print one JSON object in place of the summary.
@@ -69,43 +68,41 @@ pub(super) struct PlayArgs {
     seed: u64,
     #[command(flatten)]
     touch: TouchArgs,
-    /// Simulate a world without load changes, noise, pre-sliding, leakage, offsets, and lost touch reports. Without it,
-    /// all of them are simulated.
+    /// Leave out load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     #[arg(long)]
     ideal: bool,
-    /// Simulate skin through which no charge leaks. Measurements disagree whether it does (docs/truth.md); without
-    /// this, it leaks below 250 Hz.
-    #[arg(long, conflicts_with = "ideal")]
+    /// Simulate skin through which no charge leaks. By default it leaks below 250 Hz.
+    #[arg(long, conflicts_with = "ideal", help_heading = RARE)]
     no_leakage: bool,
-    /// Simulated person, whose finger the board does not know: another one for each seed. Without it, the finger is the
-    /// scene's.
-    #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true)]
+    /// Simulated person, another for each seed, for whom the scene is not made.
+    #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true, help_heading = RARE)]
     finger_seed: Option<u64>,
-    /// Record into this Parquet file as well: the rows of felt.csv in full precision, what made them, and what happened
-    /// when (docs/outputs.md). `frixel replay` plays a simulated one again.
+    /// Also record the play, and all that made it, for `frixel replay` (docs/outputs.md).
     #[arg(long, value_name = "FILE.parquet")]
     record: Option<PathBuf>,
-    /// Code of the participant, for the file of --record: letters, digits, `-`, `_` and `.`, not a name.
-    #[arg(long, value_name = "CODE", value_parser = argument::participant, requires = "record")]
+    /// Participant's code in the file of --record, no name: letters, digits, `-_.`.
+    #[arg(long, value_name = "CODE", value_parser = argument::participant, requires = "record", help_heading = RARE)]
     participant: Option<String>,
-    /// Rows a second in felt.csv and in the file of --record; at most 1000 on a board.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=40_000))]
+    /// Rows a second of felt.csv and --record; at most 1000 on a board.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1000,
+        value_parser = clap::value_parser!(u32).range(1..=40_000),
+        help_heading = RARE
+    )]
     csv_hz: u32,
-    /// Let a board that is not a simulator drive its electrode.
+    /// Let a real board drive its electrode.
     #[arg(long)]
     arm: bool,
-    /// Play the scene anew whenever its file is saved; for a board at a serial port, `frixel sim` among them. Not with
-    /// --stream.
+    /// Play the scene anew whenever its file is saved.
     #[arg(long)]
     watch: bool,
-    /// Change the scene while it plays, by lines on standard input: `layer "OK" off`, `layer 3 gain 0.5`,
-    /// `trigger "click"`, `replace FILE`, `wait SECONDS`, `quit`. On the simulator, time stands still until the next
-    /// line comes, or the input ends.
+    /// Change the scene by lines on standard input, such as `layer 3 off` (docs/scene.md).
     #[arg(long)]
     control: bool,
-    /// Join what the finger of a virtual board felt: the felt.csv that its `frixel sim` writes, on this machine. With
-    /// it, a play to the port of that board writes felt.svg, and `felt_n` into felt.csv.
-    #[arg(long, value_name = "FILE.csv")]
+    /// Join the felt.csv that the `frixel sim` at --port writes: what its finger felt.
+    #[arg(long, value_name = "FILE.csv", help_heading = RARE)]
     with_log: Option<PathBuf>,
     #[command(flatten)]
     stream: StreamArgs,

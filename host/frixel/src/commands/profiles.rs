@@ -2,16 +2,20 @@
 
 use std::path::Path;
 
+use super::error::reading;
+use crate::input;
 use crate::scene_file::{self, ProfileNames, SceneFileError};
+use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::{TouchConfig, WorldConfig};
+use frixel_scene::Screen;
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct ProfileArgs {
-    /// The finger in place of the scene's own: a profile's file, or `example`, `dry`, `moist` or `light`.
+    /// Finger in place of the scene's: `example`, `dry`, `moist`, `light` or a profile's file.
     #[arg(long, value_name = "FILE")]
     finger: Option<String>,
-    /// The screen in place of the scene's own: a screen's file, or `example`.
+    /// Screen in place of the scene's: `example` or a screen's file.
     #[arg(long, value_name = "FILE")]
     screen: Option<String>,
 }
@@ -24,8 +28,7 @@ impl ProfileArgs {
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct TouchArgs {
-    /// The simulated touch source: `100`, `200` or `500` reports a second, 10, 5 or 3 ms late, or a touch source's file
-    /// (docs/touch.md). Without it, 100.
+    /// Simulated touch source: `100`, `200`, `500` reports a second or a file. Default: 100.
     #[arg(long, value_name = "NAME|FILE")]
     touch: Option<String>,
 }
@@ -55,4 +58,19 @@ impl TouchArgs {
         let source = self.source()?.map(|source| if is_ideal { source.without_losses() } else { source });
         Ok(WorldConfig { touch: source.unwrap_or(world.touch), ..world })
     }
+}
+
+/// The screen of an experiment, by a bundled name or a file, and the name by which profiles refer to it.
+pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen)> {
+    let Some(named) = named else { return Ok(("example".to_owned(), Screen::example())) };
+    if let Some(screen) = Screen::bundled(named) {
+        return Ok((named.to_owned(), screen));
+    }
+    let path = Path::new(named);
+    let text = input::read_text(path, input::TOML_MAX_BYTES).map_err(reading(path))?;
+    let screen = Screen::parse(&text, named)?;
+    let name = screen.name.clone().unwrap_or_else(|| {
+        path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
+    });
+    Ok((name, screen))
 }

@@ -24,10 +24,10 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Where the finger goes: `human` for randomly generated people with the accelerations of recorded ones after
-    /// smoothing, `human-rough` for those before smoothing, `sweep` for an even sweep over the screen, or a CSV file
-    /// with the columns `t_s,x_mm,y_mm`.
-    #[arg(long, default_value = "human", value_name = "human|human-rough|sweep|FILE.csv")]
+    /// Path of the finger: `human` for generated people with the accelerations of recorded ones after smoothing,
+    /// `human-rough` for those before smoothing, `sweep` for an even sweep over the screen, or a CSV file with the
+    /// columns `t_s,x_mm,y_mm`.
+    #[arg(long, default_value = "human", value_name = "NAME|FILE")]
     stroke: String,
     /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each
     /// makes strokes of their own. Without it, the finger is the scene's.

@@ -14,8 +14,8 @@ use frixel_model::FrictionLaw;
 use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
-use super::fit::screen;
 use super::interrupt::Interrupt;
+use super::profiles::screen;
 use super::terminal::{note, print_line};
 
 /// Size of the screen that the generated stroke covers: that of the bundled scenes.

@@ -11,7 +11,7 @@ use frixel_lab::recording::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOpti
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::Shown;
 
-use super::argument::{above_zero_to, number};
+use super::argument::{RARE, above_zero_to, number};
 use super::terminal::{note, note_interrupted, note_understood};
 
 /// Time between two positions of a stroke that are checked, s.
@@ -22,26 +22,44 @@ const CHECKS_MAX: f64 = 1e6;
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
-    /// Where the simulated finger goes: a CSV file with the columns `t_s,x_mm,y_mm`, and `force_n` for the normal load,
-    /// for example a felt.csv; or `human`: the touches of a person, others for every --seed, with the accelerations of
-    /// recorded ones after smoothing (`human-rough`: before smoothing). Default: a sweep over the screen; `play` then
-    /// visits each layer whose middle the sweep missed, unless --seconds or --stream is given.
-    #[arg(long, value_name = "FILE.csv", conflicts_with = "from")]
+    /// Path of the simulated finger: `human`, a person's touches, others for each --seed; `human-rough`, without
+    /// smoothing; or a CSV file with `t_s,x_mm,y_mm` and optionally `force_n`. Default: a sweep.
+    #[arg(long, value_name = "NAME|FILE", conflicts_with = "from")]
     stroke: Option<PathBuf>,
-    /// Start of a straight stroke, in mm from the top left corner of the screen.
-    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "to", allow_hyphen_values = true)]
+    /// Start of a straight stroke, in mm from the screen's top left corner.
+    #[arg(
+        long,
+        value_name = "X,Y",
+        value_parser = place_mm,
+        requires = "to",
+        allow_hyphen_values = true,
+        help_heading = RARE
+    )]
     from: Option<Point>,
     /// End of a straight stroke, in mm.
-    #[arg(long, value_name = "X,Y", value_parser = place_mm, requires = "from", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "X,Y",
+        value_parser = place_mm,
+        requires = "from",
+        allow_hyphen_values = true,
+        help_heading = RARE
+    )]
     to: Option<Point>,
     /// Mean speed of a straight stroke, in mm/s. Default: 100.
-    #[arg(long, value_name = "MM_PER_S", value_parser = speed_m_per_s, requires = "from")]
+    #[arg(long, value_name = "MM_PER_S", value_parser = speed_m_per_s, requires = "from", help_heading = RARE)]
     speed: Option<f64>,
-    /// How many times the finger goes along a straight stroke, back and forth. Default: 1.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), requires = "from")]
+    /// Passes along a straight stroke, back and forth. Default: 1.
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=10_000),
+        requires = "from",
+        help_heading = RARE
+    )]
     times: Option<u32>,
-    /// Start and end a straight stroke at rest, as a hand does, rather than at constant speed.
-    #[arg(long, alias = "natural", requires = "from")]
+    /// Start and end a straight stroke at rest, as a hand does.
+    #[arg(long, alias = "natural", requires = "from", help_heading = RARE)]
     minimum_jerk: bool,
 }
 

@@ -40,7 +40,7 @@ pub(crate) type FeltCsv = CsvFile<FeltRow>;
 /// `events.csv`.
 pub(crate) type EventCsv = CsvFile<EventRow>;
 
-/// `forces.csv`, which `frixel calibrate` reads.
+/// `forces.csv`, which `frixel finger calibrate` reads.
 pub(crate) type ForcesCsv = CsvFile<ForceRow>;
 
 /// A row of `events.csv`.

@@ -112,8 +112,9 @@ impl Recording {
     }
 }
 
-/// Whether a file is a recording of a person, by its content: a stroke of `frixel record`, friction as `frixel fit`
-/// reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file of a play.
+/// Whether a file is a recording of a person, by its content: a stroke of `frixel board record`, friction as `frixel
+/// finger fit` reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file
+/// of a play.
 pub(crate) fn is_recording(path: &Path) -> bool {
     let Ok(head) = input::read_head(path, HEAD) else { return false };
     if head.starts_with(PARQUET) {

@@ -1,4 +1,4 @@
-//! `frixel calibrate` on the port of a virtual board, whose pace is that of the wall clock.
+//! `frixel finger calibrate` on the port of a virtual board, whose pace is that of the wall clock.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -42,13 +42,14 @@ fn fail(folder: &Path, arguments: &[&str]) -> String {
 /// virtual board's time falls behind that of the client.
 fn calibrate(folder: &Path, arguments: &[&str], run: fn(&Path, &[&str]) -> Output) {
     let said = (0..TRIES_MAX).find_map(|_| {
-        let output = run(folder, &[&["calibrate", "-o", "data.csv", "--overwrite"], &FEW[..], arguments].concat());
+        let output =
+            run(folder, &[&["finger", "calibrate", "-o", "data.csv", "--overwrite"], &FEW[..], arguments].concat());
         let notes = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success() || was_too_late(&notes) || notes.contains("the forces last"), "{notes}");
         (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
     });
     let said = String::from_utf8(said.unwrap()).unwrap();
-    assert!(said.contains("9 strokes") && said.contains("frixel fit data.csv -o finger.toml"), "{said}");
+    assert!(said.contains("9 strokes") && said.contains("frixel finger fit data.csv -o finger.toml"), "{said}");
 }
 
 /// Runs a command whose standard input is what the virtual board's sensor measures meanwhile.
@@ -76,7 +77,7 @@ fn with_forces_on_stdin(folder: &Path, arguments: &[&str]) -> Output {
 
 /// The fitted number, and its interval.
 fn fitted(folder: &Path, key: &str, interval: &str) -> (f64, [f64; 2]) {
-    let (json, _) = succeed(folder, &["fit", "data.csv", "--json"]);
+    let (json, _) = succeed(folder, &["finger", "fit", "data.csv", "--json"]);
     let json: Value = serde_json::from_str(&json).unwrap();
     (json[key].as_f64().unwrap(), [0, 1].map(|end| json[interval][end].as_f64().unwrap()))
 }
@@ -178,12 +179,12 @@ fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
         (&["-o", "nowhere/d.csv", "--forces", "board/forces.csv"], "nowhere/d.csv cannot be written"),
         (&["-o", "d.csv", "--forces", "board/forces.csv", "--finger-seed", "3"], "leave --finger-seed out"),
     ] {
-        let said = fail(folder.path(), &[&["calibrate"], &port[..], arguments].concat());
+        let said = fail(folder.path(), &[&["finger", "calibrate"], &port[..], arguments].concat());
         assert!(said.contains(words), "{words}: {said}");
     }
     let said = fail(
         folder.path(),
-        &["calibrate", "-o", "mine.csv", "--overwrite", "--port", "nowhere", "--forces", "back.csv"],
+        &["finger", "calibrate", "-o", "mine.csv", "--overwrite", "--port", "nowhere", "--forces", "back.csv"],
     );
     assert!(said.contains("back.csv: row 3 of the forces"), "{said}");
     assert_eq!(fs::read_to_string(folder.path().join("mine.csv")).unwrap(), "old", "a run that fails leaves the file");
@@ -191,7 +192,7 @@ fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
     let events = fs::read_to_string(folder.path().join("board/events.csv")).unwrap();
     assert!(!events.contains("active"), "no run began: {events}");
     for arguments in [["--voltage", "151"], ["--voltage", "0"], ["--strokes", "7"]] {
-        let output = frixel(folder.path(), &[&["calibrate", "-o", "d.csv"], &arguments[..]].concat());
+        let output = frixel(folder.path(), &[&["finger", "calibrate", "-o", "d.csv"], &arguments[..]].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }

@@ -21,7 +21,7 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     ] {
         let (said, _) = succeed(folder.path(), arguments);
         assert!(said.contains(&format!("frixel play {name}")), "{said}");
-        let (said, _) = succeed(folder.path(), &["scene", "check", name]);
+        let (said, _) = succeed(folder.path(), &["check", name]);
         assert!(!said.contains("stretched by"), "{said}");
         let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
         assert!(said.contains("reference"), "{said}");
@@ -29,17 +29,17 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     fs::create_dir(folder.path().join("sub")).unwrap();
     succeed(folder.path(), &["new", "sub/w", "--picture", "mine.png"]);
     assert!(fs::read_to_string(folder.path().join("sub/w.toml")).unwrap().contains("picture = \"../mine.png\""));
-    succeed(folder.path(), &["scene", "check", "sub/w.toml"]);
+    succeed(folder.path(), &["check", "sub/w.toml"]);
     for name in ["my \"best\".png", "it's mine.png", "both \"'\".png", "# \u{7f}.png"] {
         named_as_it_is(folder.path(), name);
     }
     #[cfg(unix)]
     named_as_it_is(folder.path(), "a\\b.png");
     let (said, _) = succeed(folder.path(), &["new", "my ribs"]);
-    assert!(said.contains("frixel scene check 'my ribs.toml'\n"), "{said}");
+    assert!(said.contains("frixel check 'my ribs.toml'\n"), "{said}");
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
     assert!(text.contains("levels = \"stretch\"") && !text.contains("pitch_mm"), "{text}");
-    let (said, _) = succeed(folder.path(), &["scene", "check", "photo.toml"]);
+    let (said, _) = succeed(folder.path(), &["check", "photo.toml"]);
     assert!(
         said.contains("colour turned to grey by luminance") && said.contains("the finest pitch that fits"),
         "{said}"
@@ -51,7 +51,7 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
 fn named_as_it_is(folder: &Path, picture: &str) {
     fs::copy(folder.join("mine.png"), folder.join(picture)).unwrap();
     succeed(folder, &["new", "named", "--picture", picture]);
-    succeed(folder, &["scene", "check", "named.toml"]);
+    succeed(folder, &["check", "named.toml"]);
     fs::remove_file(folder.join("named.toml")).unwrap();
 }
 

@@ -22,11 +22,11 @@ fn a_closed_pipe_ends_a_command_quietly() {
         &["play", brick.as_str(), "--seconds", "0.1"][..],
         &["play", brick.as_str(), "--seconds", "0.1", "--json"],
         &["demo"],
-        &["scene", "check", brick.as_str()],
-        &["scene", "check", brick.as_str(), "--json"],
-        &["scene", "schema"],
-        &["scene", "preview", brick.as_str(), "-o", "map.png"],
-        &["ports"],
+        &["check", brick.as_str()],
+        &["check", brick.as_str(), "--json"],
+        &["schema"],
+        &["preview", brick.as_str(), "-o", "map.png"],
+        &["board", "ports"],
         &["--help"],
         &["play", "--help"],
     ] {
@@ -36,14 +36,14 @@ fn a_closed_pipe_ends_a_command_quietly() {
         let output = unread(arguments, true);
         assert!(output.status.success(), "{arguments:?} without any reader: {:?}", output.status);
     }
-    for arguments in [&["play", "nowhere.toml"][..], &["scene", "check", "nowhere.toml", "--json"]] {
+    for arguments in [&["play", "nowhere.toml"][..], &["check", "nowhere.toml", "--json"]] {
         assert_eq!(unread(arguments, true).status.code(), Some(1), "{arguments:?}");
     }
 }
 
 #[test]
 fn a_result_that_is_not_read_is_an_error() {
-    let output = unread(&["calibrate", "--strokes", "9", "-o", "-"], false);
+    let output = unread(&["finger", "calibrate", "--strokes", "9", "-o", "-"], false);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("standard output") && said.contains("Broken pipe"), "{said}");

@@ -120,7 +120,7 @@ fn a_finger_on_a_board_is_recorded_as_a_stroke() {
     let folder = TempDir::new().unwrap();
     let stroke = ["--from", "10,20", "--to", "90,20", "--speed", "80"];
     let board = VirtualBoard::start(folder.path(), &stroke);
-    let record = ["record", "--port", &board.port, "-o", "mine.csv", "--overwrite", "--seconds", "3"];
+    let record = ["board", "record", "--port", &board.port, "-o", "mine.csv", "--overwrite", "--seconds", "3"];
     let (said, _) = succeed_in_time(folder.path(), &record);
     assert!(said.contains("mine.csv"), "{said}");
     drop(board);
@@ -139,10 +139,10 @@ fn a_finger_on_a_board_is_recorded_as_a_stroke() {
 fn faults_and_the_selftest_describe_a_board() {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &[]);
-    let (said, _) = succeed_in_time(folder.path(), &["faults", "--port", &board.port]);
+    let (said, _) = succeed_in_time(folder.path(), &["board", "faults", "--port", &board.port]);
     assert!(said.contains("none since power-on") && said.contains("last reset"), "{said}");
     let output = loop {
-        let output = frixel(folder.path(), &["selftest", "--port", &board.port]);
+        let output = frixel(folder.path(), &["board", "selftest", "--port", &board.port]);
         // On a busy machine an answer may be too late.
         if !output.stdout.is_empty() {
             break output;

@@ -145,7 +145,7 @@ fn wait(what: &str, mut done: impl FnMut() -> bool) {
 
 /// The last scene has all of the others, and a board plays it: what it says is no draft.
 fn expect_playable(folder: &Path) {
-    let checked = command(folder, &["scene", "check", "all.toml"]).output().unwrap();
+    let checked = command(folder, &["check", "all.toml"]).output().unwrap();
     let said = String::from_utf8(checked.stdout).unwrap() + &String::from_utf8(checked.stderr).unwrap();
     assert!(checked.status.success(), "a board refuses all.toml: {said}");
     assert!(said.contains("\"notification\"") && said.contains("\"picture\""), "{said}");

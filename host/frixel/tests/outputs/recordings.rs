@@ -10,10 +10,10 @@ const FINGER: &str = "sim --out board --from 10,20 --to 90,20";
 
 /// Records until `me.csv.partial` has rows, then ends the recorder in this way, and returns what it said.
 fn record_until_rows(folder: &Folder, board: VirtualBoard, kills: bool) -> (VirtualBoard, String) {
-    let line = format!("record --port {} -o me.csv --overwrite", board.port);
+    let line = format!("board record --port {} -o me.csv --overwrite", board.port);
     let mut child = folder.command(&line).stdout(Stdio::null()).spawn().unwrap();
     until("rows", || folder.path("me.csv.partial").exists() && folder.text("me.csv.partial").len() > 2_000);
-    let second = folder.run("record --port nowhere -o me.csv --overwrite");
+    let second = folder.run("board record --port nowhere -o me.csv --overwrite");
     assert!(second.refused("me.csv is being written by another frixel"), "{}", second.notes);
     let board = if kills {
         child.kill().unwrap();
@@ -34,16 +34,16 @@ fn a_recording_that_ends_early_leaves_its_rows_which_the_next_one_names_and_fini
         assert!(kills || said.contains(says), "{said}");
         let rows = folder.text("me.csv.partial");
         assert!(rows.ends_with('\n') && rows.lines().all(|row| row.split(',').count() == 3), "whole rows");
-        let ran = folder.run(&format!("record --port {} -o me.csv --seconds 0.3", board.port));
+        let ran = folder.run(&format!("board record --port {} -o me.csv --seconds 0.3", board.port));
         let says = "me.csv.partial has the rows of a recording that was cut off: add --finish to keep them, or record \
                     anew with --overwrite";
         assert!(ran.refused(says), "{}", ran.notes);
         // A part of a row, as a process that was killed may leave one.
         folder.write("me.csv.partial", &(rows.clone() + "9.1234"));
-        let ran = folder.run("record --finish -o me.csv");
+        let ran = folder.run("board record --finish -o me.csv");
         assert!(ran.code == Some(0) && ran.said.contains("s of touch"), "{}{}", ran.said, ran.notes);
         assert_eq!(folder.text("me.csv"), rows);
-        assert!(folder.run("record --finish -o other.csv").refused("leave --finish out"));
+        assert!(folder.run("board record --finish -o other.csv").refused("leave --finish out"));
     }
 }
 
@@ -55,10 +55,11 @@ fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
     let board = VirtualBoard::start(&folder, "sim --out board --stroke none.csv");
     folder.write("me.csv", ROWS);
     folder.write("me.csv.partial", ROWS);
-    let ran = folder.run(&format!("record --port {} -o me.csv", board.port));
+    let ran = folder.run(&format!("board record --port {} -o me.csv", board.port));
     let says = "me.csv is there already, and a recording is not replaced: give another name to -o, or add --overwrite";
     assert!(ran.refused(says), "{}", ran.notes);
-    for line in [format!("record --port {} --seconds 0.3", board.port), "record --port nowhere".to_owned()] {
+    for line in [format!("board record --port {} --seconds 0.3", board.port), "board record --port nowhere".to_owned()]
+    {
         let ran = folder.run(&format!("{line} -o me.csv --overwrite"));
         assert_eq!(ran.code, Some(1), "{line}: {}", ran.notes);
         let kept = ["me.csv", "me.csv.partial"].map(|name| folder.text(name));
@@ -79,7 +80,7 @@ fn a_record_is_not_finished_with_rows_that_no_record_writes() {
         let folder = Folder::new();
         folder.write("me.csv.partial", &text);
         let before = folder.names();
-        let ran = folder.run("record --finish -o me.csv");
+        let ran = folder.run("board record --finish -o me.csv");
         assert!(ran.refused(says) && (ran.refused(no_stroke) || !text.ends_with('\n')), "{text:?}: {}", ran.notes);
         assert_eq!((folder.names(), folder.text("me.csv.partial")), (before, text));
     }
@@ -93,7 +94,7 @@ fn a_calibration_that_was_cut_off_keeps_its_rows_until_its_forces_fit() {
     folder.write("me.csv.partial", rows);
     folder.write("forces.csv", "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n");
     for finish in ["", " --finish"] {
-        let ran = folder.run(&format!("calibrate --strokes 9 -o me.csv --forces forces.csv{finish}"));
+        let ran = folder.run(&format!("finger calibrate --strokes 9 -o me.csv --forces forces.csv{finish}"));
         assert!(ran.code == Some(1) && ran.notes.contains("me.csv.partial"), "{}", ran.notes);
         assert_eq!(folder.text("me.csv.partial"), rows);
     }

@@ -139,7 +139,7 @@ pub fn read_forces(mut input: impl Read) -> Result<Reading<Vec<ForceRow>>, Calib
     Ok(Reading { value: rows, understood: table.understood() })
 }
 
-/// A row of the file that `frixel fit` reads.
+/// A row of the file that `frixel finger fit` reads.
 #[derive(Serialize)]
 struct Written<'r> {
     time_s: f64,

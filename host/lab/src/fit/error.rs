@@ -509,6 +509,7 @@ fn cure(quantity: &str) -> &'static str {
         "that friction does not leak into the sensor's normal force, nor the load into its friction"
     } else {
         "that the amplifier reaches the highest voltage with the electrode connected, and that the force sensor is \
-         linear; if so, `frixel fit DATA.csv --law empirical` fits a power law of the voltage in the model's place"
+         linear; if so, `frixel finger fit DATA.csv --law empirical` fits a power law of the voltage in the model's \
+         place"
     }
 }

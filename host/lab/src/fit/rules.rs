@@ -24,8 +24,8 @@ const NEAR_TOP: f64 = 0.8;
 const VOLTAGE_RATIO_MIN: f64 = 1.15;
 /// A force above it, in newtons, is none of a finger on a touchscreen.
 const FORCE_MAX_N: f64 = 50.0;
-/// Least mean time for which a voltage that was set rests: `frixel calibrate` switches every 20 to 30 ms, and the
-/// samples of a carrier of 60 Hz change by a fifth of the peak every 2 ms.
+/// Least mean time for which a voltage that was set rests: `frixel finger calibrate` switches every 20 to 30 ms, and
+/// the samples of a carrier of 60 Hz change by a fifth of the peak every 2 ms.
 const REST_MIN_S: f64 = 8e-3;
 /// The same in rows, where there are no times.
 const REST_MIN_ROWS: f64 = 2.0;

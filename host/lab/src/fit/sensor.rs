@@ -33,7 +33,7 @@ const SETTLING_ERROR_MAX: f64 = 0.5;
 /// Means of a voltage over other rows differ by less than this part of it.
 const SAME_VOLTAGE: f64 = 0.01;
 
-/// What is looked at around a switch, in seconds: `frixel calibrate` switches after 20 to 30 ms.
+/// What is looked at around a switch, in seconds: `frixel finger calibrate` switches after 20 to 30 ms.
 const BEFORE_S: f64 = 8e-3;
 const AFTER_S: f64 = 18e-3;
 /// Friction from this long before a switch to the switch, and from this long after it, may be on its way.

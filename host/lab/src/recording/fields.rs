@@ -149,7 +149,7 @@ const PLAY: [(&str, &str, &str, Source); 12] = [
     ),
 ];
 
-/// The columns of a stroke that `frixel record` writes.
+/// The columns of a stroke that `frixel board record` writes.
 const STROKE: [(&str, &str, &str, Kind); 3] = [
     ("t_s", "s", "time since the first touch", Kind::Number),
     ("x_mm", "mm", "the finger's place from the left edge of the screen", Kind::Number),

@@ -82,8 +82,8 @@ class Device:
         Parameters
         ----------
         port
-            The path of a serial port (`frixel ports` lists them), or `"sim"` for a simulated board, under a realistic
-            finger that slides over the screen again and again.
+            The path of a serial port (`frixel board ports` lists them), or `"sim"` for a simulated board, under a
+            realistic finger that slides over the screen again and again.
         arm
             Let a board that is not simulated drive its electrode, with hundreds of volts. A person then presses and
             holds its arm switch before `play`.

@@ -31,7 +31,7 @@ class Fit:
     finger
         The finger, for `Scene.with_finger` and `Simulator`; `finger.text` is its file.
     summary
-        The numbers of `frixel fit --json` (`docs/outputs.md`), each with its 95 % interval under its name with
+        The numbers of `frixel finger fit --json` (`docs/outputs.md`), each with its 95 % interval under its name with
         `_interval`. The main ones are `friction_coefficient`, without a unit; `electric_friction_n`, N, at
         `stated_voltage_v_rms`, V rms, under `normal_load_n`, N; `voltage_exponent`, without a unit; `skin_gap_um`, um;
         `bandwidth_hz`, Hz.
@@ -71,7 +71,7 @@ def fit(
     date: datetime.date | None = None,
     seed: int = 1,
 ) -> Fit:
-    """Fit a finger to the samples of a force sensor, as `frixel fit` does.
+    """Fit a finger to the samples of a force sensor, as `frixel finger fit` does.
 
     Parameters
     ----------

@@ -149,7 +149,7 @@ class Scene:
     def check(
         self, *, touch: TouchSource | str | int | Mapping[str, Any] = "100", board: bool = False
     ) -> dict[str, Any]:
-        """What the scene costs and what a finger will feel of it, as `frixel scene check --json` prints it.
+        """What the scene costs and what a finger will feel of it, as `frixel check --json` prints it.
 
         Parameters
         ----------

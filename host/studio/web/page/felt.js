@@ -103,7 +103,7 @@ export function showFelt({ layers, report, ...scale }) {
     ...(layers.length > 0 ? [stepLine()] : []),
     ...remarks.map(({ name, text }) => element("p", { className: "remark" }, element("b", {}, name), ` ${text}`)),
     fold("What a board needs for it", pairs(board)),
-    fold("In words, as frixel scene check says it", pairs(named.filter(({ name }) => OF_LAYERS.includes(name)))),
+    fold("In words, as frixel check says it", pairs(named.filter(({ name }) => OF_LAYERS.includes(name)))),
   );
   // What a person has unfolded stays so.
   for (const details of felt.querySelectorAll("details"))

@@ -162,7 +162,7 @@ fn what_the_discharging_resistor_takes_is_said() {
     let carrier = read().unwrap();
     let hardware = fs::read_to_string(root().join("docs/hardware.md")).unwrap();
     let series_ohm = value(&carrier, "R1") + value(&carrier, "R2");
-    // Built in, and for 150 V rms (`frixel safety`).
+    // Built in, and for 150 V rms (`frixel board safety`).
     for series_ohm in [series_ohm, 374e3] {
         let taken = series_ohm / (series_ohm + value(&carrier, "R3"));
         let said = format!("{:.1} % at {} kOhm", 100.0 * taken, 1e-3 * series_ohm);

@@ -7,7 +7,7 @@ use frixel_play::RigStream;
 use frixel_scene::Scene;
 
 use super::super::experiment;
-use super::super::ports::BOARDS;
+use super::super::port::BOARDS;
 #[cfg(unix)]
 pub(super) use super::emulator::{play_on_emulator, play_on_pico};
 use super::follow::follow;

@@ -9,6 +9,7 @@ use frixel_play::Feed;
 
 use crate::stream;
 
+use super::super::argument::RARE;
 use super::super::terminal::note;
 use super::target::Target;
 
@@ -17,12 +18,11 @@ const STANDARD_INPUT: &str = "-";
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StreamArgs {
-    /// Samples for the scene's stream layers: a WAV file, or `-` for raw ones on standard input, two bytes each,
-    /// little-endian.
+    /// Samples of stream layers: a WAV file, or `-` for 16-bit little-endian standard input.
     #[arg(long, value_name = "FILE.wav")]
     stream: Option<PathBuf>,
     /// Sample rate of standard input, in Hz.
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", help_heading = RARE)]
     stream_hz: Option<u32>,
 }
 

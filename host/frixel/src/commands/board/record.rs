@@ -1,4 +1,4 @@
-//! `frixel record`: the way of a finger on a board, as a stroke file.
+//! `frixel board record`: the way of a finger on a board, as a stroke file.
 
 use std::fmt::Display;
 use std::io::Write;
@@ -14,12 +14,12 @@ use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_wire::hello::Hello;
 
-use super::experiment::cut_off;
-use super::interrupt::Interrupt;
-use super::parquet;
-use super::ports;
-use super::terminal::{note, say};
-use super::waiting;
+use crate::commands::experiment::cut_off;
+use crate::commands::interrupt::Interrupt;
+use crate::commands::parquet;
+use crate::commands::port;
+use crate::commands::terminal::{note, say};
+use crate::commands::waiting;
 
 /// Rows a second.
 const ROWS_HZ: u32 = 200;
@@ -30,7 +30,7 @@ const HEADER: &str = "t_s,x_mm,y_mm";
 const CUT_OFF: &str = "add --finish to keep them";
 
 #[derive(Debug, Args)]
-pub(super) struct RecordArgs {
+pub(in crate::commands) struct RecordArgs {
     /// Path of the board's serial port.
     #[arg(long, required_unless_present = "finish")]
     port: Option<String>,
@@ -39,7 +39,7 @@ pub(super) struct RecordArgs {
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
-    #[arg(long, value_name = "CODE", value_parser = super::argument::participant)]
+    #[arg(long, value_name = "CODE", value_parser = crate::commands::argument::participant)]
     participant: Option<String>,
     /// Replace an earlier recording.
     #[arg(long)]
@@ -48,7 +48,7 @@ pub(super) struct RecordArgs {
     #[arg(long)]
     finish: bool,
     /// How long to record. Without it, until Ctrl-C.
-    #[arg(long, value_name = "S", value_parser = super::argument::seconds)]
+    #[arg(long, value_name = "S", value_parser = crate::commands::argument::seconds)]
     seconds: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
     let port = args.port.as_deref().unwrap_or_default();
     let interrupt = Interrupt::watch()?;
     let writer = recording.start()?;
-    let device = Device::connect(ports::open(port, &[])?)?;
+    let device = Device::connect(port::open(port, &[])?)?;
     let mut device = waiting::watch(device, &interrupt);
     let mut rows = Rows::new(writer, device.hello().tick_hz)?;
     match record(args, &mut device, &interrupt, &mut rows) {
@@ -128,7 +128,8 @@ fn finish(
 ) -> Result<()> {
     if touched == 0 {
         bail!(
-            "nothing is recorded, because the board saw no finger: slide one over its screen while `frixel record` runs"
+            "nothing is recorded, because the board saw no finger: slide one over its screen while `frixel board \
+             record` runs"
         );
     }
     if parquet::is_named_so(&args.output) {

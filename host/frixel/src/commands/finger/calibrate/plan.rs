@@ -13,8 +13,9 @@ use frixel_scene::{Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{CalibrateArgs, experiment};
+use super::CalibrateArgs;
 use crate::commands::error::of_finger;
+use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{note, say};
 use crate::output_file::Recording;

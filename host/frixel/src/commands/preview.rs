@@ -1,4 +1,4 @@
-//! `frixel scene preview`: draws the friction map of a scene, and says what a person will feel.
+//! `frixel preview`: draws the friction map of a scene, and says what a person will feel.
 
 use std::path::PathBuf;
 
@@ -13,13 +13,13 @@ use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::compile_draft;
 
-use super::super::argument::number;
-use super::super::error::of_simulation;
-use super::super::profiles::ProfileArgs;
-use super::super::terminal::{note_refusals, print_line};
+use super::argument::number;
+use super::error::of_simulation;
+use super::profiles::ProfileArgs;
+use super::terminal::{note_refusals, print_line};
 
 #[derive(Debug, Args)]
-pub(in super::super) struct PreviewArgs {
+pub(super) struct PreviewArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
     #[command(flatten)]

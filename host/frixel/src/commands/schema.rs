@@ -1,6 +1,6 @@
-//! `frixel scene schema`: the JSON schema of the scene file.
+//! `frixel schema`: the JSON schema of the scene file.
 
-use super::super::terminal::print;
+use super::terminal::print;
 use anyhow::Result;
 
 pub(super) fn run() -> Result<()> {

@@ -1,24 +1,11 @@
-//! `frixel ports`, and how every command opens the port that its `--port` names.
+//! How every command opens the serial port that its `--port` names.
 
 use anyhow::{Result, anyhow};
-use frixel_driver::{DEFAULT_BAUD, PortError, SerialLink, ports};
+use frixel_driver::{DEFAULT_BAUD, PortError, SerialLink};
 use frixel_scene::Nearest;
-
-use super::terminal::print_line;
 
 /// The boards that `--port` of `frixel play` names in place of a path.
 pub(super) const BOARDS: [&str; 3] = ["sim", "qemu", "pico"];
-
-pub(super) fn run() -> Result<()> {
-    let found = ports()?;
-    if found.is_empty() {
-        print_line("no serial port found; plug a board in, or start `frixel sim` and use the port that it prints")?;
-    }
-    for port in found {
-        print_line(port)?;
-    }
-    Ok(())
-}
 
 /// Opens the serial port that `--port` of a command names, where the command takes these boards in place of a path.
 pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {

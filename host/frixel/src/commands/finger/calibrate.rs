@@ -1,4 +1,4 @@
-//! `frixel calibrate`: records the data that `frixel fit` needs.
+//! `frixel finger calibrate`: records the data that `frixel finger fit` needs.
 
 #[cfg(test)]
 mod coverage;
@@ -14,10 +14,10 @@ use frixel_lab::calibration::{align, read_board, write_csv};
 use frixel_lab::recording::{Metadata, calibration_fields};
 use frixel_wire::hello::Hello;
 
-use super::experiment;
-use super::interrupt::Interrupt;
-use super::parquet;
-use super::terminal::say;
+use crate::commands::experiment;
+use crate::commands::interrupt::Interrupt;
+use crate::commands::parquet;
+use crate::commands::terminal::say;
 use crate::output_file::{Inputs, Recording};
 use recorded::Recorded;
 
@@ -25,16 +25,16 @@ use recorded::Recorded;
 const CUT_OFF: &str = "add --finish, and the --forces of that run unless they came on standard input, to keep it";
 
 #[derive(Debug, Args)]
-pub(super) struct CalibrateArgs {
+pub(in crate::commands) struct CalibrateArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// The recording, for `frixel fit`: CSV, or Parquet by the name DATA.parquet. Until the end, what a board reports
-    /// is CSV in a file of the same name and `.partial`.
+    /// The recording, for `frixel finger fit`: CSV, or Parquet by the name DATA.parquet. Until the end, what a board
+    /// reports is CSV in a file of the same name and `.partial`.
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
-    #[arg(long, value_name = "CODE", value_parser = super::argument::participant)]
+    #[arg(long, value_name = "CODE", value_parser = crate::commands::argument::participant)]
     participant: Option<String>,
     /// Replace an earlier recording.
     #[arg(long)]
@@ -116,5 +116,5 @@ fn write(args: &CalibrateArgs, recording: &Recording, (board, forces): &Recorded
     say(output, format_args!("  {:<16} {path}", "wrote"))?;
     let highest = rows.iter().map(|row| row.voltage_v_rms).fold(0.0, f64::max);
     let voltage = if highest < 145.0 { format!(" --voltage {highest:.0}") } else { String::new() };
-    say(output, format_args!("  {:<16} frixel fit {path}{voltage} -o finger.toml", "next"))
+    say(output, format_args!("  {:<16} frixel finger fit {path}{voltage} -o finger.toml", "next"))
 }

@@ -1,8 +1,9 @@
-//! How far `frixel calibrate` and `frixel fit` are from the truth, and how often the stated intervals contain it.
+//! How far `frixel finger calibrate` and `frixel finger fit` are from the truth, and how often the stated intervals
+//! contain it.
 //!
 //! The truth is what a board that drives 150 V rms steadily adds to the friction of the same simulated person: measured
 //! in steady sliding, under the median load of the recording, without noise. The recordings are those of the command,
-//! to the byte ([`the_command_writes_what_is_measured_here`]), and `frixel fit` prints what is fitted here
+//! to the byte ([`the_command_writes_what_is_measured_here`]), and `frixel finger fit` prints what is fitted here
 //! (`tests/fit_command.rs`).
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
@@ -49,7 +50,7 @@ fn arguments(line: &str) -> CalibrateArgs {
     Line::parse_from(format!("calibrate {line}").split(' ')).args
 }
 
-/// What `frixel calibrate` with these arguments writes.
+/// What `frixel finger calibrate` with these arguments writes.
 fn calibrated(line: &str) -> Vec<u8> {
     let (board, forces) = Simulated::new(&arguments(line)).unwrap().record(&Interrupt::default()).unwrap();
     let mut csv = Vec::new();
@@ -57,7 +58,7 @@ fn calibrated(line: &str) -> Vec<u8> {
     csv
 }
 
-/// What `frixel fit` makes of a recording.
+/// What `frixel finger fit` makes of a recording.
 fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
     let settings = Settings {
         voltage_v_rms: 150.0,

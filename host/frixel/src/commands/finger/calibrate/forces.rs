@@ -13,8 +13,8 @@ use anyhow::Result;
 use frixel_lab::calibration::{ForceRow, read_forces};
 use frixel_lab::table::Reading;
 
-use super::super::terminal::note_understood;
 use super::{CUT_OFF, CalibrateArgs};
+use crate::commands::terminal::note_understood;
 
 /// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
 pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording> {

@@ -1,4 +1,4 @@
-//! `frixel scene check`: prints the cost of a scene and the friction that can be felt of it.
+//! `frixel check`: prints the cost of a scene and the friction that can be felt of it.
 
 use std::path::PathBuf;
 
@@ -14,13 +14,13 @@ use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
 
-use super::super::argument;
-use super::super::profiles::{ProfileArgs, TouchArgs};
-use super::super::terminal::{print, print_line};
-use crate::commands::error::{at, of_simulation};
+use super::argument;
+use super::error::{at, of_simulation};
+use super::profiles::{ProfileArgs, TouchArgs};
+use super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
-pub(in super::super) struct CheckArgs {
+pub(super) struct CheckArgs {
     /// The scene, a TOML file (docs/scene.md).
     scene: PathBuf,
     #[command(flatten)]
@@ -32,7 +32,7 @@ pub(in super::super) struct CheckArgs {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Board::NAMES))]
     board: Option<String>,
     /// That board with another resistance between amplifier and electrode, kOhm, and up to its full scale: what its
-    /// touch bound leaves (`frixel safety`).
+    /// touch bound leaves (`frixel board safety`).
     #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
     /// Also report the smallest firmware build that plays it.

@@ -1,4 +1,4 @@
-//! `frixel selftest`: whether link, clock and telemetry of a board are in order. The output stays at zero.
+//! `frixel board selftest`: whether link, clock and telemetry of a board are in order. The output stays at zero.
 //! With `--wires`, it is the other side of the board's own self-test.
 
 mod report;
@@ -14,10 +14,10 @@ use frixel_driver::{Device, Event, SerialLink};
 use frixel_wire::fault::State;
 use frixel_wire::message::TickTimes;
 
-use super::interrupt::Interrupt;
-use super::ports;
-use super::terminal::print_line;
-use super::waiting;
+use crate::commands::interrupt::Interrupt;
+use crate::commands::port;
+use crate::commands::terminal::print_line;
+use crate::commands::waiting;
 
 /// Most pings whose round trip is measured, and longest time for them.
 const PINGS_MAX: u32 = 50;
@@ -33,7 +33,7 @@ const LOST_MAX_PERCENT: f64 = 5.0;
 const ROUND_TRIP_MAX: Duration = Duration::from_millis(20);
 
 #[derive(Debug, Args)]
-pub(super) struct SelftestArgs {
+pub(in crate::commands) struct SelftestArgs {
     /// Path of the board's serial port.
     #[arg(long)]
     port: String,
@@ -59,7 +59,7 @@ pub(super) fn run(args: &SelftestArgs) -> Result<()> {
     if args.wires {
         return wires::run(&args.port, args.seconds, args.output.as_deref());
     }
-    let device = Device::connect(ports::open(&args.port, &[])?)?;
+    let device = Device::connect(port::open(&args.port, &[])?)?;
     let mut device = waiting::watch(device, &Interrupt::default());
     device.disarm()?;
     let hello = *device.hello();

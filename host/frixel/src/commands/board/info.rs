@@ -1,4 +1,4 @@
-//! `frixel info`.
+//! `frixel board info`.
 
 use anyhow::Result;
 use clap::Args;
@@ -7,18 +7,18 @@ use frixel_layers::feature_names;
 use frixel_model::TouchBound;
 use frixel_wire::hello::{BoardLimits, Hello};
 
-use super::ports;
-use super::terminal::print;
+use crate::commands::port;
+use crate::commands::terminal::print;
 
 #[derive(Debug, Args)]
-pub(super) struct InfoArgs {
+pub(in crate::commands) struct InfoArgs {
     /// Path of the board's serial port.
     #[arg(long)]
     port: String,
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<()> {
-    let device = Device::connect(ports::open(&args.port, &[])?)?;
+    let device = Device::connect(port::open(&args.port, &[])?)?;
     print(describe(device.hello()))
 }
 

@@ -1,4 +1,4 @@
-//! `frixel faults`: what a board says of its last fault.
+//! `frixel board faults`: what a board says of its last fault.
 
 use anyhow::Result;
 use clap::Args;
@@ -6,13 +6,13 @@ use frixel_driver::Device;
 use frixel_scene::printable;
 use frixel_wire::fault::State;
 
-use super::interrupt::Interrupt;
-use super::ports;
-use super::terminal::print_line;
-use super::waiting;
+use crate::commands::interrupt::Interrupt;
+use crate::commands::port;
+use crate::commands::terminal::print_line;
+use crate::commands::waiting;
 
 #[derive(Debug, Args)]
-pub(super) struct FaultsArgs {
+pub(in crate::commands) struct FaultsArgs {
     /// Path of the board's serial port.
     #[arg(long)]
     port: String,
@@ -22,7 +22,7 @@ pub(super) struct FaultsArgs {
 }
 
 pub(super) fn run(args: &FaultsArgs) -> Result<()> {
-    let device = Device::connect(ports::open(&args.port, &[])?)?;
+    let device = Device::connect(port::open(&args.port, &[])?)?;
     let mut device = waiting::watch(device, &Interrupt::default());
     let hello = *device.hello();
     let line = |name: &str, value: String| print_line(format_args!("{name:16} {value}"));

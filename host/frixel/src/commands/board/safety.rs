@@ -1,4 +1,4 @@
-//! `frixel safety`: the current through a finger on an electrode, by coating, voltage and carrier frequency.
+//! `frixel board safety`: the current through a finger on an electrode, by coating, voltage and carrier frequency.
 
 use std::fmt::Write;
 
@@ -13,8 +13,8 @@ use frixel_model::{
 };
 use frixel_session::store::{LimitsError, RAIL_MAX, check_touched_board};
 
-use super::argument;
-use super::terminal::print;
+use crate::commands::argument;
+use crate::commands::terminal::print;
 use crate::scene_file;
 
 /// Largest contact of a fingertip, m2: that of the boards' worst-case electrode (assumed).
@@ -37,7 +37,7 @@ const E96: u32 = 96;
 const SERIES_DECADES_OHM: [f64; 3] = [1e3, 1e4, 1e5];
 
 #[derive(Debug, Args)]
-pub(super) struct SafetyArgs {
+pub(in crate::commands) struct SafetyArgs {
     /// The board whose limits and series resistance count.
     #[arg(long, value_name = "NAME", default_value = Board::NAMES[0], value_parser = PossibleValuesParser::new(Board::NAMES))]
     board: String,

@@ -1,9 +1,9 @@
-//! `frixel fit`: a finger's profile from measured friction.
+//! `frixel finger fit`: a finger's profile from measured friction.
 
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use super::error::reading;
+use crate::commands::error::reading;
 use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
@@ -11,35 +11,31 @@ use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
-use frixel_scene::{Experiment, FingerProfile, Screen};
+use frixel_scene::{Experiment, FingerProfile};
 use time::OffsetDateTime;
 
-use super::argument::positive;
-use super::terminal::{note_understood, print_line, say};
+use crate::commands::argument::positive;
+use crate::commands::profiles::screen;
+use crate::commands::terminal::{note_understood, print_line, say};
 
 /// Voltage at which electric friction is stated if none is given, in volts rms.
 const STATED_V_RMS: f64 = 150.0;
 
 #[derive(Debug, Args)]
-pub(super) struct FitArgs {
+pub(in crate::commands) struct FitArgs {
     /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and, if there are,
     /// `time_s,stroke,speed_mm_s`, in any order; `-` for standard input. A header may state another unit, as in
-    /// `friction_mn` (docs/outputs.md, "Tables").
-    ///
-    /// A row for each sample of a force sensor, while the finger slides in strokes and the drive is switched on and
-    /// off. `stroke` is a number or name for each stroke; without it strokes are divided where direction, speed or
-    /// clock say so, and otherwise rows are taken in 24 blocks.
-    ///
-    /// A paper's table is data as well: `friction_n` is then a mean, beside its standard error `friction_se_n`, or its
-    /// standard deviation `friction_sd_n` and the number `n` of what was averaged.
+    /// `friction_mn`. A paper's table of means, with `friction_se_n` or `friction_sd_n` and `n`, is data as well
+    /// (docs/outputs.md).
     #[arg(value_name = "DATA.csv")]
     data: PathBuf,
     /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name
     /// that ends in .svg; with another law, those of an earlier fit are removed.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
-    /// The law of the voltage that is fitted.
-    #[arg(long, value_enum, default_value_t = Law::Contact)]
+    /// Law of the voltage: `contact`, the model, which refuses data that contradict it; or `empirical`, a power law or
+    /// what strokes show at up to 16 voltages, for this screen and load.
+    #[arg(long, value_enum, default_value_t = Law::Contact, hide_possible_values = true)]
     law: Law,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
@@ -198,21 +194,6 @@ impl Outputs {
         let files = [Some(&self.profile), plots].into_iter().flatten();
         files.map(|file| file.path().display().to_string()).collect::<Vec<_>>().join(", ")
     }
-}
-
-/// The screen of the experiment and the name by which profiles refer to it.
-pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen)> {
-    let Some(named) = named else { return Ok(("example".to_owned(), Screen::example())) };
-    if let Some(screen) = Screen::bundled(named) {
-        return Ok((named.to_owned(), screen));
-    }
-    let path = Path::new(named);
-    let text = input::read_text(path, input::TOML_MAX_BYTES).map_err(reading(path))?;
-    let screen = Screen::parse(&text, named)?;
-    let name = screen.name.clone().unwrap_or_else(|| {
-        path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
-    });
-    Ok((name, screen))
 }
 
 fn open(path: &Path) -> Result<Box<dyn Read>> {

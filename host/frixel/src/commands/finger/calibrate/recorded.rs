@@ -12,10 +12,11 @@ use frixel_play::RigStream;
 use frixel_wire::hello::Hello;
 
 use super::plan::{Plan, ROW_HZ};
-use super::{CalibrateArgs, experiment, forces};
+use super::{CalibrateArgs, forces};
 use crate::commands::error::{of_finger, of_generated_stroke, reading};
-use crate::commands::fit::screen;
+use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
+use crate::commands::profiles::screen;
 use crate::commands::waiting;
 use crate::output_file::{FileWriter, Recording};
 

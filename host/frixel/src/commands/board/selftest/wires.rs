@@ -8,10 +8,10 @@ use anyhow::{Context, Result, bail};
 use frixel_board::self_test::{GREETING, LINE_TEST, LineTest, SKIP, UNPLUGGED};
 use frixel_driver::{DEFAULT_BAUD, Link, SerialLink};
 
-use super::super::ports;
-use super::super::terminal::print_line;
 use super::report::Report;
 use crate::commands::error::writing;
+use crate::commands::port;
+use crate::commands::terminal::print_line;
 use crate::input;
 use crate::output_file::{Inputs, OutputFile};
 
@@ -39,7 +39,7 @@ const ASKS: &str = "Then type: ";
 /// Does the self-test of the board at a port.
 pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<()> {
     let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
-    let link = ports::open(port, &[])?;
+    let link = port::open(port, &[])?;
     let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
     if line_seconds > 0 {
         print_line(format_args!("The line will be tested for {line_seconds} s; --seconds is another time."))?;
