@@ -8,15 +8,12 @@ use std::task::Poll;
 
 use embedded_hal_async::i2c::I2c;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
-use frixel_drivers::amplifier::{Amplifier, KickedEnable};
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::i2c_bus_clear::clear_bus;
 use frixel_drivers::polling::poll_once;
 use frixel_drivers::serial::SerialLink;
-use frixel_drivers::state_light::StateLight;
 use frixel_drivers::zforce::{self, Touch, ZForce};
 use frixel_hil_sim::chips::{BouncingContact, BusFault, HeldBus, PolledDelay, TouchEvent, Transfer, ZForceModule};
-use frixel_wire::fault::State;
 
 const TICK_HZ: u32 = 40_000;
 /// Polls until the future is ready, at most so many times.
@@ -195,64 +192,6 @@ fn a_welded_switch_is_never_held() {
     }
     change(&contact, &mut switch, false);
     assert_eq!(change(&contact, &mut switch, true).1, 1, "once it has been open it is a switch like any other");
-}
-
-/// An output that lives for one tick after it was set.
-#[derive(Default)]
-struct OneShot {
-    left_ticks: u32,
-}
-
-impl embedded_hal::digital::ErrorType for &mut OneShot {
-    type Error = Infallible;
-}
-
-impl embedded_hal::digital::OutputPin for &mut OneShot {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.left_ticks = 1;
-        Ok(())
-    }
-
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.left_ticks = 0;
-        Ok(())
-    }
-}
-
-impl KickedEnable for &mut OneShot {
-    fn kick(&mut self) {
-        self.left_ticks = 1;
-    }
-
-    fn disable(&mut self) {
-        self.left_ticks = 0;
-    }
-}
-
-#[test]
-fn an_amplifier_whose_wire_is_off_has_a_fault() {
-    let ready = BouncingContact::new(true, 0, 1);
-    let mut enable = OneShot::default();
-    let mut amplifier = Amplifier::new(&mut enable, ready.pin());
-    assert!(!amplifier.has_fault());
-    amplifier.set_enabled(true);
-    ready.press(false);
-    ready.tick();
-    assert!(amplifier.has_fault());
-    assert_eq!(enable.left_ticks, 1);
-    Amplifier::new(&mut enable, ready.pin()).set_enabled(false);
-    assert_eq!(enable.left_ticks, 0);
-}
-
-#[test]
-fn the_light_shows_the_state() {
-    let mut pin = OneShot::default();
-    let mut is_on = |state, tick| {
-        StateLight::new(&mut pin, TICK_HZ).show(state, tick);
-        pin.left_ticks > 0
-    };
-    assert!(!is_on(State::Disarmed, 0) && is_on(State::Armed, 0) && is_on(State::Active, 0));
-    assert!(is_on(State::Faulted, 0) && !is_on(State::Faulted, 5_000) && is_on(State::Faulted, 10_000));
 }
 
 /// A port that sends what it has received, `room` bytes a tick.

@@ -330,25 +330,6 @@ fn a_frame_that_is_cut_short_is_ignored_and_of_a_longer_one_the_last_24_bits_cou
     }
 }
 
-/// A supply that dips between Arm and Play: the DAC is read back before it plays.
-#[test]
-fn a_dac_that_lost_its_configuration_while_armed_is_found_before_play() {
-    let chip = Ad5761rChip::new();
-    let mut dac = dac(&chip);
-    let bus = BusHandover::new();
-    let bus = &bus;
-    let ticks = || move || _ = bus.tick_sends(true);
-    bus.while_frames_rest(ticks(), || dac.prepare()).unwrap();
-    bus.while_frames_rest(ticks(), || dac.check()).unwrap();
-    chip.brown_out();
-    assert!(matches!(bus.while_frames_rest(ticks(), || dac.check()), Err(ad5761r::Error::BrownOut(_))));
-    bus.while_frames_rest(ticks(), || dac.prepare()).unwrap();
-    chip.supply(false);
-    chip.supply(true);
-    assert!(matches!(bus.while_frames_rest(ticks(), || dac.check()), Err(ad5761r::Error::Configuration(_))));
-    assert!(chip.output_v().abs() < f64::EPSILON);
-}
-
 /// Before it arms, the main loop configures the DAC and reads it back in the middle of the tick's frames.
 #[test]
 fn the_dac_is_prepared_between_the_frames_of_the_tick() {

@@ -3,10 +3,8 @@
 
 use crate::script;
 
-use frixel_hil_sim::{AmplifierConfig, Point, RigConfig, Stroke, TickRecord, TouchConfig};
-use frixel_layers::{Blend, Grating, Header, Layer, Record, Wave, Waveform};
-use frixel_testkit::Random;
-use frixel_wire::fault::Flags;
+use frixel_hil_sim::{Point, RigConfig, Stroke, TickRecord, TouchConfig};
+use frixel_layers::{Blend, Grating, Header, Layer, Record, Wave};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::message::{Command, FromBoard};
 use frixel_wire::payload::{self, CHUNK_LEN, Payload};
@@ -98,82 +96,6 @@ fn a_gain_is_at_the_dac_within_a_millisecond_on_an_idle_line_and_two_during_an_u
     println!("from the last byte to the DAC: {idle} ticks on an idle line, {busy} during an upload; 40 are 1 ms");
     assert!(idle <= 40, "{idle} ticks");
     assert!(busy <= 80, "{busy} ticks");
-}
-
-#[test]
-fn a_layer_goes_off_and_comes_back_as_its_record_has_it_with_the_next_commit() {
-    let both = scene(&HEADER, &[constant(0.01), stripes(0.006, 300.0)]);
-    let mut script = play(&both);
-    script.command(Command::SetLayer { layer: 1, on: false, gain: 1.0 });
-    let asked = |script: &mut Script| script.step().status.telemetry.asked_electric_friction_n;
-    for _ in 0..100 {
-        assert_eq!(asked(&mut script).to_bits(), 0.01_f32.to_bits());
-    }
-    let commit = script.upload(&both);
-    script.command(commit);
-    // The board computes the scene meanwhile.
-    for _ in 0..40 {
-        script.step();
-    }
-    let back: Vec<f32> = (0..1_000).map(|_| asked(&mut script)).collect();
-    assert!(back.iter().all(|asked_n| *asked_n > 0.0109) && back.iter().any(|asked_n| *asked_n > 0.0155));
-}
-
-#[test]
-fn a_gain_out_of_reach_is_clamped_flagged_and_counted() {
-    let mut script = play(&scene(&HEADER, &[constant(0.01)]));
-    assert_eq!(script.status().counters.saturated_ticks, 0);
-    let reach_n = HEADER.friction_law().unwrap().electric_friction_n(150.0);
-    script.command(Command::SetLayer { layer: 0, on: true, gain: 100.0 });
-    let counted = script.status().counters.saturated_ticks;
-    for ticks in 1..=100 {
-        let status = script.step().status;
-        assert!(status.telemetry.flags.contains(Flags::SATURATED));
-        assert_eq!(status.counters.saturated_ticks, counted + ticks);
-        assert!((status.telemetry.voltage_v_rms - 150.0).abs() < 0.01, "{}", status.telemetry.voltage_v_rms);
-    }
-    assert!(reach_n < 1.0);
-}
-
-/// The envelope steps up and down, to zero and back, at phases of the carrier that never repeat. The electrode is
-/// behind the lag, the offset and the current limit of a realistic amplifier.
-#[test]
-fn the_electrode_has_the_voltage_asked_for_from_the_third_period_after_any_change() {
-    const PERIOD_TICKS: usize = 40;
-    for waveform in [Waveform::Square, Waveform::Sine] {
-        let mut config = config();
-        config.world.amplifier = AmplifierConfig::REALISTIC;
-        let slow =
-            Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.03 }, Point { x_m: 0.11, y_m: 0.05 }, 0.01).unwrap();
-        let mut script = Script::new(&config, slow, 1);
-        let header = Header { waveform, ..HEADER };
-        let reach_n = header.friction_law().unwrap().electric_friction_n(f64::from(header.voltage_max_v_rms));
-        script.play(&scene(&header, &[constant(0.999 * reach_n as f32)]));
-        let mut random = Random::new(1);
-        let (mut voltage_v_rms, mut constant_ticks, mut checked_phases) = (0.0, 0, 0);
-        let mut mean_squares_v2 = Vec::new();
-        for phase in 0..400 {
-            let gain = random.pick([1.0, 1.0, 0.3, 0.0]);
-            script.send(Command::SetLayer { layer: 0, on: true, gain });
-            for tick in 0..200 + random.below(100) {
-                let record = script.step();
-                mean_squares_v2.push(record.felt.mean_square_v2);
-                let before_v_rms = core::mem::replace(&mut voltage_v_rms, record.status.telemetry.voltage_v_rms);
-                constant_ticks = if voltage_v_rms.to_bits() == before_v_rms.to_bits() { constant_ticks + 1 } else { 0 };
-                if constant_ticks < 3 * PERIOD_TICKS || voltage_v_rms < 50.0 {
-                    continue;
-                }
-                let period = &mean_squares_v2[mean_squares_v2.len() - PERIOD_TICKS..];
-                let error = period.iter().sum::<f64>() / PERIOD_TICKS as f64 / f64::from(voltage_v_rms).powi(2) - 1.0;
-                assert!(
-                    error.abs() < 5e-3,
-                    "{waveform:?}, phase {phase}, tick {tick}: {error} of the mean square at {voltage_v_rms} V rms"
-                );
-                checked_phases += u32::from(constant_ticks == 3 * PERIOD_TICKS);
-            }
-        }
-        assert!(checked_phases > 150, "{checked_phases}");
-    }
 }
 
 /// What two boards under the same finger do, one playing `before` and one `after` from the start, against a third on

@@ -248,18 +248,13 @@ fn realistic_run(seed: u64, ticks: u64) -> Vec<Felt> {
     (0..ticks).map(|tick| world.apply(square(tick, 20_000))).collect()
 }
 
-#[test]
-fn a_realistic_world_is_the_same_for_the_same_seed_and_has_another_finger_for_another() {
-    assert_eq!(realistic_run(1, 8000), realistic_run(1, 8000));
-    assert_ne!(realistic_run(1, 8000), realistic_run(2, 8000));
-}
-
 /// Fixed for ever: the same bits on every platform.
 #[test]
 fn the_last_friction_of_a_realistic_run_is_the_one_it_was() {
     let last = *realistic_run(1, 20_000).last().unwrap();
     let bits = [last.friction_n, last.natural_friction_n, last.mean_square_v2].map(f64::to_bits);
     assert_eq!(bits, [4_598_905_268_221_903_569, 4_597_954_213_826_141_275, 4_669_351_140_877_307_118]);
+    assert_ne!(Some(&last), realistic_run(2, 20_000).last(), "another seed has another finger");
 }
 
 /// Takes one effect from a world as it is in another.
@@ -381,10 +376,5 @@ fn a_world_that_makes_no_sense_is_refused_by_name() {
     assert_eq!(
         refused(WorldConfig { amplifier, ..WorldConfig::default() }),
         "simulated world: amplifier gain must be finite and above 0, found -1"
-    );
-    let touch = TouchConfig { rate_hz: f64::INFINITY, ..TouchConfig::default() };
-    assert_eq!(
-        refused(WorldConfig { touch, ..WorldConfig::default() }),
-        "simulated world: touch rate_hz must be finite and above 0, found inf"
     );
 }

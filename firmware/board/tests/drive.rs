@@ -1,11 +1,9 @@
 //! A voltage of bring-up, driven through the firmware's session, ticker and supervisor.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use crate::support::firmware::{BOARD, firmware, monitor};
+use crate::support::firmware::{BOARD, Firmware};
 use frixel_board::bring_up::{Drive, DriveError, Reading};
-use frixel_control::{Sense, Ticker};
-use frixel_session::Session;
-use frixel_testkit::IdealMonitor;
+use frixel_control::Sense;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Refusal;
 
@@ -20,9 +18,7 @@ const TICKS_MAX: u32 = 400_000;
 type World<'w> = &'w dyn Fn(u32, &mut Sense);
 
 struct TestBoard {
-    session: Session<'static>,
-    ticker: Ticker<'static>,
-    monitor: IdealMonitor,
+    firmware: Firmware,
     round_ticks: u32,
     /// Largest code that was driven, as a part of full scale.
     code_max: i16,
@@ -32,16 +28,14 @@ struct TestBoard {
 
 impl TestBoard {
     fn new() -> Self {
-        let (session, ticker) = firmware();
-        Self { session, ticker, monitor: monitor(), round_ticks: ROUND_TICKS, code_max: 0, last_driven_tick: None }
+        Self { firmware: Firmware::new(), round_ticks: ROUND_TICKS, code_max: 0, last_driven_tick: None }
     }
 
     fn tick(&mut self, tick: u32, switch_held: bool, world: World) {
-        self.session.hand_order_to(&mut self.ticker);
-        let mut sense = Sense { arm_switch: switch_held, monitor_v: self.monitor.voltage_v(), ..Sense::default() };
+        let monitor_v = self.firmware.monitor.voltage_v();
+        let mut sense = Sense { arm_switch: switch_held, monitor_v, ..Sense::default() };
         world(tick, &mut sense);
-        let drive = self.ticker.tick(&sense);
-        self.monitor.follow(drive.dac_code);
+        let drive = self.firmware.tick(&sense);
         self.code_max = self.code_max.max(drive.dac_code.bits());
         if drive.amplifier_enable {
             self.last_driven_tick = Some(tick);
@@ -56,17 +50,16 @@ impl TestBoard {
     /// Drives a voltage with the switch held, while `world` changes what the board senses.
     fn drive(&mut self, peak_v: f32, world: World) -> Result<Reading, DriveError> {
         let mut drive = Drive::new(peak_v, &BOARD);
-        let mut next_status = self.ticker.status();
+        let mut next_status = self.firmware.ticker.status();
         (self.code_max, self.last_driven_tick) = (0, None);
         for tick in 1..TICKS_MAX {
             self.tick(tick, true, world);
             if tick.is_multiple_of(self.round_ticks) {
                 // The main loop has taken its status a round ago; tick count and monitor are as they are now.
-                let now_tick = self.ticker.status().telemetry.tick;
-                let status = core::mem::replace(&mut next_status, self.ticker.status());
-                let result = drive.step(&status, now_tick, self.monitor.voltage_v(), &mut self.session);
-                self.session.poll(&status);
-                while self.session.transmit(&mut [0; 64]) > 0 {}
+                let Firmware { session, ticker, monitor } = &mut self.firmware;
+                let status = core::mem::replace(&mut next_status, ticker.status());
+                let result = drive.step(&status, next_status.telemetry.tick, monitor.voltage_v(), session);
+                self.firmware.poll(&status);
                 if let Some(result) = result {
                     return result;
                 }
@@ -76,7 +69,7 @@ impl TestBoard {
     }
 
     fn state(&self) -> State {
-        self.ticker.state()
+        self.firmware.ticker.state()
     }
 }
 
@@ -178,16 +171,16 @@ fn a_main_loop_that_hangs_ends_the_drive() {
     for tick in 1..80_000 {
         board.tick(tick, true, GOOD);
         if tick < 40_000 && tick.is_multiple_of(ROUND_TICKS) {
-            let status = board.ticker.status();
-            assert_eq!(drive.step(&status, status.telemetry.tick, 0.0, &mut board.session), None);
-            board.session.poll(&status);
+            let status = board.firmware.ticker.status();
+            assert_eq!(drive.step(&status, status.telemetry.tick, 0.0, &mut board.firmware.session), None);
+            board.firmware.session.poll(&status);
         }
     }
     assert_eq!(board.state(), State::Disarmed);
     let last = board.last_driven_tick.unwrap();
     assert!(last <= 40_000 + REPORT_MAX_TICKS, "{last}");
     // It goes on too late.
-    let status = board.ticker.status();
-    let result = drive.step(&status, status.telemetry.tick, 0.0, &mut board.session);
+    let status = board.firmware.ticker.status();
+    let result = drive.step(&status, status.telemetry.tick, 0.0, &mut board.firmware.session);
     assert_eq!(result, Some(Err(DriveError::State(State::Disarmed))));
 }

@@ -61,30 +61,19 @@ fn the_dac_is_checked_before_the_board_arms_and_before_it_plays() {
 }
 
 #[test]
-fn a_dac_that_does_not_hold_its_configuration_is_not_armed() {
-    let mut board = Board::until(|board| board.wires.events.borrow().is_empty());
-    board.wires.dac.set(Err(0x1234));
-    for _ in 0..100 {
-        board.step_with_host();
+fn a_dac_that_loses_its_configuration_is_not_driven() {
+    for (before, found_by) in [(State::Disarmed, Event::Prepared), (State::Armed, Event::Checked)] {
+        let mut board = Board::until(|board| board.state() == before);
+        board.wires.dac.set(Err(0x1234));
+        board.wires.take();
+        for _ in 0..100 {
+            board.step_with_host();
+        }
+        let events = board.wires.take();
+        assert_eq!(only(&events, is_of_dac), [found_by], "{before}");
+        assert!(!events.contains(&Event::Kicked), "{before}");
+        assert_eq!((board.state(), board.main_loop.status.fault), (State::Faulted, Some((Fault::Dac, 0x1234))));
     }
-    let events = board.wires.take();
-    assert_eq!(only(&events, is_of_dac), [Event::Prepared]);
-    assert!(!events.contains(&Event::Kicked));
-    assert_eq!((board.state(), board.main_loop.status.fault), (State::Faulted, Some((Fault::Dac, 0x1234))));
-}
-
-#[test]
-fn a_dac_that_loses_its_configuration_while_armed_is_not_driven() {
-    let mut board = Board::until(|board| board.state() == State::Armed);
-    board.wires.dac.set(Err(0x4321));
-    board.wires.take();
-    for _ in 0..100 {
-        board.step_with_host();
-    }
-    let events = board.wires.take();
-    assert_eq!(only(&events, is_of_dac), [Event::Checked]);
-    assert!(!events.contains(&Event::Kicked));
-    assert_eq!((board.state(), board.main_loop.status.fault), (State::Faulted, Some((Fault::Dac, 0x4321))));
 }
 
 #[test]
@@ -125,6 +114,7 @@ fn the_light_shows_the_state() {
     let mut board = Board::new();
     board.step();
     assert!(!board.wires.light.get());
+    assert!(Board::until(|board| board.state() == State::Armed).wires.light.get());
     let mut board = Board::playing();
     assert!(board.wires.light.get());
     board.wires.ready.set(false);

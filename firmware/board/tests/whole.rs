@@ -1,17 +1,14 @@
 //! The script of bring-up through the firmware's session, ticker and supervisor, in virtual time: an amplifier whose
 //! gain is 3 % high, with a person at the switch.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::fmt::Arguments;
 
-use crate::support::firmware::{BOARD, BUILT_IN, firmware, monitor};
+use crate::support::firmware::{BOARD, BUILT_IN, Firmware};
 use crate::support::person::{self, EnablePath, Instruments};
-use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, Stop, TestOutput, run};
-use frixel_control::{Sense, Status, Ticker};
-use frixel_session::Session;
+use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, TestOutput, run};
+use frixel_control::{Sense, Status};
 use frixel_session::store::{Ceilings, write_limits};
-use frixel_testkit::IdealMonitor;
-use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
 
 /// What the board may store.
@@ -41,11 +38,9 @@ impl Hand {
 }
 
 struct WholeBench {
-    session: Session<'static>,
-    ticker: Ticker<'static>,
+    firmware: Firmware,
     /// The status of the round before.
     status: Status,
-    monitor: IdealMonitor,
     said: String,
     inputs: Inputs,
     hand: Hand,
@@ -53,32 +48,27 @@ struct WholeBench {
     driven_v: f32,
     /// Ticks with an enabled amplifier.
     enabled_ticks: u32,
-    /// At this tick of the enabled output, the amplifier loses its supply for a moment.
-    dips_at: Option<u32>,
     stored: Option<BoardLimits>,
 }
 
 impl WholeBench {
-    fn new(dips_at: Option<u32>) -> Self {
-        let (session, ticker) = firmware();
+    fn new() -> Self {
+        let firmware = Firmware::new();
         Self {
-            session,
-            status: ticker.status(),
-            ticker,
-            monitor: monitor(),
+            status: firmware.ticker.status(),
+            firmware,
             said: String::new(),
             inputs: Inputs { amplifier_ready: false, switch_closed: false },
             hand: Hand::Releases { at_tick: 0 },
             ticks: 0,
             driven_v: 0.0,
             enabled_ticks: 0,
-            dips_at,
             stored: None,
         }
     }
 
     fn monitor_v(&self) -> f32 {
-        GAIN * self.monitor.voltage_v()
+        GAIN * self.firmware.monitor.voltage_v()
     }
 
     /// A round of the main loop.
@@ -86,20 +76,15 @@ impl WholeBench {
         for _ in 0..ROUND_TICKS {
             self.ticks += 1;
             assert!(self.ticks < TICKS_MAX, "it waits for ever, after: {}", self.said);
-            self.session.hand_order_to(&mut self.ticker);
-            let dips = self.dips_at.is_some_and(|at| (at..=at + 1).contains(&self.enabled_ticks));
             let sense = Sense {
-                amplifier_fault: !self.inputs.amplifier_ready || dips,
+                amplifier_fault: !self.inputs.amplifier_ready,
                 monitor_v: self.monitor_v(),
                 arm_switch: self.hand.holds(self.ticks),
             };
-            let drive = self.ticker.tick(&sense);
-            self.monitor.follow(drive.dac_code);
-            self.enabled_ticks += u32::from(drive.amplifier_enable);
+            self.enabled_ticks += u32::from(self.firmware.tick(&sense).amplifier_enable);
         }
-        self.status = self.ticker.status();
-        self.session.poll(&self.status);
-        while self.session.transmit(&mut [0; 64]) > 0 {}
+        self.status = self.firmware.ticker.status();
+        self.firmware.poll(&self.status);
     }
 }
 
@@ -152,8 +137,8 @@ impl Bench for WholeBench {
         loop {
             let status = self.status;
             self.turn();
-            let (now_tick, monitor_v) = (self.ticker.status().telemetry.tick, self.monitor_v());
-            if let Some(result) = drive.step(&status, now_tick, monitor_v, &mut self.session) {
+            let (now_tick, monitor_v) = (self.status.telemetry.tick, self.monitor_v());
+            if let Some(result) = drive.step(&status, now_tick, monitor_v, &mut self.firmware.session) {
                 self.driven_v = peak_v;
                 return result;
             }
@@ -170,32 +155,12 @@ impl Bench for WholeBench {
     }
 }
 
-fn bring_up(dips_at: Option<u32>) -> (Result<BoardLimits, Stop>, WholeBench) {
-    let mut bench = WholeBench::new(dips_at);
-    (run(&mut bench, &BUILT_IN), bench)
-}
-
 #[test]
 fn a_board_is_brought_up_through_the_firmware() {
-    let (end, bench) = bring_up(None);
-    let limits = end.unwrap();
+    let mut bench = WholeBench::new();
+    let limits = run(&mut bench, &BUILT_IN).unwrap();
     assert_eq!(bench.stored, Some(limits));
     assert!((limits.full_scale_v_peak - 206.0).abs() < 0.1, "{limits:?}");
     // Four voltages of three seconds.
     assert!((470_000..490_000).contains(&bench.enabled_ticks), "{}", bench.enabled_ticks);
-}
-
-#[test]
-fn a_dip_of_the_amplifier_ends_bring_up_in_any_voltage() {
-    for seconds in [0, 1, 4, 7, 10] {
-        let dips_at = 40_000 * seconds + 1_000;
-        let (end, mut bench) = bring_up(Some(dips_at));
-        assert!(matches!(end, Err(Stop::Drive(DriveError::Fault(Fault::Amplifier, _)))), "{end:?}");
-        assert_eq!(bench.ticker.state(), State::Faulted);
-        assert_eq!(bench.enabled_ticks, dips_at + 1, "off at the second sample");
-        for _ in 0..LATE_TICKS {
-            bench.turn();
-        }
-        assert_eq!(bench.enabled_ticks, dips_at + 1, "nothing resumes");
-    }
 }

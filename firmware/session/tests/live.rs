@@ -29,7 +29,8 @@ fn a_layer_is_changed_only_while_it_plays() {
 fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number() {
     let mut board = TestBoard::new();
     let layer = constant(0.01);
-    board.play(&scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]));
+    let both = scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]);
+    board.play(&both);
     board.slide(1_000);
     for layer in [2, 63, 64, 255] {
         let refused = board.command(Command::SetLayer { layer, on: false, gain: 1.0 });
@@ -50,6 +51,10 @@ fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number()
     board.slide(100);
     let asked_n = board.status().telemetry.asked_electric_friction_n;
     assert!((asked_n - 0.003).abs() < 1e-7, "{asked_n}");
+    board.load(&both).unwrap();
+    board.slide(100);
+    let asked_n = board.status().telemetry.asked_electric_friction_n;
+    assert!((asked_n - 0.02).abs() < 1e-7, "a commit gives each layer what its record says: {asked_n}");
 }
 
 #[test]

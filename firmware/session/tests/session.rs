@@ -406,17 +406,6 @@ fn telemetry_comes_at_its_period_and_ends() {
 }
 
 #[test]
-fn answers_give_credit_for_every_byte_since_the_hello() {
-    let mut board = TestBoard::new();
-    board.send(&[1, 2, 3, 0]);
-    board.hello();
-    let first = board.answer(Command::Ping).received_bytes;
-    board.send(&[9, 9, 9, 0]);
-    let second = board.answer(Command::Ping).received_bytes;
-    assert_eq!(second, 2 * first + 4);
-}
-
-#[test]
 fn a_scene_is_replaced_while_it_plays() {
     let mut board = TestBoard::new();
     board.play(&constant_scene(0.005));

@@ -213,17 +213,6 @@ fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
     }
 }
 
-#[test]
-fn no_code_is_larger_than_the_largest() {
-    let timing = timing(Waveform::Square, 20);
-    assert!(codes(&mut Carrier::new(&timing), &timing, 1e6, 100).iter().all(|code| code.abs() == 20_000));
-    assert!(
-        codes(&mut Carrier::new(&CarrierTiming::ZERO_OUTPUT), &CarrierTiming::ZERO_OUTPUT, 1e6, 100)
-            .iter()
-            .all(|code| *code == 0)
-    );
-}
-
 /// To the nearest code, so that a small voltage is not lost.
 #[test]
 fn codes_are_rounded_to_the_nearest() {

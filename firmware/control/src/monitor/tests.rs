@@ -1,11 +1,12 @@
-//! What the monitor check takes for a healthy amplifier. In which time it finds a broken one is tested in
-//! `frixel-session` (`safety`) and, with the amplifiers of the simulator, in `frixel-hil-sim` (`amplifier`).
+//! What the monitor check takes for a healthy amplifier, and in which time it finds a broken one. `frixel-session`
+//! (`safety`) tests that the board stops then.
 //!
 //! The plant here is a board and its amplifier in steps of 0.2 us: the enable changes 10 us into a tick, the DAC
 //! latches the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", unread). The monitor's ADC takes 2.5
 //! us for a conversion, of which it samples for 2.2 us, and runs by itself: what a tick reads 0.9 us after its
 //! beginning was sampled up to 0.6 us after it, and as early as 1.8 us before.
 
+use frixel_model::{SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound};
 use frixel_wire::hello::BoardLimits;
 
 use super::{MonitorCheck, lag_step};
@@ -264,6 +265,25 @@ fn a_gain_that_is_off_by_40_percent_is_found_within_20_ms_from_10_v_peak_on() {
     println!("a gain off by 40 % from 10 V peak on: found after {:.1} ms at most", f64::from(most) / 40.0);
 }
 
+/// A gain that is too high by a quarter is tolerated. The current of that single fault is below its limit, and so is the
+/// current of the few milliseconds in which the gain may be as high as a single tick tolerates.
+#[test]
+fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_sees_it() {
+    let bound = TouchBound::behind(Board::NUCLEO_G474RE.limits.series_resistance_ohm);
+    for half_period_ticks in [20, 80, 160] {
+        let voltage_v = bound.voltage_max_v_peak(BOARD.tick_hz as f32 / (2 * half_period_ticks) as f32);
+        // A quarter, and 4 % of the full scale of 200 V.
+        let gain_max = 1.25 + 8.0 / f64::from(voltage_v);
+        assert!(gain_max * TOUCH_CURRENT_MAX_A_PEAK < SINGLE_FAULT_CURRENT_MAX_A_PEAK, "{voltage_v} V");
+        let driven =
+            |tick: u32| code_of(if (tick / half_period_ticks).is_multiple_of(2) { voltage_v } else { -voltage_v });
+        for (gain, is_seen) in [(1.2, false), (1.3, true)] {
+            let ticks = ticks_to_gain_fault(Plant::new(DECAYS[0]), gain, &driven, 900);
+            assert_eq!(ticks.is_some(), is_seen, "gain {gain}, {voltage_v} V, {half_period_ticks} ticks: {ticks:?}");
+        }
+    }
+}
+
 /// Offset and a gain within tolerance, together, at every carrier: the offset cancels or is allowed for.
 #[test]
 fn an_offset_within_tolerance_is_no_gain() {
@@ -329,6 +349,27 @@ fn an_amplifier_that_switches_as_its_board_says_never_faults() {
                 }
                 assert_eq!(bench.faults, 0, "{decay:?}, {voltage_v} V, {half_period_ticks} ticks, {sample_step}");
             }
+        }
+    }
+}
+
+/// 1 ms, and the two ticks in which an edge of the enable shows.
+#[test]
+fn an_output_that_stays_or_is_slow_faults_when_the_turn_off_time_is_over() {
+    for decay in [
+        Decay::Linear { v_per_s: 0.0 },
+        Decay::Linear { v_per_s: 1.2e4 },
+        Decay::Exponential { time_constant_s: 1.5e-3 },
+        // 10 MOhm and 0.53 nF.
+        Decay::HighImpedance { time_constant_s: 5.3e-3 },
+    ] {
+        for voltage_v in [20.0, 50.0, 200.0] {
+            let mut bench = Bench::new(Plant::new(decay));
+            bench.square(3_000, code_of(voltage_v), 20);
+            bench.off(42);
+            assert_eq!(bench.faults, 0, "{decay:?}, {voltage_v} V");
+            bench.off(1);
+            assert_eq!(bench.faults, 1, "{decay:?}, {voltage_v} V");
         }
     }
 }
