@@ -1,17 +1,20 @@
 //! Commands, answers, pings and events when all is well, and when a frame gets lost.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, Event, Link, PollingLink, Upload};
+use frixel_driver::{Device, DeviceError, Event, Link, PollingLink, Upload, to_the_end};
 use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
 use frixel_testkit::HEADER;
-use frixel_wire::fault::State;
+use frixel_wire::fault::{Fault, State};
+use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
-use frixel_wire::message::{Command, Refusal, TickTimes};
+use frixel_wire::message::{Accepted, Command, FromBoard, Refusal, TickTimes};
+use frixel_wire::payload::Payload;
 
-use crate::fake_board::FakeBoard;
+use crate::uploads::{picture, samples};
 use crate::virtual_link::{Fate, VirtualLine, VirtualLink, line_of};
+
+pub(crate) const MS: Duration = Duration::from_millis(1);
 
 pub(crate) fn connected(line: VirtualLine) -> Device<VirtualLink> {
     Device::connect(PollingLink::new(line)).unwrap()
@@ -22,8 +25,29 @@ pub(crate) fn reconnected(device: Device<VirtualLink>) -> Device<VirtualLink> {
     Device::connect(device.into_link()).unwrap()
 }
 
-fn virtual_board() -> Device<VirtualLink> {
-    connected(VirtualLine::new(FakeBoard::new()))
+/// A device on a line on which all is well.
+pub(crate) fn virtual_board() -> Device<VirtualLink> {
+    connected(VirtualLine::new())
+}
+
+/// A line whose board says that it has these features.
+fn with_features(features: u32) -> VirtualLine {
+    let mut line = VirtualLine::new();
+    line.says = Some(Box::new(move |payload| {
+        if let Payload::Hello(hello) = payload {
+            hello.features = features;
+        }
+        true
+    }));
+    line
+}
+
+/// Uploads a scene of this host timeout and commits it.
+pub(crate) fn commit(device: &mut Device<VirtualLink>, host_timeout_s: f32) {
+    let scene = scene(host_timeout_s);
+    let upload = Upload { scene: &scene, bitmaps: Vec::new() };
+    device.upload(&upload, &mut to_the_end).unwrap();
+    device.commit(upload.scene_crc32()).unwrap();
 }
 
 /// A scene without layers.
@@ -36,21 +60,21 @@ fn nothing(_: Event) {}
 #[test]
 fn a_scene_goes_from_upload_to_play_and_back() {
     let mut device = virtual_board();
-    let scene = scene(0.25);
-    let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-    device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
-    device.commit(upload.scene_crc32()).unwrap();
+    commit(&mut device, 0.25);
     device.arm().unwrap();
     device.play().unwrap();
+    device.wait(MS, &mut nothing).unwrap();
+    assert_eq!(line_of(&mut device).state, State::Active);
     device.stop().unwrap();
     device.disarm().unwrap();
+    device.wait(MS, &mut nothing).unwrap();
 
-    let board = &line_of(&mut device).board;
-    assert_eq!(board.scene.as_deref(), Some(scene.as_slice()));
-    assert_eq!(board.state, State::Disarmed);
-    let crc32 = upload.scene_crc32();
+    let scene = scene(0.25);
+    let crc32 = crc32(&scene);
+    let line = line_of(&mut device);
+    assert_eq!(line.state, State::Disarmed);
     assert_eq!(
-        board.commands,
+        line.commands,
         [
             Command::UploadScene { len: scene.len() as u32, crc32 },
             Command::UploadEnd,
@@ -61,6 +85,7 @@ fn a_scene_goes_from_upload_to_play_and_back() {
             Command::Disarm,
         ]
     );
+    assert_eq!(reconnected(device).hello().scene_crc32, crc32);
 }
 
 #[test]
@@ -74,27 +99,19 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
     scene.extend(record.write());
     scene.extend([0; 24]);
     for (features, refused) in [(feature::TELEMETRY, true), (feature::STREAM | feature::POLYGON, false)] {
-        let mut board = FakeBoard::new();
-        board.hello.features = features;
-        let mut device = connected(VirtualLine::new(board));
-        let error =
-            device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| ControlFlow::Continue(())).err();
+        let mut device = connected(with_features(features));
+        let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut to_the_end).err();
         let said = error.map(|error| error.to_string());
         assert_eq!(said.is_some(), refused, "{said:?}");
         assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.0")));
-        assert_eq!(line_of(&mut device).board.commands.is_empty(), refused);
+        assert_eq!(line_of(&mut device).commands.is_empty(), refused);
     }
-}
-
-#[test]
-fn the_hello_is_the_boards() {
-    assert_eq!(*virtual_board().hello(), FakeBoard::new().hello);
 }
 
 #[test]
 fn wait_lets_its_time_pass_and_hands_over_telemetry() {
     let mut device = virtual_board();
-    device.subscribe(400).unwrap();
+    device.subscribe(80).unwrap();
     let mut ticks = Vec::new();
     device
         .wait(Duration::from_secs(1), &mut |event| match event {
@@ -103,7 +120,7 @@ fn wait_lets_its_time_pass_and_hands_over_telemetry() {
         })
         .unwrap();
     assert!((99..=100).contains(&ticks.len()), "{} messages in 1 s at 100 Hz", ticks.len());
-    assert!(ticks.windows(2).all(|pair| pair[1] - pair[0] == 400));
+    assert!(ticks.windows(2).all(|pair| pair[1] - pair[0] == 80));
 
     device.subscribe(0).unwrap();
     let started = device.now();
@@ -116,53 +133,37 @@ fn wait_lets_its_time_pass_and_hands_over_telemetry() {
 
 #[test]
 fn events_during_a_call_are_delivered_later() {
-    let mut board = FakeBoard::new();
-    let mut busy = 3;
-    board.falls_to = Some((Duration::from_millis(3), State::Disarmed));
-    board.refuse = Some(Box::new(move |command| {
-        busy -= i32::from(*command == Command::Arm);
-        (busy >= 0 && *command == Command::Arm).then_some(Refusal::Busy)
-    }));
-    let mut device = connected(VirtualLine::new(board));
-    device.arm().unwrap();
+    let mut device = virtual_board();
+    line_of(&mut device).rig.raise(Fault::Deadline, 1);
+    let (samples, scene) = (samples(6_250), scene(0.25));
+    device.upload(&Upload { scene: &scene, bitmaps: vec![picture(&samples)] }, &mut to_the_end).unwrap();
     let mut changes = Vec::new();
     device
         .wait(Duration::ZERO, &mut |event| {
-            if let Event::StateChanged { state, .. } = event {
-                changes.push(state);
+            if let Event::StateChanged { state, fault, .. } = event {
+                changes.push((state, fault));
             }
         })
         .unwrap();
-    assert_eq!(changes, [State::Disarmed]);
-}
-
-#[test]
-fn pings_keep_the_board_company() {
-    let mut device = virtual_board();
-    device.wait(Duration::from_secs(10), &mut nothing).unwrap();
-    let silence = line_of(&mut device).board.longest_silence;
-    assert!(silence <= Duration::from_millis(61), "{silence:?} of silence, a host timeout is 250 ms");
+    assert_eq!(changes, [(State::Faulted, Some(Fault::Deadline))]);
 }
 
 /// Longest time without a frame over the next second.
 fn silence_of(device: &mut Device<VirtualLink>) -> Duration {
-    line_of(device).board.longest_silence = Duration::ZERO;
+    line_of(device).longest_silence = Duration::ZERO;
     let mut buffer = Vec::new();
     let end = device.now() + Duration::from_secs(1);
     while device.now() < end {
         device.link_mut().read(&mut buffer, Duration::from_millis(100)).unwrap();
     }
-    line_of(device).board.longest_silence
+    line_of(device).longest_silence
 }
 
 #[test]
 fn pings_follow_the_committed_scenes_host_timeout() {
-    for (host_timeout_s, longest_ms) in [(0.02, 6), (0.1, 26), (1.0, 61), (f32::NAN, 61), (-1.0, 61)] {
+    for (host_timeout_s, longest_ms) in [(0.02, 6), (0.1, 26), (1.0, 61)] {
         let mut device = virtual_board();
-        let scene = scene(host_timeout_s);
-        let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-        device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
-        device.commit(upload.scene_crc32()).unwrap();
+        commit(&mut device, host_timeout_s);
         device.arm().unwrap();
         let silence = silence_of(&mut device);
         assert!(silence <= Duration::from_millis(longest_ms), "{silence:?} with a timeout of {host_timeout_s} s");
@@ -177,10 +178,7 @@ fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
     for (fate, good) in hit.flat_map(|fate| [1, 2, 3].map(|good| (fate, good))) {
         for host_timeout_ms in [20, 250] {
             let mut device = virtual_board();
-            let scene = scene(host_timeout_ms as f32 / 1000.0);
-            let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-            device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
-            device.commit(upload.scene_crc32()).unwrap();
+            commit(&mut device, host_timeout_ms as f32 / 1000.0);
             device.arm().unwrap();
             device.play().unwrap();
             let played_at = device.counters().frames_sent;
@@ -190,6 +188,7 @@ fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
             });
             let silence = silence_of(&mut device);
             assert!(silence < Duration::from_millis(host_timeout_ms), "{fate:?}, {good} good: {silence:?}");
+            assert_eq!(line_of(&mut device).state, State::Active, "{fate:?}, {good} good");
         }
     }
 }
@@ -204,9 +203,9 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     armed.arm().unwrap();
     let mut uploaded = virtual_board();
     uploaded.arm().unwrap();
-    uploaded.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
+    uploaded.upload(&upload, &mut to_the_end).unwrap();
     let mut refused = virtual_board();
-    refused.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
+    refused.upload(&upload, &mut to_the_end).unwrap();
     refused.commit(upload.scene_crc32() + 1).unwrap_err();
     refused.arm().unwrap();
     for mut device in [armed, uploaded, refused] {
@@ -228,60 +227,54 @@ fn a_disarmed_board_is_pinged_at_leisure() {
 fn a_refusal_names_the_command_and_the_reason() {
     let mut device = virtual_board();
     let error = device.play().unwrap_err();
-    assert!(
-        matches!(error, DeviceError::Refused { command: "play", refusal: Refusal::WrongState(State::Disarmed), .. }),
-        "{error}"
-    );
+    assert!(matches!(error, DeviceError::Refused { command: "play", refusal: Refusal::NoScene, .. }), "{error}");
 }
 
 #[test]
-fn busy_is_tried_again_until_the_board_is_not() {
-    let mut board = FakeBoard::new();
-    let mut left = 20;
-    board.refuse = Some(Box::new(move |command| {
-        left -= i32::from(matches!(command, Command::Arm));
-        (left > 0 && *command == Command::Arm).then_some(Refusal::Busy)
-    }));
-    let mut device = connected(VirtualLine::new(board));
-    device.arm().unwrap();
-    assert_eq!(line_of(&mut device).board.state, State::Armed);
-}
-
-#[test]
-fn a_board_that_stays_busy_is_given_up_within_a_second() {
-    let mut board = FakeBoard::new();
-    board.refuse = Some(Box::new(|command| (*command == Command::Arm).then_some(Refusal::Busy)));
-    let mut device = connected(VirtualLine::new(board));
-    let error = device.arm().unwrap_err();
-    assert!(matches!(error, DeviceError::Refused { refusal: Refusal::Busy, .. }), "{error}");
-    assert!(device.now() < Duration::from_secs(1));
+fn busy_is_tried_again_for_a_second() {
+    for busy_times in [20, u32::MAX] {
+        let mut line = VirtualLine::new();
+        let mut left = busy_times;
+        line.refuse = Some(Box::new(move |command| {
+            left -= u32::from(*command == Command::Arm);
+            (left > 0 && *command == Command::Arm).then_some(Refusal::Busy)
+        }));
+        let mut device = connected(line);
+        match device.arm() {
+            Ok(()) => assert_eq!((busy_times, line_of(&mut device).state), (20, State::Armed)),
+            Err(error) => {
+                assert!(matches!(error, DeviceError::Refused { refusal: Refusal::Busy, .. }), "{error}");
+                assert_eq!(busy_times, u32::MAX);
+                assert!(device.now() < Duration::from_secs(1));
+            }
+        }
+    }
 }
 
 /// The board armed at the first command; the second one is refused, and that is as good.
 #[test]
 fn a_lost_answer_does_not_fail_a_command() {
-    let mut line = VirtualLine::new(FakeBoard::new());
+    let mut line = VirtualLine::new();
     // After the hello and the answer to the first ping.
     line.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Lost } else { Fate::Arrives });
     let mut device = connected(line);
     device.arm().unwrap();
-    let board = &line_of(&mut device).board;
-    assert_eq!(board.state, State::Armed);
-    assert_eq!(board.commands, [Command::Arm, Command::Arm]);
+    let line = line_of(&mut device);
+    assert_eq!((line.state, &line.commands[..]), (State::Armed, &[Command::Arm, Command::Arm][..]));
 }
 
 #[test]
 fn a_lost_command_is_sent_again() {
-    let mut line = VirtualLine::new(FakeBoard::new());
+    let mut line = VirtualLine::new();
     line.to_board_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(5) } else { Fate::Arrives });
     let mut device = connected(line);
     device.arm().unwrap();
-    assert_eq!(line_of(&mut device).board.commands, [Command::Arm]);
+    assert_eq!(line_of(&mut device).commands, [Command::Arm]);
 }
 
 #[test]
 fn damaged_frames_of_the_board_are_counted() {
-    let mut line = VirtualLine::new(FakeBoard::new());
+    let mut line = VirtualLine::new();
     line.to_host_weather = Box::new(|number, _| if number == 2 { Fate::Damaged(3) } else { Fate::Arrives });
     let mut device = connected(line);
     assert_eq!(device.counters().frames_rejected, 0);
@@ -297,10 +290,16 @@ fn tick_times_are_read_only_from_a_board_with_telemetry() {
         (feature::TELEMETRY, TickTimes::default(), None, true),
         (0, measured, None, false),
     ] {
-        let mut board = FakeBoard::new();
-        (board.hello.features, board.tick_times) = (features, board_says);
-        let mut device = connected(VirtualLine::new(board));
+        let mut device = connected(with_features(features));
+        line_of(&mut device).says = Some(Box::new(move |payload| {
+            if let Payload::FromBoard(FromBoard::Answer(answer)) = payload
+                && let Ok(Accepted::TickTimes(times)) = &mut answer.outcome
+            {
+                *times = board_says;
+            }
+            true
+        }));
         assert_eq!(device.tick_times().unwrap(), found, "{features:#x}");
-        assert_eq!(!line_of(&mut device).board.commands.is_empty(), is_asked, "{features:#x}");
+        assert_eq!(!line_of(&mut device).commands.is_empty(), is_asked, "{features:#x}");
     }
 }

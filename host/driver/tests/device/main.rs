@@ -1,10 +1,9 @@
-//! The driver library against a fake board: over a line in virtual time, where everything is counted, and over a
+//! The driver library against the simulated board: over a line in virtual time, where everything is counted, and over a
 //! pseudo-terminal.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the tests use pseudo-terminals in real time")]
 
 mod calls;
-mod fake_board;
 #[cfg(unix)]
 mod pty_board;
 #[cfg(unix)]

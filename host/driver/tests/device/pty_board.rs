@@ -1,4 +1,4 @@
-//! A fake board behind a pseudo-terminal, in its own thread.
+//! The simulated board behind a pseudo-terminal, in its own thread.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use frixel_driver::{Link, LinkClosed, SerialLink, Written};
+use frixel_driver::{ByteStream, Link, LinkClosed, SerialLink, Written};
 use serialport::{SerialPort, TTYPort};
 
-use crate::fake_board::FakeBoard;
+use crate::virtual_link::VirtualLine;
 
 /// How much slower the clock of a [`Patient`] link runs.
 const PATIENCE: u32 = 40;
@@ -50,26 +50,26 @@ impl Link for Patient {
 
 pub(crate) struct PtyBoard {
     pub(crate) path: String,
-    pub(crate) board: Arc<Mutex<FakeBoard>>,
+    pub(crate) line: Arc<Mutex<VirtualLine>>,
     unplugged: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl PtyBoard {
-    pub(crate) fn start(board: FakeBoard) -> Self {
+    pub(crate) fn start() -> Self {
         let (master, slave) = TTYPort::pair().unwrap();
         let path = slave.name().unwrap();
-        let board = Arc::new(Mutex::new(board));
+        let line = Arc::new(Mutex::new(VirtualLine::new()));
         let unplugged = Arc::new(AtomicBool::new(false));
         let thread = std::thread::spawn({
-            let (board, unplugged) = (Arc::clone(&board), Arc::clone(&unplugged));
+            let (line, unplugged) = (Arc::clone(&line), Arc::clone(&unplugged));
             // The slave is held open, so that hosts may come and go.
             move || {
-                serve(master, &board, &unplugged);
+                serve(master, &line, &unplugged);
                 drop(slave);
             }
         });
-        Self { path, board, unplugged, thread: Some(thread) }
+        Self { path, line, unplugged, thread: Some(thread) }
     }
 
     /// Pulls the cable: returns when the pseudo-terminal is gone.
@@ -81,9 +81,9 @@ impl PtyBoard {
     }
 
     /// Waits until the board is as wanted; a test that waits in vain fails.
-    pub(crate) fn until(&self, wanted: impl Fn(&FakeBoard) -> bool) {
+    pub(crate) fn until(&self, wanted: impl Fn(&VirtualLine) -> bool) {
         let started = Instant::now();
-        while !wanted(&self.board.lock().unwrap()) {
+        while !wanted(&self.line.lock().unwrap()) {
             assert!(started.elapsed() < Duration::from_mins(2), "the board did not get there");
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -96,11 +96,12 @@ impl Drop for PtyBoard {
     }
 }
 
-fn serve(mut master: TTYPort, board: &Mutex<FakeBoard>, unplugged: &AtomicBool) {
+/// Time passes on the board as it takes bytes, and otherwise a tick in 2 ms: far slower than on the machine, so that it
+/// bears with a host that is not given the processor.
+fn serve(mut master: TTYPort, line: &Mutex<VirtualLine>, unplugged: &AtomicBool) {
     master.set_timeout(Duration::from_millis(2)).unwrap();
     let mut to_host = master.try_clone().unwrap();
     to_host.set_timeout(Duration::from_secs(5)).unwrap();
-    let started = Instant::now();
     let mut bytes = [0; 512];
     while !unplugged.load(Ordering::Relaxed) {
         let len = match master.read(&mut bytes) {
@@ -108,10 +109,15 @@ fn serve(mut master: TTYPort, board: &Mutex<FakeBoard>, unplugged: &AtomicBool) 
             Err(error) if error.kind() == ErrorKind::TimedOut => 0,
             Err(error) => panic!("{error}"),
         };
-        let mut board = board.lock().unwrap();
-        let mut out = board.receive(&bytes[..len], started.elapsed());
-        out.extend(board.poll(started.elapsed()));
-        drop(board);
+        let mut line = line.lock().unwrap();
+        line.write(&bytes[..len]).unwrap();
+        line.step();
+        while line.under_way() > 0 {
+            line.step();
+        }
+        let mut out = Vec::new();
+        line.read(&mut out, Duration::ZERO).unwrap();
+        drop(line);
         match to_host.write_all(&out) {
             Ok(()) => {}
             // What nobody reads is lost, as on a real line.

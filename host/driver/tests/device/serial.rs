@@ -4,18 +4,16 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{
-    Bitmap, DEFAULT_BAUD, Device, DeviceError, KEEP_ALIVE_TIMEOUT, Link, PortError, SerialLink, Upload,
-};
+use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLink, Upload, to_the_end};
 use frixel_wire::fault::State;
-use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
+use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request};
-use frixel_wire::payload::{hello_request_frame, request_frame};
+use frixel_wire::payload::{Payload, hello_request_frame, request_frame};
 use serialport::{SerialPort, TTYPort};
 
 use crate::calls::scene;
-use crate::fake_board::FakeBoard;
 use crate::pty_board::{Patient, PtyBoard};
+use crate::uploads::{picture, samples};
 
 const LONG: Duration = Duration::from_mins(10);
 
@@ -36,17 +34,15 @@ fn not_opened(path: &str) -> PortError {
 
 #[test]
 fn a_scene_plays_over_a_serial_port() {
-    let board = PtyBoard::start(FakeBoard::new());
+    let board = PtyBoard::start();
     let mut device = connect(&board);
-    let scene = scene(0.25);
-    let samples: Vec<u8> = (0..62_500_u64).map(|n| (n * n / 7) as u8).collect();
-    let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
-    let upload = Upload { scene: &scene, bitmaps: vec![bitmap] };
-    device.upload(&upload, &mut |_| ControlFlow::Continue(())).unwrap();
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
+    device.upload(&upload, &mut to_the_end).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
     device.arm().unwrap();
     device.play().unwrap();
-    device.subscribe(400).unwrap();
+    device.subscribe(40).unwrap();
     let mut heard = 0;
     let waits = (0..100).take_while(|_| {
         device.wait(Duration::from_millis(10), &mut |_| heard += 1).unwrap();
@@ -56,85 +52,58 @@ fn a_scene_plays_over_a_serial_port() {
     assert!(heard >= 5, "{heard} messages of telemetry in a second");
     let counters = device.counters();
     assert_eq!((counters.payload_bytes, counters.frames_rejected), ((samples.len() + scene.len()) as u64, 0));
-    let board = board.board.lock().unwrap();
-    assert_eq!(board.state, State::Active);
-    assert_eq!(board.scene.as_ref(), Some(&scene));
-    assert_eq!(board.bitmaps.get(&crc32(&samples)), Some(&samples));
+    assert_eq!(board.line.lock().unwrap().state, State::Active);
 }
 
+/// That they end when the application hangs, the player's tests show in virtual time.
 #[test]
 fn pings_go_out_while_nobody_calls() {
-    let board = PtyBoard::start(FakeBoard::new());
+    let board = PtyBoard::start();
     let mut device = connect(&board);
     // Then a ping is due every 5 ms, some 200 before the keep-alive timeout.
     device.arm().unwrap();
-    let before = board.board.lock().unwrap().pings;
-    board.until(|board| board.pings > before + 5);
-}
-
-/// However late this thread wakes up: it counts what was sent, and it alone makes calls.
-#[test]
-fn pings_end_when_the_application_hangs_and_go_on_when_it_calls_again() {
-    let board = PtyBoard::start(FakeBoard::new());
-    let mut device = connect(&board);
-    device.arm().unwrap();
-    let sent = |device: &Device<Patient>| device.counters().frames_sent;
-    std::thread::sleep(KEEP_ALIVE_TIMEOUT);
-    let at_the_end = sent(&device);
-    std::thread::sleep(Duration::from_millis(200));
-    assert_eq!(sent(&device), at_the_end, "pings of 5 ms went on without the application");
-    device.keep_alive().unwrap();
-    board.until(|_| sent(&device) > at_the_end + 5);
+    let before = board.line.lock().unwrap().pings;
+    board.until(|line| line.pings > before + 5);
 }
 
 #[test]
 fn a_dropped_device_stops_and_disarms_and_the_next_host_is_welcome() {
-    let board = PtyBoard::start(FakeBoard::new());
+    let board = PtyBoard::start();
     for _ in 0..3 {
         let mut device = connect(&board);
         device.arm().unwrap();
-        device.play().unwrap();
         drop(device);
-        board.until(|board| board.commands.ends_with(&[Command::Play, Command::Stop, Command::Disarm]));
+        board.until(|line| line.commands.ends_with(&[Command::Arm, Command::Stop, Command::Disarm]));
     }
-    assert_eq!(board.board.lock().unwrap().hellos, 3);
-}
-
-#[test]
-fn a_host_that_left_telemetry_behind_does_not_disturb_the_next() {
-    let board = PtyBoard::start(FakeBoard::new());
-    let mut first = connect(&board);
-    first.subscribe(40).unwrap();
-    drop(first);
-    let told = |board: &FakeBoard| board.next_poll();
-    let before = told(&board.board.lock().unwrap());
-    board.until(|board| told(board) > before.map(|at| at + Duration::from_millis(50)));
-    let mut second = connect(&board);
-    second.subscribe(0).unwrap();
-    assert_eq!(second.counters().frames_rejected, 0);
+    assert_eq!(board.line.lock().unwrap().hellos, 3);
 }
 
 #[test]
 fn an_answer_that_an_earlier_host_did_not_read_is_thrown_away() {
-    let board = PtyBoard::start(FakeBoard::new());
+    let board = PtyBoard::start();
     let mut earlier = TTYPort::open(&serialport::new(&board.path, DEFAULT_BAUD)).unwrap();
     earlier.write_all(hello_request_frame(&mut [0; FRAME_MAX_LEN]).unwrap()).unwrap();
-    board.until(|board| board.hellos == 1);
+    board.until(|line| line.hellos == 1);
     // Once the board has seen this, it has sent its hello.
     let ping = Request { sequence: 1, command: Command::Ping };
     earlier.write_all(request_frame(&ping, &mut [0; FRAME_MAX_LEN]).unwrap()).unwrap();
-    board.until(|board| board.pings == 1);
+    board.until(|line| line.pings == 1);
     drop(earlier);
-    board.board.lock().unwrap().hello.fault_detail = 42;
+    board.line.lock().unwrap().says = Some(Box::new(|payload| {
+        if let Payload::Hello(hello) = payload {
+            hello.fault_detail = 42;
+        }
+        true
+    }));
     assert_eq!(connect(&board).hello().fault_detail, 42);
 }
 
 #[test]
 fn a_pulled_cable_ends_a_long_wait() {
-    let mut board = PtyBoard::start(FakeBoard::new());
+    let mut board = PtyBoard::start();
     let mut device = connect(&board);
     let waiting = std::thread::spawn(move || (device.wait(LONG, &mut |_| {}), device));
-    board.until(|board| board.pings > 2);
+    board.until(|line| line.pings > 2);
     board.unplug();
     let (outcome, mut device) = waiting.join().unwrap();
     let error = outcome.unwrap_err();
@@ -145,12 +114,10 @@ fn a_pulled_cable_ends_a_long_wait() {
 
 #[test]
 fn a_cable_pulled_in_an_upload_ends_it() {
-    let mut board = PtyBoard::start(FakeBoard::new());
+    let mut board = PtyBoard::start();
     let mut device = connect(&board);
-    let scene = scene(0.25);
-    let samples = vec![7; 62_500];
-    let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
-    let upload = Upload { scene: &scene, bitmaps: vec![bitmap] };
+    let (samples, scene) = (samples(62_500), scene(0.25));
+    let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
     let outcome = device.upload(&upload, &mut |progress| {
         if progress.done_bytes > 20_000 {
             board.unplug();
@@ -163,7 +130,7 @@ fn a_cable_pulled_in_an_upload_ends_it() {
 
 #[test]
 fn a_port_in_use_is_refused() {
-    let board = PtyBoard::start(FakeBoard::new());
+    let board = PtyBoard::start();
     let _first = connect(&board);
     let error = not_opened(&board.path);
     assert_eq!(error, PortError::Busy { port: board.path.clone() });
@@ -172,7 +139,7 @@ fn a_port_in_use_is_refused() {
 /// Whoever comes while the earlier host is still on its way out waits for it.
 #[test]
 fn a_port_that_is_let_go_soon_opens() {
-    let board = PtyBoard::start(FakeBoard::new());
+    let board = PtyBoard::start();
     let first = open(&board.path).unwrap();
     std::thread::spawn(move || drop(first));
     connect(&board);
@@ -189,13 +156,6 @@ fn a_port_that_is_not_there_is_refused() {
 fn a_file_that_is_no_port_is_refused() {
     let error = not_opened("/dev/null");
     assert!(matches!(error, PortError::NotOpened { .. }), "{error}");
-}
-
-#[test]
-fn a_silent_port_is_given_up() {
-    let (_master, slave) = TTYPort::pair().unwrap();
-    let Err(error) = Device::connect(open(&slave.name().unwrap()).unwrap()) else { panic!("nobody answers there") };
-    assert!(matches!(error, DeviceError::NoHello { heard_bytes: 0, .. }), "{error}");
 }
 
 /// The operating system stops taking bytes long before this; neither writing nor dropping may wait for it.

@@ -1,20 +1,17 @@
 //! Boards that are absent, of another version, silent, reset or unplugged. Each is known within a second of virtual
 //! time.
 
-use std::cell::Cell;
-use std::ops::ControlFlow;
-use std::rc::Rc;
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, Device, DeviceError, Event, Link, PollingLink, Upload};
-use frixel_wire::fault::State;
-use frixel_wire::frame::{FRAME_MAX_LEN, crc32};
+use frixel_driver::{Device, DeviceError, Event, Link, PollingLink};
+use frixel_hil_sim::{BoardMemory, BoardRig, RigFault};
+use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR};
-use frixel_wire::message::{Command, FromBoard, Telemetry};
-use frixel_wire::payload::from_board_frame;
+use frixel_wire::message::{Command, FromBoard};
+use frixel_wire::payload::Payload;
 
-use crate::calls::{connected, reconnected, scene};
-use crate::fake_board::FakeBoard;
+use crate::calls::{MS, commit, connected, reconnected, virtual_board};
+use crate::uploads::upload;
 use crate::virtual_link::{Fate, VirtualLine, VirtualLink, line_of};
 
 const SECOND: Duration = Duration::from_secs(1);
@@ -26,23 +23,42 @@ fn refused_connection(line: VirtualLine) -> DeviceError {
     }
 }
 
-/// A line whose board can be silenced while the device holds it.
-fn silenceable() -> (VirtualLine, Rc<Cell<bool>>) {
-    let silent = Rc::new(Cell::new(false));
-    let mut line = VirtualLine::new(FakeBoard::new());
-    let weather = Rc::clone(&silent);
-    line.to_host_weather = Box::new(move |_, _| if weather.get() { Fate::Lost } else { Fate::Arrives });
-    (line, silent)
+/// Nothing of what the board says arrives any more.
+fn silence(device: &mut Device<VirtualLink>) {
+    line_of(device).to_host_weather = Box::new(|_, _| Fate::Lost);
+}
+
+/// A line whose board says this hello, and gets nothing but hello requests.
+fn with_hello(spoil: impl Fn(&mut Hello) + Send + 'static) -> VirtualLine {
+    let mut line = VirtualLine::new();
+    line.says = Some(Box::new(move |payload| {
+        if let Payload::Hello(hello) = payload {
+            spoil(hello);
+        }
+        true
+    }));
+    line.refuse = Some(Box::new(|command| panic!("{command:?} was sent to a board that is refused")));
+    line
 }
 
 #[test]
 fn a_silent_port_gives_a_timeout() {
-    let mut board = FakeBoard::new();
-    board.mute = true;
-    let error = refused_connection(VirtualLine::new(board));
+    let mut line = VirtualLine::new();
+    line.to_host_weather = Box::new(|_, _| Fate::Lost);
+    let error = refused_connection(line);
     let DeviceError::NoHello { waited, heard_bytes: 0, .. } = error else { panic!("{error}") };
     assert!(Duration::from_millis(500) <= waited && waited < SECOND, "{waited:?}");
     assert!(error.to_string().starts_with("no frixel board answered on the virtual line within 750 ms; "), "{error}");
+}
+
+/// Lets every answer name this state.
+fn claim(device: &mut Device<VirtualLink>, state: State) {
+    line_of(device).says = Some(Box::new(move |payload| {
+        if let Payload::FromBoard(FromBoard::Answer(answer)) = payload {
+            answer.state = state;
+        }
+        true
+    }));
 }
 
 /// A board that accepts a command and says that it did something else.
@@ -58,15 +74,16 @@ fn a_state_that_the_command_does_not_lead_to_is_an_error() {
     ];
     for (number, (name, call, right)) in commands.into_iter().enumerate() {
         for claimed in [State::Disarmed, State::Armed, State::Active, State::Faulted] {
-            let mut device = connected(VirtualLine::new(FakeBoard::new()));
-            for (_, earlier, _) in commands.iter().take(number.min(4)) {
+            let mut device = virtual_board();
+            commit(&mut device, 0.25);
+            for (_, earlier, _) in commands.iter().take(number.min(3)) {
                 earlier(&mut device).unwrap();
             }
-            let board = &mut line_of(&mut device).board;
             if number == 4 {
-                board.state = State::Faulted;
+                line_of(&mut device).rig.raise(Fault::Deadline, 1);
             }
-            board.claims = Some(claimed);
+            device.wait(MS, &mut |_| {}).unwrap();
+            claim(&mut device, claimed);
             match call(&mut device) {
                 Ok(()) => assert_eq!(claimed, right, "{name}"),
                 Err(DeviceError::WrongState { command, found, expected, .. }) => {
@@ -77,8 +94,8 @@ fn a_state_that_the_command_does_not_lead_to_is_an_error() {
             }
         }
     }
-    let mut device = connected(VirtualLine::new(FakeBoard::new()));
-    line_of(&mut device).board.claims = Some(State::Active);
+    let mut device = virtual_board();
+    claim(&mut device, State::Active);
     assert_eq!(
         device.disarm().unwrap_err().to_string(),
         "the board on the virtual line accepted disarm and then said that it is Active, not Disarmed: its firmware is \
@@ -88,11 +105,11 @@ fn a_state_that_the_command_does_not_lead_to_is_an_error() {
 
 #[test]
 fn something_else_answers() {
-    let mut line = VirtualLine::new(FakeBoard::new());
-    line.board.garbage = b"login: \r\n".to_vec();
-    line.to_host_weather = Box::new(|_, frame| if frame.starts_with(b"log") { Fate::Tail(30) } else { Fate::Lost });
+    let mut line = VirtualLine::new();
+    line.garbage = b"login: \r\n".to_vec();
+    line.to_host_weather = Box::new(|_, _| Fate::Lost);
     let error = refused_connection(line);
-    assert!(matches!(error, DeviceError::NoHello { heard_bytes: 30, .. }), "{error:?}");
+    assert!(matches!(error, DeviceError::NoHello { heard_bytes: 9, .. }), "{error:?}");
     assert!(error.to_string().contains("something else talks there"), "{error}");
 }
 
@@ -101,10 +118,7 @@ fn another_major_version_is_refused_and_left_alone() {
     for (major, cure) in
         [(PROTOCOL_MAJOR - 1, "flash newer firmware"), (PROTOCOL_MAJOR + 1, "update the frixel command")]
     {
-        let mut board = FakeBoard::new();
-        board.hello.protocol = (major, 7);
-        board.refuse = Some(Box::new(|command| panic!("{command:?} was sent to a board of another version")));
-        let error = refused_connection(VirtualLine::new(board));
+        let error = refused_connection(with_hello(move |hello| hello.protocol = (major, 7)));
         assert!(matches!(error, DeviceError::Version { .. }), "{error:?}");
         assert!(error.to_string().contains(cure), "{error}");
         assert!(error.to_string().contains(&format!("protocol {major}.7")), "{error}");
@@ -113,15 +127,15 @@ fn another_major_version_is_refused_and_left_alone() {
 
 #[test]
 fn a_newer_minor_version_is_welcome() {
-    let mut board = FakeBoard::new();
-    board.hello.protocol.1 += 1;
-    connected(VirtualLine::new(board));
+    let mut line = with_hello(|hello| hello.protocol.1 += 1);
+    line.refuse = None;
+    connected(line);
 }
 
 #[test]
 fn garbage_before_the_hello_is_skipped() {
-    let mut line = VirtualLine::new(FakeBoard::new());
-    line.board.garbage = b"half a frame \x00 and \x00\x00 boot messages".to_vec();
+    let mut line = VirtualLine::new();
+    line.garbage = b"half a frame \x00 and \x00\x00 boot messages".to_vec();
     let mut device = connected(line);
     device.ping().unwrap();
     assert_eq!(device.counters().frames_rejected, 0);
@@ -129,7 +143,7 @@ fn garbage_before_the_hello_is_skipped() {
 
 #[test]
 fn half_a_frame_of_an_earlier_host_does_not_spoil_the_hello() {
-    let mut link = PollingLink::new(VirtualLine::new(FakeBoard::new()));
+    let mut link = PollingLink::new(VirtualLine::new());
     link.write(b"half a frame").unwrap();
     let device = Device::connect(link).unwrap();
     assert_eq!(device.counters().frames_sent, 3, "the half frame, one hello, one ping");
@@ -138,10 +152,10 @@ fn half_a_frame_of_an_earlier_host_does_not_spoil_the_hello() {
 #[test]
 fn lost_hellos_are_sent_again() {
     for lost in 1..=4 {
-        let mut line = VirtualLine::new(FakeBoard::new());
+        let mut line = VirtualLine::new();
         line.to_board_weather = Box::new(move |number, _| if number < lost { Fate::Lost } else { Fate::Arrives });
         connected(line);
-        let mut line = VirtualLine::new(FakeBoard::new());
+        let mut line = VirtualLine::new();
         line.to_host_weather = Box::new(move |number, _| if number < lost { Fate::Lost } else { Fate::Arrives });
         connected(line);
     }
@@ -150,29 +164,27 @@ fn lost_hellos_are_sent_again() {
 /// The board counts from its last hello on, the host from the first answer; the next ping brings the two together.
 #[test]
 fn hellos_that_are_answered_late_do_not_confuse_the_credit() {
-    let mut line = VirtualLine::new(FakeBoard::new());
+    let mut line = VirtualLine::new();
     line.board_delay = Duration::from_millis(200);
     let mut device = connected(line);
-    let scene = scene(0.25);
-    device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert_eq!(line_of(&mut device).board.hellos, 2);
+    commit(&mut device, 0.25);
+    assert_eq!(line_of(&mut device).hellos, 2);
 }
 
 #[test]
 fn two_hosts_one_after_the_other() {
-    let mut first = connected(VirtualLine::new(FakeBoard::new()));
+    let mut first = virtual_board();
     first.arm().unwrap();
     let mut second = reconnected(first);
     assert_eq!(second.hello().state, State::Disarmed, "what the first armed is not the second's");
     second.arm().unwrap();
-    assert_eq!(line_of(&mut second).board.state, State::Armed);
+    assert_eq!(line_of(&mut second).state, State::Armed);
 }
 
 #[test]
 fn an_unanswered_command_is_known_within_a_second() {
-    let (line, silent) = silenceable();
-    let mut device = connected(line);
-    silent.set(true);
+    let mut device = virtual_board();
+    silence(&mut device);
     let error = device.arm().unwrap_err();
     let DeviceError::Silent { command: "arm", waited, .. } = error else { panic!("{error}") };
     assert!(waited < SECOND, "{waited:?}");
@@ -180,10 +192,9 @@ fn an_unanswered_command_is_known_within_a_second() {
 
 #[test]
 fn a_board_that_falls_silent_is_missed_while_waiting() {
-    let (line, silent) = silenceable();
-    let mut device = connected(line);
+    let mut device = virtual_board();
     device.wait(5 * SECOND, &mut |_| {}).unwrap();
-    silent.set(true);
+    silence(&mut device);
     let error = device.wait(60 * SECOND, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::Silent { command: "ping", .. }), "{error}");
     assert!(device.now() < 6 * SECOND);
@@ -191,32 +202,27 @@ fn a_board_that_falls_silent_is_missed_while_waiting() {
 
 #[test]
 fn silence_is_missed_in_short_waits_too() {
-    let (line, silent) = silenceable();
-    let mut device = connected(line);
-    silent.set(true);
+    let mut device = virtual_board();
+    silence(&mut device);
     let waits = (0..100).take_while(|_| device.wait(Duration::from_millis(10), &mut |_| {}).is_ok()).count();
     assert!((50..=80).contains(&waits), "missed after {waits} waits of 10 ms");
 }
 
 #[test]
 fn a_board_that_falls_silent_in_an_upload_is_known_within_a_second() {
-    let mut line = VirtualLine::new(FakeBoard::new());
+    let mut line = VirtualLine::new();
     line.to_board_weather = Box::new(|number, _| if number >= 100 { Fate::Lost } else { Fate::Arrives });
     let mut device = connected(line);
-    let samples = vec![7; 62_500];
-    let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
-    let error = device
-        .upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| ControlFlow::Continue(()))
-        .unwrap_err();
+    let error = upload(&mut device).unwrap_err();
     assert!(matches!(error, DeviceError::Silent { .. }), "{error}");
     assert!(device.now() < SECOND);
 }
 
 #[test]
 fn a_board_that_is_reset_is_noticed() {
-    let mut board = FakeBoard::new();
-    board.reset_at = Some(2 * SECOND);
-    let mut device = connected(VirtualLine::new(board));
+    let mut device = virtual_board();
+    device.wait(2 * SECOND, &mut |_| {}).unwrap();
+    line_of(&mut device).rig.reset(Box::leak(BoardMemory::new()));
     let error = device.wait(10 * SECOND, &mut |_| {}).unwrap_err();
     assert!(matches!(error, DeviceError::Restarted { .. }), "{error}");
     assert!(device.now() < 3 * SECOND);
@@ -225,7 +231,7 @@ fn a_board_that_is_reset_is_noticed() {
 #[test]
 fn a_pulled_cable_ends_every_call_at_once() {
     let pulled_at = |ms| {
-        let mut line = VirtualLine::new(FakeBoard::new());
+        let mut line = VirtualLine::new();
         line.pulled_at = Some(Duration::from_millis(ms));
         line
     };
@@ -240,15 +246,10 @@ fn a_pulled_cable_ends_every_call_at_once() {
     assert_eq!(device.now(), 5 * SECOND);
 
     let mut device = connected(pulled_at(100));
-    let samples = vec![7; 62_500];
-    let bitmap = Bitmap { crc32: crc32(&samples), width: 250, height: 250, samples: &samples };
-    let error = device
-        .upload(&Upload { scene: &scene(0.25), bitmaps: vec![bitmap] }, &mut |_| ControlFlow::Continue(()))
-        .unwrap_err();
+    let error = upload(&mut device).unwrap_err();
     assert!(matches!(error, DeviceError::Vanished { command: "upload of a bitmap", .. }), "{error}");
     assert!(error.to_string().starts_with("the virtual line vanished (pulled) during: upload of a bitmap; "));
-    let line = line_of(&mut device);
-    assert!(!line.board.commands.contains(&Command::UploadEnd));
+    assert!(!line_of(&mut device).commands.contains(&Command::UploadEnd));
 }
 
 #[test]
@@ -263,10 +264,7 @@ fn a_hello_whose_limits_are_no_limits_is_refused() {
         ("touch_report_period_s", |hello| hello.limits.touch_report_period_s = f32::INFINITY),
     ];
     for (name, spoil) in spoilt {
-        let mut board = FakeBoard::new();
-        spoil(&mut board.hello);
-        board.refuse = Some(Box::new(|command| panic!("{command:?} was sent to a board without limits")));
-        let error = refused_connection(VirtualLine::new(board));
+        let error = refused_connection(with_hello(spoil));
         assert!(matches!(error, DeviceError::Limit { limit, .. } if limit == name), "{error}");
         assert!(error.to_string().contains("flash its firmware anew"), "{error}");
     }
@@ -274,19 +272,19 @@ fn a_hello_whose_limits_are_no_limits_is_refused() {
 
 #[test]
 fn telemetry_that_goes_back_in_time_is_an_error() {
-    let mut line = VirtualLine::new(FakeBoard::new());
-    let mut backwards = [0; FRAME_MAX_LEN];
-    let telemetry = Telemetry { tick: 100, state: State::Active, ..Telemetry::default() };
-    let backwards = from_board_frame(&FromBoard::Telemetry(telemetry), &mut backwards).unwrap().to_vec();
-    line.board.says_at = Some((Duration::from_secs(2), backwards));
-    let mut device = connected(line);
-    device.subscribe(4_000).unwrap();
+    let mut device = virtual_board();
+    device.subscribe(800).unwrap();
     let mut ticks = Vec::new();
-    let waited = device.wait(Duration::from_secs(3), &mut |event| {
-        if let Event::Telemetry(telemetry) = event {
-            ticks.push(telemetry.tick);
-        }
-    });
-    assert!(matches!(waited, Err(DeviceError::TelemetryBackwards { tick: 100, .. })), "{waited:?}");
+    let mut waited = |device: &mut Device<VirtualLink>| {
+        device.wait(2 * SECOND, &mut |event| {
+            if let Event::Telemetry(telemetry) = event {
+                ticks.push(telemetry.tick);
+            }
+        })
+    };
+    waited(&mut device).unwrap();
+    line_of(&mut device).rig.cause(RigFault::WrapSoon { ticks: 100_000 }, 0).unwrap();
+    let error = waited(&mut device).unwrap_err();
+    assert!(matches!(error, DeviceError::TelemetryBackwards { .. }), "{error}");
     assert!(ticks.len() > 10 && ticks.is_sorted(), "{ticks:?}");
 }

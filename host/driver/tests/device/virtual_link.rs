@@ -1,16 +1,22 @@
-//! A line to a fake board in virtual time: bytes take the time that the line rate gives them, and can be lost or
-//! damaged.
+//! A line to the simulated board in virtual time. It loses, damages and delays frames, and answers in the board's place
+//! what no board answers.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 use std::time::Duration;
 
 use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
+use frixel_hil_sim::{Board, BoardMemory, Point, Rig, RigConfig, Stroke};
+use frixel_wire::fault::State;
+use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
+use frixel_wire::message::{Command, FromBoard, Refusal, Request};
+use frixel_wire::payload::{Payload, request_frame};
 
-use crate::fake_board::{FakeBoard, WINDOW};
-
+/// The simulator's board at the tick rate of the slowest board, so that minutes pass quickly.
+pub(crate) const BOARD: Board = Board { tick_hz: 8_000, ..Board::SIMULATOR };
+pub(crate) const WINDOW: u16 = BOARD.limits.receive_window_bytes;
 /// 2 Mbaud, ten bits a byte.
-pub(crate) const BYTES_PER_S: u32 = 200_000;
+const BYTES_PER_S: u32 = 200_000;
 
 /// What becomes of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +29,8 @@ pub(crate) enum Fate {
     Damaged(usize),
 }
 
-/// Says what becomes of a frame, by its number from zero and its bytes.
-pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate>;
+/// Decides what becomes of a frame, by its number from zero and its bytes.
+pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate + Send>;
 
 /// A link over the line, which pings as every link without a thread does.
 pub(crate) type VirtualLink = PollingLink<VirtualLine>;
@@ -35,12 +41,14 @@ pub(crate) fn line_of(device: &mut Device<VirtualLink>) -> &mut VirtualLine {
 }
 
 pub(crate) struct VirtualLine {
-    pub(crate) board: FakeBoard,
+    pub(crate) rig: Rig<'static>,
+    /// The board's state after the last tick.
+    pub(crate) state: State,
     pub(crate) to_board_weather: Weather,
     pub(crate) to_host_weather: Weather,
     /// The cable is pulled at this time.
     pub(crate) pulled_at: Option<Duration>,
-    /// Time that the board takes before it looks at what has arrived.
+    /// Time that a frame takes more than its bytes do.
     pub(crate) board_delay: Duration,
     /// Time that the board takes for each frame, one after the other.
     pub(crate) board_time_per_frame: Duration,
@@ -48,89 +56,145 @@ pub(crate) struct VirtualLine {
     pub(crate) board_pause: Range<Duration>,
     /// Most bytes that were on the way to the board, or there and not looked at.
     pub(crate) most_under_way: usize,
-    /// Bytes that the line takes in a second, in both directions.
-    pub(crate) bytes_per_s: u32,
+    /// Commands that arrived at the board, pings left out.
+    pub(crate) commands: Vec<Command>,
+    pub(crate) pings: u32,
+    pub(crate) hellos: u32,
+    /// Longest time without a good frame since the first hello.
+    pub(crate) longest_silence: Duration,
+    /// The refusal with which a command is answered that the board does not get. A ping takes its place on the line.
+    pub(crate) refuse: Option<Box<dyn FnMut(&Command) -> Option<Refusal> + Send>>,
+    /// Changes what the board says; `false` leaves it out.
+    pub(crate) says: Option<Box<dyn FnMut(&mut Payload) -> bool + Send>>,
+    /// Arrives in front of the board's first frame.
+    pub(crate) garbage: Vec<u8>,
+    refused: BTreeMap<u16, Refusal>,
+    /// Frames that the board does not look at yet, and when it does.
+    waiting: VecDeque<(Duration, Vec<u8>)>,
     board_free_at: Duration,
-    now: Duration,
-    to_board: Line,
-    to_host: Line,
+    last_heard: Duration,
+    at_board: Decoder,
+    /// The beginning of the board's next frame.
+    from_board: Vec<u8>,
+    at_host: Vec<u8>,
     frames_to_board: u64,
     frames_to_host: u64,
 }
 
-/// One direction.
-#[derive(Default)]
-struct Line {
-    free_at: Duration,
-    under_way: VecDeque<(Duration, Vec<u8>)>,
-}
-
-impl Line {
-    /// Returns when the last byte arrives.
-    fn time_to_send(&mut self, bytes: &[u8], now: Duration, bytes_per_s: u32) -> Duration {
-        let takes = Duration::from_secs(bytes.len() as u64) / bytes_per_s;
-        self.free_at = self.free_at.max(now) + takes;
-        self.free_at
-    }
-
-    fn next_arrival(&self) -> Option<Duration> {
-        self.under_way.front().map(|(at, _)| *at)
-    }
-
-    fn arrived(&mut self, now: Duration) -> Option<Vec<u8>> {
-        let (_, bytes) = self.under_way.pop_front_if(|(at, _)| *at <= now)?;
-        Some(bytes)
-    }
-}
-
 impl VirtualLine {
-    pub(crate) fn new(board: FakeBoard) -> Self {
+    pub(crate) fn new() -> Self {
+        Self::to(BOARD, BYTES_PER_S)
+    }
+
+    /// The line to a board that has just started, for so many bytes a second in each direction.
+    pub(crate) fn to(board: Board, bytes_per_s: u32) -> Self {
+        let config = RigConfig { board, baud: 10 * bytes_per_s, ..RigConfig::of(board) };
+        let nowhere = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).unwrap();
         Self {
-            board,
+            rig: Rig::new(Box::leak(BoardMemory::new()), &config, nowhere, 1).unwrap(),
+            state: State::Disarmed,
             to_board_weather: Box::new(|_, _| Fate::Arrives),
             to_host_weather: Box::new(|_, _| Fate::Arrives),
             pulled_at: None,
             board_delay: Duration::ZERO,
             board_time_per_frame: Duration::ZERO,
-            board_free_at: Duration::ZERO,
             board_pause: Duration::ZERO..Duration::ZERO,
             most_under_way: 0,
-            bytes_per_s: BYTES_PER_S,
-            now: Duration::ZERO,
-            to_board: Line::default(),
-            to_host: Line::default(),
+            commands: Vec::new(),
+            pings: 0,
+            hellos: 0,
+            longest_silence: Duration::ZERO,
+            refuse: None,
+            says: None,
+            garbage: Vec::new(),
+            refused: BTreeMap::new(),
+            waiting: VecDeque::new(),
+            board_free_at: Duration::ZERO,
+            last_heard: Duration::ZERO,
+            at_board: Decoder::new(),
+            from_board: Vec::new(),
+            at_host: Vec::new(),
             frames_to_board: 0,
             frames_to_host: 0,
         }
     }
 
-    fn send_to_host(&mut self, bytes: &[u8]) {
-        for frame in bytes.split_inclusive(|byte| *byte == 0) {
-            let fate = (self.to_host_weather)(self.frames_to_host, frame);
-            self.frames_to_host += 1;
-            let bytes = weathered(frame, fate);
-            let arrives = self.to_host.time_to_send(&bytes, self.now, self.bytes_per_s);
-            self.to_host.under_way.push_back((arrives, bytes));
+    /// Bytes that the board has not looked at.
+    pub(crate) fn under_way(&mut self) -> usize {
+        self.waiting.iter().map(|(_, bytes)| bytes.len()).sum::<usize>() + self.rig.line_to_board_mut().queued()
+    }
+
+    /// Lets a tick pass.
+    pub(crate) fn step(&mut self) {
+        let now = self.now();
+        while let Some((_, bytes)) = self.waiting.pop_front_if(|(at, _)| *at <= now) {
+            self.look_at(&bytes);
+            self.rig.send(&bytes);
+        }
+        self.state = self.rig.step().status.telemetry.state;
+        self.rig.receive(&mut self.from_board);
+        while let Some(end) = self.from_board.iter().position(|byte| *byte == 0) {
+            let frame: Vec<u8> = self.from_board.drain(..=end).collect();
+            self.say(&frame);
         }
     }
 
-    /// Does what is due now.
-    fn step(&mut self) {
-        while let Some(bytes) = self.to_board.arrived(self.now) {
-            let answer = self.board.receive(&bytes, self.now);
-            self.send_to_host(&answer);
+    /// Notes what arrives at the board.
+    fn look_at(&mut self, mut bytes: &[u8]) {
+        let now = self.now();
+        while let Some(payload) = self.at_board.next_frame(&mut bytes) {
+            if self.hellos > 0 {
+                self.longest_silence = self.longest_silence.max(now.saturating_sub(self.last_heard));
+            }
+            self.last_heard = now;
+            match Payload::parse_from_host(payload).expect("the host sends what the board reads") {
+                Payload::HelloRequest { .. } => self.hellos += 1,
+                Payload::Request(Request { command: Command::Ping, .. }) => self.pings += 1,
+                Payload::Request(Request { command, .. }) => self.commands.push(command),
+                _ => {}
+            }
         }
-        let unasked = self.board.poll(self.now);
-        self.send_to_host(&unasked);
     }
 
-    fn next_event_at(&self) -> Option<Duration> {
-        let arrivals = [self.to_board.next_arrival(), self.to_host.next_arrival()];
-        arrivals.into_iter().chain([self.board.next_poll(), self.pulled_at]).flatten().min()
+    /// Sends a frame of the board to the host.
+    fn say(&mut self, frame: &[u8]) {
+        let mut decoder = Decoder::new();
+        let mut said = frame.to_vec();
+        if let Some(payload) = decoder.next_frame(&mut &*frame) {
+            let mut payload = Payload::parse_from_board(payload).unwrap();
+            if let Payload::FromBoard(FromBoard::Answer(answer)) = &mut payload
+                && let Some(refusal) = self.refused.remove(&answer.sequence)
+            {
+                answer.outcome = Err(refusal);
+            }
+            if self.says.as_mut().is_some_and(|says| !says(&mut payload)) {
+                return;
+            }
+            said = payload.write_frame(&mut [0; FRAME_MAX_LEN]).unwrap().to_vec();
+        }
+        self.at_host.append(&mut self.garbage);
+        let fate = (self.to_host_weather)(self.frames_to_host, &said);
+        self.frames_to_host += 1;
+        self.at_host.extend(weathered(&said, fate));
+    }
+
+    /// The ping in place of a request that is refused.
+    fn refused_request(&mut self, mut frame: &[u8]) -> Option<Vec<u8>> {
+        let mut decoder = Decoder::new();
+        let Ok(Payload::Request(Request { sequence, command })) =
+            Payload::parse_from_host(decoder.next_frame(&mut frame)?)
+        else {
+            return None;
+        };
+        let refusal = self.refuse.as_mut()?(&command)?;
+        self.commands.push(command);
+        self.refused.insert(sequence, refusal);
+        let ping = Request { sequence, command: Command::Ping };
+        Some(request_frame(&ping, &mut [0; FRAME_MAX_LEN]).unwrap().to_vec())
     }
 
     fn check_plugged(&self) -> Result<(), LinkClosed> {
-        if self.pulled_at.is_some_and(|at| at <= self.now) {
+        if self.pulled_at.is_some_and(|at| at <= self.now()) {
             return Err(LinkClosed { port: self.name().into(), reason: "pulled".into() });
         }
         Ok(())
@@ -140,43 +204,33 @@ impl VirtualLine {
 impl ByteStream for VirtualLine {
     fn write(&mut self, frame: &[u8]) -> Result<(), LinkClosed> {
         self.check_plugged()?;
-        let fate = (self.to_board_weather)(self.frames_to_board, frame);
-        let bytes = weathered(frame, fate);
-        let arrives = self.to_board.time_to_send(&bytes, self.now, self.bytes_per_s) + self.board_delay;
+        let frame = self.refused_request(frame).unwrap_or_else(|| frame.to_vec());
+        let fate = (self.to_board_weather)(self.frames_to_board, &frame);
+        self.frames_to_board += 1;
+        let arrives = self.now() + self.board_delay;
         let seen = if self.board_pause.contains(&arrives) { self.board_pause.end } else { arrives };
         self.board_free_at = self.board_free_at.max(seen) + self.board_time_per_frame;
-        self.to_board.under_way.push_back((self.board_free_at, bytes));
-        self.frames_to_board += 1;
-        let under_way: usize = self.to_board.under_way.iter().map(|(_, bytes)| bytes.len()).sum();
+        self.waiting.push_back((self.board_free_at, weathered(&frame, fate)));
+        let under_way = self.under_way();
         self.most_under_way = self.most_under_way.max(under_way);
         assert!(under_way <= usize::from(WINDOW), "the host sent {under_way} bytes beyond what the board acknowledged");
         Ok(())
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        let end = self.now + wait;
-        let len_before = buffer.len();
+        let end = self.now() + wait;
         loop {
             self.check_plugged()?;
-            self.step();
-            while let Some(bytes) = self.to_host.arrived(self.now) {
-                buffer.extend(bytes);
-            }
-            if buffer.len() > len_before {
+            if !self.at_host.is_empty() || self.now() >= end {
+                buffer.append(&mut self.at_host);
                 return Ok(());
             }
-            match self.next_event_at() {
-                Some(at) if at <= end => self.now = self.now.max(at),
-                _ => {
-                    self.now = end;
-                    return Ok(());
-                }
-            }
+            self.step();
         }
     }
 
     fn now(&self) -> Duration {
-        self.now
+        Duration::from_secs(self.rig.tick()) / self.rig.tick_hz()
     }
 
     fn name(&self) -> &'static str {
