@@ -1,13 +1,13 @@
 //! Rows that stand in a recording twice, as of a file that was appended to itself: they would narrow the intervals.
 
-use super::error::FitError;
 use super::table::Row;
 
 /// Rows that return are a copy if they follow each other as improbably as eight rows that stand nowhere else.
 const SUCCESSIONS: f64 = 7.0;
 
-/// Fails if consecutive rows return later, whatever their time and stroke, and chance does not explain it.
-pub(super) fn check(rows: &[Row]) -> Result<(), FitError> {
+/// The numbers of the first and the last row of consecutive rows that return later, whatever their time and stroke, and
+/// of what was copied; `None` if there are none, or chance explains them.
+pub(super) fn find(rows: &[Row]) -> Option<[[u64; 2]; 2]> {
     // A sensor that is read faster than it measures repeats its rows.
     let runs: Vec<&[Row]> = rows.chunk_by(|one, next| measured(one) == measured(next)).collect();
     let singles = Windows::new(runs.len(), |at| runs.get(at).and_then(|run| run.first()).map(measured));
@@ -20,13 +20,13 @@ pub(super) fn check(rows: &[Row]) -> Result<(), FitError> {
         if let Some((at, of)) = windows.copies().find(|(at, _)| is_improbable(*at).unwrap_or_default()) {
             // The runs at either end of a window may belong to it by chance, and be of other lengths.
             let row = |window: usize| runs.iter().take(window + length / 2).map(|run| run.len()).sum();
-            return Err(copied(rows, row(at), row(of)));
+            return Some(copied(rows, row(at), row(of)));
         }
         let count = runs.len().saturating_sub(2 * length - 1);
         windows = Windows::new(count, |at| (windows.first(at), windows.first(at + length)));
         length *= 2;
     }
-    Ok(())
+    None
 }
 
 fn measured(row: &Row) -> [u64; 3] {
@@ -92,8 +92,8 @@ fn information(singles: &Windows, pairs: &Windows) -> Vec<f64> {
     (0..count).map(up_to).collect()
 }
 
-/// The error of rows around `row` that are those around `of`, with all that are equal.
-fn copied(rows: &[Row], row: usize, of: usize) -> FitError {
+/// The numbers of the rows around `row` that are those around `of`, with all that are equal.
+fn copied(rows: &[Row], row: usize, of: usize) -> [[u64; 2]; 2] {
     let is_equal = |(one, other): &(&Row, &Row)| measured(one) == measured(other);
     let (before, behind) = (rows.split_at(row.min(rows.len())), rows.split_at(of.min(rows.len())));
     let earlier = before.0.iter().rev().zip(behind.0.iter().rev()).take_while(is_equal).count();
@@ -102,14 +102,14 @@ fn copied(rows: &[Row], row: usize, of: usize) -> FitError {
         let copy = rows.get(at - earlier..at + later).unwrap_or_default();
         [copy.first(), copy.last()].map(|row| row.map_or(0, |row| row.number))
     };
-    FitError::RowsTwice { rows: numbers(row), of: numbers(of) }
+    [numbers(row), numbers(of)]
 }
 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
-    use super::{FitError, Row, check};
+    use super::{Row, find};
 
     /// What is added to the numbers of rows that are copied.
     const LATER: u64 = 1_000_000;
@@ -122,14 +122,6 @@ mod tests {
             time_s: row.time_s.map(|time_s| time_s + later_s),
             ..row
         }));
-    }
-
-    /// First and last row of a copy, and of what was copied.
-    fn named(rows: &[Row]) -> Result<[[u64; 2]; 2], String> {
-        match check(rows) {
-            Err(FitError::RowsTwice { rows, of }) => Ok([rows, of]),
-            other => Err(format!("{other:?}")),
-        }
     }
 
     /// Rows of a sensor that measures once in some rows, in steps, with noise and under a load that wanders.
@@ -169,11 +161,11 @@ mod tests {
             later_s in 0.0_f64..9.0,
         ) {
             let mut rows = rows(seed, 500, 1, 1e-9, 0.004);
-            prop_assert!(check(&rows).is_ok());
+            prop_assert_eq!(find(&rows), None);
             append(&mut rows, from, count, later_s);
             let first = from as u64 + 2;
             let of = [first, first + count as u64 - 1];
-            prop_assert_eq!(named(&rows), Ok([of.map(|row| row + LATER), of]));
+            prop_assert_eq!(find(&rows), Some([of.map(|row| row + LATER), of]));
         }
     }
 
@@ -182,7 +174,7 @@ mod tests {
     fn a_copy_behind_rows_that_are_equal_by_chance_is_named_whole() {
         let mut rows = rows(355_818, 20_000, 2, 0.02, 0.001);
         append(&mut rows, 7_580, 8_000, 60.0);
-        let [[_, last], of] = named(&rows).unwrap();
+        let [[_, last], of] = find(&rows).unwrap();
         assert!(last == of[1] + LATER && of[1] - of[0] >= 7_999, "{of:?} {last}");
     }
 
@@ -200,10 +192,10 @@ mod tests {
             from in 0_usize..12_000,
         ) {
             let mut rows = rows(seed, 20_000, held, step_n, noise_n);
-            prop_assert!(check(&rows).is_ok(), "{:?}", check(&rows));
+            prop_assert_eq!(find(&rows), None);
             append(&mut rows, from, 8_000, 60.0);
             // Rows before those that were copied may be equal by chance.
-            let [[_, last], of] = named(&rows).map_err(TestCaseError::fail)?;
+            let [[_, last], of] = find(&rows).unwrap();
             prop_assert!(last == of[1] + LATER && of[1] - of[0] >= 7_999, "{of:?} {last}");
         }
     }

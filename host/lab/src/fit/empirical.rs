@@ -75,7 +75,7 @@ pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, Fi
     let friction_coefficient = data.friction_coefficient(|replicate| &replicate.power)?;
     let strokes = results(&data.strokes, &data.fitted.best.power).ok_or(FitError::NotConverged)?;
     let (law, highest, held_out_n) = match power_law(&data, &strokes) {
-        Err(FitError::NoPowerLaw { .. }) if data.division != Division::Means => {
+        Err(FitError::NoPowerLaw(_)) if data.division != Division::Means => {
             points(&data, &strokes, &friction_coefficient)?
         }
         fitted => fitted?,
@@ -121,7 +121,11 @@ fn power_law(data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitErro
     };
     let exponent = data.fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?;
     if !EXPONENTS.contains(&exponent.value) {
-        return Err(FitError::ExponentOutOfRange { exponent: exponent.value });
+        return Err(FitError::Refused(format!(
+            "electric friction grows as voltage to the power {:.2}, and a profile takes 0.5 to 12: check for a voltage \
+             that was not applied, and for strokes in which the finger stuck",
+            exponent.value
+        )));
     }
     let Estimate { value, low, high } = data.fitted.estimate(|replicate| of(&replicate.power))?;
     // What the strokes of the highest voltage say without the law.
@@ -158,12 +162,12 @@ fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
         let law_n = measured_n - residual_n;
         if residual_n.abs() > error_n + LAW_SHARE * law_n.abs() {
             let voltage_v_rms = level.first().map_or(f64::NAN, |one| one.voltage_v_rms);
-            return Err(FitError::NoPowerLaw {
-                voltage_v_rms,
-                measured_mn: 1e3 * measured_n,
-                law_mn: 1e3 * law_n,
-                error_mn: 1e3 * error_n,
-            });
+            let [measured_mn, law_mn, error_mn] = [measured_n, law_n, error_n].map(|newtons| 1e3 * newtons);
+            return Err(FitError::NoPowerLaw(format!(
+                "at {voltage_v_rms:.0} V rms electric friction was {measured_mn:.1} mN, and the power law that fits best \
+                 says {law_mn:.1} mN, further than the noise of these strokes explains ({error_mn:.1} mN): write the \
+                 points that you measured into a profile (docs/scene.md, \"Empirical fingers\")"
+            )));
         }
         beside_n = residual_n;
     }

@@ -13,8 +13,10 @@ use std::io::Read;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
+use frixel_scene::brief;
+
 use super::contrast::StrokeMeans;
-use super::error::FitError;
+use super::error::{FitError, plain};
 use super::faults::Faults;
 use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
@@ -55,24 +57,27 @@ pub struct MeanRow {
 
 /// The places of the columns that state an error.
 pub(super) struct Errors {
-    standard_error: Option<Place>,
-    standard_deviation: Option<Place>,
+    /// Standard errors, or standard deviations.
+    error: Place,
+    are_deviations: bool,
     number: Option<Place>,
 }
 
 impl Errors {
     /// `None` for a table without errors.
     pub(super) fn find<R: Read>(table: &mut Table<R>) -> Result<Option<Self>, FitError> {
-        let errors = Self {
-            standard_error: table.find(STANDARD_ERROR)?,
-            standard_deviation: table.find(STANDARD_DEVIATION)?,
-            number: table.find(NUMBER)?,
-        };
-        match (errors.standard_error, errors.standard_deviation) {
+        let (errors, deviations) = (table.find(STANDARD_ERROR)?, table.find(STANDARD_DEVIATION)?);
+        let number = table.find(NUMBER)?;
+        let refused = |sentence: &str| Err(FitError::Refused(sentence.to_owned()));
+        match (errors, deviations) {
             (None, None) => Ok(None),
-            (Some(_), Some(_)) => Err(FitError::TwoErrors),
-            (None, Some(_)) if errors.number.is_none() => Err(FitError::DeviationWithoutNumber),
-            _ => Ok(Some(errors)),
+            (Some(_), Some(_)) => refused("the header has both friction_se_n and friction_sd_n: leave one of them out"),
+            (None, Some(_)) if number.is_none() => refused(
+                "the header has friction_sd_n and no column n: say how many were averaged in a column n, or give the \
+                 standard error of the mean in friction_se_n",
+            ),
+            (Some(error), None) => Ok(Some(Self { error, are_deviations: false, number })),
+            (None, Some(error)) => Ok(Some(Self { error, are_deviations: true, number })),
         }
     }
 
@@ -81,18 +86,19 @@ impl Errors {
         let number = row.number();
         let count = self.number.map(|place| row.real(place)).transpose()?;
         if let Some(found) = count.filter(|count| !(*count >= 2.0 && count.fract() == 0.0)) {
-            return Err(FitError::MeanOfTooFew { row: number, found });
+            return Err(FitError::Refused(format!(
+                "row {number}, column n: expected a whole number of at least 2, found {found}: give how many were averaged"
+            )));
         }
-        let error_n = match (self.standard_error, self.standard_deviation, count) {
-            (Some(place), ..) => row.real(place)?,
-            (None, Some(place), Some(count)) => row.real(place)? / count.sqrt(),
-            _ => return Err(FitError::DeviationWithoutNumber),
-        };
+        let error_n = row.real(self.error)? / count.filter(|_| self.are_deviations).map_or(1.0, f64::sqrt);
         if ERRORS_N.contains(&error_n) {
-            Ok((error_n, count))
-        } else {
-            Err(FitError::ErrorOutOfRange { row: number, found_n: error_n })
+            return Ok((error_n, count));
         }
+        Err(FitError::Refused(format!(
+            "row {number}: the standard error of {} N is none of a measured force, which is 1 nN to 50 N: give the error of \
+             the mean, or leave the row out",
+            plain(error_n)
+        )))
     }
 }
 
@@ -122,7 +128,10 @@ pub(super) fn read<R: Read>(mut table: Table<R>, errors: &Errors) -> Result<Read
 /// Fits laws to means. Fails if they scatter more than their errors explain.
 pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, FitError> {
     if let Some(stroke) = settings.without.first() {
-        return Err(FitError::MeansWithout { stroke: stroke.clone() });
+        return Err(FitError::Refused(format!(
+            "--without {}: a table of means has no strokes: delete the row of the mean that is to be left out",
+            brief(stroke)
+        )));
     }
     let voltage_range_v_rms = check(rows)?;
     let loads = || rows.iter().map(|row| row.normal_force_n);
@@ -166,19 +175,23 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, F
 
 /// Whether means can be fitted; returns the lowest and the highest voltage.
 fn check(rows: &[MeanRow]) -> Result<(f64, f64), FitError> {
-    if rows.len() < MEANS_MIN {
-        return Err(FitError::TooFewMeans { found: rows.len(), needed: MEANS_MIN });
+    let found = rows.len();
+    if found < MEANS_MIN {
+        return Err(FitError::TooFew(format!(
+            "{found} means are too few: give one at no voltage and at least two at others, {MEANS_MIN} or more"
+        )));
     }
     rules::check_load_unit(rows.iter().map(|row| row.normal_force_n))?;
     if let Some(row) = rows.iter().find(|row| row.normal_force_n <= 0.0) {
-        return Err(FitError::MeanWithoutLoad { row: row.number, found_n: row.normal_force_n });
+        return Err(FitError::Refused(format!(
+            "row {}, column normal_force_n: {} N is no load: give the mean normal force of that row",
+            row.number,
+            plain(row.normal_force_n)
+        )));
     }
     let driven = || rows.iter().map(|row| row.voltage_v_rms).filter(|voltage_v_rms| *voltage_v_rms > 0.0);
     let (low, high) = (driven().fold(f64::INFINITY, f64::min), driven().fold(0.0, f64::max));
-    if high <= 0.0 {
-        return Err(FitError::NoVoltage);
-    }
-    rules::check_voltages(low, high)
+    rules::check_voltages((high > 0.0).then_some((low, high)))
 }
 
 fn observation(row: &MeanRow) -> Observation {
@@ -210,7 +223,13 @@ fn check_scatter(observations: &[Observation], freedoms: &[Option<f64>], fitted:
     let freedom = observations.len() as f64 - 3.0;
     let part = 2.0 / (9.0 * freedom);
     if freedom >= 1.0 && chi_square > freedom * (1.0 - part + Z_ONE_SIDED_999 * part.sqrt()).powi(3) {
-        return Err(FitError::MeansScatter { times: (chi_square / freedom).sqrt() });
+        let times = (chi_square / freedom).sqrt();
+        return Err(FitError::Refused(format!(
+            "the means lie {times:.1} times their stated errors from the closest power law, and chance does that in fewer \
+             than 1 of 1,000 tables: check that errors are standard errors, that voltages are rms, and that all rows are \
+             of the same fingers; if so, electric friction follows no power of the voltage: write its points into a \
+             profile (docs/scene.md, \"Empirical fingers\")"
+        )));
     }
     Ok(())
 }
@@ -399,7 +418,9 @@ mod tests {
     #[test]
     fn means_that_scatter_more_than_their_errors_are_refused() {
         let refused = (0..20).filter(|seed| {
-            matches!(fitted(&table(Some(*seed), 4.0, 16, &[0.4, 0.5, 0.6])), Err(FitError::MeansScatter { times }) if times > 2.0)
+            let error = fitted(&table(Some(*seed), 4.0, 16, &[0.4, 0.5, 0.6])).err().map(|error| error.to_string());
+            let times = error.as_ref().and_then(|said| said.strip_prefix("the means lie ")?.split(' ').next());
+            times.is_some_and(|times| times.parse::<f64>().unwrap() > 2.0)
         });
         assert!(refused.count() >= 15);
     }

@@ -3,8 +3,9 @@
 use super::contrast::LEVEL_WIDTH;
 use super::error::FitError;
 use super::law::Attraction;
-use super::{Point, StrokeResult};
-use crate::bootstrap::{Estimate, GROUP_MIN, Z_95};
+use super::search::no_electric_friction;
+use super::{Point, StrokeResult, rules};
+use crate::bootstrap::{Estimate, Z_95};
 use crate::statistics::{mean, student_quantile};
 
 /// Most points of a profile (`docs/scene.md`, "Empirical fingers").
@@ -67,15 +68,17 @@ impl LawOfPoints {
     ) -> Result<Self, FitError> {
         let levels = levels(strokes);
         if levels.len() > POINTS_MAX {
-            return Err(FitError::TooManyPoints { found: levels.len(), max: POINTS_MAX });
+            return Err(FitError::Refused(format!(
+                "electric friction follows no power of the voltage, and has {} voltages, where a profile has at most \
+                 {POINTS_MAX} points: leave strokes of some voltages out with --without",
+                levels.len()
+            )));
         }
         let (mut points, mut errors_n) = (Vec::new(), Vec::new());
         for level in &levels {
             let voltage_v_rms = mean(level.iter().map(|point| point.voltage_v_rms));
             let found = level.len();
-            if found < GROUP_MIN {
-                return Err(FitError::TooFewAtVoltage { found, needed: GROUP_MIN, voltage_v_rms });
-            }
+            rules::check_at_voltage(found, voltage_v_rms)?;
             let here_n = attraction.attraction_n(voltage_v_rms, normal_load_n).ok_or(FitError::NotConverged)?;
             let moved = |point: &Point| {
                 Some(point.measured_n * here_n / attraction.attraction_n(point.voltage_v_rms, point.normal_load_n)?)
@@ -100,7 +103,7 @@ impl LawOfPoints {
 fn rising(points: &[MeasuredPoint]) -> Result<(Vec<MeasuredPoint>, f64), FitError> {
     let first = points.iter().position(|point| point.electric_friction_n.low > 0.0).unwrap_or(points.len());
     let (small, points) = points.split_at(first);
-    let Some(lowest) = points.first() else { return Err(FitError::NoElectricFriction { found_n: 0.0 }) };
+    let Some(lowest) = points.first() else { return Err(no_electric_friction(0.0)) };
     let power = |(from_v_rms, from_n): (f64, f64), to: &MeasuredPoint| {
         libm::log(to.electric_friction_n.value / from_n) / libm::log(to.voltage_v_rms / from_v_rms)
     };
@@ -108,7 +111,16 @@ fn rising(points: &[MeasuredPoint]) -> Result<(Vec<MeasuredPoint>, f64), FitErro
         let exponent = power((from.voltage_v_rms, from.electric_friction_n.value), to);
         if !EXPONENTS.contains(&exponent) {
             let (low_v_rms, high_v_rms) = (from.voltage_v_rms, to.voltage_v_rms);
-            return Err(FitError::NoRise { exponent, low_v_rms, high_v_rms });
+            let cure = if exponent > *EXPONENTS.end() {
+                "record strokes at voltages between them"
+            } else {
+                "check that the amplifier reaches the higher one; if it does, this finger is played up to the lower one: \
+                 leave the strokes above that out with --without"
+            };
+            return Err(FitError::Refused(format!(
+                "electric friction follows no power of the voltage, and from {low_v_rms:.0} to {high_v_rms:.0} V rms it \
+                 grows as voltage to the power {exponent:.2}, where a profile takes 0.5 to 12: {cure}"
+            )));
         }
     }
     // What was too small to measure was at most its upper end. The steepest power leaves 2 % of the lowest point at 0.7

@@ -197,7 +197,7 @@ impl FittedData {
         let fitted = Self::of_strokes_without(&mut faults, rows, settings);
         // A faulty stroke may be the cause of what else is wrong.
         faults.check()?;
-        if matches!(fitted, Err(FitError::TooFewStrokes { .. } | FitError::TooFewAtVoltage { .. })) {
+        if matches!(fitted, Err(FitError::TooFew(_))) {
             // Those that were left out are missing.
             faults.refuse()?;
         }
@@ -212,7 +212,7 @@ impl FittedData {
         let (load_median_n, load_range_n) = rules::check_loads(&mut recording, faults);
         rules::check_strokes(&recording)?;
         let levels = Levels::of(&recording);
-        let voltage_range_v_rms = rules::check_levels(&levels)?;
+        let voltage_range_v_rms = rules::check_voltages(levels.range_v_rms())?;
         rules::check_carrier(&recording, &levels)?;
         let phases = Phases::of(&recording, &levels);
         rules::check_phases(&phases)?;

@@ -1,5 +1,7 @@
 //! Divides rows into strokes, and drops what is no steady sliding.
 
+use frixel_scene::brief;
+
 use super::copies;
 use super::error::FitError;
 use super::faults::{Fault, Faults};
@@ -81,7 +83,12 @@ impl Recording {
         let has_time = rows.iter().all(|row| row.time_s.is_some());
         let has_speed = rows.iter().any(|row| row.speed_mm_s.is_some());
         check_time(&rows)?;
-        copies::check(&rows)?;
+        if let Some([[first, last], [of_first, of_last]]) = copies::find(&rows) {
+            return Err(FitError::Refused(format!(
+                "rows {first} to {last} have the numbers of rows {of_first} to {of_last}: delete the copy, or record anew what \
+                 was not measured twice"
+            )));
+        }
         let (division, strokes) = divided(rows, has_time)?;
         let strokes = left(strokes, without)?;
         faults.strokes = strokes.len();
@@ -103,7 +110,11 @@ pub(super) fn with_times(mut rows: Vec<Row>) -> Result<(Vec<Row>, usize), FitErr
     let unknown = rows.iter().filter(is_timeless).count();
     let Some(first) = rows.iter().find(is_timeless).filter(|_| unknown < count) else { return Ok((rows, 0)) };
     if unknown as f64 > TIMELESS_PART * count as f64 {
-        return Err(FitError::TimesMissing { unknown, rows: count, row: first.number });
+        return Err(FitError::Refused(format!(
+            "{unknown} of {count} rows have no time, row {} the first, where a few are left out: give each its time in \
+             column time_s, or leave the column out",
+            first.number
+        )));
     }
     rows.retain(|row| row.time_s.is_some());
     Ok((rows, unknown))
@@ -131,7 +142,11 @@ fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), Fi
     }
     let needed = BLOCKS * BLOCK_ROWS;
     if count < needed {
-        return Err(FitError::TooFewRows { found: count, needed });
+        let (rows, are) = if count == 1 { ("row", "is") } else { ("rows", "are") };
+        return Err(FitError::TooFew(format!(
+            "{count} {rows} without a column stroke {are} too few: record at least {needed} rows, or number the strokes in \
+             a column stroke"
+        )));
     }
     let blocks = rows.chunks(count.div_ceil(BLOCKS)).enumerate();
     let blocks = blocks.map(|(index, rows)| Stroke { name: (index + 1).to_string(), rows: rows.to_vec() });
@@ -144,7 +159,12 @@ fn turned(stroke: Stroke, has_time: bool) -> Result<Vec<Stroke>, FitError> {
     let pieces = pieces(stroke.rows).into_iter().map(|rows| Stroke { name: name.clone(), rows });
     let mut pieces: Vec<Stroke> = pieces.collect();
     if let Some(row) = pieces.get(1).and_then(|piece| piece.rows.first()).filter(|_| !has_time) {
-        return Err(FitError::TurnWithoutTime { row: row.number, stroke: name });
+        return Err(FitError::Refused(format!(
+            "row {}: the finger turns within stroke {}, friction or speed changes its sign there: add a column time_s, so \
+             that what lies around the turn is left out, or give each direction a stroke of its own",
+            row.number,
+            brief(&name)
+        )));
     }
     // What is short lies around a turn.
     let longest = pieces.iter().map(|piece| piece.rows.len()).max();
@@ -181,7 +201,11 @@ fn check_time(rows: &[Row]) -> Result<(), FitError> {
             && now_s < then_s
             && before.stroke == row.stroke
         {
-            return Err(FitError::TimeBackwards { row: row.number, found: now_s, before: then_s });
+            return Err(FitError::Refused(format!(
+                "row {}, column time_s: {now_s} s comes after {then_s} s, time goes backwards: sort the rows by time, or \
+                 number the strokes in a column stroke if each has a clock of its own",
+                row.number
+            )));
         }
     }
     Ok(())
@@ -189,9 +213,13 @@ fn check_time(rows: &[Row]) -> Result<(), FitError> {
 
 fn left(strokes: Vec<Stroke>, without: &[String]) -> Result<Vec<Stroke>, FitError> {
     if let Some(stroke) = without.iter().find(|name| !strokes.iter().any(|stroke| stroke.name == **name)) {
-        let name = |stroke: Option<&Stroke>| stroke.map(|stroke| stroke.name.clone()).unwrap_or_default();
-        let (first, last) = (name(strokes.first()), name(strokes.last()));
-        return Err(FitError::NoSuchStroke { stroke: stroke.clone(), first, last });
+        let [first, last] = [strokes.first(), strokes.last()].map(|end| end.map_or("", |stroke| &stroke.name));
+        return Err(FitError::Refused(format!(
+            "--without {}: there is no such stroke; the column stroke has {} to {}",
+            brief(stroke),
+            brief(first),
+            brief(last)
+        )));
     }
     Ok(strokes.into_iter().filter(|stroke| !without.contains(&stroke.name)).collect())
 }

@@ -2,7 +2,7 @@
 
 use super::Settings;
 use super::contrast::{Levels, Phases, StrokeMeans};
-use super::error::FitError;
+use super::error::{FitError, plain};
 use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
 use super::recording::{Recording, Stroke};
@@ -43,7 +43,7 @@ const VOLTAGE_MIN_V_RMS: f64 = 1.0;
 /// Whether there are rows, and their loads are newtons.
 pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
     if rows.is_empty() {
-        return Err(FitError::TooFewStrokes { found: 0, needed: STROKES_MIN });
+        return Err(too_few_strokes(0));
     }
     check_load_unit(rows.iter().map(|row| row.normal_force_n))
 }
@@ -51,7 +51,10 @@ pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
 /// Whether loads are newtons.
 pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Result<(), FitError> {
     if loads_n.clone().all(|load_n| load_n.abs() < 1e-9) {
-        return Err(FitError::NoLoads);
+        return Err(FitError::Refused(
+            "column normal_force_n is zero throughout, there are no loads: record the normal force with a load cell"
+                .to_owned(),
+        ));
     }
     let median = median(loads_n);
     if !LOADS_N.contains(&median) {
@@ -63,7 +66,11 @@ pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Res
             }
             _ => "looks like millinewtons",
         };
-        return Err(FitError::LoadUnit { median, guess });
+        return Err(FitError::Refused(format!(
+            "the median of normal_force_n is {}, and a finger on a touchscreen presses with 0.03 to 3 N: the column \
+             {guess}; give newtons, or name the column normal_force_mn if it is in millinewtons",
+            plain(median)
+        )));
     }
     Ok(())
 }
@@ -71,44 +78,76 @@ pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Res
 /// Whether there are enough strokes.
 pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
     let found = recording.strokes.len();
-    if found < STROKES_MIN { Err(FitError::TooFewStrokes { found, needed: STROKES_MIN }) } else { Ok(()) }
+    if found < STROKES_MIN { Err(too_few_strokes(found)) } else { Ok(()) }
+}
+
+fn too_few_strokes(found: usize) -> FitError {
+    FitError::TooFew(format!(
+        "{found} strokes are too few for an interval: record at least {STROKES_MIN}, 60 s of strokes back and forth are \
+         best"
+    ))
+}
+
+/// Whether an interval can rest on so many strokes of a voltage.
+pub(super) fn check_at_voltage(found: usize, voltage_v_rms: f64) -> Result<(), FitError> {
+    if found >= GROUP_MIN {
+        return Ok(());
+    }
+    Err(FitError::TooFew(format!(
+        "{found} of the strokes have {voltage_v_rms:.0} V rms, too few for an interval there: record at least \
+         {GROUP_MIN}, as many as at the other voltages are best, or leave them out with --without"
+    )))
 }
 
 /// Whether there are enough strokes near the highest voltage, on which electric friction rests.
 pub(super) fn check_top(strokes: &[StrokeMeans], voltage_v_rms: f64) -> Result<(), FitError> {
     let is_near =
         |stroke: &&StrokeMeans| stroke.observations.iter().any(|one| one.voltage_v_rms >= NEAR_TOP * voltage_v_rms);
-    let found = strokes.iter().filter(is_near).count();
-    if found < GROUP_MIN {
-        return Err(FitError::TooFewAtVoltage { found, needed: GROUP_MIN, voltage_v_rms });
-    }
-    Ok(())
+    check_at_voltage(strokes.iter().filter(is_near).count(), voltage_v_rms)
 }
 
-/// Whether there are voltages to compare; returns the lowest and the highest.
-pub(super) fn check_levels(levels: &Levels) -> Result<(f64, f64), FitError> {
-    let Some((low, high)) = levels.range_v_rms() else { return Err(FitError::NoVoltage) };
-    check_voltages(low, high)
-}
-
-/// Whether the lowest and the highest voltage are volts, and far enough apart; returns them.
-pub(super) fn check_voltages(low: f64, high: f64) -> Result<(f64, f64), FitError> {
+/// Whether there are voltages to compare: the lowest and the highest of the drive, which are returned, have to be volts,
+/// and far enough apart. `None` if it is never on.
+pub(super) fn check_voltages(range_v_rms: Option<(f64, f64)>) -> Result<(f64, f64), FitError> {
+    let Some((low, high)) = range_v_rms else {
+        let sentence = "the voltage is zero throughout: record with the drive switched on and off";
+        return Err(FitError::Refused(sentence.to_owned()));
+    };
     if high < VOLTAGE_MIN_V_RMS {
-        return Err(FitError::VoltageTooLow { max: high });
+        return Err(FitError::Refused(format!(
+            "the highest voltage of voltage_v_rms is {high} V, and below 1 V a drive adds no friction that can be \
+             measured: name the column voltage_kv_rms if it is in kilovolts"
+        )));
     }
-    if high < VOLTAGE_RATIO_MIN * low { Err(FitError::OneVoltage { found: high }) } else { Ok((low, high)) }
+    if high < VOLTAGE_RATIO_MIN * low {
+        return Err(FitError::Refused(format!(
+            "one voltage only ({high:.1} V rms besides zero): the model is tested by how friction grows from one voltage \
+             to another; record at least two, for example 75, 106 and 150 V rms"
+        )));
+    }
+    Ok((low, high))
 }
 
 /// Whether the voltages are those of an envelope, which rests at a level for some rows, and not of the carrier itself.
 pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<(), FitError> {
     let (rest_rows, rest_s) = levels.rest(recording);
     let is_carrier = rest_s.map_or(rest_rows < REST_MIN_ROWS, |rest_s| rest_s < REST_MIN_S);
-    if is_carrier { Err(FitError::RawCarrier { rest_rows }) } else { Ok(()) }
+    if !is_carrier {
+        return Ok(());
+    }
+    Err(FitError::Refused(format!(
+        "the voltages look like samples of the carrier itself, since they stay the same for {rest_rows:.1} rows only: give \
+         the root mean square of the drive over one carrier period"
+    )))
 }
 
 /// Whether rows are close enough together to leave out those beside each switch of the drive.
 pub(super) fn check_phases(phases: &Phases) -> Result<(), FitError> {
-    phases.unresolved_rows().map_or(Ok(()), |rows| Err(FitError::RowsTooFarApart { rows }))
+    let Some(rows) = phases.unresolved_rows() else { return Ok(()) };
+    Err(FitError::Refused(format!(
+        "the drive is switched every {rows:.0} rows, too few to leave out the rows beside a switch, where friction is on \
+         its way: record at least 250 rows a second and switch every 20 ms or later"
+    )))
 }
 
 /// Leaves out the strokes whose loads are not like those of the others; returns the median load, and the smallest and
@@ -133,7 +172,9 @@ pub(super) fn check_loads(recording: &mut Recording, faults: &mut Faults) -> (f6
 pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults) -> Result<(), FitError> {
     let ratio = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
     if ratio.is_nan() {
-        return Err(FitError::NoNaturalFriction);
+        let sentence = "no row has a voltage of zero, so natural friction is unknown: switch the drive on and off while \
+                        the finger slides";
+        return Err(FitError::Refused(sentence.to_owned()));
     }
     if !COEFFICIENTS.contains(&ratio) {
         let guess = if ratio > *COEFFICIENTS.end() {
@@ -141,7 +182,11 @@ pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults)
         } else {
             "is not in newtons; the load looks like millinewtons or kilopascals"
         };
-        return Err(FitError::FrictionUnit { ratio, guess });
+        return Err(FitError::Refused(format!(
+            "friction_n over normal_force_n has a median of {ratio:.3} at no voltage, and that of skin on glass is 0.05 to \
+             5: one of the columns {guess}; give newtons in both, or name the column friction_mn or normal_force_mn if it \
+             is in millinewtons"
+        )));
     }
     strokes.retain(|stroke| {
         let Some(coefficient) = stroke.natural_coefficient else { return true };
@@ -160,7 +205,12 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
     for row in recording.rows() {
         for (column, found_n) in [("normal_force_n", row.normal_force_n), ("friction_n", row.friction_n)] {
             if found_n.abs() > FORCE_MAX_N {
-                return Err(FitError::ForceTooHigh { row: row.number, column, found_n });
+                return Err(FitError::Refused(format!(
+                    "row {}, column {column}: {} N is no force of a finger: correct the cell, or name the column \
+                     friction_mn or normal_force_mn if it is in millinewtons",
+                    row.number,
+                    plain(found_n)
+                )));
             }
         }
     }
@@ -208,7 +258,13 @@ fn check_slip_of(ratios: &[(&StrokeMeans, f64)], faults: &mut Faults) {
 /// Whether friction is stated at a voltage that was measured.
 pub(super) fn check_stated_voltage(settings: &Settings, voltages: (f64, f64)) -> Result<(), FitError> {
     let (stated, max) = (settings.voltage_v_rms, voltages.1);
-    if stated > EXTRAPOLATION * max { Err(FitError::VoltageExtrapolated { max, stated }) } else { Ok(()) }
+    if stated <= EXTRAPOLATION * max {
+        return Ok(());
+    }
+    Err(FitError::Refused(format!(
+        "the data reach {max:.1} V rms, friction at {stated} V would be extrapolated: record up to {stated} V rms, or state \
+         it lower with --voltage {max:.0}"
+    )))
 }
 
 /// Whether friction is stated under a load that was measured.
@@ -216,7 +272,10 @@ pub(super) fn check_stated_load(settings: &Settings, loads: (f64, f64)) -> Resul
     let (low, high) = loads;
     match settings.normal_load_n {
         Some(stated) if !(low / EXTRAPOLATION..=high * EXTRAPOLATION).contains(&stated) => {
-            Err(FitError::LoadExtrapolated { low, high, stated })
+            Err(FitError::Refused(format!(
+                "the data have loads from {low:.3} to {high:.3} N, friction under {stated} N would be extrapolated: record \
+                 under that load, or leave out --load"
+            )))
         }
         _ => Ok(()),
     }

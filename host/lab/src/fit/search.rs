@@ -62,11 +62,20 @@ pub(super) fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Re
     let top = || observations.iter().filter(|one| one.voltage_v_rms > 0.9 * top_v_rms);
     let attraction_n = median(top().map(|one| attraction_of(one, friction_coefficient)));
     if !(attraction_n > 0.0) {
-        return Err(FitError::NoElectricFriction { found_n: friction_coefficient * attraction_n });
+        return Err(no_electric_friction(friction_coefficient * attraction_n));
     }
     let load_n = median(top().map(|one| one.normal_load_n));
     let coupling = Coupling::of_attraction(attraction_n, top_v_rms, load_n);
     Ok(Solution { friction_coefficient, attraction: Attraction::Contact(coupling) })
+}
+
+/// The error of a voltage that makes no friction; `found_n` is that at the highest one.
+pub(super) fn no_electric_friction(found_n: f64) -> FitError {
+    FitError::Refused(format!(
+        "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven, that \
+         voltage and friction belong to the same time, and that friction was not smoothed, so that it changes before its \
+         switch"
+    ))
 }
 
 pub(super) fn attraction_of(observation: &Observation, friction_coefficient: f64) -> f64 {

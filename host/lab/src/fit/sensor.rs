@@ -59,7 +59,12 @@ pub(super) fn check_bandwidth(phases: &Phases) -> Result<Option<f64>, FitError> 
     let Some(rise_s) = rise_s(phases) else { return Ok(None) };
     let bandwidth_hz = BANDWIDTH_TIMES_RISE / rise_s;
     if bandwidth_hz < BANDWIDTH_MIN_HZ {
-        return Err(FitError::SlowSensor { rise_ms: 1e3 * rise_s, bandwidth_hz });
+        let rise_ms = 1e3 * rise_s;
+        return Err(FitError::NotSettled(format!(
+            "the force sensor is too slow: friction takes {rise_ms:.1} ms from 10 to 90 % of its way after a switch of \
+             the drive, as with a bandwidth of {bandwidth_hz:.0} Hz, so that electric friction would come out too \
+             small; use a sensor, and a filter behind it, of at least 200 Hz, with at least 250 rows a second"
+        )));
     }
     Ok(Some(bandwidth_hz))
 }
@@ -95,13 +100,25 @@ pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<f64
         Side::Before => ("before", FORESIGHT),
         Side::After => ("after", SLOWNESS),
     };
-    Err(FitError::NotSettled { edge, side, percent: 1e2 * shift.share, cause })
+    let (percent, change) = (1e2 * shift.share.abs(), if shift.share < 0.0 { "smaller" } else { "larger" });
+    Err(FitError::NotSettled(format!(
+        "electric friction comes out {percent:.1} % {change} if rows within {edge} {side} each switch of the drive are \
+         left out: {cause}"
+    )))
 }
 
 /// Fails if the intervals of [`check_settled`] are too wide to show anything. This check comes behind that of the
 /// estimates' intervals, which the same noise widens, and whose sentence says more.
 pub(super) fn check_settling_error(error: f64) -> Result<(), FitError> {
-    if error > SETTLING_ERROR_MAX { Err(FitError::SettlingUnknown { percent: 1e2 * error }) } else { Ok(()) }
+    if error <= SETTLING_ERROR_MAX {
+        return Ok(());
+    }
+    Err(FitError::Refused(format!(
+        "the drive adds too little friction for the noise to tell whether friction was smoothed: electric friction may \
+         change by {:.0} % with the rows that are left out beside each switch; fit what the sensor gave, without a mean \
+         or a filter behind it, and check that the electrode is driven",
+        1e2 * error
+    )))
 }
 
 const FORESIGHT: &str = "friction changes before its switch, as behind a centred mean, filtfilt or a Savitzky-Golay \

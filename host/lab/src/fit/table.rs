@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::Read;
 
-use super::error::FitError;
+use super::error::{FitError, plain};
 use super::means::{self, MeanRow};
 use crate::table::{Column, Place, Reading, Table, TableError, Unit};
 
@@ -102,9 +102,12 @@ pub(super) fn check_numbers(rows: &[Row]) -> Result<(), FitError> {
 
 /// Fails if no driver has this voltage.
 pub(super) fn check_voltage(row: u64, found: f64) -> Result<(), FitError> {
-    match found {
-        found if found < 0.0 => Err(FitError::NegativeVoltage { row, found }),
-        found if found > VOLTAGE_MAX_V_RMS => Err(FitError::VoltageTooHigh { row, found }),
-        _ => Ok(()),
-    }
+    let fault = match found {
+        found if found < 0.0 => "is below zero: give the root mean square of the drive, which has no sign",
+        found if found > VOLTAGE_MAX_V_RMS => {
+            "is above 1000 V: give volts rms, not DAC codes, or name the column voltage_mv_rms if it is in millivolts"
+        }
+        _ => return Ok(()),
+    };
+    Err(FitError::Refused(format!("row {row}, column voltage_v_rms: {} V {fault}", plain(found))))
 }

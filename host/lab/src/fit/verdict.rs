@@ -161,10 +161,23 @@ fn is_narrow(measured: &Estimate) -> bool {
 fn refused(quantity: &'static str, (exponent, half_width): (Exponent, f64)) -> Result<Exponent, FitError> {
     let (value, model) = (exponent.measured.value, exponent.model);
     let room = half_width + ALLOWANCE;
-    if (value - model).abs() > room {
-        return Err(FitError::LawBroken { quantity, value, low: value - room, high: value + room, model });
+    if (value - model).abs() <= room {
+        return Ok(exponent);
     }
-    Ok(exponent)
+    let (low, high) = (value - room, value + room);
+    // What bends the measured exponent, which a factor on volts or newtons does not; and what to do if nothing does.
+    let cure = if quantity == "load" {
+        "that friction does not leak into the sensor's normal force, nor the load into its friction"
+    } else {
+        "that the amplifier reaches the highest voltage with the electrode connected, and that the force sensor is \
+         linear; if so, `frixel finger fit DATA.csv --law empirical` fits a power law of the voltage in the model's \
+         place"
+    };
+    Err(FitError::Refused(format!(
+        "electric friction grows as {quantity} to the power {value:.2} ({low:.2} to {high:.2}, the 99.9 % interval and \
+         0.1 more on either side), and the model says {model:.2}: the contact model does not hold for these data, so no \
+         profile is fitted; check {cure}; see docs/truth.md"
+    )))
 }
 
 /// The observations as they would be if a law were exact.
@@ -219,7 +232,15 @@ pub(super) fn check_estimates(
                 Division::Means => "give means of more values",
                 Division::Column | Division::Motion | Division::Blocks => "record more strokes, more evenly",
             };
-            return Err(FitError::TooUncertain { quantity, low, high, value, natural, advice });
+            let width = if high - value < value && value - low < value {
+                format!("wider than +-20 % of the {natural:.4} without the drive")
+            } else {
+                "wider than the value itself, as where the drive adds next to nothing or friction was smoothed"
+                    .to_owned()
+            };
+            return Err(FitError::Refused(format!(
+                "the 95 % interval of the {quantity} is {low:.4} to {high:.4} around {value:.4}, {width}: {advice}"
+            )));
         }
     }
     Ok(())
@@ -229,7 +250,11 @@ pub(super) fn check_estimates(
 pub(super) fn check_gap(fit: &Fit, settings: &Settings) -> Result<(), FitError> {
     if fit.skin_gap_m <= 0.0 {
         let (gap_um, coating_um) = (1e6 * fit.gap_m, 1e6 * settings.coating_gap_m);
-        return Err(FitError::GapInsideCoating { gap_um, coating_um });
+        return Err(FitError::Refused(format!(
+            "the measured attraction needs an effective gap of {gap_um:.3} um, and the coating alone has \
+             {coating_um:.3} um: check the coating, and that the voltages are those at the electrode, not ahead of the \
+             amplifier"
+        )));
     }
     Ok(())
 }
@@ -249,7 +274,12 @@ fn check_drift(quantity: &'static str, thirds: [Option<(f64, f64)>; 2], scale: f
     let [Some((first, first_error)), Some((last, last_error))] = thirds else { return Ok(()) };
     let change = (last - first).abs();
     if change > DRIFT_SHARE * 0.5 * (first + last) && change > Z_999 * libm::hypot(first_error, last_error) {
-        return Err(FitError::Drifted { quantity, first: scale * first, last: scale * last });
+        return Err(FitError::Refused(format!(
+            "the {quantity} was {:.4} in the first third and {:.4} in the last: the finger changed while it was \
+             measured; rest for a minute, wipe finger and screen, and record again",
+            scale * first,
+            scale * last
+        )));
     }
     Ok(())
 }
