@@ -37,40 +37,9 @@ pub enum StrokeFileError {
     /// The file is no table of the columns that are needed, or a cell is no number.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The file has no two rows.
-    #[error("the stroke has {}: give at least two, so that the finger moves in time", if *.found == 0 { "no rows" } else { "one row only" })]
-    TooFewRows {
-        /// Number of rows.
-        found: usize,
-    },
-    /// A normal load that no finger has.
-    #[error(
-        "row {row}, column force_n: {found_n} is no load of a finger: give newtons, above 0 and at most 50, or name the column force_mn if it is in millinewtons"
-    )]
-    NoLoad {
-        /// Number of the row.
-        row: u64,
-        /// The load that was found, N.
-        found_n: f64,
-    },
-    /// A row has a negative time.
-    #[error("row {row}, column t_s: {found_s} is below 0: give time from the start of the stroke")]
-    BeforeStart {
-        /// Number of the row.
-        row: u64,
-        /// Time of the row, s.
-        found_s: f64,
-    },
-    /// The time of a row is not later than that of the row before.
-    #[error("row {row}, column t_s: {found_s} comes after {previous_s}: give times that rise from row to row")]
-    NotRising {
-        /// Number of the row.
-        row: u64,
-        /// Time of the row, s.
-        found_s: f64,
-        /// Time of the row before, s.
-        previous_s: f64,
-    },
+    /// The rows are no stroke of a finger.
+    #[error("{0}")]
+    Refused(String),
     /// The finger cannot go through the places.
     #[error(transparent)]
     Stroke(#[from] StrokeError),
@@ -108,10 +77,14 @@ impl StrokeFile {
             let read = stroke_row(&row, places, load)?;
             let (row, found_s) = (row.number(), read.t_s);
             if found_s < 0.0 {
-                return Err(StrokeFileError::BeforeStart { row, found_s });
+                return Err(StrokeFileError::Refused(format!(
+                    "row {row}, column t_s: {found_s} is below 0: give time from the start of the stroke"
+                )));
             }
             if let Some(previous_s) = rows.last().map(|row| row.t_s).filter(|previous_s| *previous_s >= found_s) {
-                return Err(StrokeFileError::NotRising { row, found_s, previous_s });
+                return Err(StrokeFileError::Refused(format!(
+                    "row {row}, column t_s: {found_s} comes after {previous_s}: give times that rise from row to row"
+                )));
             }
             rows.push(read);
         }
@@ -123,7 +96,10 @@ impl StrokeFile {
             understood = Some(understood.map_or(note.clone(), |words| format!("{words}; {note}")));
         }
         if rows.len() < 2 {
-            return Err(StrokeFileError::TooFewRows { found: rows.len() });
+            let found = if rows.is_empty() { "no rows" } else { "one row only" };
+            return Err(StrokeFileError::Refused(format!(
+                "the stroke has {found}: give at least two, so that the finger moves in time"
+            )));
         }
         Ok(Self { stroke: Stroke::through_rows(&rows)?, ignored_columns, understood })
     }
@@ -150,7 +126,11 @@ fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<S
     let place = Point { x_m: row.real(x)? / MM_PER_M, y_m: row.real(y)? / MM_PER_M };
     let normal_load_n = load.map(|load| row.real_if_known(load)).transpose()?.flatten();
     match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= LOAD_MAX_N)) {
-        Some(found_n) => Err(StrokeFileError::NoLoad { row: row.number(), found_n }),
+        Some(found_n) => Err(StrokeFileError::Refused(format!(
+            "row {}, column force_n: {found_n} is no load of a finger: give newtons, above 0 and at most 50, or name the \
+             column force_mn if it is in millinewtons",
+            row.number()
+        ))),
         None => Ok(StrokeRow { t_s, place: Some(place), normal_load_n }),
     }
 }

@@ -122,13 +122,13 @@ pub struct Table<R> {
 impl<R: Read> Table<R> {
     /// Reads down to the header. Fails if it cannot be told what separates the columns.
     pub fn new(input: R) -> Result<Self, TableError> {
-        let mut input = Utf8::new(input).map_err(TableError::Read)?;
+        let mut input = Utf8::new(input)?;
         let mut head = Vec::new();
-        input.by_ref().take(HEAD_BYTES).read_to_end(&mut head).map_err(TableError::Read)?;
+        input.by_ref().take(HEAD_BYTES).read_to_end(&mut head)?;
         let mut is_cut_off = false;
         if head.starts_with(MAGIC) {
-            input.read_to_end(&mut head).map_err(TableError::Read)?;
-            let recording = Recording::read_parquet(head).map_err(|error| TableError::Read(io::Error::other(error)))?;
+            input.read_to_end(&mut head)?;
+            let recording = Recording::read_parquet(head).map_err(io::Error::other)?;
             is_cut_off = recording.is_cut_off;
             head = recording.to_csv();
         }
@@ -137,7 +137,7 @@ impl<R: Read> Table<R> {
             head.drain(..BYTE_ORDER_MARK.len());
         }
         if !is_whole && !head.iter().any(|byte| matches!(byte, b'\n' | b'\r')) {
-            return Err(TableError::HeaderTooLong { limit: HEAD_BYTES });
+            return Err(TableError::no_table(format!("the first line has more than {HEAD_BYTES} bytes")));
         }
         let (dialect, found) = Dialect::of(&mut head, is_whole, input.order())?;
         let (units, mut layout) = (found.units().to_vec(), found.words(&head));
@@ -147,8 +147,8 @@ impl<R: Read> Table<R> {
         let input = Lines::new(input);
         let builder = &mut ReaderBuilder::new();
         let mut reader = builder.flexible(true).comment(Some(b'#')).delimiter(dialect.separator()).from_reader(input);
-        let header = reader.byte_headers().map_err(TableError::read)?;
-        check_header(header.iter()).map_err(|error| TableError::Read(error.into()))?;
+        let header = reader.byte_headers()?;
+        check_header(header.iter()).map_err(io::Error::from)?;
         let names: Vec<String> = header.iter().map(name).collect();
         let asked = vec![false; names.len()];
         Ok(Self { reader, dialect, asked, names, units, layout, stated: Vec::new(), rows: 0, cells: ByteRecord::new() })
@@ -175,7 +175,7 @@ impl<R: Read> Table<R> {
 
     /// The cells of the header as they stand in the file.
     pub fn header(&mut self) -> Result<&ByteRecord, TableError> {
-        self.reader.byte_headers().map_err(TableError::read)
+        Ok(self.reader.byte_headers()?)
     }
 
     /// The names of the columns that no caller has asked for.
@@ -202,9 +202,14 @@ impl<R: Read> Table<R> {
                 }
                 Ok(Some(place))
             }
-            _ => {
-                let names = places.iter().filter_map(|place| self.names.get(place.index)).cloned();
-                Err(TableError::ColumnTwice { names: names.collect() })
+            [one, other, ..] => {
+                let [one, other] = [one, other].map(|place| place.name_in(&self.names));
+                let found = if one == other {
+                    format!("the header has the column {} twice", brief(one))
+                } else {
+                    format!("the header has one quantity twice, {} and {}", brief(one), brief(other))
+                };
+                Err(TableError::new(found, "leave one of them out"))
             }
         }
     }
@@ -229,7 +234,10 @@ impl<R: Read> Table<R> {
                 }
                 Named::Doubtful { readings, advice } => {
                     let readings = readings.join(" or in ");
-                    return Err(TableError::UnitDoubtful { header: header.clone(), readings, advice });
+                    return Err(TableError::new(
+                        format!("the column `{}` can be read in {readings}", brief(header)),
+                        advice,
+                    ));
                 }
             }
         }
@@ -244,7 +252,7 @@ impl<R: Read> Table<R> {
     /// The error of a header that has none of these columns. A name that the caller has asked for is not suggested.
     pub(crate) fn missing(&self, columns: &[Column]) -> TableError {
         if self.names.is_empty() {
-            return TableError::Empty;
+            return TableError::no_table("the table is empty");
         }
         let likeness = |name: &str| {
             let each = columns.iter().map(|column| strsim::normalized_damerau_levenshtein(column.name, name));
@@ -258,16 +266,19 @@ impl<R: Read> Table<R> {
             .map(|(name, _)| (likeness(name), name))
             .filter(|(likeness, _)| *likeness >= LIKENESS)
             .max_by(|one, other| one.0.total_cmp(&other.0))
-            .map(|(_, name)| name.clone());
+            .map_or(String::new(), |(_, name)| format!(" (it has {})", brief(name)));
         let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-        let unit = columns.first().map_or("", |column| column.unit);
-        TableError::ColumnMissing { column: names.join(" or "), unit, nearest }
+        let found = format!("the header has no column {}{nearest}", names.join(" or "));
+        match columns.first().map_or("", |column| column.unit) {
+            "" => TableError::new(found, "name the column so"),
+            unit => TableError::new(found, format!("name the column so, in {unit}")),
+        }
     }
 
     /// Reads the next row; `None` at the end.
     pub fn next_row(&mut self) -> Result<Option<Row<'_>>, TableError> {
         loop {
-            if !self.reader.read_byte_record(&mut self.cells).map_err(TableError::read)? {
+            if !self.reader.read_byte_record(&mut self.cells)? {
                 return Ok(None);
             }
             // A line of blanks, such as some editors leave at the end of a file.
@@ -277,7 +288,7 @@ impl<R: Read> Table<R> {
             }
         }
         self.rows += 1;
-        at_most("rows or more", self.rows, ROWS_MAX).map_err(|error| TableError::Read(error.into()))?;
+        at_most("rows or more", self.rows, ROWS_MAX).map_err(io::Error::from)?;
         let number = self.number();
         Ok(Some(Row { number, names: &self.names, dialect: self.dialect, cells: &self.cells }))
     }
@@ -322,8 +333,15 @@ impl<'t> Row<'t> {
     /// Fails if the row has more or fewer cells than the header.
     pub fn check_length(&self) -> Result<(), TableError> {
         let (row, expected, found) = (self.number, self.names.len(), self.cells.len());
-        let is_whole = found == expected || layout::is_short(self.names, found);
-        if is_whole { Ok(()) } else { Err(TableError::Length { row, expected, found }) }
+        if found == expected || layout::is_short(self.names, found) {
+            return Ok(());
+        }
+        let advice = if found > expected {
+            "correct or delete the row; if commas are decimal signs, save the file with semicolons between columns"
+        } else {
+            "correct or delete the row"
+        };
+        Err(TableError::new(format!("row {row}: expected {expected} cells as in the header, found {found}"), advice))
     }
 
     /// A cell without blanks around it; empty if the row is too short.
@@ -339,25 +357,25 @@ impl<'t> Row<'t> {
     /// The number in a cell, which is finite, in the unit of the caller.
     pub fn real(&self, place: Place) -> Result<f64, TableError> {
         let number = self.digits(place)?.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| {
-            let (row, column) = (self.number, self.column(place));
-            TableError::NotANumber { row, column, found: self.quoted(place) }
-        })
+        number.ok_or_else(|| not_a_number(self.number, place.name_in(self.names), &self.quoted(place)))
     }
 
     /// The digits of the number in a cell, in the unit of the caller and with a decimal point. They need not be a
     /// number.
     pub(crate) fn digits(&self, place: Place) -> Result<Cow<'t, str>, TableError> {
-        let (row, column) = (self.number, self.column(place));
+        let (row, column) = (self.number, place.name_in(self.names));
         let text = self.text(place);
         if text.is_empty() {
-            return Err(TableError::CellEmpty { row, column });
+            return Err(not_a_number(row, column, ""));
         }
         let digits = match self.dialect.digits(&text) {
             Digits::Number(digits) => digits.into_owned(),
             Digits::Doubtful(readings) => {
-                let readings = readings.join(" or as ");
-                return Err(TableError::CellDoubtful { row, column, found: self.quoted(place), readings });
+                let (column, found, readings) = (brief(column), self.quoted(place), readings.join(" or as "));
+                return Err(TableError::new(
+                    format!("row {row}, column {column}: {found:?} can be read as {readings}"),
+                    "save the file without separators of thousands, and with points in numbers",
+                ));
             }
         };
         if place.power_of_ten == 0 {
@@ -384,6 +402,15 @@ impl<'t> Row<'t> {
     pub fn real_if_known(&self, place: Place) -> Result<Option<f64>, TableError> {
         self.known(place).map(|_| self.real(place)).transpose()
     }
+}
+
+/// The error of a cell that is no number; `found` is empty if the cell is.
+pub(crate) fn not_a_number(row: u64, column: &str, found: &str) -> TableError {
+    let found = if found.is_empty() { "an empty cell".to_owned() } else { format!("{found:?}") };
+    TableError::new(
+        format!("row {row}, column {}: expected a number, found {found}", brief(column)),
+        "correct the cell or delete the row",
+    )
 }
 
 /// The whole rows of a file that its writer may still be writing: without a last line that has no line feed.

@@ -41,11 +41,16 @@ pub fn align(board: &[BoardRow], forces: &[ForceRow]) -> Result<Vec<Row>, Calibr
     let found = duration_s(forces.first().map(|row| row.time_s), forces.last().map(|row| row.time_s));
     let needed = duration_s(board.first().map(|row| row.time_s), board.last().map(|row| row.time_s));
     if found < 0.95 * needed || forces.len() < 2 {
-        return Err(CalibrationError::TooShort { found, needed });
+        return Err(CalibrationError::Refused(format!(
+            "the forces last {found:.1} s, and the protocol {needed:.1} s: start the sensor before the board, and stop it \
+             after"
+        )));
     }
     let sensor_hz = (forces.len() - 1) as f64 / found;
     if sensor_hz < SENSOR_MIN_HZ {
-        return Err(CalibrationError::TooSlow { found: sensor_hz });
+        return Err(CalibrationError::Refused(format!(
+            "the forces have {sensor_hz:.0} rows a second, fewer than 200: half-periods of 20 ms need at least 200"
+        )));
     }
     let drive = detrended(&grid(board, |row| row.time_s, |row| row.voltage_v_rms * row.voltage_v_rms));
     let answer = detrended(&grid(forces, |row| row.time_s, |row| row.friction_n.abs()));
@@ -53,7 +58,10 @@ pub fn align(board: &[BoardRow], forces: &[ForceRow]) -> Result<Vec<Row>, Calibr
     let around = Some((coarse - FINE, coarse + FINE));
     let (lag, correlation) = best_lag(&drive, &answer, around);
     if correlation < CORRELATION_MIN {
-        return Err(CalibrationError::NoAnswer { found: correlation });
+        return Err(CalibrationError::Refused(format!(
+            "friction does not follow the drive (correlation {correlation:.2}): check that the electrode is driven, that \
+             the finger slides, and that the forces are those of this run"
+        )));
     }
     let third = drive.len() / 3;
     let lag_of = |from: usize| {
@@ -68,7 +76,11 @@ pub fn align(board: &[BoardRow], forces: &[ForceRow]) -> Result<Vec<Row>, Calibr
     };
     let drift_s = (lag_of(drive.len() - third) - lag_of(0)) / GRID_HZ;
     if drift_s.abs() > DRIFT_MAX_S {
-        return Err(CalibrationError::Clocks { drift_ms: 1e3 * drift_s });
+        return Err(CalibrationError::Refused(format!(
+            "the clocks of board and sensor drift apart by {:.1} ms during the recording, more than 1 ms: sample the forces \
+             on a steadier clock",
+            1e3 * drift_s
+        )));
     }
     let lag_s = refined(&drive, &answer, lag) / GRID_HZ;
     let starts = (board.first().map_or(0.0, |row| row.time_s), forces.first().map_or(0.0, |row| row.time_s));
@@ -188,7 +200,11 @@ fn leave_out_if_short(rows: &mut Vec<Row>, start: usize) {
 #[cfg(test)]
 mod tests {
     use super::super::Protocol;
-    use super::{BoardRow, CalibrationError, ForceRow, align};
+    use super::{BoardRow, ForceRow, align};
+
+    fn refused(board: &[BoardRow], forces: &[ForceRow]) -> String {
+        align(board, forces).unwrap_err().to_string()
+    }
 
     /// A board that drives random half-periods, and a sensor whose clock is `offset_s` ahead and `rate` times as fast.
     fn recorded(offset_s: f64, rate: f64) -> (Vec<BoardRow>, Vec<ForceRow>) {
@@ -225,8 +241,7 @@ mod tests {
     #[test]
     fn clocks_that_drift_by_more_than_a_millisecond_are_refused() {
         let (board, forces) = recorded(5.0, 1.0 + 2e-4);
-        let error = align(&board, &forces).unwrap_err();
-        assert!(matches!(error, CalibrationError::Clocks { .. }), "{error}");
+        assert!(refused(&board, &forces).contains("drift apart by "), "{}", refused(&board, &forces));
         let (board, forces) = recorded(5.0, 1.0 + 1e-5);
         assert!(align(&board, &forces).is_ok());
     }
@@ -237,9 +252,9 @@ mod tests {
         for (index, force) in forces.iter_mut().enumerate() {
             force.friction_n = 0.25 + 0.01 * ((index * 7919) % 101) as f64 / 101.0;
         }
-        assert!(matches!(align(&board, &forces), Err(CalibrationError::NoAnswer { .. })));
+        assert!(refused(&board, &forces).starts_with("friction does not follow the drive"));
         let few: Vec<ForceRow> = forces.iter().step_by(10).copied().collect();
-        assert!(matches!(align(&board, &few), Err(CalibrationError::TooSlow { .. })));
-        assert!(matches!(align(&board, &forces[..2000]), Err(CalibrationError::TooShort { .. })));
+        assert!(refused(&board, &few).contains("fewer than 200"));
+        assert!(refused(&board, &forces[..2000]).starts_with("the forces last 2.0 s"));
     }
 }

@@ -43,61 +43,9 @@ pub enum CalibrationError {
     /// What the board reported cannot be read.
     #[error("what the board reported cannot be read ({}): it was changed", .0.found())]
     Board(TableError),
-    /// Time goes backwards.
-    #[error("row {row} of the forces goes back in time: sort the rows by time")]
-    Backwards {
-        /// Number of the row; the header is row 1.
-        row: u64,
-    },
-    /// A force is none of a finger.
-    #[error(
-        "row {row}, column {column}: {found_n} N is no force of a finger: give newtons, at most 50, or name the column \
-         normal_force_mn or friction_mn if it is in millinewtons"
-    )]
-    ForceTooHigh {
-        /// Number of the row.
-        row: u64,
-        /// The column.
-        column: String,
-        /// The force, in newtons.
-        found_n: f64,
-    },
-    /// The sensor is too slow.
-    #[error("the forces have {found:.0} rows a second, fewer than 200: half-periods of 20 ms need at least 200")]
-    TooSlow {
-        /// Rows a second.
-        found: f64,
-    },
-    /// The sensor did not see the whole protocol.
-    #[error(
-        "the forces last {found:.1} s, and the protocol {needed:.1} s: start the sensor before the board, and stop \
-         it after"
-    )]
-    TooShort {
-        /// Duration of the forces.
-        found: f64,
-        /// Duration of the protocol.
-        needed: f64,
-    },
-    /// Friction does not answer the drive.
-    #[error(
-        "friction does not follow the drive (correlation {found:.2}): check that the electrode is driven, that the \
-         finger \
-         slides, and that the forces are those of this run"
-    )]
-    NoAnswer {
-        /// Correlation of friction with the squared voltage.
-        found: f64,
-    },
-    /// The clocks differ.
-    #[error(
-        "the clocks of board and sensor drift apart by {drift_ms:.1} ms during the recording, more than 1 ms: sample \
-         the forces on a steadier clock"
-    )]
-    Clocks {
-        /// Drift in milliseconds.
-        drift_ms: f64,
-    },
+    /// The forces are none of this run, or cannot be joined with it.
+    #[error("{0}")]
+    Refused(String),
     /// The recording cannot be written.
     #[error("the recording cannot be written ({0}): check the folder and its free space")]
     Write(csv::Error),
@@ -117,7 +65,7 @@ const SPEED: Column = Column::new("speed_mm_s", "mm/s");
 /// Columns may state another unit ([`table`](crate::table)).
 pub fn read_forces(mut input: impl Read) -> Result<Reading<Vec<ForceRow>>, CalibrationError> {
     let mut bytes = Vec::new();
-    input.read_to_end(&mut bytes).map_err(TableError::Read)?;
+    input.read_to_end(&mut bytes).map_err(TableError::from)?;
     let mut table = Table::new(whole_rows(&bytes))?;
     let (time, load, friction) = (table.need(TIME)?, table.need(LOAD)?, table.need(FRICTION)?);
     let mut rows: Vec<ForceRow> = Vec::new();
@@ -125,14 +73,22 @@ pub fn read_forces(mut input: impl Read) -> Result<Reading<Vec<ForceRow>>, Calib
         row.check_length()?;
         let time_s = row.real(time)?;
         if rows.last().is_some_and(|last| time_s < last.time_s) {
-            return Err(CalibrationError::Backwards { row: row.number() });
+            return Err(CalibrationError::Refused(format!(
+                "row {} of the forces goes back in time: sort the rows by time",
+                row.number()
+            )));
         }
         let (normal_force_n, friction_n) = (row.real(load)?, row.real(friction)?);
         if let Some((place, found_n)) = [(load, normal_force_n), (friction, friction_n)]
             .into_iter()
             .find(|(_, force_n)| force_n.abs() > FORCE_MAX_N)
         {
-            return Err(CalibrationError::ForceTooHigh { row: row.number(), column: row.column(place), found_n });
+            return Err(CalibrationError::Refused(format!(
+                "row {}, column {}: {found_n} N is no force of a finger: give newtons, at most 50, or name the column \
+                 normal_force_mn or friction_mn if it is in millinewtons",
+                row.number(),
+                row.column(place)
+            )));
         }
         rows.push(ForceRow { time_s, normal_force_n, friction_n });
     }

@@ -5,7 +5,7 @@ use std::io::Read;
 
 use super::error::{FitError, plain};
 use super::means::{self, MeanRow};
-use crate::table::{Column, Place, Reading, Table, TableError, Unit};
+use crate::table::{Column, Place, Reading, Table, Unit, not_a_number};
 
 /// Highest voltage that is read, in volts rms: above what any amplifier for touchscreens has.
 const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
@@ -92,8 +92,7 @@ pub(super) fn check_numbers(rows: &[Row]) -> Result<(), FitError> {
         let optional = optional.into_iter().filter_map(|(column, value)| Some((column, value?)));
         let numbers = [(VOLTAGE, row.voltage_v_rms), (LOAD, row.normal_force_n), (FRICTION, row.friction_n)];
         if let Some((column, value)) = numbers.into_iter().chain(optional).find(|(_, value)| !value.is_finite()) {
-            let (row, column, found) = (row.number, column.name.to_owned(), value.to_string());
-            return Err(TableError::NotANumber { row, column, found }.into());
+            return Err(not_a_number(row.number, column.name, &value.to_string()).into());
         }
         check_voltage(row.number, row.voltage_v_rms)?;
     }

@@ -18,7 +18,7 @@ mod tables;
 use serde::{Deserialize, Serialize};
 
 pub use cell::{Cell, CellError, CellResult, Hand, LayerResult, Profile};
-pub use parameter::{ParameterError, Value};
+pub use parameter::Value;
 pub use plan::{Plan, PlanError, Range, Source, Values};
 pub use result_file::CellResultError;
 pub use study::{Group, LayerShare, Study};

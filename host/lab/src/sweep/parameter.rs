@@ -2,8 +2,9 @@
 
 use frixel_scene::brief;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 use toml_edit::{DocumentMut, Item, TableLike};
+
+use super::PlanError;
 
 /// The name of the tables of layers.
 const LAYER: &str = "layer";
@@ -55,61 +56,26 @@ impl From<&Value> for toml_edit::Value {
     }
 }
 
-/// Why a field of a scene cannot be set.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum ParameterError {
-    /// The scene is not TOML.
-    #[error("{scene} is not TOML: {reason}")]
-    NotToml {
-        /// Name of the scene.
-        scene: String,
-        /// The reason, and where.
-        reason: String,
-    },
-    /// There is no layer of this number.
-    #[error("parameter \"{}\": {scene} has no layer {}: it has {layers}", brief(.path), brief(.found))]
-    NoLayer {
-        /// Path of the field.
-        path: String,
-        /// Name of the scene.
-        scene: String,
-        /// The number that the path has.
-        found: String,
-        /// Number of layers.
-        layers: usize,
-    },
-    /// The path leads through a field that has no fields, or to one that has.
-    #[error(
-        "parameter \"{}\": \"{}\" is no place for a value in {scene}; a path is that of one field, such as \
-         \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"", brief(.path), brief(.part)
-    )]
-    NoField {
-        /// Path of the field.
-        path: String,
-        /// Name of the scene.
-        scene: String,
-        /// The part of the path that does not fit.
-        part: String,
-    },
-}
-
 /// The text of a scene with a field set, which is added where the scene does not have it. `path` is the names of tables
 /// and of the field with dots between them; behind `layer` stands the number of a layer, from 1.
-pub(super) fn with_field(text: &str, scene: &str, path: &str, value: &Value) -> Result<String, ParameterError> {
-    let not_toml = |error: toml_edit::TomlError| ParameterError::NotToml {
-        scene: scene.to_owned(),
-        reason: error.to_string().trim_end().to_owned(),
-    };
-    let mut document: DocumentMut = text.parse().map_err(not_toml)?;
+pub(super) fn with_field(text: &str, scene: &str, path: &str, value: &Value) -> Result<String, PlanError> {
+    let not_toml = |error: toml_edit::TomlError| format!("{scene} is not TOML: {}", error.to_string().trim_end());
+    let mut document: DocumentMut = text.parse().map_err(not_toml).map_err(PlanError)?;
     let parts: Vec<&str> = path.split('.').collect();
     let set = match parts.split_last() {
         Some((field, tables)) => set(document.as_table_mut(), tables, field, value),
         None => Err(Misplaced::Part(path)),
     };
-    let (path, scene) = (path.to_owned(), scene.to_owned());
-    set.map_err(|misplaced| match misplaced {
-        Misplaced::Part(part) => ParameterError::NoField { path, scene, part: part.to_owned() },
-        Misplaced::Layer(found, layers) => ParameterError::NoLayer { path, scene, found: found.to_owned(), layers },
+    set.map_err(|misplaced| {
+        let reason = match misplaced {
+            Misplaced::Part(part) => format!(
+                "\"{}\" is no place for a value in {scene}; a path is that of one field, such as \
+                 \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"",
+                brief(part)
+            ),
+            Misplaced::Layer(found, layers) => format!("{scene} has no layer {}: it has {layers}", brief(found)),
+        };
+        PlanError(format!("parameter \"{}\": {reason}", brief(path)))
     })?;
     Ok(document.to_string())
 }

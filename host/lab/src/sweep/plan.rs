@@ -8,7 +8,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use super::cell::{Cell, Hand, Profile};
-use super::parameter::{ParameterError, Value, with_field};
+use super::parameter::{Value, with_field};
 
 /// Most cells of a plan.
 const CELLS_MAX: usize = 1_000_000;
@@ -120,59 +120,25 @@ impl Values {
     }
 }
 
-/// Why there are no cells.
-#[derive(Debug, Error)]
-pub enum PlanError {
-    /// The text is no plan.
-    #[error("{name}: {reason}")]
-    NotAPlan {
-        /// Name of the file.
-        name: String,
-        /// What is wrong, and where.
-        reason: String,
-    },
-    /// A value is out of its range.
-    #[error("{name}: {} is {}: give {expected}", brief(.field), brief(.found))]
-    OutOfRange {
-        /// Name of the file.
-        name: String,
-        /// The field.
-        field: String,
-        /// What it is.
-        found: String,
-        /// What it can be.
-        expected: &'static str,
-    },
-    /// There are too many combinations.
-    #[error("{name}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it")]
-    TooMany {
-        /// Name of the file.
-        name: String,
-        /// Number of combinations.
-        found: usize,
-    },
-    /// A parameter is not that of a scene.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
-}
+/// Why there are no cells, in a sentence that names the file and the field.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct PlanError(pub(super) String);
 
 impl Plan {
     /// Reads the text of a plan. Messages call the file `name`.
     pub fn parse(text: &str, name: &str) -> Result<Self, PlanError> {
-        let not_a_plan = |reason: String| {
-            let lines: Vec<_> = reason.trim_end().lines().map(brief).collect();
-            PlanError::NotAPlan { name: name.to_owned(), reason: lines.join("\n") }
-        };
-        check_toml(text)
-            .map_err(|(_, mistake)| PlanError::NotAPlan { name: name.to_owned(), reason: mistake.to_string() })?;
-        let plan: Self = toml::from_str(text).map_err(|error: toml::de::Error| not_a_plan(error.to_string()))?;
+        let brief_lines = |reason: &str| reason.trim_end().lines().map(brief).collect::<Vec<_>>().join("\n");
+        let not_a_plan = |error: toml::de::Error| PlanError(format!("{name}: {}", brief_lines(&error.to_string())));
+        check_toml(text).map_err(|(_, mistake)| PlanError(format!("{name}: {mistake}")))?;
+        let plan: Self = toml::from_str(text).map_err(not_a_plan)?;
         plan.check(name)?;
         Ok(plan)
     }
 
     fn check(&self, name: &str) -> Result<(), PlanError> {
-        let refuse = |field: &str, found: String, expected| {
-            Err(PlanError::OutOfRange { name: name.to_owned(), field: field.to_owned(), found, expected })
+        let refuse = |field: &str, found: String, expected: &str| {
+            Err(PlanError(format!("{name}: {} is {}: give {expected}", brief(field), brief(&found))))
         };
         if self.scenes.is_empty() {
             return refuse("scenes", "empty".to_owned(), "the name of one scene file or more");
@@ -209,7 +175,9 @@ impl Plan {
         let sizes = self.parameters.values().map(|values| values.values().len());
         let sizes = sizes.chain([self.scenes.len(), self.screens.len().max(1), self.touch.len()]);
         match sizes.fold(self.people as usize, usize::saturating_mul) {
-            found if found > CELLS_MAX => Err(PlanError::TooMany { name: name.to_owned(), found }),
+            found if found > CELLS_MAX => Err(PlanError(format!(
+                "{name}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it"
+            ))),
             _ => Ok(()),
         }
     }

@@ -128,8 +128,11 @@ fn layout(head: &[u8], is_whole: bool) -> Result<Layout, TableError> {
         }
     }
     if let [one, other, ..] = &found[..] {
-        let readings = [one, other].map(|layout| (name(layout.separator), layout.columns()));
-        return Err(TableError::SeparatorDoubtful { readings });
+        let [(one, columns), (other, others)] = [one, other].map(|layout| (name(layout.separator), layout.columns()));
+        return Err(TableError::new(
+            format!("the header can be read as {columns} columns that {one} separate, or as {others} that {other} do"),
+            "leave one of them out",
+        ));
     }
     Ok(found.swap_remove(0))
 }
