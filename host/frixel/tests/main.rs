@@ -13,7 +13,6 @@ mod gallery;
 mod handover;
 #[path = "kinds/main.rs"]
 mod kinds;
-mod model_command;
 #[path = "outputs/main.rs"]
 mod outputs;
 mod play_command;

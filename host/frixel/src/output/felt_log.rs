@@ -78,7 +78,7 @@ impl FeltLog {
             }
             let mut table = self.header.clone();
             table.extend(self.rest.drain(..whole_rows(&self.rest).len()));
-            self.rows.extend(rows(&table).map_err(|source| error(source.found()))?);
+            self.rows.extend(rows(&table).map_err(|source| error(source.found().to_owned()))?);
             // The last row stays: it has the time of the end.
             let earlier = self.rows.partition_point(|row| row.t_s < from_s - APART_MAX_S);
             self.rows.drain(..earlier.min(self.rows.len().saturating_sub(1)));
