@@ -30,6 +30,14 @@ impl Line {
     fn bytes_under_way(&self) -> u64 {
         self.under_way.iter().map(|(len, _)| len).sum()
     }
+
+    fn take(&mut self, step: &Step, credit: &mut Credit) {
+        match step {
+            Step::Write(len, arrives) => self.write(*len, *arrives),
+            Step::Deliver => self.deliver(),
+            Step::Report => assert_eq!(credit.received(self.received, self.written), Ok(())),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -54,12 +62,8 @@ proptest! {
     fn bytes_under_way_are_never_underestimated(steps in steps(), start in any::<u32>()) {
         let mut line = Line { written: u64::from(start), ..Line::default() };
         let mut credit = Credit::new(WINDOW, line.written);
-        for step in steps {
-            match step {
-                Step::Write(len, arrives) => line.write(len, arrives),
-                Step::Deliver => line.deliver(),
-                Step::Report => prop_assert_eq!(credit.received(line.received, line.written), Ok(())),
-            }
+        for step in &steps {
+            line.take(step, &mut credit);
             prop_assert!(line.written - credit.settled() >= line.bytes_under_way());
         }
     }
@@ -69,12 +73,8 @@ proptest! {
     fn an_answer_settles_what_was_lost(steps in steps(), later in 1_u64..192) {
         let mut line = Line::default();
         let mut credit = Credit::new(WINDOW, 0);
-        for step in steps {
-            match step {
-                Step::Write(len, arrives) => line.write(len, arrives),
-                Step::Deliver => line.deliver(),
-                Step::Report => prop_assert_eq!(credit.received(line.received, line.written), Ok(())),
-            }
+        for step in &steps {
+            line.take(step, &mut credit);
         }
         line.write(20, true);
         let request_end = line.written;

@@ -8,8 +8,7 @@ use frixel_testkit::HEADER;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::feature;
-use frixel_wire::message::{Accepted, Command, FromBoard, Refusal, TickTimes};
-use frixel_wire::payload::Payload;
+use frixel_wire::message::{Accepted, Command, Refusal, TickTimes};
 
 use crate::uploads::{picture, samples};
 use crate::virtual_link::{Fate, VirtualLine, VirtualLink, line_of};
@@ -30,16 +29,11 @@ pub(crate) fn virtual_board() -> Device<VirtualLink> {
     connected(VirtualLine::new())
 }
 
-/// A line whose board says that it has these features.
-fn with_features(features: u32) -> VirtualLine {
+/// A device whose board says that it has these features.
+fn with_features(features: u32) -> Device<VirtualLink> {
     let mut line = VirtualLine::new();
-    line.says = Some(Box::new(move |payload| {
-        if let Payload::Hello(hello) = payload {
-            hello.features = features;
-        }
-        true
-    }));
-    line
+    line.change_hello(move |hello| hello.features = features);
+    connected(line)
 }
 
 /// Uploads a scene of this host timeout and commits it.
@@ -99,7 +93,7 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
     scene.extend(record.write());
     scene.extend([0; 24]);
     for (features, refused) in [(feature::TELEMETRY, true), (feature::STREAM | feature::POLYGON, false)] {
-        let mut device = connected(with_features(features));
+        let mut device = with_features(features);
         let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut to_the_end).err();
         let said = error.map(|error| error.to_string());
         assert_eq!(said.is_some(), refused, "{said:?}");
@@ -290,15 +284,12 @@ fn tick_times_are_read_only_from_a_board_with_telemetry() {
         (feature::TELEMETRY, TickTimes::default(), None, true),
         (0, measured, None, false),
     ] {
-        let mut device = connected(with_features(features));
-        line_of(&mut device).says = Some(Box::new(move |payload| {
-            if let Payload::FromBoard(FromBoard::Answer(answer)) = payload
-                && let Ok(Accepted::TickTimes(times)) = &mut answer.outcome
-            {
+        let mut device = with_features(features);
+        line_of(&mut device).change_answers(move |answer| {
+            if let Ok(Accepted::TickTimes(times)) = &mut answer.outcome {
                 *times = board_says;
             }
-            true
-        }));
+        });
         assert_eq!(device.tick_times().unwrap(), found, "{features:#x}");
         assert_eq!(!line_of(&mut device).commands.is_empty(), is_asked, "{features:#x}");
     }

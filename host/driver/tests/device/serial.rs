@@ -8,7 +8,7 @@ use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLi
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request};
-use frixel_wire::payload::{Payload, hello_request_frame, request_frame};
+use frixel_wire::payload::{hello_request_frame, request_frame};
 use serialport::{SerialPort, TTYPort};
 
 use crate::calls::scene;
@@ -89,12 +89,7 @@ fn an_answer_that_an_earlier_host_did_not_read_is_thrown_away() {
     earlier.write_all(request_frame(&ping, &mut [0; FRAME_MAX_LEN]).unwrap()).unwrap();
     board.until(|line| line.pings == 1);
     drop(earlier);
-    board.line.lock().unwrap().says = Some(Box::new(|payload| {
-        if let Payload::Hello(hello) = payload {
-            hello.fault_detail = 42;
-        }
-        true
-    }));
+    board.line.lock().unwrap().change_hello(|hello| hello.fault_detail = 42);
     assert_eq!(connect(&board).hello().fault_detail, 42);
 }
 

@@ -7,8 +7,7 @@ use frixel_driver::{Device, DeviceError, Event, Link, PollingLink};
 use frixel_hil_sim::{BoardMemory, BoardRig, RigFault};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR};
-use frixel_wire::message::{Command, FromBoard};
-use frixel_wire::payload::Payload;
+use frixel_wire::message::Command;
 
 use crate::calls::{MS, commit, connected, reconnected, virtual_board};
 use crate::uploads::upload;
@@ -31,12 +30,7 @@ fn silence(device: &mut Device<VirtualLink>) {
 /// A line whose board says this hello, and gets nothing but hello requests.
 fn with_hello(spoil: impl Fn(&mut Hello) + Send + 'static) -> VirtualLine {
     let mut line = VirtualLine::new();
-    line.says = Some(Box::new(move |payload| {
-        if let Payload::Hello(hello) = payload {
-            spoil(hello);
-        }
-        true
-    }));
+    line.change_hello(spoil);
     line.refuse = Some(Box::new(|command| panic!("{command:?} was sent to a board that is refused")));
     line
 }
@@ -49,16 +43,6 @@ fn a_silent_port_gives_a_timeout() {
     let DeviceError::NoHello { waited, heard_bytes: 0, .. } = error else { panic!("{error}") };
     assert!(Duration::from_millis(500) <= waited && waited < SECOND, "{waited:?}");
     assert!(error.to_string().starts_with("no frixel board answered on the virtual line within 750 ms; "), "{error}");
-}
-
-/// Lets every answer name this state.
-fn claim(device: &mut Device<VirtualLink>, state: State) {
-    line_of(device).says = Some(Box::new(move |payload| {
-        if let Payload::FromBoard(FromBoard::Answer(answer)) = payload {
-            answer.state = state;
-        }
-        true
-    }));
 }
 
 /// A board that accepts a command and says that it did something else.
@@ -83,7 +67,7 @@ fn a_state_that_the_command_does_not_lead_to_is_an_error() {
                 line_of(&mut device).rig.raise(Fault::Deadline, 1);
             }
             device.wait(MS, &mut |_| {}).unwrap();
-            claim(&mut device, claimed);
+            line_of(&mut device).change_answers(move |answer| answer.state = claimed);
             match call(&mut device) {
                 Ok(()) => assert_eq!(claimed, right, "{name}"),
                 Err(DeviceError::WrongState { command, found, expected, .. }) => {
@@ -95,7 +79,7 @@ fn a_state_that_the_command_does_not_lead_to_is_an_error() {
         }
     }
     let mut device = virtual_board();
-    claim(&mut device, State::Active);
+    line_of(&mut device).change_answers(|answer| answer.state = State::Active);
     assert_eq!(
         device.disarm().unwrap_err().to_string(),
         "the board on the virtual line accepted disarm and then said that it is Active, not Disarmed: its firmware is \
@@ -127,8 +111,8 @@ fn another_major_version_is_refused_and_left_alone() {
 
 #[test]
 fn a_newer_minor_version_is_welcome() {
-    let mut line = with_hello(|hello| hello.protocol.1 += 1);
-    line.refuse = None;
+    let mut line = VirtualLine::new();
+    line.change_hello(|hello| hello.protocol.1 += 1);
     connected(line);
 }
 

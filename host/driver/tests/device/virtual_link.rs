@@ -9,7 +9,8 @@ use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
 use frixel_hil_sim::{Board, BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_wire::fault::State;
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
-use frixel_wire::message::{Command, FromBoard, Refusal, Request};
+use frixel_wire::hello::Hello;
+use frixel_wire::message::{Answer, Command, FromBoard, Refusal, Request};
 use frixel_wire::payload::{Payload, request_frame};
 
 /// The simulator's board at the tick rate of the slowest board, so that minutes pass quickly.
@@ -64,8 +65,8 @@ pub(crate) struct VirtualLine {
     pub(crate) longest_silence: Duration,
     /// The refusal with which a command is answered that the board does not get. A ping takes its place on the line.
     pub(crate) refuse: Option<Box<dyn FnMut(&Command) -> Option<Refusal> + Send>>,
-    /// Changes what the board says; `false` leaves it out.
-    pub(crate) says: Option<Box<dyn FnMut(&mut Payload) -> bool + Send>>,
+    /// Changes what the board says.
+    says: Option<Box<dyn Fn(&mut Payload) + Send>>,
     /// Arrives in front of the board's first frame.
     pub(crate) garbage: Vec<u8>,
     refused: BTreeMap<u16, Refusal>,
@@ -119,6 +120,24 @@ impl VirtualLine {
         }
     }
 
+    /// Changes the board's hello.
+    pub(crate) fn change_hello(&mut self, change: impl Fn(&mut Hello) + Send + 'static) {
+        self.says = Some(Box::new(move |payload| {
+            if let Payload::Hello(hello) = payload {
+                change(hello);
+            }
+        }));
+    }
+
+    /// Changes the board's answers.
+    pub(crate) fn change_answers(&mut self, change: impl Fn(&mut Answer) + Send + 'static) {
+        self.says = Some(Box::new(move |payload| {
+            if let Payload::FromBoard(FromBoard::Answer(answer)) = payload {
+                change(answer);
+            }
+        }));
+    }
+
     /// Bytes that the board has not looked at.
     pub(crate) fn under_way(&mut self) -> usize {
         self.waiting.iter().map(|(_, bytes)| bytes.len()).sum::<usize>() + self.rig.line_to_board_mut().queued()
@@ -167,8 +186,8 @@ impl VirtualLine {
             {
                 answer.outcome = Err(refusal);
             }
-            if self.says.as_mut().is_some_and(|says| !says(&mut payload)) {
-                return;
+            if let Some(says) = &self.says {
+                says(&mut payload);
             }
             said = payload.write_frame(&mut [0; FRAME_MAX_LEN]).unwrap().to_vec();
         }
