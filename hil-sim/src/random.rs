@@ -10,7 +10,6 @@ pub(crate) enum Purpose {
     ReportPhase = 1,
     PlaceNoise = 2,
     ReportJitter = 3,
-    ContactBounce = 4,
     Load = 5,
     FrictionNoise = 6,
     LostReports = 7,

@@ -8,14 +8,12 @@ use std::task::Poll;
 
 use embedded_hal_async::i2c::I2c;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
-use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::i2c_bus_clear::clear_bus;
 use frixel_drivers::polling::poll_once;
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::zforce::{self, Touch, ZForce};
-use frixel_hil_sim::chips::{BouncingContact, BusFault, HeldBus, PolledDelay, TouchEvent, Transfer, ZForceModule};
+use frixel_hil_sim::chips::{BusFault, HeldBus, PolledDelay, TouchEvent, Transfer, ZForceModule};
 
-const TICK_HZ: u32 = 40_000;
 /// Polls until the future is ready, at most so many times.
 fn poll_for<F: Future>(mut future: std::pin::Pin<&mut F>, polls: usize) -> Option<F::Output> {
     (0..polls).find_map(|_| match poll_once(future.as_mut()) {
@@ -143,55 +141,6 @@ fn a_bus_that_is_free_gets_no_clocks_and_one_that_is_shorted_is_reported() {
     assert!(clear(&bus) && bus.pulses() == 0);
     bus.short_sda();
     assert!(!clear(&bus) && bus.pulses() == 9);
-}
-
-/// Presses or releases the button, and returns the ticks until the driver agrees, and how often it changed its mind.
-fn change(
-    contact: &BouncingContact,
-    switch: &mut ArmSwitch<impl embedded_hal::digital::InputPin>,
-    press: bool,
-) -> (usize, usize) {
-    contact.press(press);
-    let mut held = !press;
-    let (mut at_tick, mut changes) = (0, 0);
-    for tick in 1..=2000 {
-        contact.tick();
-        let now = switch.is_held();
-        if now != held {
-            (held, at_tick) = (now, tick);
-            changes += 1;
-        }
-    }
-    (at_tick, changes)
-}
-
-/// A contact bounces for up to 5 ms, 200 ticks.
-#[test]
-fn a_bouncing_switch_is_pressed_and_released_once() {
-    for seed in 0..50 {
-        let contact = BouncingContact::new(false, 200, seed);
-        let mut switch = ArmSwitch::new(contact.pin(), TICK_HZ);
-        for _ in 0..100 {
-            contact.tick();
-            assert!(!switch.is_held());
-        }
-        let (tick, changes) = change(&contact, &mut switch, true);
-        assert!(changes == 1 && (800..=1000).contains(&tick), "seed {seed}: {changes} changes, last after {tick}");
-        let (tick, changes) = change(&contact, &mut switch, false);
-        assert!(changes == 1 && (32..=232).contains(&tick), "seed {seed}: {changes} changes, last after {tick}");
-    }
-}
-
-#[test]
-fn a_welded_switch_is_never_held() {
-    let contact = BouncingContact::new(true, 200, 1);
-    let mut switch = ArmSwitch::new(contact.pin(), TICK_HZ);
-    for _ in 0..40_000 {
-        contact.tick();
-        assert!(!switch.is_held());
-    }
-    change(&contact, &mut switch, false);
-    assert_eq!(change(&contact, &mut switch, true).1, 1, "once it has been open it is a switch like any other");
 }
 
 /// A port that sends what it has received, `room` bytes a tick.

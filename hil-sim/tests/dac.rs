@@ -1,14 +1,12 @@
 //! The driver of the DAC against the chip's model, and the order of edges that puts the DAC at zero from any state.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use std::cell::Cell;
 use std::convert::Infallible;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use embedded_hal::spi::SpiDevice;
 use frixel_drivers::ad5761r::{self, Ad5761r};
-use frixel_drivers::bus_handover::BusHandover;
 use frixel_hil_sim::chips::{Ad5761rChip, ChipDelay, ChipSpi};
 use frixel_wire::dac_code::DacCode;
 
@@ -37,25 +35,6 @@ fn codes_are_volts_once_the_dac_is_prepared() {
         assert!((chip.output_v() - f64::from(code) * STEP_V).abs() < 1e-9, "{code}: {} V", chip.output_v());
         dac.check().unwrap();
     }
-}
-
-#[test]
-fn preparing_sets_the_output_to_zero() {
-    let chip = Ad5761rChip::new();
-    let mut dac = dac(&chip);
-    dac.prepare().unwrap();
-    tick_frame(&chip, 30_000);
-    dac.prepare().unwrap();
-    assert!(chip.output_v().abs() < f64::EPSILON);
-}
-
-#[test]
-fn the_falling_edge_of_clear_sets_the_output_to_zero() {
-    let chip = Ad5761rChip::new();
-    dac(&chip).prepare().unwrap();
-    tick_frame(&chip, 30_000);
-    chip.set_clear(false);
-    assert!(chip.output_v().abs() < f64::EPSILON);
 }
 
 /// Without configuration, zero in two's complement would be minus full scale in straight binary.
@@ -328,41 +307,4 @@ fn a_frame_that_is_cut_short_is_ignored_and_of_a_longer_one_the_last_24_bits_cou
         let longer: Vec<bool> = vec![true; extra].into_iter().chain(frame.iter().copied()).collect();
         assert!((code(&longer) - 30_000.0 * STEP_V).abs() < 1e-9, "{extra} more clocks");
     }
-}
-
-/// Before it arms, the main loop configures the DAC and reads it back in the middle of the tick's frames.
-#[test]
-fn the_dac_is_prepared_between_the_frames_of_the_tick() {
-    let chip = Ad5761rChip::new();
-    let mut dac = dac(&chip);
-    let bus = BusHandover::new();
-    let frames = Cell::new(0);
-    let tick = || {
-        if bus.tick_sends(true) {
-            tick_frame(&chip, 0);
-            frames.set(frames.get() + 1);
-        }
-    };
-    tick();
-    let mut polls = 0;
-    let poll = || {
-        tick();
-        polls += 1;
-        assert!(polls < 10, "the main loop waits in vain");
-    };
-    let prepared = bus.while_frames_rest(poll, || {
-        let before = frames.get();
-        tick();
-        dac.read_control().unwrap();
-        tick();
-        let prepared = dac.prepare();
-        assert_eq!(frames.get(), before, "the tick sent a frame in between");
-        prepared
-    });
-    assert_eq!(prepared, Ok(()));
-    let before = frames.get();
-    tick();
-    assert_eq!(frames.get(), before + 1);
-    tick_frame(&chip, 16_384);
-    assert!((chip.output_v() - 5.0).abs() < 1e-9);
 }

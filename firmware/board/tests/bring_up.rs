@@ -271,6 +271,13 @@ impl Bench for TestBench {
     }
 }
 
+/// A good board, after its bring-up.
+fn brought_up() -> TestBench {
+    let mut bench = TestBench::new();
+    assert!(bench.bring_up().is_some_and(|end| end.is_ok()));
+    bench
+}
+
 fn good(peak_v: f32) -> Reading {
     Reading { driven_v_peak: peak_v, high_v: 1.02 * peak_v + 1.0, low_v: -1.02 * peak_v + 1.0, rest_v: 1.0 }
 }
@@ -321,8 +328,7 @@ fn voltages_rise_by_25_v_at_most_up_to_the_limit_that_was_built_in() {
 
 #[test]
 fn a_wrong_reading_stops_whatever_is_asked() {
-    let mut good = TestBench::new();
-    good.bring_up();
+    let good = brought_up();
     let mut readings = 0;
     for (index, (question, answer)) in good.questions.iter().zip(&good.answers).enumerate() {
         if !question.contains("Type a number") {
@@ -346,8 +352,7 @@ fn a_wrong_reading_stops_whatever_is_asked() {
 
 #[test]
 fn text_that_is_no_number_is_asked_again() {
-    let mut good = TestBench::new();
-    good.bring_up();
+    let good = brought_up();
     for number in 1..=good.asked {
         for wrong in ["", "NaN", "inf", "ten", "1e400", "1 2", "\u{b5}"] {
             let mut bench = TestBench { wrong_answer: Some((number, wrong)), ..TestBench::new() };
@@ -379,11 +384,7 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
 /// of the ohmmeter, the edges still say so.
 #[test]
 fn a_series_resistance_that_is_not_the_built_in_one_stops_at_the_ohmmeter_and_at_the_edges() {
-    let questions = {
-        let mut good = TestBench::new();
-        good.bring_up();
-        good.questions
-    };
+    let questions = brought_up().questions;
     let number_of = |what: &str| questions.iter().position(|question| question.contains(what)).unwrap() as u32 + 1;
     for (what, answer, stops) in [
         ("series resistor R1", "0.1", true),
@@ -415,8 +416,7 @@ fn a_series_resistance_that_is_not_the_built_in_one_stops_at_the_ohmmeter_and_at
 /// board was reset before.
 #[test]
 fn a_reset_at_any_point_begins_with_the_checks_without_voltage_and_the_switch() {
-    let mut good = TestBench::new();
-    good.bring_up();
+    let good = brought_up();
     for call in 1..=good.calls {
         let mut bench = TestBench { reset_at_call: Some(call), ..TestBench::new() };
         assert!(bench.bring_up().unwrap().is_ok(), "{call}");
@@ -436,8 +436,7 @@ fn a_reset_at_any_point_begins_with_the_checks_without_voltage_and_the_switch() 
 
 #[test]
 fn every_voltage_follows_a_release_and_a_press() {
-    let mut bench = TestBench::new();
-    bench.bring_up();
+    let bench = brought_up();
     let mut since_last: Vec<bool> = Vec::new();
     for event in &bench.events {
         match event {
@@ -452,25 +451,16 @@ fn every_voltage_follows_a_release_and_a_press() {
     }
 }
 
+/// A switch that is not released and an amplifier that is not ready are waited for; wires that touch end the script.
 #[test]
-fn a_switch_that_stays_closed_drives_nothing() {
-    let mut bench = TestBench { odd: Some(Odd::Taped), ..TestBench::new() };
-    assert_eq!(bench.bring_up(), None, "it waits for a release");
-    assert!(bench.driven().is_empty());
-}
-
-#[test]
-fn an_amplifier_that_is_not_ready_drives_nothing() {
-    let mut bench = TestBench { odd: Some(Odd::NeverReady), ..TestBench::new() };
-    assert_eq!(bench.bring_up(), None, "it waits for ready");
-    assert!(bench.driven().is_empty());
-}
-
-#[test]
-fn ready_and_switch_that_are_bridged_stop() {
-    let mut bench = TestBench { odd: Some(Odd::Bridged), ..TestBench::new() };
-    assert!(matches!(bench.bring_up().unwrap(), Err(Stop::Inputs { .. })));
-    assert!(bench.driven().is_empty());
+fn odd_inputs_drive_nothing() {
+    for (odd, ends) in [(Odd::Taped, false), (Odd::NeverReady, false), (Odd::Bridged, true)] {
+        let mut bench = TestBench { odd: Some(odd), ..TestBench::new() };
+        let end = bench.bring_up();
+        assert_eq!(matches!(end, Some(Err(Stop::Inputs { .. }))), ends, "{odd:?}: {end:?}");
+        assert_eq!(end.is_none(), !ends, "{odd:?}: {end:?}");
+        assert!(bench.driven().is_empty(), "{odd:?}");
+    }
 }
 
 /// A board works as well while monostable or second pole is bridged: only this step of the script finds that.
@@ -536,8 +526,7 @@ fn a_higher_voltage_follows_only_a_right_monitor() {
 /// Amplifier gain and monitor scale that are wrong by the same factor are only seen by the probe.
 #[test]
 fn a_probe_that_contradicts_drive_or_monitor_stops() {
-    let mut good = TestBench::new();
-    good.bring_up();
+    let good = brought_up();
     let number = 1 + good.questions.iter().rposition(|question| question.contains("probe's")).unwrap() as u32;
     // 50 V are driven, and the monitor shows 51 V. 45 V would be within the amplifier's tolerance.
     for (probe, is_right) in [("45", false), ("47", true), ("50", true), ("55", true), ("57", false)] {
@@ -553,8 +542,7 @@ fn a_probe_that_contradicts_drive_or_monitor_stops() {
 #[test]
 fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typed() {
     const RESISTOR_MIN: f32 = 0.99 / 1.005;
-    let mut good = TestBench::new();
-    good.bring_up();
+    let good = brought_up();
     let number = 1 + good.questions.iter().rposition(|question| question.contains("probe's")).unwrap() as u32;
     let mut accepted = 0;
     for gain in [0.95, 1.0, 1.05] {
@@ -577,8 +565,7 @@ fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typ
 /// The clip of an oscilloscope on mains ties the common to earth, and hides an isolator that was left out.
 #[test]
 fn rails_and_isolation_are_measured_before_the_probes_of_the_amplifier_and_after_them() {
-    let mut bench = TestBench::new();
-    bench.bring_up().unwrap().unwrap();
+    let bench = brought_up();
     let orders = [
         "measure each rail",
         "No oscilloscope is connected",

@@ -46,21 +46,18 @@ fn the_dac_is_prepared_once_and_a_missing_one_is_no_fault_yet() {
 }
 
 #[test]
-fn a_board_without_stored_limits_has_the_built_in_ones() {
-    let expected = Description {
-        notices: notice::OPTION_BYTES,
-        reset_cause: ResetCause::Pin,
-        reset_fault: Some((Fault::Panic, 7)),
-        reset_text: b"main.rs",
-        ..BOARD
-    };
-    assert_eq!(described(None), expected);
-    assert_eq!(described(Some(&Filled(0xff))), expected);
-}
-
-#[test]
-fn stored_limits_that_are_damaged_leave_a_notice_beside_those_of_the_board() {
-    let board = described(Some(&Filled(0x55)));
-    assert_eq!(board.limits, BOARD.limits);
-    assert_eq!(board.notices, notice::OPTION_BYTES | notice::STORED_LIMITS_REFUSED);
+fn a_board_without_stored_limits_has_the_built_in_ones_and_one_with_damaged_ones_a_notice_beside_its_own() {
+    let refused = notice::OPTION_BYTES | notice::STORED_LIMITS_REFUSED;
+    for (flash, notices) in
+        [(None, notice::OPTION_BYTES), (Some(Filled(0xff)), notice::OPTION_BYTES), (Some(Filled(0x55)), refused)]
+    {
+        let expected = Description {
+            notices,
+            reset_cause: ResetCause::Pin,
+            reset_fault: Some((Fault::Panic, 7)),
+            reset_text: b"main.rs",
+            ..BOARD
+        };
+        assert_eq!(described(flash.as_ref()), expected);
+    }
 }

@@ -8,7 +8,6 @@ use crate::support;
 use frixel_control::Board;
 use frixel_layers::{FingerLaw, Header, LawPoint, Waveform};
 use frixel_model::InverseTable;
-use frixel_session::voltage_max_v_rms;
 use frixel_testkit::constant as constant_of;
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::{Flags, State};
@@ -29,20 +28,31 @@ fn header(exponent: f32, points: &[(f32, f32)]) -> Header {
     Header { finger_radius_m: 0.0, stiffness_pa_per_m: 0.0, effective_gap_m: 0.0, law, ..HEADER }
 }
 
+/// Laws of one, three and sixteen points, up to the largest voltage that the rms limit or the peak limit allows.
 #[test]
 fn a_law_is_played_as_it_is_stated() {
-    for voltage_max_v_rms in [150.0, 120.0] {
-        let header = Header { voltage_max_v_rms, ..header(2.0, &POINTS) };
-        let law = header.law.unwrap().up_to(voltage_max_v_rms).unwrap();
-        for friction_n in [1e-4_f32, 2e-3, 0.011, 0.03, 0.05] {
-            let mut board = TestBoard::new();
-            assert!(board.hello().features & feature::EMPIRICAL != 0);
-            board.play(&scene(&header, &[constant_of(friction_n)]));
-            board.slide(4000);
-            let voltage_v_rms = f64::from(board.status().telemetry.voltage_v_rms);
-            let found_n = law.electric_friction_n(voltage_v_rms);
-            let error = (found_n / f64::from(friction_n) - 1.0).abs();
-            assert!(error < f64::from(InverseTable::RELATIVE_ERROR), "{friction_n} N: {voltage_v_rms} V, {error:e}");
+    let waveforms =
+        if cfg!(feature = "sine-carrier") { &[Waveform::Square, Waveform::Sine][..] } else { &[Waveform::Square] };
+    let laws =
+        [(header(3.0, &[(150.0, 0.09)]), 1), (header(2.0, &POINTS), 3), (frixel_testkit::empirical_header(), 16)];
+    for ((law, points), &waveform) in laws.into_iter().flat_map(|law| waveforms.iter().map(move |form| (law, form))) {
+        for (voltage_max_v_rms, voltage_max_v_peak) in [(150.0, 220.0), (120.0, 220.0), (150.0, 100.0)] {
+            let header = Header { waveform, voltage_max_v_rms, voltage_max_v_peak, ..law };
+            let up_to_v_rms = frixel_session::voltage_max_v_rms(&header, &Board::SIMULATOR).unwrap();
+            let law = header.law.unwrap().up_to(up_to_v_rms).unwrap();
+            let is_in_reach = |friction_n: &f32| f64::from(*friction_n) < law.electric_friction_n(up_to_v_rms.into());
+            for friction_n in [1e-4_f32, 2e-3, 0.011, 0.03, 0.05].into_iter().filter(is_in_reach) {
+                let bytes = scene(&header, &[constant_of(friction_n)]);
+                assert_eq!(bytes.len(), 56 + 56 + 8 * points);
+                let mut board = TestBoard::new();
+                assert!(board.hello().features & feature::EMPIRICAL != 0);
+                board.play(&bytes);
+                board.slide(4000);
+                let voltage_v_rms = f64::from(board.status().telemetry.voltage_v_rms);
+                let error = (law.electric_friction_n(voltage_v_rms) / f64::from(friction_n) - 1.0).abs();
+                let context = format!("{points} points, {waveform:?}, {friction_n} N: {voltage_v_rms} V, {error:e}");
+                assert!(error < f64::from(InverseTable::RELATIVE_ERROR), "{context}");
+            }
         }
     }
 }
@@ -140,32 +150,6 @@ fn bytes_that_are_no_law_are_refused() {
         let mut bytes = good.clone();
         bytes.resize(found as usize, 0);
         assert_eq!(refused(&bytes), Some(Refusal::Scene(SceneError::Length { found, expected })));
-    }
-}
-
-#[test]
-fn one_point_and_sixteen_are_played() {
-    let sixteen = frixel_testkit::empirical_header();
-    let one = header(3.0, &[(150.0, 0.09)]);
-    for (header, points) in [(one, 1), (sixteen, 16)] {
-        let waveforms =
-            if cfg!(feature = "sine-carrier") { &[Waveform::Square, Waveform::Sine][..] } else { &[Waveform::Square] };
-        for &waveform in waveforms {
-            // The peak limit of the second allows less than the rms limit.
-            for voltage_max_v_peak in [Board::SIMULATOR.limits.voltage_max_v_peak, 100.0] {
-                let header = Header { waveform, voltage_max_v_peak, ..header };
-                let bytes = scene(&header, &[constant_of(3e-3)]);
-                assert_eq!(bytes.len(), 56 + 56 + 8 * points);
-                let mut board = TestBoard::new();
-                board.play(&bytes);
-                board.slide(4000);
-                let voltage_max_v_rms = voltage_max_v_rms(&header, &Board::SIMULATOR).unwrap();
-                let law = header.law.unwrap().up_to(voltage_max_v_rms).unwrap();
-                let voltage_v_rms = board.status().telemetry.voltage_v_rms;
-                let error = law.electric_friction_n(f64::from(voltage_v_rms)) / f64::from(3e-3_f32) - 1.0;
-                assert!(error.abs() < f64::from(InverseTable::RELATIVE_ERROR), "{points} {waveform:?}: {error:e}");
-            }
-        }
     }
 }
 

@@ -6,11 +6,9 @@
 //! supplies, breaks and reads the chip.
 
 mod ad5761r;
-mod contact;
 mod held_bus;
 mod zforce;
 
 pub use ad5761r::{Ad5761rChip, ChipDelay, ChipPin, ChipSpi};
-pub use contact::{BouncingContact, ContactPin};
 pub use held_bus::{HeldBus, SclPin, SdaPin, Transfer};
 pub use zforce::{BusFault, DataReadyPin, ModuleBus, PolledDelay, TouchEvent, ZForceModule};

@@ -265,8 +265,8 @@ fn a_gain_that_is_off_by_40_percent_is_found_within_20_ms_from_10_v_peak_on() {
     println!("a gain off by 40 % from 10 V peak on: found after {:.1} ms at most", f64::from(most) / 40.0);
 }
 
-/// A gain that is too high by a quarter is tolerated. The current of that single fault is below its limit, and so is the
-/// current of the few milliseconds in which the gain may be as high as a single tick tolerates.
+/// A gain that is too high by a quarter is tolerated. The current of that single fault is below its limit, and so is
+/// the current of the few milliseconds in which the gain may be as high as a single tick tolerates.
 #[test]
 fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_sees_it() {
     let bound = TouchBound::behind(Board::NUCLEO_G474RE.limits.series_resistance_ohm);
@@ -407,6 +407,20 @@ fn the_voltage_of_an_earlier_turn_on_is_not_allowed_while_the_amplifier_turns_of
     }
     check.set_enabled(false, code_of(20.0));
     assert_eq!(ticks_to_fault(&mut check, 0.0, 60.0), Some(1));
+}
+
+#[test]
+fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
+    let mut check = MonitorCheck::new(&BOARD);
+    check.set_enabled(true, 0);
+    assert_eq!(ticks_to_fault(&mut check, 150.0, 150.0), None);
+    check.set_enabled(false, code_of(150.0));
+    let mut readings_v = [20.0; 9].into_iter().chain([40.0]);
+    let found = readings_v.by_ref().position(|monitor_v| {
+        let (comparison, must_count) = check.advance(0, monitor_v);
+        if must_count { check.count(comparison) } else { check.sum(comparison) }
+    });
+    assert_eq!((found, readings_v.next()), (Some(9), None), "the higher one is the fault");
 }
 
 #[test]
