@@ -10,7 +10,7 @@ use frixel_scene::{Scene, compile, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 
-use crate::processes::{repository, run, succeed};
+use crate::processes::{repository, succeed};
 
 /// Names of the gallery's scenes, sorted, and their text.
 fn gallery() -> Vec<(String, String)> {
@@ -114,16 +114,5 @@ fn the_command_that_builds_the_smallest_image_is_that_of_the_board() {
         let arguments = ["check", "hardware/first_voltage.toml", "--image", "--board", board];
         let text = succeed(&repository(), &arguments);
         assert!(text.contains(command), "{text}");
-    }
-}
-
-#[test]
-fn a_series_resistance_that_no_firmware_takes_is_refused() {
-    let arguments = ["check", "constant.toml", "--board", "nucleo-g474re", "--series-kohm"];
-    for (kohm, said) in [("41", "no firmware takes a series resistance of 41 kOhm"), ("5", "mA")] {
-        let output = run(&repository().join("scenes"), &[&arguments[..], &[kohm]].concat());
-        assert_eq!(output.status.code(), Some(1));
-        let text = String::from_utf8_lossy(&output.stderr);
-        assert!(text.contains(said), "{text}");
     }
 }

@@ -146,22 +146,3 @@ fn an_output_forced_to_zero_misses_every_goal() {
         assert!(summary.saturated_ticks > Some(0));
     }
 }
-
-#[test]
-fn the_same_seed_gives_the_same_rows_and_another_does_not() {
-    let rows = |seed| {
-        let simulated = play(&brick(true), &rig(), minimum_jerk(), seed);
-        simulated.recorder.rows().iter().map(|row| row.felt_n.map(f64::to_bits)).collect::<Vec<_>>()
-    };
-    assert_eq!(rows(1), rows(1));
-    assert_ne!(rows(1), rows(2));
-}
-
-#[test]
-fn nine_tenths_and_a_half_of_the_lines_bytes_are_payload() {
-    let rig = RigConfig::default();
-    let counters = play(&brick(true), &rig, Stroke::still(START, 0.01).unwrap(), 1).counters;
-    assert!(counters.payload_bytes > 62_500);
-    let share = counters.payload_bytes as f64 / counters.wire_bytes as f64;
-    assert!(share >= 0.95, "{share}, hello, commands and pings included");
-}

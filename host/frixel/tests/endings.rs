@@ -5,13 +5,13 @@
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use crate::processes::{frixel, run, said, until};
+use crate::processes::{Running, frixel, run, said, until};
 use rustix::fs::{CWD, FileType, Mode, mknodat};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::Signal;
 use tempfile::TempDir;
 
 const SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n";
@@ -26,28 +26,8 @@ fn pipe(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0).unwrap();
 }
 
-/// A process that does not outlive the test.
-struct Running(Child);
-
-impl Running {
-    fn start(command: &mut Command) -> Self {
-        Self(command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap())
-    }
-
-    fn signal(&self, signal: Signal) {
-        kill_process(Pid::from_raw(self.0.id() as i32).unwrap(), signal).unwrap();
-    }
-
-    fn ended(&mut self) -> Option<i32> {
-        self.0.try_wait().unwrap().map(|status| status.code().unwrap_or(-1))
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
+fn ended(process: &mut Running) -> bool {
+    process.0.try_wait().unwrap().is_some()
 }
 
 /// Whether a process has a handler for this signal, so that a signal does not just end it.
@@ -70,14 +50,15 @@ fn a_second_signal_ends_a_process_that_is_blocked_on_a_pipe() {
         for signal in [Signal::INT, Signal::TERM] {
             let mut process = frixel();
             process.arg(command).args(if command == "play" { &["scene.toml"][..] } else { &[] }).args(["--out", "out"]);
-            let mut process = Running::start(process.current_dir(folder.path()));
-            until("the handler is there", || handles(&process.0, signal) || process.ended().is_some());
+            process.current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::null());
+            let mut process = Running(process.spawn().unwrap());
+            until("the handler is there", || handles(&process.0, signal) || ended(&mut process));
             process.signal(signal);
             thread::sleep(Duration::from_millis(50));
-            if process.ended().is_none() {
+            if !ended(&mut process) {
                 process.signal(signal);
             }
-            until("the second signal ends it", || process.ended().is_some());
+            until("the second signal ends it", || ended(&mut process));
         }
     }
 }

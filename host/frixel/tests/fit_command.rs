@@ -5,7 +5,6 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use frixel_hil_sim::Person;
 use frixel_lab::fit::{self, Settings, Summary};
@@ -14,6 +13,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use self::simulated::steady;
+use crate::processes::{run, said, succeed};
 
 #[allow(dead_code, unused_imports, reason = "the tests of the fit use the rest")]
 #[path = "../../lab/tests/person.rs"]
@@ -22,20 +22,10 @@ mod person;
 #[path = "../../lab/tests/simulated.rs"]
 mod simulated;
 
-fn frixel(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = frixel(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
 fn fail(folder: &Path, arguments: &[&str]) -> String {
-    let output = frixel(folder, arguments);
+    let output = run(folder, arguments);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    String::from_utf8(output.stderr).unwrap()
+    said(&output)
 }
 
 #[test]
@@ -89,7 +79,6 @@ fn a_calibrated_person_is_recovered() {
     // The same file in words, from standard columns in another order, without the stroke column.
     let words = succeed(folder.path(), &["finger", "fit", "data.csv"]);
     assert!(words.contains("cannot tell radius, stiffness and gap apart"), "{words}");
-    assert!(fail(folder.path(), &["finger", "fit", "data.csv", "--screen", "nowhere.toml"]).contains("nowhere.toml"));
     fs::write(
         folder.path().join("thick.toml"),
         "width_mm = 120\nheight_mm = 80\n[[coating]]\nthickness_um = 40\npermittivity = 3.9\n",
@@ -116,8 +105,6 @@ fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
     assert!(!folder.path().join("z.toml").exists());
 
     let empirical = ["finger", "fit", "data.csv", "-o", "z.toml", "--law", "empirical"];
-    let refused = fail(folder.path(), &[&empirical[..], &["--voltage", "100"]].concat());
-    assert!(refused.contains("leave --voltage out") && !folder.path().join("z.toml").exists(), "{refused}");
     fs::write(folder.path().join("z.svg"), "plots of an earlier fit").unwrap();
     let said = succeed(folder.path(), &empirical);
     assert!(!folder.path().join("z.svg").exists() && !said.contains("z.svg"), "{said}");
@@ -144,14 +131,4 @@ fn a_board_that_drives_less_gives_no_verdict_on_the_model() {
     let json = succeed(folder.path(), &["finger", "fit", "data.csv", "--voltage", "80", "--json"]);
     let fitted: Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&fitted["voltage_verdict"], &fitted["electric_friction_150_v_n"]), (&"none".into(), &Value::Null));
-}
-
-#[test]
-fn a_board_at_a_port_needs_forces() {
-    let folder = TempDir::new().unwrap();
-    let said = fail(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--port", "/dev/null"]);
-    assert!(said.contains("--forces"), "{said}");
-    fs::write(folder.path().join("forces.csv"), "time_s,normal_force_n,friction_n\n0,0.5,0.2\n1,0.5,0.2\n").unwrap();
-    let said = fail(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--forces", "forces.csv"]);
-    assert!(said.contains("start the sensor before the board"), "{said}");
 }

@@ -13,7 +13,6 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_play::RigStream;
 use frixel_scene::{Program, compile};
 use frixel_testkit::Random;
-use frixel_wire::fault::State;
 
 /// Host timeout of the scene here.
 const HOST_TIMEOUT: Duration = Duration::from_millis(100);
@@ -125,15 +124,4 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
     }
     assert!(killed_while_playing >= 3, "only {killed_while_playing} clients died while the output was driven");
     play(&line, &program, usize::MAX, a_while).unwrap();
-}
-
-/// The state that a second client finds, when the first one has left its scene playing.
-#[test]
-fn a_hello_disarms_what_another_client_played() {
-    let config = RigConfig::default();
-    let mut memory = BoardMemory::new();
-    let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
-    let mut first = Device::connect(PollingLink::new(RigStream::new(rig))).unwrap();
-    frixel_play::start(&mut first, &program(&config), &mut |_| ControlFlow::Continue(())).unwrap();
-    assert_eq!(Device::connect(first.into_link()).unwrap().hello().state, State::Disarmed);
 }

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 use std::thread::sleep;
@@ -11,7 +10,7 @@ use std::time::Duration;
 
 use tempfile::TempDir;
 
-use crate::processes::{frixel, repository, run, succeed};
+use crate::processes::{frixel, repository, succeed};
 
 fn brick() -> String {
     repository().join("scenes/brick.toml").display().to_string()
@@ -211,57 +210,6 @@ fn the_shortest_play_is_one_tick() {
     assert!(said.contains(r#""ticks":1,"#), "{said}");
 }
 
-/// A command without its subcommand shows its help, as an error.
-#[test]
-fn help_is_printed_as_a_result_or_as_an_error() {
-    let folder = TempDir::new().unwrap();
-    let output = run(folder.path(), &["board"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("Usage: frixel board"));
-    assert!(succeed(folder.path(), &["play", "--help"]).contains("--csv-hz <N>"));
-    assert!(succeed(folder.path(), &["--version"]).starts_with("frixel "));
-}
-
-/// One sentence on standard error, with what is wrong, and an exit of one.
-fn refuse(folder: &Path, arguments: &[&str], parts: &[&str]) {
-    let output = run(folder, arguments);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
-    let sentence = said.lines().last().unwrap_or_default();
-    assert!(sentence.starts_with("frixel: "), "{said}");
-    for part in parts {
-        assert!(sentence.contains(part), "{arguments:?}: {part:?} is not in: {sentence}");
-    }
-}
-
-#[test]
-fn a_wrong_scene_is_refused_with_file_line_and_cure() {
-    let folder = TempDir::new().unwrap();
-    fs::create_dir(folder.path().join("textures")).unwrap();
-    fs::copy(repository().join("scenes/textures/brick.png"), folder.path().join("textures/brick.png")).unwrap();
-    let scene = fs::read_to_string(brick()).unwrap();
-    for (from, to, parts) in [
-        ("height_mm = 110", "heigth_mm = 110", ["wrong.toml:6:1", "heigth_mm", "`height_mm`"]),
-        ("textures/brick.png", "textures/brik.png", ["wrong.toml:18:", "brik.png", "not found"]),
-        ("white_n = 0.166", "white_n = 0.26", ["layer 1", "\"brick\"", "saturate = true"]),
-        ("x_mm = 10", "x_mm = 60", ["layer 1", "\"brick\"", "screen"]),
-    ] {
-        assert!(scene.contains(from));
-        fs::write(folder.path().join("wrong.toml"), scene.replace(from, to)).unwrap();
-        refuse(folder.path(), &["check", "wrong.toml"], &parts);
-        if from.starts_with("height_mm") {
-            refuse(folder.path(), &["play", "wrong.toml"], &parts);
-            continue;
-        }
-        // What can be read plays as a draft, with the same sentence.
-        let draft = run(folder.path(), &["play", "wrong.toml", "--seconds", "0.1", "--out", "draft"]);
-        let said = String::from_utf8(draft.stderr).unwrap();
-        assert!(draft.status.success() && said.starts_with("draft: a board refuses wrong.toml:"), "{said}");
-        assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}: {said}");
-    }
-    refuse(folder.path(), &["play", "nowhere.toml"], &["nowhere.toml", "cannot be read", "check the path"]);
-}
-
 #[cfg(unix)]
 #[test]
 fn an_interrupted_play_leaves_what_was_played() {
@@ -291,47 +239,4 @@ fn an_interrupted_play_leaves_what_was_played() {
     for name in ["felt.svg", "scene.png"] {
         assert!(fs::metadata(folder.path().join("frixel-out").join(name)).unwrap().len() > 10_000);
     }
-}
-
-#[test]
-fn a_play_never_overwrites_its_touch_source() {
-    let folder = TempDir::new().unwrap();
-    let touch = folder.path().join("summary.json");
-    let source = "reports_per_s = 100\nlatency_ms = 10\n";
-    fs::write(&touch, source).unwrap();
-    fs::write(folder.path().join("constant.toml"), CONSTANT).unwrap();
-    let arguments = ["play", "constant.toml", "--seconds", "0.1", "--touch", "summary.json", "--out", "."];
-    let output = run(folder.path(), &arguments);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("summary.json is an input as well"), "{said}");
-    assert_eq!(fs::read_to_string(&touch).unwrap(), source);
-}
-
-/// A picture that a play would draw over, by another path; and one of a scene that comes later.
-#[test]
-fn a_play_never_overwrites_a_file_of_its_scene() {
-    let folder = TempDir::new().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    fs::create_dir(path("out")).unwrap();
-    fs::copy(repository().join("scenes/textures/brick.png"), path("out/scene.png")).unwrap();
-    let before = fs::read(path("out/scene.png")).unwrap();
-    succeed(folder.path(), &["new", "out/own", "--picture", "out/scene.png"]);
-    let output = run(folder.path(), &["play", "out/own.toml", "--seconds", "0.1", "--out", "./out"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("scene.png is an input as well, and would be overwritten: give another folder to --out"));
-    assert!(!path("out/felt.csv").exists(), "nothing is written");
-    assert!(fs::read(path("out/scene.png")).unwrap() == before);
-
-    fs::write(path("constant.toml"), CONSTANT).unwrap();
-    let mut command = frixel();
-    command.args(["play", "constant.toml", "--control", "--seconds", "0.1", "--out", "out/.."]);
-    command.current_dir(folder.path()).stdin(Stdio::piped()).stderr(Stdio::piped()).stdout(Stdio::null());
-    fs::rename(path("out/scene.png"), path("scene.png")).unwrap();
-    succeed(folder.path(), &["new", "own", "--picture", "scene.png"]);
-    let mut play = command.spawn().unwrap();
-    play.stdin.take().unwrap().write_all(b"replace own.toml\n").unwrap();
-    let said = String::from_utf8(play.wait_with_output().unwrap().stderr).unwrap();
-    assert!(said.contains("scene.png is an input as well") && said.contains("own.toml is not played"), "{said}");
-    assert!(path("felt.csv").exists());
 }

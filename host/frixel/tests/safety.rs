@@ -4,7 +4,6 @@
 use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output};
 
 use frixel::scene_file::SceneFolder;
 use frixel_felt::judge::{Advice, Verdict, weber_steps};
@@ -15,16 +14,10 @@ use frixel_scene::{FingerProfile, Program, Scene, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 
-use crate::processes::repository;
-
-fn frixel(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).args(["board", "safety"]).args(args).output().unwrap()
-}
+use crate::processes::{repository, succeed};
 
 fn printed(args: &[&str]) -> String {
-    let output = frixel(args);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    succeed(&repository(), &[&["board", "safety"], args].concat())
 }
 
 /// The numbers of a line.
@@ -99,20 +92,6 @@ fn a_series_resistance_that_no_firmware_takes_is_named() {
     for (kohm, is_taken) in [("10", false), ("41.9", false), ("42.1", true)] {
         let text = printed(&["--series-kohm", kohm]);
         assert_eq!(!text.contains("no firmware takes that: "), is_taken, "{text}");
-    }
-}
-
-#[test]
-fn wrong_input_is_refused_with_what_was_expected() {
-    for (args, code, said) in [
-        (&["--board", "uno"][..], 2, "nucleo-g474re"),
-        (&["--series-kohm", "0"], 2, "a number above 0"),
-        (&["--screen", "nosuch.toml"], 1, "nosuch.toml"),
-    ] {
-        let output = frixel(args);
-        assert_eq!(output.status.code(), Some(code), "{args:?}");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(stderr.contains(said), "{stderr}");
     }
 }
 

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use frixel::scene_file;
 use frixel_hil_sim::{RigConfig, Stroke};
@@ -11,6 +10,8 @@ use frixel_lab::score::{Score, Trial};
 use frixel_play::TO_THE_END;
 use frixel_scene::{Program, Scene, compile};
 use serde_json::Value;
+
+use crate::processes::{repository, succeed};
 
 fn scene() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/grating.toml")
@@ -66,18 +67,16 @@ fn without_prediction_friction_is_late() {
     assert!(mean(&late, "error_below_40_hz") > 2.0 * mean(&program(), "error_below_40_hz"));
 }
 
+/// What a score of a scene prints, with its files in a folder.
+fn score(out: &Path, scene: &Path, options: &[&str]) -> String {
+    succeed(out, &[&["score", scene.to_str().unwrap(), "--out", "."], options].concat())
+}
+
 #[test]
 fn the_command_writes_a_row_for_each_play_and_a_picture() {
     let out = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-        .arg("score")
-        .arg(scene())
-        .args(["--strokes", "2", "--seeds", "2", "--seconds", "0.5", "--json", "--out"])
-        .arg(out.path())
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let options = ["--strokes", "2", "--seeds", "2", "--seconds", "0.5", "--json"];
+    let json: Value = serde_json::from_str(&score(out.path(), &scene(), &options)).unwrap();
     assert_eq!(json["plays"].as_array().unwrap().len(), 4);
     let csv = std::fs::read_to_string(out.path().join("score.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
@@ -99,16 +98,7 @@ fn lines(scene: &str, more: &[&str]) -> Vec<(String, String)> {
     let out = tempfile::tempdir().unwrap();
     let file = out.path().join("scene.toml");
     std::fs::write(&file, scene).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-        .arg("score")
-        .arg(&file)
-        .args(["--strokes", "1", "--seeds", "1", "--out"])
-        .arg(out.path())
-        .args(more)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = score(out.path(), &file, &[&["--strokes", "1", "--seeds", "1"], more].concat());
     let line = |line: &str| (line[2..32].trim_end().to_owned(), line[32..].trim_start().to_owned());
     text.lines().map(line).collect()
 }
@@ -156,17 +146,8 @@ fn levels_are_told_apart_as_far_as_they_differ() {
 #[test]
 fn people_differ_and_come_again() {
     let out = tempfile::tempdir().unwrap();
-    let plays = || {
-        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-            .arg("score")
-            .arg(scene())
-            .args(["--people", "3", "--strokes", "1", "--seeds", "2", "--seconds", "2", "--json", "--out"])
-            .arg(out.path())
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        serde_json::from_slice::<Value>(&output.stdout).unwrap()
-    };
+    let options = ["--people", "3", "--strokes", "1", "--seeds", "2", "--seconds", "2", "--json"];
+    let plays = || serde_json::from_str::<Value>(&score(out.path(), &scene(), &options)).unwrap();
     let json = plays();
     let people: Vec<u64> =
         json["plays"].as_array().unwrap().iter().filter_map(|play| play["simulated_person"].as_u64()).collect();
@@ -179,22 +160,16 @@ fn people_differ_and_come_again() {
 /// The command under the tables of `docs/touch.md` prints the cell that it is said to print.
 #[test]
 fn the_command_of_the_touch_tables_prints_their_cell() {
-    let docs = crate::processes::repository().join("docs");
+    let docs = repository().join("docs");
     let page = std::fs::read_to_string(docs.join("touch.md")).unwrap();
     let command = page.lines().find(|line| line.starts_with("frixel score touch/")).unwrap();
     let row = page.lines().find(|line| line.starts_with("| 100 Hz | 10 mm |")).unwrap();
     let cell = row.split('|').nth(4).unwrap().replace("mN", "").replace(',', " / ");
     let cell: Vec<f64> = cell.split('/').map(|number| number.trim().parse().unwrap()).collect();
     let out = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-        .current_dir(&docs)
-        .args(command.split(' ').skip(1))
-        .args(["--json", "--out"])
-        .arg(out.path())
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let score: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mut arguments: Vec<&str> = command.split(' ').skip(1).collect();
+    arguments.extend(["--json", "--out", out.path().to_str().unwrap()]);
+    let score: Value = serde_json::from_str(&succeed(&docs, &arguments)).unwrap();
     let mean = |key: &str| {
         let metrics = score["metrics"].as_array().unwrap().iter();
         metrics.filter(|metric| metric["key"] == key).find_map(|metric| metric["mean"].as_f64()).unwrap()
@@ -211,17 +186,10 @@ fn the_command_of_the_touch_tables_prints_their_cell() {
 fn every_number_of_jobs_has_the_same_bytes() {
     let scored = |jobs: &str| {
         let out = tempfile::tempdir().unwrap();
-        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-            .arg("score")
-            .arg(scene())
-            .args(["--people", "5", "--strokes", "2", "--seeds", "1", "--seconds", "0.4", "--json", "--jobs", jobs])
-            .arg("--out")
-            .arg(out.path())
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let options = ["--people", "5", "--strokes", "2", "--seeds", "1", "--seconds", "0.4", "--json", "--jobs", jobs];
+        let said = score(out.path(), &scene(), &options);
         let file = |name: &str| std::fs::read(out.path().join(name)).unwrap();
-        (output.stdout, ["score.csv", "score-layers.csv", "score.svg"].map(file))
+        (said, ["score.csv", "score-layers.csv", "score.svg"].map(file))
     };
     let (said, files) = scored("1");
     for jobs in ["2", "7"] {

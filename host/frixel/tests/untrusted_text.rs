@@ -3,20 +3,16 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
-use std::path::Path;
-use std::process::{Output, Stdio};
+use std::process::Output;
 
-use crate::processes::frixel;
 use tempfile::TempDir;
+
+use crate::processes::run;
 
 /// Sets a terminal's title, clears it, forges a line, in C0 and C1, and turns the order of letters.
 const HOSTILE: &str = "\u{1b}]0;owned\u{7}\u{1b}[2Jx\nforged: all is well\r\u{9b}2J\u{7f}\u{202e}";
 /// The same as a TOML string.
 const HOSTILE_TOML: &str = "\"\\u001b]0;owned\\u0007\\u001b[2Jx\\nforged: all is well\\r\\u009b2J\\u007f\\u202e\"";
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    frixel().args(arguments).current_dir(folder).stdin(Stdio::null()).output().unwrap()
-}
 
 /// What a command prints on both outputs, which has nothing that a terminal would do.
 fn clean(output: &Output) -> String {

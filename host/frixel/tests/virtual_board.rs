@@ -5,15 +5,13 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use hound::{SampleFormat, WavSpec, WavWriter};
 use tempfile::TempDir;
 
-use crate::processes::{frixel, rows_so_far, until};
+use crate::processes::{VirtualBoard, frixel, rows_so_far, until};
 
 /// The brick in a folder, with the longest host timeout that there is: on a busy machine pings are late.
 fn scene(folder: &Path) -> PathBuf {
@@ -24,13 +22,6 @@ fn scene(folder: &Path) -> PathBuf {
     let timeout = "[drive]\nhost_timeout_ms = 1000\n";
     fs::write(&path, brick.replace("textures/brick.png", &picture).replace("[drive]\n", timeout)).unwrap();
     path
-}
-
-/// One test at a time: on a busy machine a pseudo-terminal may hold bytes back for longer than a client waits.
-static TURN: Mutex<()> = Mutex::new(());
-
-fn turn() -> MutexGuard<'static, ()> {
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A client in a process of its own.
@@ -52,43 +43,29 @@ fn interrupt(process: Child) -> Output {
     process.wait_with_output().unwrap()
 }
 
-/// A virtual board in a process of its own.
-struct VirtualBoard {
-    process: Child,
-    port: String,
+/// A virtual board, and what clients play on it.
+struct Board {
+    board: VirtualBoard,
     folder: TempDir,
-    /// What clients play.
     scene: PathBuf,
 }
 
-impl VirtualBoard {
+impl Board {
     fn start() -> Self {
         let folder = TempDir::new().unwrap();
-        let mut process = frixel().args(["sim", "--out"]).arg(folder.path()).stdout(Stdio::piped()).spawn().unwrap();
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
+        let board = VirtualBoard::start(folder.path(), &[]);
         let scene = scene(folder.path());
-        Self { process, port, folder, scene }
+        Self { board, folder, scene }
     }
 
     /// Ends it as a person would, and reads what it wrote.
     fn interrupt(mut self) -> Log {
-        let pid = rustix::process::Pid::from_raw(self.process.id() as i32).unwrap();
-        rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
-        assert!(self.process.wait().unwrap().success());
-        Log::read(self.folder.path())
+        assert!(self.board.process.interrupt());
+        Log::read(&self.folder.path().join("board"))
     }
 
-    fn play(&self, seconds: &str, folder: &Path) -> Output {
-        client(&self.scene, &self.port, seconds, folder).wait_with_output().unwrap()
-    }
-}
-
-impl Drop for VirtualBoard {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
+    fn play(&self, seconds: &str, folder: &Path) -> Child {
+        client(&self.scene, &self.board.port, seconds, folder)
     }
 }
 
@@ -145,10 +122,9 @@ fn read_events(text: &str) -> Vec<Event> {
 /// How many frames had to be sent again depends on the machine.
 #[test]
 fn a_scene_plays_through_a_real_serial_port() {
-    let _turn = turn();
-    let board = VirtualBoard::start();
+    let board = Board::start();
     let folder = TempDir::new().unwrap();
-    let process = client(&board.scene, &board.port, "600", folder.path());
+    let process = board.play("600", folder.path());
     until("half a second of rows is written", || rows_in(folder.path()) > 500);
     let played = interrupt(process);
     assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
@@ -197,13 +173,12 @@ fn write_tone(path: &Path) {
 /// to follow it.
 #[test]
 fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
-    let _turn = turn();
-    let board = VirtualBoard::start();
+    let board = Board::start();
     let folder = TempDir::new().unwrap();
     let (scene, tone) = (folder.path().join("stream.toml"), folder.path().join("tone.wav"));
     fs::write(&scene, STREAM_SCENE).unwrap();
     write_tone(&tone);
-    let mut command = play_command(&scene, &board.port, "600", folder.path());
+    let mut command = play_command(&scene, &board.board.port, "600", folder.path());
     let process = command.arg("--stream").arg(&tone).spawn().unwrap();
     until("rows are written", || rows_in(folder.path()) > 1_500);
     let played = interrupt(process);
@@ -224,18 +199,17 @@ fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
 
 #[test]
 fn a_board_that_vanishes_is_said_in_a_sentence() {
-    let _turn = turn();
-    let mut board = VirtualBoard::start();
+    let mut board = Board::start();
     let folder = TempDir::new().unwrap();
-    let process = client(&board.scene, &board.port, "600", folder.path());
+    let process = board.play("600", folder.path());
     until("rows are written", || rows_in(folder.path()) > 0);
-    board.process.kill().unwrap();
-    board.process.wait().unwrap();
+    board.board.process.0.kill().unwrap();
+    board.board.process.0.wait().unwrap();
     let ended = process.wait_with_output().unwrap();
     assert_eq!(ended.status.code(), Some(1));
     let said = String::from_utf8(ended.stderr).unwrap();
     let sentence = said.lines().last().unwrap();
-    assert!(sentence.starts_with("frixel: ") && sentence.contains(&board.port), "{said}");
+    assert!(sentence.starts_with("frixel: ") && sentence.contains(&board.board.port), "{said}");
     assert!(sentence.contains("vanished"), "{said}");
     let json: serde_json::Value = serde_json::from_slice(&ended.stdout).unwrap();
     let ticks = json["ticks"].as_u64().unwrap();
@@ -247,10 +221,9 @@ fn a_board_that_vanishes_is_said_in_a_sentence() {
 
 #[test]
 fn a_folder_that_cannot_be_written_is_said_before_the_board_plays() {
-    let _turn = turn();
-    let board = VirtualBoard::start();
+    let board = Board::start();
     let file = tempfile::NamedTempFile::new().unwrap();
-    let refused = board.play("600", &file.path().join("out"));
+    let refused = board.play("600", &file.path().join("out")).wait_with_output().unwrap();
     assert_eq!(refused.status.code(), Some(1));
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(said.lines().last().unwrap().contains("cannot be written"), "{said}");

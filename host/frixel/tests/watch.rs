@@ -3,50 +3,18 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use crate::processes;
-
 use std::fmt::Write;
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 
-use processes::{frixel, rows_so_far, until};
-use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
-/// A process that does not outlive the test.
-struct Running(Child);
+use crate::processes::{Running, VirtualBoard, frixel, rows_so_far, until};
 
-impl Running {
-    /// Ends it as a person would, and returns whether all was well.
-    fn interrupt(&mut self) -> bool {
-        kill_process(Pid::from_raw(self.0.id() as i32).unwrap(), Signal::INT).unwrap();
-        self.0.wait().unwrap().success()
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// A virtual board that writes what is felt into `board` of a folder, and its port.
-fn virtual_board(folder: &Path, arguments: &[&str]) -> (Running, String) {
-    let mut command = frixel();
-    command
-        .args(["sim", "--ideal"])
-        .args(arguments)
-        .args(["--out", "board"])
-        .current_dir(folder)
-        .stdout(Stdio::piped());
-    let mut board = Running(command.spawn().unwrap());
-    let mut line = String::new();
-    BufReader::new(board.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
-    (board, port)
+/// A virtual board in an ideal world.
+fn virtual_board(folder: &Path, arguments: &[&str]) -> VirtualBoard {
+    VirtualBoard::start(folder, &[&["--ideal"], arguments].concat())
 }
 
 /// A client that plays `scene.toml` of a folder whenever it is saved; what it says is in `said`.
@@ -91,10 +59,10 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     let folder = TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name);
     write_stroke(&path("stroke.csv"));
-    let (mut board, port) = virtual_board(folder.path(), &["--stroke", "stroke.csv"]);
+    let mut board = virtual_board(folder.path(), &["--stroke", "stroke.csv"]);
 
     fs::write(path("scene.toml"), scene("0.26")).unwrap();
-    let mut client = watching_client(folder.path(), &port);
+    let mut client = watching_client(folder.path(), &board.port);
     let said = || fs::read_to_string(path("said")).unwrap();
     let last_n = || asked_n(&path("board")).last().copied().unwrap_or_default();
     until("the first scene plays", || is(last_n(), 0.26));
@@ -112,7 +80,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     fs::write(path("scene.toml"), scene("0.255")).unwrap();
     until("the mended scene plays", || is(last_n(), 0.255));
     assert!(client.interrupt(), "{}", said());
-    assert!(board.interrupt());
+    assert!(board.process.interrupt());
 
     let said = said();
     assert!(said.contains("frixel: scene.toml plays; what is saved replaces it; Ctrl-C ends"), "{said}");
@@ -165,8 +133,8 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
     write_picture(&path("one.png"), false);
     write_picture(&path("other.png"), true);
     fs::write(path("scene.toml"), picture_scene("one.png")).unwrap();
-    let (mut board, port) = virtual_board(folder.path(), &[]);
-    let mut client = watching_client(folder.path(), &port);
+    let mut board = virtual_board(folder.path(), &[]);
+    let mut client = watching_client(folder.path(), &board.port);
     let said = || fs::read_to_string(path("said")).unwrap();
     until("the first scene plays", || !asked_n(&path("client")).is_empty());
     fs::write(path("scene.toml"), picture_scene("other.png")).unwrap();
@@ -183,7 +151,7 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
     fs::write(path("scene.toml"), scene("0.26")).unwrap();
     until("the file is there again", || said().matches("plays as it was saved").count() == 3);
     assert!(client.interrupt(), "{}", said());
-    assert!(board.interrupt());
+    assert!(board.process.interrupt());
     assert_eq!(said().matches("is gone").count(), 1, "{}", said());
 }
 
@@ -196,8 +164,8 @@ fn an_included_file_is_followed() {
     fs::write(path("parts/flat.toml"), part("0.26")).unwrap();
     let text = "version = 1\ninclude = [\"parts/flat.toml\"]\n[drive]\nhost_timeout_ms = 1000\n";
     fs::write(path("scene.toml"), text).unwrap();
-    let (mut board, port) = virtual_board(folder.path(), &[]);
-    let mut client = watching_client(folder.path(), &port);
+    let mut board = virtual_board(folder.path(), &[]);
+    let mut client = watching_client(folder.path(), &board.port);
     let said = || fs::read_to_string(path("said")).unwrap();
     let last_n = || asked_n(&path("client")).last().copied().unwrap_or_default();
     until("the first scene plays", || is(last_n(), 0.26));
@@ -208,28 +176,7 @@ fn an_included_file_is_followed() {
     fs::write(path("parts/flat.toml"), part("27")).unwrap();
     until("the mistake is reported in its file", || said().contains("parts/flat.toml:4:14: "));
     assert!(client.interrupt(), "{}", said());
-    assert!(board.interrupt());
-}
-
-#[test]
-fn a_stream_is_not_watched() {
-    let folder = TempDir::new().unwrap();
-    let command = ["play", "scene.toml", "--port", "/dev/frixel-is-not-there", "--watch", "--stream", "tones.wav"];
-    let output = frixel().args(command).current_dir(folder.path()).output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("leave out --watch or --stream"), "{said}");
-}
-
-#[test]
-fn an_emulated_board_that_does_not_run_in_real_time_is_not_watched() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("scene.toml"), scene("0.26")).unwrap();
-    let arguments = ["play", "scene.toml", "--watch", "--port", "qemu"];
-    let output = frixel().args(arguments).current_dir(folder.path()).output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("--watch") && said.contains("frixel sim"), "{said}");
+    assert!(board.process.interrupt());
 }
 
 /// On the simulator, a saved scene plays from the beginning, drafts included. After a mistake, the files of the play
@@ -256,11 +203,11 @@ fn a_saved_scene_plays_anew_on_the_simulator() {
     assert!(play.interrupt());
 
     fs::write(&path, scene("0.9")).unwrap();
-    let (mut board, port) = virtual_board(folder.path(), &[]);
-    let arguments = ["play", "scene.toml", "--port", &port, "--seconds", "0.2"];
+    let mut board = virtual_board(folder.path(), &[]);
+    let arguments = ["play", "scene.toml", "--port", &board.port, "--seconds", "0.2"];
     let output = frixel().args(arguments).current_dir(folder.path()).output().unwrap();
     let refused = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{refused}");
     assert!(refused.contains("asks for up to 0.9 N") && !refused.contains("draft"), "{refused}");
-    assert!(board.interrupt());
+    assert!(board.process.interrupt());
 }

@@ -3,7 +3,7 @@
 //! `host/scene/tests/corpus`.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -37,19 +37,20 @@ fn run_in(case: &Case, folder: &Path) -> Output {
     child.wait_with_output().unwrap()
 }
 
-fn names(folder: &Path) -> BTreeSet<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+/// Names and contents of the files in a folder; a folder in it has none.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    paths.map(|path| (path.clone(), fs::read(path).ok())).collect()
 }
 
 fn answer(case: &Case) -> String {
     let folder = TempDir::new().unwrap();
     write_files(case, folder.path());
-    let before = names(folder.path());
+    let before = files(folder.path());
     let output = run_in(case, folder.path());
     let code = output.status.code().unwrap();
     if code != 0 {
-        assert_eq!(names(folder.path()), before, "{} fails and writes", case.files[COMMAND]);
+        assert!(files(folder.path()) == before, "{} fails and writes", case.files[COMMAND]);
     }
     let said = String::from_utf8(output.stderr).unwrap();
     let lines: Vec<String> = said.lines().map(|line| format!("{}\n", without_ports(line))).collect();
@@ -76,7 +77,7 @@ macro_rules! pages {
     };
 }
 
-pages!(control control_live options ports recordings scenarios scenes streams strokes tables);
+pages!(boards calibrations control control_live options ports recordings scenarios scenes streams strokes sweeps tables);
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")

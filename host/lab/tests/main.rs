@@ -8,6 +8,7 @@ mod examples;
 #[allow(dead_code, reason = "the example fit_floors uses the rest")]
 mod filters;
 mod goodput;
+mod model_csv;
 mod person;
 mod refusals;
 mod scenarios;

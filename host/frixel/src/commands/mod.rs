@@ -261,6 +261,25 @@ mod tests {
         check_help(&mut cli, "frixel");
     }
 
+    /// No document has the columns and the statuses of the model's rows.
+    #[test]
+    fn the_help_of_the_model_names_every_column_and_status() {
+        let help = |name| {
+            model::ModelCommand::augment_subcommands(clap::Command::new("model"))
+                .find_subcommand_mut(name)
+                .map(|command| command.render_long_help().to_string())
+                .unwrap()
+        };
+        let eval = "variant radius_m stiffness_pa_per_m coating_m permittivity friction_coefficient voltage_v \
+                    normal_force_n outer_radius_m modulus_pa stress_exponent shape_constant sigma0_pa contact_radius_m \
+                    effective_stiffness_pa_per_m friction_n status no-contact invalid";
+        let invert = "friction_n electric_friction_n voltage_v status below-natural unstable invalid";
+        for (name, words) in [("eval", eval), ("invert", invert)] {
+            let help = help(name);
+            assert!(words.split(' ').all(|word| help.contains(word)), "{help}");
+        }
+    }
+
     /// A command with a new output stands in the table that the tests of `tests/outputs` go through.
     #[test]
     fn every_path_on_the_command_line_is_a_known_input_or_a_tested_output() {

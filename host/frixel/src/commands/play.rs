@@ -46,7 +46,7 @@ pub(super) struct PlayArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// `sim` in this process, an emulated `qemu` or `pico`, or a board's serial port.
+    /// `sim`, an emulated `qemu` or `pico`, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
     #[command(flatten)]

@@ -22,8 +22,7 @@ const CHECKS_MAX: f64 = 1e6;
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct StrokeArgs {
-    /// Path of the simulated finger: `human`, a person's touches, others for each --seed; `human-rough`, without
-    /// smoothing; or a CSV file with `t_s,x_mm,y_mm` and optionally `force_n`. Default: a sweep.
+    /// Path of the finger: `human`, `human-rough` or a CSV file (docs/outputs.md). Default: a sweep.
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the screen's top left corner.

@@ -12,8 +12,9 @@ use frixel_scene::FingerProfile;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::ports::{TRIES_MAX, VirtualBoard, was_too_late};
+use super::ports::{TRIES_MAX, was_too_late};
 use super::{command, frixel, succeed};
+use crate::processes::VirtualBoard;
 
 /// Strokes at a speed at which friction follows the drive.
 const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--minimum-jerk"];
@@ -22,21 +23,6 @@ const FEW: [&str; 2] = ["--strokes", "9"];
 
 /// A minute of naps of 50 ms: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 1_200;
-
-/// What a command says that fails, in one sentence.
-fn fail(folder: &Path, arguments: &[&str]) -> String {
-    for _ in 0..TRIES_MAX {
-        let output = frixel(folder, arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
-        if !was_too_late(&said) {
-            assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
-            let sentence = said.trim_end().lines().last().unwrap();
-            assert!(sentence.starts_with("frixel: ") && !sentence.contains(". "), "one sentence: {said}");
-            return sentence.to_owned();
-        }
-    }
-    panic!("{arguments:?}: {TRIES_MAX} tries were too late");
-}
 
 /// Calibrates until the machine lets the recording be whole: on a busy one, samples of the drive come too late, and the
 /// virtual board's time falls behind that of the client.
@@ -148,51 +134,4 @@ fn a_finger_on_a_virtual_board_stays_whatever_scene_plays() {
     let dry = FingerProfile::bundled("dry").unwrap().friction_coefficient;
     let wrong = ratios.iter().filter(|ratio| (*ratio - dry).abs() > 1e-6).count();
     assert!(ratios.len() > 300 && wrong == 0, "{wrong} of {} are not {dry}", ratios.len());
-    for (arguments, words) in [
-        (&["--finger", "nobody"][..], "give its file, or a bundled one"),
-        (&["--finger", "dry", "--screen", "nothing"], "give its file, or a bundled one"),
-    ] {
-        let said = fail(folder.path(), &[&["sim"], arguments].concat());
-        assert!(said.contains(words), "{said}");
-    }
-    for arguments in [&["--finger", "dry", "--finger-seed", "1"][..], &["--screen", "example"]] {
-        assert_eq!(frixel(folder.path(), &[&["sim"], arguments].concat()).status.code(), Some(2), "{arguments:?}");
-    }
-}
-
-#[test]
-fn what_is_wrong_with_a_calibration_is_said_before_the_run() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("mine.csv"), "old").unwrap();
-    fs::write(folder.path().join("volts.csv"), "time_s,voltage\n0,1\n").unwrap();
-    fs::write(folder.path().join("back.csv"), "time_s,normal_force_n,friction_n\n1,1,1\n0,1,1\n").unwrap();
-    let board = VirtualBoard::start(folder.path(), &[]);
-    let port = ["--port", &board.port];
-    for (arguments, words) in [
-        (&["-o", "d.csv"][..], "measures no forces"),
-        (&["-o", "d.csv", "--forces", "nowhere.csv"], "nowhere.csv cannot be read"),
-        (
-            &["-o", "d.csv", "--forces", "volts.csv"],
-            "volts.csv: the header has no column normal_force_n: name the column so, in newtons",
-        ),
-        (&["-o", "d.csv", "--forces", "back.csv"], "row 3 of the forces goes back in time"),
-        (&["-o", "nowhere/d.csv", "--forces", "board/forces.csv"], "nowhere/d.csv cannot be written"),
-        (&["-o", "d.csv", "--forces", "board/forces.csv", "--finger-seed", "3"], "leave --finger-seed out"),
-    ] {
-        let said = fail(folder.path(), &[&["finger", "calibrate"], &port[..], arguments].concat());
-        assert!(said.contains(words), "{words}: {said}");
-    }
-    let said = fail(
-        folder.path(),
-        &["finger", "calibrate", "-o", "mine.csv", "--overwrite", "--port", "nowhere", "--forces", "back.csv"],
-    );
-    assert!(said.contains("back.csv: row 3 of the forces"), "{said}");
-    assert_eq!(fs::read_to_string(folder.path().join("mine.csv")).unwrap(), "old", "a run that fails leaves the file");
-    assert!(!folder.path().join("d.csv").exists());
-    let events = fs::read_to_string(folder.path().join("board/events.csv")).unwrap();
-    assert!(!events.contains("active"), "no run began: {events}");
-    for arguments in [["--voltage", "151"], ["--voltage", "0"], ["--strokes", "7"]] {
-        let output = frixel(folder.path(), &[&["finger", "calibrate", "-o", "d.csv"], &arguments[..]].concat());
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    }
 }

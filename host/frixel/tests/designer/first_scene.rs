@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{frixel, scenes, succeed};
+use super::{scenes, succeed};
 
 #[test]
 fn a_new_scene_is_checked_and_played_as_it_is() {
@@ -68,23 +68,4 @@ fn dots_in_the_name_of_a_scene_stay() {
     let (_, kinds) = text.lines().find_map(|line| line.split_once("kind = \"grating\"  # or ")).unwrap();
     let all: Vec<&str> = frixel_scene::layer_kinds().filter(|kind| *kind != "grating").collect();
     assert_eq!(kinds, all.join(", "));
-}
-
-#[test]
-fn a_new_scene_overwrites_nothing_and_needs_its_picture() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("mine.toml"), "mine").unwrap();
-    for (arguments, part) in [
-        (&["new", "mine"][..], "mine.toml is there already"),
-        (&["new", "other", "--picture", "none.png"], "none.png cannot be read"),
-        (&["new", "nowhere/mine"], "mine.toml cannot be written"),
-        (&["new", "my wood.jpg"], ": frixel new 'my wood' --picture 'my wood.jpg'"),
-        (&["new", "a.png", "--picture", "b.png"], "a scene needs another: frixel new a --picture b.png"),
-    ] {
-        let output = frixel(folder.path(), arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(1) && said.contains(part), "{arguments:?}: {said}");
-    }
-    assert_eq!(fs::read_to_string(folder.path().join("mine.toml")).unwrap(), "mine");
-    assert!(!folder.path().join("other.toml").exists());
 }

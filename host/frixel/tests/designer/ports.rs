@@ -1,43 +1,12 @@
 //! Playing to the port of a virtual board.
 
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Stdio};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::TempDir;
 
-use super::{command, frixel, scene, succeed};
-
-/// One virtual board at a time: on a busy machine a second one is late.
-static TURN: Mutex<()> = Mutex::new(());
-
-/// `frixel sim`, which writes into `board` of a folder.
-pub(crate) struct VirtualBoard {
-    process: Child,
-    pub(crate) port: String,
-    _turn: MutexGuard<'static, ()>,
-}
-
-impl VirtualBoard {
-    pub(crate) fn start(folder: &Path, arguments: &[&str]) -> Self {
-        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut command = command(folder, &[&["sim", "--out", "board"], arguments].concat());
-        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let port = line.trim().strip_prefix("port: ").unwrap().to_owned();
-        Self { process, port, _turn: turn }
-    }
-}
-
-impl Drop for VirtualBoard {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
-}
+use super::{frixel, scene, succeed};
+use crate::processes::VirtualBoard;
 
 /// The longest host timeout that there is: on a busy machine pings are late.
 pub(crate) fn write_patient_scene(path: &Path) {
@@ -105,14 +74,6 @@ fn a_play_to_a_port_draws_what_the_board_commanded_and_joins_what_was_felt() {
         }
     };
     assert!(said.contains("whose port this is"), "{said}");
-}
-
-#[test]
-fn a_log_is_not_joined_where_what_is_felt_is_recorded() {
-    let folder = TempDir::new().unwrap();
-    let output = frixel(folder.path(), &["play", &scene("brick.toml"), "--with-log", "felt.csv"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(!output.status.success() && said.contains("leave it out"), "{said}");
 }
 
 #[test]

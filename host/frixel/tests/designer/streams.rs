@@ -48,11 +48,3 @@ fn a_stream_ends_with_its_file_and_counts_as_wanted() {
         succeed(folder.path(), &["play", "scene.toml", "--stream", "ramp.wav", "--seconds", "0.5", "--json"]);
     assert!(json.contains("\"ticks\":20000,"), "{json}");
 }
-
-#[test]
-fn a_stream_layer_without_a_stream_is_reported() {
-    let folder = TempDir::new().unwrap();
-    write_scene(&folder.path().join("scene.toml"));
-    let (_, notes) = succeed(folder.path(), &["play", "scene.toml", "--seconds", "0.1"]);
-    assert!(notes.contains("\"radio\"") && notes.contains("nothing will be felt there"), "{notes}");
-}

@@ -4,7 +4,7 @@ use std::fs;
 
 use tempfile::TempDir;
 
-use super::{frixel, scene, succeed};
+use super::{scene, succeed};
 
 /// Columns of a felt.csv, row by row.
 fn rows(folder: &TempDir) -> Vec<Vec<String>> {
@@ -45,7 +45,7 @@ fn a_straight_stroke_goes_back_and_forth_at_its_speed() {
 }
 
 #[test]
-fn a_felt_csv_is_a_stroke_and_other_columns_are_named() {
+fn a_felt_csv_is_a_stroke() {
     let folder = TempDir::new().unwrap();
     let brick = scene("brick.toml");
     succeed(folder.path(), &["play", &brick, "--from", "20,40", "--to", "100,40", "--csv-hz", "100"]);
@@ -54,12 +54,6 @@ fn a_felt_csv_is_a_stroke_and_other_columns_are_named() {
     let (_, notes) = succeed(folder.path(), &["play", &brick, "--stroke", "felt.csv"]);
     assert!(!notes.contains("ignored"), "{notes}");
     assert!((number(&rows(&folder), 400, 1) - 60.1).abs() < 0.05);
-    fs::write(folder.path().join("pen.csv"), "t_s,x_mm,y_mm,tilt\n0,10,10,3\n0.2,30,10,4\n").unwrap();
-    let (_, notes) = succeed(folder.path(), &["play", &brick, "--stroke", "pen.csv"]);
-    assert!(
-        notes.contains("warning: pen.csv: ignored column tilt: a stroke has t_s, x_mm, y_mm and force_n"),
-        "{notes}"
-    );
 }
 
 #[test]
@@ -71,28 +65,4 @@ fn layers_that_were_never_touched_are_named() {
     let (json, _) = succeed(folder.path(), &["play", &keyboard, "--seconds", "0.1", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert!(!json["untouched_layers"].as_array().unwrap().is_empty());
-}
-
-#[test]
-fn a_stroke_that_makes_no_sense_is_explained() {
-    let folder = TempDir::new().unwrap();
-    let brick = scene("brick.toml");
-    for (arguments, code, part) in [
-        (&["--from", "20,40"][..], 2, "--to <X,Y>"),
-        (&["--speed", "20"], 2, "--from <X,Y>"),
-        (&["--from", "20;40", "--to", "1,1"], 2, "for example 12,34.5"),
-        (&["--from", "20,40", "--to", "50,40", "--speed", "0"], 2, "above 0, at most 10000 mm/s"),
-        (&["--from", "20,40", "--to", "50,40", "--times", "0"], 2, "1..=10000"),
-        (&["--from", "20,40", "--to", "50,40", "--stroke", "a.csv"], 2, "cannot be used with"),
-        (&["--from", "20,40", "--to", "20,40"], 1, "give two places that differ"),
-        (&["--from", "320,40", "--to", "300,40"], 1, "nowhere on the screen"),
-        (&["--from", "-5,40", "--to", "-1,40"], 1, "nowhere on the screen"),
-        (&["--from", "--to", "1,1"], 2, "unexpected argument '1,1'"),
-        (&["--from", "20,40", "--to", "100,40", "--speed", "0.001", "--times", "9"], 1, "longer than a day"),
-    ] {
-        let output = frixel(folder.path(), &[&["play", brick.as_str()], arguments].concat());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
-        assert!(said.contains(part), "{arguments:?}: {said}");
-    }
 }

@@ -8,14 +8,14 @@
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use super::ports::VirtualBoard;
 use super::{command, scenes};
+use crate::processes::{Running, VirtualBoard};
 
 /// The port in the page.
 const PORT: &str = "/dev/pts/3";
@@ -26,20 +26,11 @@ const PATIENCE: Duration = Duration::from_mins(1);
 struct Reader {
     folder: TempDir,
     board: Option<VirtualBoard>,
-    watching: Option<Watching>,
+    /// A command that goes on, and prints to the file `said`.
+    watching: Option<Running>,
     printed: String,
     commands: usize,
     edits: usize,
-}
-
-/// A command that goes on, and prints to the file `said`.
-struct Watching(Child);
-
-impl Drop for Watching {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
 }
 
 impl Reader {
@@ -74,7 +65,7 @@ impl Reader {
             fs::write(&scene, format!("{text}\n[drive]\nhost_timeout_ms = 1000\n")).unwrap();
             let said = self.path().join("said");
             process.stdout(Stdio::null()).stderr(File::create(&said).unwrap());
-            self.watching = Some(Watching(process.spawn().unwrap()));
+            self.watching = Some(Running(process.spawn().unwrap()));
             // The first scene plays when rows of telemetry are there.
             let rows = self.path().join("frixel-out/.felt.csv.frixel-tmp");
             wait("the scene plays", || fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 2));
