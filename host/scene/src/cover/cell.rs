@@ -29,6 +29,11 @@ impl Cell {
         (f64::midpoint(self.left_m, self.right_m), f64::midpoint(self.top_m, self.bottom_m))
     }
 
+    /// The place of the cell that is nearest to another place.
+    pub(crate) fn nearest_to(self, x_m: f64, y_m: f64) -> (f64, f64) {
+        (x_m.clamp(self.left_m, self.right_m), y_m.clamp(self.top_m, self.bottom_m))
+    }
+
     /// Whether the line from one place to another crosses the inside of the cell.
     fn is_crossed(self, (x1_m, y1_m): (f64, f64), (x2_m, y2_m): (f64, f64)) -> bool {
         // The part of the line, from 0 to 1, that lies between opposite sides.
@@ -63,8 +68,7 @@ impl Coverage {
                 }
             }
             Shape::Ellipse { middle_m, .. } => {
-                let nearest =
-                    (middle_m.0.clamp(cell.left_m, cell.right_m), middle_m.1.clamp(cell.top_m, cell.bottom_m));
+                let nearest = cell.nearest_to(middle_m.0, middle_m.1);
                 if cell.corners().into_iter().all(|(x_m, y_m)| shape.covers(x_m, y_m)) {
                     Self::Whole
                 } else if shape.covers(nearest.0, nearest.1) {

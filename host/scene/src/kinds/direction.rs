@@ -61,30 +61,17 @@ impl Words for Direction {
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        let angle = TAU * f64::from(self.angle_turns);
-        Arc::new(DirectionField {
-            axis: [libm::cos(angle), libm::sin(angle)],
-            along_n: f64::from(self.along_n),
-            against_n: f64::from(self.against_n),
-        })
+        Arc::new(*self)
     }
 }
 
-#[derive(Debug)]
-struct DirectionField {
-    /// A vector of length 1.
-    axis: [f64; 2],
-    along_n: f64,
-    against_n: f64,
-}
-
-impl Field for DirectionField {
+impl Field for Record {
     fn at(&self, context: &Context) -> f64 {
-        let ([axis_x, axis_y], [x, y]) = (self.axis, context.direction);
-        let cosine = axis_x * x + axis_y * y;
+        let (angle, [x, y]) = (TAU * f64::from(self.angle_turns), context.direction);
+        let cosine = libm::cos(angle) * x + libm::sin(angle) * y;
         let fade = (context.speed_m_per_s / FADE_M_PER_S).min(1.0);
         let weight_along = 0.5 * (1.0 + fade * cosine);
-        weight_along * self.along_n + (1.0 - weight_along) * self.against_n
+        weight_along * f64::from(self.along_n) + (1.0 - weight_along) * f64::from(self.against_n)
     }
 
     fn is_still(&self) -> bool {

@@ -107,14 +107,7 @@ impl Edge {
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(EdgeField {
-            place_m: (f64::from(self.x_m), f64::from(self.y_m)),
-            angle_turns: f64::from(self.angle_turns),
-            width_m: f64::from(self.width_m),
-            level_n: f64::from(self.level_n),
-            ridge_n: f64::from(self.ridge_n),
-            click: self.click,
-        })
+        Arc::new(*self)
     }
 
     fn without_place(self) -> Self {
@@ -122,47 +115,36 @@ impl IntoField for Record {
     }
 }
 
-#[derive(Debug)]
-struct EdgeField {
-    place_m: (f64, f64),
-    angle_turns: f64,
-    width_m: f64,
-    level_n: f64,
-    ridge_n: f64,
-    click: RecordClick,
+/// Signed distance of a place from the line of an edge, m; positive beyond it.
+fn distance_m(edge: &Record, x_m: f64, y_m: f64) -> f64 {
+    let angle = TAU * f64::from(edge.angle_turns);
+    (x_m - f64::from(edge.x_m)) * libm::cos(angle) + (y_m - f64::from(edge.y_m)) * libm::sin(angle)
 }
 
-impl EdgeField {
-    /// Signed distance of a place from the line, m; positive beyond it.
-    fn distance_m(&self, x_m: f64, y_m: f64) -> f64 {
-        let (across_x, across_y) = (libm::cos(TAU * self.angle_turns), libm::sin(TAU * self.angle_turns));
-        (x_m - self.place_m.0) * across_x + (y_m - self.place_m.1) * across_y
-    }
-
-    fn at_distance(&self, distance_m: f64) -> f64 {
-        let part = (distance_m / self.width_m).clamp(-0.5, 0.5);
-        let height = libm::cos(0.5 * TAU * part);
-        self.level_n + (self.ridge_n - self.level_n) * height * height
-    }
+fn at_distance(edge: &Record, distance_m: f64) -> f64 {
+    let (level_n, ridge_n) = (f64::from(edge.level_n), f64::from(edge.ridge_n));
+    let part = (distance_m / f64::from(edge.width_m)).clamp(-0.5, 0.5);
+    let height = libm::cos(0.5 * TAU * part);
+    level_n + (ridge_n - level_n) * height * height
 }
 
-impl Field for EdgeField {
+impl Field for Record {
     fn at(&self, context: &Context) -> f64 {
-        self.at_distance(self.distance_m(context.x_m, context.y_m))
+        at_distance(self, distance_m(self, context.x_m, context.y_m))
     }
 
     /// The ridge falls off on both sides of the line.
     fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
-        let distances = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.distance_m(x_m, y_m)));
+        let distances = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| distance_m(self, x_m, y_m)));
         let nearest_m = 0.0_f64.clamp(distances.low, distances.high);
         let ends = [distances.low, distances.high, nearest_m];
-        let still = Interval::of(ends.into_iter().map(|distance_m| self.at_distance(distance_m)));
+        let still = Interval::of(ends.into_iter().map(|distance_m| at_distance(self, distance_m)));
         let is_crossed = distances.low < 0.0 && distances.high > 0.0;
         Extremes::Reached(still.plus(click_interval(self.click().filter(|_| is_crossed))))
     }
 
     fn detail_m(&self) -> Option<f64> {
-        Some(0.1 * self.width_m)
+        Some(0.1 * f64::from(self.width_m))
     }
 
     fn click(&self) -> Option<RecordClick> {
@@ -170,6 +152,6 @@ impl Field for EdgeField {
     }
 
     fn is_beyond(&self, x_m: f64, y_m: f64) -> bool {
-        self.distance_m(x_m, y_m) >= 0.0
+        distance_m(self, x_m, y_m) >= 0.0
     }
 }

@@ -76,10 +76,6 @@ impl Words for Grating {
         self.amounts.check(places, log);
     }
 
-    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
-        LowHigh::extreme(most, places)
-    }
-
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let (cycles_per_m_x, cycles_per_m_y) = place::wave_vector(self.wavelength_mm, self.angle_deg);
         let (x_m, y_m) = match (self.origin, &layer.region) {
@@ -102,7 +98,7 @@ impl Words for Grating {
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(GratingField::new(self))
+        Arc::new(*self)
     }
 
     fn without_place(self) -> Self {
@@ -113,37 +109,20 @@ impl IntoField for Record {
     }
 }
 
-#[derive(Debug)]
-struct GratingField {
-    cycles_per_m_x: f64,
-    cycles_per_m_y: f64,
-    phase_turns: f64,
-    /// Stripes that pass a place in a second.
-    drift_hz: f64,
-    wave: WaveField,
+/// Phase of a grating at a place and the time 0, in turns.
+fn turns(grating: &Record, x_m: f64, y_m: f64) -> f64 {
+    let [along_x, along_y, phase] =
+        [grating.cycles_per_m_x, grating.cycles_per_m_y, grating.phase_turns].map(f64::from);
+    along_x * x_m + along_y * y_m + phase
 }
 
-impl GratingField {
-    fn new(grating: &Record) -> Self {
-        let Record { wave, trough_n, crest_n, .. } = *grating;
-        Self {
-            cycles_per_m_x: f64::from(grating.cycles_per_m_x),
-            cycles_per_m_y: f64::from(grating.cycles_per_m_y),
-            phase_turns: f64::from(grating.phase_turns),
-            drift_hz: f64::from(grating.drift_hz),
-            wave: WaveField { wave, trough_n: f64::from(trough_n), crest_n: f64::from(crest_n) },
-        }
-    }
-
-    /// Phase at a place and the time 0, in turns.
-    fn turns(&self, x_m: f64, y_m: f64) -> f64 {
-        self.cycles_per_m_x * x_m + self.cycles_per_m_y * y_m + self.phase_turns
-    }
+fn wave_of(grating: &Record) -> WaveField {
+    WaveField::new(grating.wave, grating.trough_n, grating.crest_n)
 }
 
-impl Field for GratingField {
+impl Field for Record {
     fn at(&self, context: &Context) -> f64 {
-        self.wave.at_turns(self.turns(context.x_m, context.y_m) - self.drift_hz * context.t_s)
+        wave_of(self).at_turns(turns(self, context.x_m, context.y_m) - f64::from(self.drift_hz) * context.t_s)
     }
 
     fn is_still(&self) -> bool {
@@ -152,11 +131,11 @@ impl Field for GratingField {
 
     /// Over a rectangle the phase takes every value between its least and its largest.
     fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
-        let turns = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| self.turns(x_m, y_m)));
-        Extremes::Reached(self.wave.interval(turns))
+        let turns = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| turns(self, x_m, y_m)));
+        Extremes::Reached(wave_of(self).interval(turns))
     }
 
     fn detail_m(&self) -> Option<f64> {
-        Some(0.1 / libm::hypot(self.cycles_per_m_x, self.cycles_per_m_y))
+        Some(0.1 / libm::hypot(self.cycles_per_m_x.into(), self.cycles_per_m_y.into()))
     }
 }

@@ -26,7 +26,7 @@ use frixel_layers::{Blend, Click, Interval, Layer as Record, Region as RecordReg
 
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::layer::{Layer, Region, Unit};
+use crate::layer::{Layer, LowHigh, Region, Unit};
 use crate::log::Log;
 use crate::lower::Lowering;
 use crate::program::Program;
@@ -57,8 +57,12 @@ pub(crate) trait Words: Sized {
         let _ = (places, log);
     }
 
-    /// The name of the field that sets the largest friction, or the least, of the layer of a record.
-    fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str;
+    /// The name of the field that sets the largest friction, or the least, of the layer of a record: those of the least
+    /// and the largest amount, which most kinds have.
+    fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
+        let _ = record;
+        LowHigh::extreme(most, places)
+    }
 
     /// The fields of the layer of a record whose friction its click is added to, each with its friction, and the field
     /// of the click. `None` for a kind without clicks.

@@ -68,10 +68,6 @@ impl Words for Noise {
         }
     }
 
-    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
-        LowHigh::extreme(most, places)
-    }
-
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let record = Record {
             seed: self.seed,

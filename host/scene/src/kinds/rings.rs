@@ -58,10 +58,6 @@ impl Words for Rings {
         self.y_mm += y_mm;
     }
 
-    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
-        LowHigh::extreme(most, places)
-    }
-
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let record = Record {
             wave: self.wave,
@@ -78,7 +74,7 @@ impl Words for Rings {
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(RingsField::new(self))
+        Arc::new(*self)
     }
 
     fn without_place(self) -> Self {
@@ -86,35 +82,18 @@ impl IntoField for Record {
     }
 }
 
-#[derive(Debug)]
-struct RingsField {
-    middle_m: (f64, f64),
-    cycles_per_m: f64,
-    /// Rings that pass a place in a second.
-    drift_hz: f64,
-    wave: WaveField,
+/// Phase of rings at a place and the time 0, in turns.
+fn turns(rings: &Record, x_m: f64, y_m: f64) -> f64 {
+    f64::from(rings.cycles_per_m) * libm::hypot(x_m - f64::from(rings.x_m), y_m - f64::from(rings.y_m))
 }
 
-impl RingsField {
-    fn new(rings: &Record) -> Self {
-        let Record { wave, trough_n, crest_n, .. } = *rings;
-        Self {
-            middle_m: (f64::from(rings.x_m), f64::from(rings.y_m)),
-            cycles_per_m: f64::from(rings.cycles_per_m),
-            drift_hz: f64::from(rings.drift_hz),
-            wave: WaveField { wave, trough_n: f64::from(trough_n), crest_n: f64::from(crest_n) },
-        }
-    }
-
-    /// Phase at a place and the time 0, in turns.
-    fn turns(&self, x_m: f64, y_m: f64) -> f64 {
-        self.cycles_per_m * libm::hypot(x_m - self.middle_m.0, y_m - self.middle_m.1)
-    }
+fn wave_of(rings: &Record) -> WaveField {
+    WaveField::new(rings.wave, rings.trough_n, rings.crest_n)
 }
 
-impl Field for RingsField {
+impl Field for Record {
     fn at(&self, context: &Context) -> f64 {
-        self.wave.at_turns(self.turns(context.x_m, context.y_m) - self.drift_hz * context.t_s)
+        wave_of(self).at_turns(turns(self, context.x_m, context.y_m) - f64::from(self.drift_hz) * context.t_s)
     }
 
     fn is_still(&self) -> bool {
@@ -124,13 +103,12 @@ impl Field for RingsField {
     /// The nearest place of a cell is the centre or lies on the cell's border, and the farthest is a corner. The
     /// distance takes every value between the two.
     fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
-        let nearest =
-            (self.middle_m.0.clamp(cell.left_m, cell.right_m), self.middle_m.1.clamp(cell.top_m, cell.bottom_m));
+        let nearest = cell.nearest_to(self.x_m.into(), self.y_m.into());
         let places = cell.corners().into_iter().chain([nearest]);
-        Extremes::Reached(self.wave.interval(Interval::of(places.map(|(x_m, y_m)| self.turns(x_m, y_m)))))
+        Extremes::Reached(wave_of(self).interval(Interval::of(places.map(|(x_m, y_m)| turns(self, x_m, y_m)))))
     }
 
     fn detail_m(&self) -> Option<f64> {
-        Some(0.1 / self.cycles_per_m)
+        Some(0.1 / f64::from(self.cycles_per_m))
     }
 }

@@ -66,10 +66,6 @@ impl Words for Spokes {
         self.y_mm += y_mm;
     }
 
-    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
-        LowHigh::extreme(most, places)
-    }
-
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let record = Record {
             wave: self.wave,
@@ -138,10 +134,7 @@ impl Field for SpokesField {
     /// half a turn.
     fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
         let corners = cell.corners().map(|corner| self.off_middle_m(corner));
-        let nearest = self.off_middle_m((
-            self.middle_m.0.clamp(cell.left_m, cell.right_m),
-            self.middle_m.1.clamp(cell.top_m, cell.bottom_m),
-        ));
+        let nearest = self.off_middle_m(cell.nearest_to(self.middle_m.0, self.middle_m.1));
         let nearest_m = libm::hypot(nearest.0, nearest.1);
         let wave_n = if nearest_m > 0.0 {
             let middle = self.off_middle_m(cell.middle());

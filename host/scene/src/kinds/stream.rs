@@ -36,10 +36,6 @@ impl Words for Stream {
         self.amounts.check(places, log);
     }
 
-    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
-        LowHigh::extreme(most, places)
-    }
-
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let record = Record {
             low_n: lowering.amount(layer, self.amounts.low),
@@ -51,19 +47,14 @@ impl Words for Stream {
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(StreamField { low_n: f64::from(self.low_n), high_n: f64::from(self.high_n) })
+        Arc::new(*self)
     }
 }
 
-#[derive(Debug)]
-struct StreamField {
-    low_n: f64,
-    high_n: f64,
-}
-
-impl Field for StreamField {
+impl Field for Record {
     fn at(&self, context: &Context) -> f64 {
-        self.low_n + (self.high_n - self.low_n) * context.stream
+        let (low_n, high_n) = (f64::from(self.low_n), f64::from(self.high_n));
+        low_n + (high_n - low_n) * context.stream
     }
 
     fn is_still(&self) -> bool {

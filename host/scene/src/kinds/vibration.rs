@@ -82,10 +82,6 @@ impl Words for Vibration {
         self.amounts.check(places, log);
     }
 
-    fn extreme(&self, most: bool, places: &Places, _record: &RecordLayer) -> &'static str {
-        LowHigh::extreme(most, places)
-    }
-
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
         let record = Record {
             beat: self.beat,
@@ -126,33 +122,19 @@ impl Burst {
 
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        Arc::new(VibrationField {
-            beat: self.beat,
-            frequency_hz: f64::from(self.frequency_hz),
-            low_n: f64::from(self.low_n),
-            high_n: f64::from(self.high_n),
-            burst: self.burst,
-        })
+        Arc::new(*self)
     }
 }
 
-#[derive(Debug)]
-struct VibrationField {
-    beat: Beat,
-    frequency_hz: f64,
-    low_n: f64,
-    high_n: f64,
-    burst: RecordBurst,
-}
-
-impl Field for VibrationField {
+impl Field for Record {
     fn at(&self, context: &Context) -> f64 {
-        let turn = (self.frequency_hz * context.t_s).rem_euclid(1.0);
+        let turn = (f64::from(self.frequency_hz) * context.t_s).rem_euclid(1.0);
         let wave = match self.beat {
             Beat::Sine => 0.5 + 0.5 * libm::sin(TAU * turn),
             Beat::Square => f64::from(u8::from(turn < 0.5)),
         };
-        self.low_n + (self.high_n - self.low_n) * self.envelope(context.t_s - context.begun_s) * wave
+        let (low_n, high_n) = (f64::from(self.low_n), f64::from(self.high_n));
+        low_n + (high_n - low_n) * envelope(self.burst, context.t_s - context.begun_s) * wave
     }
 
     fn is_still(&self) -> bool {
@@ -160,23 +142,22 @@ impl Field for VibrationField {
     }
 
     fn largest_over_time_n(&self) -> Option<f64> {
-        Some(self.high_n)
+        Some(self.high_n.into())
     }
 }
 
-impl VibrationField {
-    fn envelope(&self, t_s: f64) -> f64 {
-        let [period_s, on_s, ramp_s] = [self.burst.period_s, self.burst.on_s, self.burst.ramp_s].map(f64::from);
-        if period_s <= 0.0 {
-            return 1.0;
-        }
-        let begun_s = t_s.rem_euclid(period_s);
-        if begun_s >= on_s {
-            0.0
-        } else if ramp_s > 0.0 {
-            (begun_s.min(on_s - begun_s) / ramp_s).min(1.0)
-        } else {
-            1.0
-        }
+/// The part of a vibration that is left at a time since it was switched on.
+fn envelope(burst: RecordBurst, t_s: f64) -> f64 {
+    let [period_s, on_s, ramp_s] = [burst.period_s, burst.on_s, burst.ramp_s].map(f64::from);
+    if period_s <= 0.0 {
+        return 1.0;
+    }
+    let begun_s = t_s.rem_euclid(period_s);
+    if begun_s >= on_s {
+        0.0
+    } else if ramp_s > 0.0 {
+        (begun_s.min(on_s - begun_s) / ramp_s).min(1.0)
+    } else {
+        1.0
     }
 }

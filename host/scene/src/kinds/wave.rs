@@ -43,6 +43,10 @@ pub(super) struct WaveField {
 }
 
 impl WaveField {
+    pub(super) fn new(wave: Wave, trough_n: f32, crest_n: f32) -> Self {
+        Self { wave, trough_n: trough_n.into(), crest_n: crest_n.into() }
+    }
+
     /// Electric friction at a phase, in newtons.
     pub(super) fn at_turns(&self, turns: f64) -> f64 {
         // Truncate first: a cast is faster than a floor, and no screen has 2^53 stripes.
