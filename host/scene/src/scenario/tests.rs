@@ -1,4 +1,7 @@
+use std::path::Path;
+
 use frixel_hil_sim::{NoiseConfig, RigFault, WorldFault};
+use frixel_testkit::corpus;
 
 use super::*;
 
@@ -34,54 +37,12 @@ fn a_scenario_is_read_in_its_units() {
 }
 
 #[test]
-fn a_mistake_is_a_sentence_with_line_and_column() {
-    for (tables, expected) in [
-        (
-            "[[command]]\nat_ms = 0\ndo = \"pley\"\n",
-            "test.toml:6:6: `do = \"pley\"` is not known; did you mean `play`?",
-        ),
-        ("[[command]]\ndo = \"play\"\n", "test.toml:4:1: [[command]] has no `at_ms`: add it"),
-        ("[[command]]\nat_ms = 0\n", "test.toml:4:1: [[command]] has no `do`: add it"),
-        ("[[command]]\nat_ms = 0\ndo = \"hang\"\n", "test.toml:4:1: [[command]] has no `for_ms`: add it"),
-        (
-            "[[fault]]\nat_ms = -1\ncause = \"reset\"\n",
-            "test.toml:5:9: `at_ms = -1` is out of range: expected 0 to 3600000 ms",
-        ),
-        ("[[fault]]\nat_ms = 1\ncause = \"reset\"\nfor_ms = 4\n", "test.toml:7:1: unknown field `for_ms` in [[fault]]"),
-        ("[[fault]]\nat_ms = 1\ncause = \"bytes-lost\"\n", "test.toml:4:1: [[fault]] has no `share`: add it"),
-        (
-            "[[expect]]\nafter = \"cut\"\noutput = \"zero\"\n",
-            "test.toml:5:9: `after = \"cut\"` names no command and no fault: give one",
-        ),
-        (
-            "[[fault]]\nat_ms = 2001\ncause = \"reset\"\n",
-            "test.toml:5:9: `at_ms = 2001` is after the end of the scenario, which runs for 2 s: raise `seconds`",
-        ),
-        (
-            "[[command]]\nat_ms = 2e4\ndo = \"play\"\n",
-            "test.toml:5:9: `at_ms = 20000` is after the end of the scenario",
-        ),
-        (
-            "[[command]]\nname = \"go\"\nat_ms = 0\ndo = \"play\"\n\
-             [[fault]]\nat_ms = 5\nname = \"go\"\ncause = \"reset\"\n",
-            "test.toml:10:8: `name = \"go\"` is the name of line 5, too: give each its own",
-        ),
-        (
-            "[[fault]]\nat_ms = 5\nname = \"go\"\ncause = \"reset\"\n\
-             [[command]]\nname = \"go\"\nat_ms = 0\ndo = \"play\"\n",
-            "test.toml:9:8: `name = \"go\"` is the name of line 6, too: give each its own",
-        ),
-        (
-            "[[expect]]\nfrom_ms = 700\nto_ms = 600\noutput = \"off\"\n",
-            "test.toml:6:9: `to_ms = 600` is before `from_ms = 700`: give a later end, or an earlier beginning",
-        ),
-        ("[[expect]]\nfrom_ms = 4\n", "test.toml:4:1: this [[expect]] expects nothing: add `output`"),
-        ("stroke = { from_mm = [1], to_mm = [1, 2] }\n", "test.toml:4:22: `from_mm`"),
-        ("colour = 1\n", "test.toml:4:1: unknown field `colour` in this scenario"),
-    ] {
-        let error = parsed(tables).unwrap_err();
-        assert!(error.starts_with(expected), "{tables}{error}");
-    }
+fn every_scenario_is_answered_as_its_page_says() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus/scenarios/mistakes.md");
+    corpus::hold(Path::new(page), |case| {
+        let scenario = Scenario::parse(&case.files["scenario.toml"], "scenario.toml");
+        scenario.map_or_else(|error| format!("{error}\n"), |_| String::new())
+    });
 }
 
 /// 50,000 commands took half a minute.

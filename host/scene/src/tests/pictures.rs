@@ -21,11 +21,6 @@ fn sizes(program: &Program) -> Vec<(u16, u16)> {
     program.bitmaps.iter().map(|bitmap| (bitmap.width, bitmap.height)).collect()
 }
 
-#[track_caller]
-fn check_note(program: &Program, part: &str) {
-    assert!(program.notes().any(|note| note.contains(part)), "{part}: {:?}", program.diagnostics);
-}
-
 /// Names of one picture count once, and of two pictures the first is read.
 #[test]
 fn the_pictures_of_a_scene_have_so_many_pixels_together() {
@@ -44,54 +39,9 @@ fn the_pictures_of_a_scene_have_so_many_pixels_together() {
 fn a_small_picture_has_a_sample_for_each_pixel() {
     let found = program(&layer("leather.png", 0, 50, ""));
     assert_eq!(sizes(&found), [(200, 200)]);
-    check_note(&found, "leather.png: a sample for each pixel, 0.25 mm");
     assert_eq!(found.scene_bytes(), program(&layer("leather.png", 0, 50, "pitch_mm = \"auto\"")).scene_bytes());
     // At the pitch of its pixels, the samples are the pixels.
     assert!(found.bitmaps == program(&layer("leather.png", 0, 50, "pitch_mm = 0.25")).bitmaps);
-}
-
-#[test]
-fn a_large_picture_has_the_finest_pitch_that_fits() {
-    let found = program(&layer("brick.png", 0, 80, ""));
-    // 80 mm at 0.31 mm are 259 samples, 67,081 bytes; at 0.32 mm 250, 62,500 bytes.
-    assert_eq!(sizes(&found), [(250, 250)]);
-    check_note(
-        &found,
-        "brick.png: 512 x 512 resampled to 250 x 250 at 0.32 mm, the finest pitch that fits into the board's 65536 bytes",
-    );
-    let explicit = program(&layer("brick.png", 0, 80, "pitch_mm = 0.32"));
-    assert_eq!(found.scene_bytes(), explicit.scene_bytes());
-    assert!(compile_text(&format!("{SHORT}{}", layer("brick.png", 0, 80, "pitch_mm = 0.31"))).is_err());
-}
-
-#[test]
-fn pictures_share_the_pool() {
-    let bytes = |program: &Program| program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum::<usize>();
-    // The same picture twice takes its bytes once.
-    let twice = program(&format!("{}{}", layer("brick.png", 0, 40, ""), layer("brick.png", 40, 40, "")));
-    assert_eq!(sizes(&twice), [(250, 250)]);
-    // Two pictures share what an explicit one leaves.
-    let mixed = format!(
-        "{}{}{}",
-        layer("brick.png", 0, 50, "pitch_mm = 0.25"),
-        layer(
-            "brick.png",
-            0,
-            30,
-            "region = { x_mm = 60, y_mm = 0, width_mm = 30, height_mm = 30 }\nlevels = \"stretch\""
-        )
-        .replace("x_mm = 0\ny_mm = 0\nwidth_mm = 30\n", ""),
-        layer("leather.png", 50, 20, "")
-    );
-    let mixed = program(&mixed);
-    assert_eq!(mixed.bitmaps[0].width, 200);
-    assert!((60_000..=65_536).contains(&bytes(&mixed)), "{}", bytes(&mixed));
-    check_note(&mixed, "leather.png: 200 x 200 resampled to ");
-    // What cannot be seen takes no bytes.
-    let cut = "region = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }";
-    let seen = program(&layer("brick.png", 0, 80, cut));
-    assert_eq!(sizes(&seen), [(129, 129)]);
-    check_note(&seen, "a sample for each pixel, 0.1563 mm");
 }
 
 #[test]
@@ -109,10 +59,6 @@ fn stretched_levels_use_the_whole_range() {
     let (black, white) = range("pitch_mm = 2");
     assert!(black > 60 && white < 170, "{black} to {white}");
     assert_eq!(range("pitch_mm = 2\nlevels = \"stretch\""), (0, 255));
-    check_note(
-        &program(&layer("wood.jpg", 0, 60, "levels = \"stretch\"")),
-        "wood.jpg: colour turned to grey by luminance, levels ",
-    );
 }
 
 /// A black square in the middle of a transparent ground.
