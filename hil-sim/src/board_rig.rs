@@ -25,17 +25,17 @@ pub enum RigFault {
     },
 }
 
-/// What a board and its world did in one tick, as instruments at the board's pins see it.
+/// One tick of a board and its world.
 #[derive(Clone, Copy, Debug)]
-pub struct RigTick {
-    /// Ticks on the rig's clock, this one included.
+pub struct RigTick<S = BoardView> {
+    /// Ticks on the rig's clock since power-on, this one included.
     pub tick: u64,
     /// The board's output.
     pub drive: Drive,
     /// What the finger felt.
     pub felt: Felt,
-    /// What is known of the board beyond its pins.
-    pub board: BoardView,
+    /// The board's status: a [`Status`] on the rig in this process, and on any rig what it knows of one.
+    pub status: S,
 }
 
 /// What a rig knows of its board after a tick, beyond the levels of the pins.

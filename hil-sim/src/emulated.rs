@@ -22,7 +22,7 @@ mod replay;
 pub use error::EmulatorError;
 pub use frixel_exchange::BOARD;
 pub use image::{EmulatedBoard, Image};
-pub use link::{InjectedFault, LinkBoard, LinkRecord};
+pub use link::{InjectedFault, LinkBoard};
 pub use pico::{
     AppliedOrder, BrokenInputs, PicoBoardRig, PicoRig, Stamped, StartCause, TouchFrame, Watched, WireEvent,
 };

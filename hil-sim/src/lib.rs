@@ -42,7 +42,7 @@ pub use amplifier::{AmplifierConfig, Decay};
 pub use board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger, one_minus_exp};
-pub use frixel_control::{Board, Drive};
+pub use frixel_control::{Board, Drive, Status};
 pub use frixel_session::TableRows;
 pub use journal::Journal;
 pub use line::{Line, LineCounts, LineFault};
@@ -50,7 +50,7 @@ pub use line_noise::{LineNoise, NoiseConfig};
 pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
-pub use rig::{BoardMemory, Rig, RigConfig, TickRecord};
+pub use rig::{BoardMemory, Rig, RigConfig};
 pub use stroke::{FingerState, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow};
-pub use touch::{TouchConfig, TouchReport};
+pub use touch::TouchConfig;
 pub use world::{Felt, ReferenceFriction, World, WorldConfig, WorldFault};

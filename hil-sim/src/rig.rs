@@ -1,6 +1,6 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
-use frixel_control::{Active, Board, Drive, Order, Sense, Status, StreamBuffer, Ticker};
+use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
@@ -10,7 +10,7 @@ use frixel_wire::hello::notice;
 use frixel_wire::message::Refusal;
 
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
-use crate::{AmplifierConfig, Felt, Journal, Line, Stroke, World, WorldConfig, WorldError};
+use crate::{AmplifierConfig, Journal, Line, Stroke, World, WorldConfig, WorldError};
 
 /// Room in a board's receive buffer beyond the host's credit: for hello requests, which need no credit, and for noise.
 const RECEIVE_MARGIN_LEN: usize = 512;
@@ -72,19 +72,6 @@ impl RigConfig {
     pub fn of(board: Board) -> Self {
         Self { board, world: WorldConfig::of(&board), baud: 2_000_000 }
     }
-}
-
-/// Result of one tick.
-#[derive(Clone, Copy, Debug)]
-pub struct TickRecord {
-    /// Ticks since power-on, this one included.
-    pub tick: u64,
-    /// Status reported by the board.
-    pub status: Status,
-    /// The board's output.
-    pub drive: Drive,
-    /// What the finger felt.
-    pub felt: Felt,
 }
 
 /// A board and its world on one thread, in lockstep and in virtual time.
@@ -212,7 +199,7 @@ impl<'a> Rig<'a> {
     }
 
     /// Advances one tick.
-    pub fn step(&mut self) -> TickRecord {
+    pub fn step(&mut self) -> RigTick<Status> {
         let arrived = self.to_board.tick();
         let received =
             self.journal.as_ref().map(|_| arrived.iter().copied().take(TICK_BYTES_MAX).collect::<TickBytes>());
@@ -236,7 +223,7 @@ impl<'a> Rig<'a> {
             let tick = self.tick as u32;
             journal.push(&TickInput { tick, received, room, touch, sense }, &TickOutput { tick, drive, sent });
         }
-        TickRecord { tick: self.tick, status: self.status, drive, felt }
+        RigTick { tick: self.tick, drive, felt, status: self.status }
     }
 
     /// The board's input. The person at the arm switch lets go of it and presses it again when the board wants that.
@@ -327,8 +314,8 @@ impl BoardRig for Rig<'_> {
         watch: &mut dyn FnMut(&RigTick),
     ) -> Result<(), RigError> {
         while !self.has_received() && self.tick < until_tick {
-            let TickRecord { tick, status, drive, felt } = self.step();
-            watch(&RigTick { tick, drive, felt, board: BoardView::Status(status) });
+            let RigTick { tick, drive, felt, status } = self.step();
+            watch(&RigTick { tick, drive, felt, status: BoardView::Status(status) });
         }
         self.receive(received);
         Ok(())

@@ -97,17 +97,6 @@ impl Default for TouchConfig {
     }
 }
 
-/// A report of a place with its times, for whoever follows a finger without a board.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TouchReport {
-    /// When the report arrived, in seconds since the world's start.
-    pub arrived_s: f64,
-    /// When the place was measured, as far as the source knows.
-    pub sampled_s: f64,
-    /// The measured place, m.
-    pub place_m: [f64; 2],
-}
-
 /// What the path of the reports does to them.
 #[derive(Clone, Debug)]
 struct Losses {

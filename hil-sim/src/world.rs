@@ -12,7 +12,7 @@ use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
 use crate::fingertip::{Fingertip, FingertipConfig, Friction, SlipStep, example_finger};
 use crate::stroke::{FingerState, Stroke};
-use crate::touch::{TouchConfig, TouchReport, TouchSource};
+use crate::touch::{TouchConfig, TouchSource};
 use faults::FaultSchedule;
 
 pub use faults::WorldFault;
@@ -279,13 +279,6 @@ impl World {
         self.schedule_fault(now..now.saturating_add(ticks), fault)
     }
 
-    /// Gives the amplifier other properties from now on, such as those of a broken one. Its voltages stay.
-    pub fn set_amplifier(&mut self, config: &AmplifierConfig) -> Result<(), WorldError> {
-        self.amplifier = self.amplifier.reconfigured(config, self.full_scale_v_peak, self.tick_hz)?;
-        self.healthy_amplifier = *config;
-        Ok(())
-    }
-
     /// Ticks a second.
     pub fn tick_hz(&self) -> u32 {
         self.tick_hz
@@ -347,18 +340,6 @@ impl World {
     /// Whether the arm switch is welded: closed, whatever the person at it does.
     pub(crate) fn is_switch_welded(&self) -> bool {
         self.faults.has(self.tick, WorldFault::SwitchWelded)
-    }
-
-    /// Returns the place that arrived at the current tick, with its times.
-    pub fn touch_report(&self) -> Option<TouchReport> {
-        let Touch::Down { x_m, y_m, age_ticks } = self.touch()? else { return None };
-        let seconds = |tick: f64| tick / f64::from(self.tick_hz);
-        let tick = self.tick as f64;
-        Some(TouchReport {
-            arrived_s: seconds(tick),
-            sampled_s: seconds(tick - f64::from(age_ticks)),
-            place_m: [x_m, y_m].map(f64::from),
-        })
     }
 
     /// Holds the board's output for one tick, and advances to the next.

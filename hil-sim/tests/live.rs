@@ -3,7 +3,7 @@
 
 use crate::script;
 
-use frixel_hil_sim::{Point, RigConfig, Stroke, TickRecord, TouchConfig};
+use frixel_hil_sim::{Point, RigConfig, RigTick, Status, Stroke, TouchConfig};
 use frixel_layers::{Blend, Grating, Header, Layer, Record, Wave};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::message::{Command, FromBoard};
@@ -46,7 +46,7 @@ fn play(scene: &[u8]) -> Script {
     script
 }
 
-fn amplitude(record: &TickRecord) -> u16 {
+fn amplitude(record: &RigTick<Status>) -> u16 {
     record.status.telemetry.dac_code.unsigned_abs()
 }
 
@@ -102,14 +102,14 @@ fn a_gain_is_at_the_dac_within_a_millisecond_on_an_idle_line_and_two_during_an_u
 /// which `after` takes the place of `before` while it plays: the tick of the swap, and the three at each tick.
 struct Swap {
     swap: usize,
-    before: Vec<TickRecord>,
-    after: Vec<TickRecord>,
-    swapped: Vec<TickRecord>,
+    before: Vec<RigTick<Status>>,
+    after: Vec<RigTick<Status>>,
+    swapped: Vec<RigTick<Status>>,
 }
 
 const SWAP_TICKS: usize = 3_000;
 
-fn run(first: &[u8], second: Option<(&[u8], usize)>) -> Vec<TickRecord> {
+fn run(first: &[u8], second: Option<(&[u8], usize)>) -> Vec<RigTick<Status>> {
     let mut script = play(first);
     let mut records = Vec::new();
     let mut commit = None;
@@ -144,11 +144,11 @@ fn swap(before: &[u8], after: &[u8], delay: usize) -> Swap {
     Swap { swap, before: run(before, None), after: run(after, None), swapped }
 }
 
-fn asked_bits(records: &[TickRecord]) -> Vec<u32> {
+fn asked_bits(records: &[RigTick<Status>]) -> Vec<u32> {
     records.iter().map(|record| record.status.telemetry.asked_electric_friction_n.to_bits()).collect()
 }
 
-fn amplitudes(records: &[TickRecord]) -> Vec<u16> {
+fn amplitudes(records: &[RigTick<Status>]) -> Vec<u16> {
     records.iter().map(amplitude).collect()
 }
 
@@ -163,7 +163,7 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
         assert!((1_000..1_040).contains(&swap), "{swap}");
         assert_eq!(asked_bits(&swapped[..swap]), asked_bits(&before[..swap]), "delay {delay}");
         assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
-        let asked_n = |record: &TickRecord| record.status.telemetry.asked_electric_friction_n;
+        let asked_n = |record: &RigTick<Status>| record.status.telemetry.asked_electric_friction_n;
         for tick in swap..SWAP_TICKS {
             let (found_n, expected_n) = (asked_n(&swapped[tick]), asked_n(&after[tick]));
             // A tick applies one order: the tick that swaps the scene may apply a new track one tick late.
@@ -186,7 +186,7 @@ fn the_envelope_goes_from_one_scene_to_the_other_at_its_slew_limit() {
     let header = Header { slew_v_per_s: 1e4, ..HEADER };
     let (before, after) = (scene(&header, &[constant(0.004)]), scene(&header, &[constant(0.02)]));
     let Swap { swap, before, after, swapped } = swap(&before, &after, 0);
-    let volts = |record: &TickRecord| record.status.telemetry.voltage_v_rms;
+    let volts = |record: &RigTick<Status>| record.status.telemetry.voltage_v_rms;
     let step_v = 1e4 / 40_000.0;
     let (mut expected_v, target_v) = (volts(&before[swap - 1]), volts(&after[swap]));
     assert!(target_v - expected_v > 20.0 * step_v);

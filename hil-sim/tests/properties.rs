@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::script::{HEADER, Script, constant, scene};
-use frixel_hil_sim::{BoardMemory, LineFault, Point, RigConfig, Stroke, TickRecord, TouchConfig, WorldFault};
+use frixel_hil_sim::{BoardMemory, LineFault, Point, RigConfig, RigTick, Status, Stroke, TouchConfig, WorldFault};
 use frixel_layers::{Header, Waveform};
 use frixel_testkit::Random;
 use frixel_wire::dac_code::DacCode;
@@ -62,7 +62,7 @@ struct Monitor {
 }
 
 impl Monitor {
-    fn see(&mut self, record: &TickRecord, arrived: u64) {
+    fn see(&mut self, record: &RigTick<Status>, arrived: u64) {
         let telemetry = &record.status.telemetry;
         let code = record.drive.dac_code.bits();
         let state = telemetry.state;

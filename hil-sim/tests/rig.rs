@@ -2,10 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use crate::script::{Script, constant, scene};
-use frixel_hil_sim::{Point, RigConfig, Stroke, TickRecord};
+use frixel_hil_sim::{Point, RigConfig, RigTick, Status, Stroke};
 use frixel_layers::{FingerLaw, Header, LawPoint, Waveform};
-use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
-use frixel_wire::payload::{self, Payload};
 
 /// A scene whose host may be silent for a second.
 const HEADER: Header = Header { voltage_max_v_peak: 220.0, host_timeout_s: 1.0, ..frixel_testkit::HEADER };
@@ -23,33 +21,11 @@ fn slide() -> Stroke {
 }
 
 /// Means of the friction felt over whole carrier periods, once the finger is known to the board.
-fn felt_means_n(records: &[TickRecord]) -> Vec<f64> {
+fn felt_means_n(records: &[RigTick<Status>]) -> Vec<f64> {
     records[4000..]
         .chunks_exact(40)
         .map(|period| period.iter().map(|record| record.felt.friction_n).sum::<f64>() / 40.0)
         .collect()
-}
-
-#[test]
-fn a_hello_takes_the_time_that_its_bytes_take_on_the_line() {
-    let mut rig = Script::new(&RigConfig::default(), slide(), 1).rig;
-    let mut frame = [0; FRAME_MAX_LEN];
-    let request = payload::hello_request_frame(&mut frame).unwrap();
-    rig.send(request);
-    let (mut decoder, mut bytes) = (Decoder::new(), Vec::new());
-    let (answer, ticks) = (1..4_000)
-        .find_map(|ticks| {
-            rig.step();
-            rig.receive(&mut bytes);
-            let mut answers = bytes.drain(..).filter_map(|byte| decoder.push(byte).map(<[u8]>::to_vec));
-            answers.next().map(|answer| (answer, ticks))
-        })
-        .unwrap();
-    assert!(matches!(Payload::parse_from_board(&answer).unwrap(), Payload::Hello(_)));
-    // Five bytes a tick at 2 Mbaud and 40 kHz; the answer is framed in six bytes more.
-    let bytes_ticks = (request.len().div_ceil(5) + (answer.len() + 6).div_ceil(5)) as u64;
-    // The answer's first bytes share a tick with the request's last.
-    assert_eq!(ticks, bytes_ticks - 1);
 }
 
 #[test]
@@ -66,7 +42,7 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
         for part in [0.1, 0.5, 0.95] {
             let wanted_n = contact.natural_friction_n() + part * reach_n;
             let mut script = playing(&header, (part * reach_n) as f32);
-            let records: Vec<TickRecord> = (0..39_000).map(|_| script.step()).collect();
+            let records: Vec<RigTick<Status>> = (0..39_000).map(|_| script.step()).collect();
             // A sine's pressure swings about its mean, and friction grows a little faster than pressure; under this law
             // much faster, so that the edges of a square count, too.
             let is_even = waveform == Waveform::Square && law.is_none();

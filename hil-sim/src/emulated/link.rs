@@ -14,7 +14,7 @@ use frixel_exchange::{drive_of, layout};
 
 use super::machine::Machine;
 use super::{EmulatorError, Image};
-use crate::{Felt, OutOfRange, World, WorldFault};
+use crate::{OutOfRange, RigTick, World, WorldFault};
 use follower::{ControlFlags, Follower};
 use serial::Serial;
 
@@ -42,20 +42,6 @@ pub enum InjectedFault {
     Reset,
 }
 
-/// Result of one tick.
-#[derive(Clone, Copy, Debug)]
-pub struct LinkRecord {
-    /// Ticks since the board's last reset, this one included. Of a [`PicoRig`](super::PicoRig), ticks since the board
-    /// was first switched on.
-    pub tick: u32,
-    /// Ticks of the world since power-on, this one included.
-    pub world_tick: u64,
-    /// The board's output.
-    pub drive: Drive,
-    /// What the finger felt.
-    pub felt: Felt,
-}
-
 /// An emulated board with a host's end of its serial line, and its world.
 ///
 /// The board ticks on its own timer in virtual time, which is never ahead of wall time and may fall behind it. The
@@ -66,7 +52,7 @@ pub struct LinkBoard {
     machine: Machine,
     serial_path: String,
     world: Option<JoinHandle<Result<(), EmulatorError>>>,
-    records: Receiver<LinkRecord>,
+    records: Receiver<RigTick>,
     flags: Arc<ControlFlags>,
 }
 
@@ -96,7 +82,7 @@ impl LinkBoard {
 
     /// Takes the ticks that the world has followed since the last call, oldest first. They queue without bound until
     /// then.
-    pub fn records(&self) -> impl Iterator<Item = LinkRecord> {
+    pub fn records(&self) -> impl Iterator<Item = RigTick> {
         self.records.try_iter()
     }
 

@@ -20,9 +20,9 @@ use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request as HostRequest};
 use frixel_wire::payload;
 
-use super::{EmulatorError, Image, LinkRecord};
-use crate::World;
+use super::{EmulatorError, Image};
 use crate::chips::Ad5761rChip;
+use crate::{BoardView, RigTick, World};
 pub use board_rig::PicoBoardRig;
 pub use frame::TouchFrame;
 pub use orders::{AppliedOrder, Watched};
@@ -130,12 +130,6 @@ impl PicoRig {
         self.now
     }
 
-    /// Number of ticks of the world since the board was first switched on, modulo 2^32. The board's own count begins
-    /// when its beat does, anew at each start.
-    pub fn tick(&self) -> u32 {
-        self.world.tick() as u32
-    }
-
     /// The world.
     pub fn world(&self) -> &World {
         &self.world
@@ -214,7 +208,7 @@ impl PicoRig {
     }
 
     /// Advances one tick.
-    pub fn step(&mut self) -> Result<LinkRecord, EmulatorError> {
+    pub fn step(&mut self) -> Result<RigTick, EmulatorError> {
         let tolerance = self.tick_period.mul_f64(BOUNDARY_TOLERANCE);
         loop {
             let frame_before = self.frame_ended_at;
@@ -283,13 +277,13 @@ impl PicoRig {
     }
 
     /// Advances the world by a tick in which the output was as it is now.
-    fn advance_world(&mut self) -> LinkRecord {
+    fn advance_world(&mut self) -> RigTick {
         let drive = self.output();
         let felt = self.world.apply(drive);
         if let Some(touch) = self.world.touch() {
             self.report(touch);
         }
-        LinkRecord { tick: self.tick(), world_tick: self.world.tick(), drive, felt }
+        RigTick { tick: self.world.tick(), drive, felt, status: BoardView::None }
     }
 
     /// Sends a touch report to the board.

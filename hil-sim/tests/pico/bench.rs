@@ -2,14 +2,13 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::time::Duration;
 
 use frixel_control::Board;
-use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink};
-use frixel_hil_sim::emulated::{Image, LinkRecord, PicoRig, Stamped};
-use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
+use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink, to_the_end};
+use frixel_hil_sim::emulated::{Image, PicoRig, Stamped};
+use frixel_hil_sim::{Point, RigTick, Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
 
@@ -52,7 +51,7 @@ fn world() -> World {
 #[derive(Clone)]
 pub(super) struct Bench {
     rig: Rc<RefCell<PicoRig>>,
-    records: Rc<RefCell<Vec<LinkRecord>>>,
+    records: Rc<RefCell<Vec<RigTick>>>,
 }
 
 impl Bench {
@@ -106,7 +105,7 @@ impl Bench {
     }
 
     /// Lets one tick pass, without a host.
-    pub(super) fn step(&self) -> LinkRecord {
+    pub(super) fn step(&self) -> RigTick {
         let record = self.with(|rig| rig.step().unwrap());
         self.records.borrow_mut().push(record);
         record
@@ -121,7 +120,7 @@ impl Bench {
     }
 
     /// The ticks since the last call.
-    pub(super) fn take_records(&self) -> Vec<LinkRecord> {
+    pub(super) fn take_records(&self) -> Vec<RigTick> {
         self.records.take()
     }
 
@@ -149,7 +148,7 @@ impl Bench {
 
     /// Plays a program under the sliding finger, and waits until the board drives.
     pub(super) fn start_program(&self, host: &mut Host, program: &Program) {
-        frixel_play::start(host, program, &mut |_| ControlFlow::Continue(())).unwrap();
+        frixel_play::start(host, program, &mut to_the_end).unwrap();
         self.with(|rig| rig.world_mut().start_stroke());
         host.wait(Duration::from_millis(60), &mut |_| ()).unwrap();
         assert_eq!(self.with(|rig| rig.zero_since()), None, "the board drives");

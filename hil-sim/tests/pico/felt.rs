@@ -1,9 +1,9 @@
 //! A finger feels a grating as faithfully as the goal asks, and nearly as faithfully as on the in-process rig.
 
-use std::ops::ControlFlow;
 use std::slice;
 use std::time::Duration;
 
+use frixel_driver::to_the_end;
 use frixel_felt::fidelity::{Fidelity, FidelityMean, FidelitySample, Goal, SAMPLE_HZ};
 use frixel_felt::recorder::{FeltRow, Observation, Recorder};
 use frixel_hil_sim::emulated::Image;
@@ -57,7 +57,7 @@ fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
 fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> (Fidelity, u64) {
     let bench = Bench::in_world_with_frame(image, &world(), stroke(seconds, seed), seed);
     let mut host = bench.connect();
-    frixel_play::start(&mut host, &program(GRATING), &mut |_| ControlFlow::Continue(())).unwrap();
+    frixel_play::start(&mut host, &program(GRATING), &mut to_the_end).unwrap();
     bench.take_records();
     let start_tick = bench.with(|rig| {
         rig.world_mut().start_stroke();

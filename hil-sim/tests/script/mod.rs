@@ -8,7 +8,7 @@
 )]
 
 use frixel_control::Status;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, TickRecord};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, RigTick, Stroke};
 use frixel_layers::Header;
 use frixel_testkit::Random;
 pub use frixel_testkit::{constant, record, scene, scene_with_points};
@@ -24,7 +24,7 @@ const PING_TICKS: u64 = 2_000;
 const COMMIT_TICKS_MAX: u32 = 128;
 
 /// Is called with every tick, and with the number of bytes that have arrived at the board.
-pub type Watch = Box<dyn FnMut(&TickRecord, u64)>;
+pub type Watch = Box<dyn FnMut(&RigTick<Status>, u64)>;
 
 /// A host that says what it wants and trusts the board.
 pub struct Script {
@@ -136,7 +136,7 @@ impl Script {
         }
     }
 
-    pub fn step(&mut self) -> TickRecord {
+    pub fn step(&mut self) -> RigTick<Status> {
         let record = self.rig.step();
         self.status = Some(record.status);
         if let Some(watch) = &mut self.watch {

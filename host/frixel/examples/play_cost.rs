@@ -24,13 +24,12 @@ mod stages {
     use std::error::Error;
     use std::ffi::OsString;
     use std::hint::black_box;
-    use std::ops::ControlFlow;
     use std::path::Path;
     use std::process::{Command, ExitCode, Stdio};
     use std::time::Duration;
 
     use frixel_control::Drive;
-    use frixel_driver::{Device, PollingLink};
+    use frixel_driver::{Device, PollingLink, to_the_end};
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World};
     use frixel_lab::default_stroke::default_stroke;
     use frixel_play::Player;
@@ -138,7 +137,7 @@ mod stages {
             let rig = Rig::new(&mut memory, &self.rig, self.stroke.clone(), SEED)?;
             let link = PollingLink::new(RigStream::new(rig));
             let mut player = Player::new(Device::connect(link)?);
-            player.start(self.program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
+            player.start(self.program.clone(), 0, &mut to_the_end)?;
             player.wait(Duration::from_secs_f64(self.seconds))?;
             player.stop()?;
             Ok(())

@@ -2,13 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::cell::{Cell, RefCell};
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
 use frixel::scene_file;
-use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink};
+use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink, to_the_end};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_play::RigStream;
 use frixel_scene::{Program, compile};
@@ -84,7 +83,7 @@ impl Mortal<'_> {
 fn play(line: &Line<'_>, program: &Program, bytes_max: usize, time: Duration) -> Result<(), DeviceError> {
     let mortal = Mortal { line: line.clone(), bytes_left: bytes_max };
     let mut client = Device::connect(PollingLink::new(mortal))?;
-    frixel_play::start(&mut client, program, &mut |_| ControlFlow::Continue(()))?;
+    frixel_play::start(&mut client, program, &mut to_the_end)?;
     client.wait(time, &mut |_| ())
 }
 

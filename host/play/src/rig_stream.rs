@@ -99,7 +99,7 @@ impl<'a, R: BoardRig> RigStream<'a, R> {
 
 impl Record<'_> {
     fn take(&mut self, tick: &RigTick) {
-        let observation = match &tick.board {
+        let observation = match &tick.status {
             BoardView::Status(status) => {
                 self.state = Some(status.telemetry.state);
                 Some(Observation::of_tick(tick.tick as u32, &tick.felt, &status.telemetry))

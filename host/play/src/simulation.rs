@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus};
+use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, to_the_end};
 use frixel_felt::fidelity::{FidelitySample, SAMPLE_HZ};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
@@ -125,7 +125,7 @@ pub fn simulate_by(
     let mut memory = BoardMemory::new();
     let stream = RigStream::new(simulation.rig(&mut memory)?);
     let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
-    player.start(program.clone(), 0, &mut |_| ControlFlow::Continue(()))?;
+    player.start(program.clone(), 0, &mut to_the_end)?;
     if let Some(feed) = feed {
         player.stream(feed)?;
     }
@@ -168,7 +168,7 @@ mod tests {
         rig.world_mut().schedule_fault(20_000..u64::MAX, WorldFault::AmplifierNotReady).unwrap();
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
         let mut player = Player::recording(Device::connect(PollingLink::new(RigStream::new(rig))).unwrap(), recorder);
-        player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+        player.start(program, 0, &mut to_the_end).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
         let recorder = player.into_recorder();

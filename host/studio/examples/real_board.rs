@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use frixel_control::Board;
-use frixel_hil_sim::{BoardMemory, PseudoTerminal, Rig, RigConfig, Stroke, TickRecord, WorldFault};
+use frixel_hil_sim::{BoardMemory, PseudoTerminal, Rig, RigConfig, RigTick, Status, Stroke, WorldFault};
 use frixel_wire::fault::Flags;
 use frixel_wire::hello::{BoardKind, BoardLimits};
 use serde_json::{Value, json};
@@ -94,7 +94,7 @@ fn exchange(terminal: &mut PseudoTerminal, rig: &mut Rig, unwritten: &mut Vec<u8
     Ok(())
 }
 
-fn report(TickRecord { status, .. }: &TickRecord) -> Value {
+fn report(RigTick { status, .. }: &RigTick<Status>) -> Value {
     json!({
         "state": format!("{:?}", status.telemetry.state).to_lowercase(),
         "fault": status.fault.map(|(fault, _)| fault.to_string()),

@@ -1,8 +1,6 @@
 //! What `frixel check` says of a scene.
 
-use std::ops::ControlFlow;
-
-use frixel_driver::{Device, PollingLink};
+use frixel_driver::{Device, PollingLink, to_the_end};
 use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_felt::judge::{Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, RigConfig};
@@ -78,7 +76,7 @@ fn screen(scene: &Scene) -> Value {
 fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
     let mut memory = BoardMemory::new();
     let mut device = Device::connect(PollingLink::new(PointerStream::new(&mut memory, config, 1)?))?;
-    let loaded = load(&mut device, program, &mut |_| ControlFlow::Continue(()));
+    let loaded = load(&mut device, program, &mut to_the_end);
     let wire_bytes = loaded.map_err(|error| HostError::Refused(error.into()))?;
     Ok(BoardCosts::of(program, config, wire_bytes))
 }

@@ -1,7 +1,7 @@
 //! What the simulated finger felt, as the page draws and plays it.
 
 use frixel_felt::recorder::{FeltRow, Observation, Recorder};
-use frixel_hil_sim::{Felt, TickRecord};
+use frixel_hil_sim::{Felt, RigTick, Status};
 use frixel_model::{ContactModel, FrictionLaw};
 
 use crate::touched::TouchedPlaces;
@@ -67,7 +67,7 @@ impl FeltSampler {
     }
 
     /// Adds a tick, in which the board had the finger at `places`, and its friction by `law`.
-    pub(crate) fn add(&mut self, record: &TickRecord, places: TouchedPlaces, law: &FrictionLaw) {
+    pub(crate) fn add(&mut self, record: &RigTick<Status>, places: TouchedPlaces, law: &FrictionLaw) {
         self.recorder.record(&Observation::of_tick(record.tick as u32, &record.felt, &record.status.telemetry));
         if let Some(row) = self.recorder.rows().get(self.touched.len()) {
             let radius_m = |voltage_v_rms| contact_radius_m(law, voltage_v_rms);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     /// Ticks of a world in which a finger rests from tick 100 on.
-    fn records() -> Vec<TickRecord> {
+    fn records() -> Vec<RigTick<Status>> {
         let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).unwrap();
         let mut world = World::new(WorldConfig::default(), stroke, 1).unwrap();
         (1..=1_000)
@@ -171,7 +171,7 @@ mod tests {
                     world.place_finger(FingerState { x_m: 0.02, y_m: 0.03, speed_m_per_s: 0.0 });
                 }
                 let felt = world.apply(frixel_control::Drive::default());
-                TickRecord {
+                RigTick {
                     tick,
                     status: frixel_control::Status { telemetry: Telemetry::default(), ..Default::default() },
                     drive: frixel_control::Drive::default(),

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, Stroke, TickRecord};
+use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, RigTick, Status, Stroke};
 use frixel_play::Recorded;
 use frixel_wire::fault::{Fault, State};
 
@@ -24,13 +24,13 @@ pub(crate) struct PointerStream<'a> {
     /// Where the finger was to the board in the last tick.
     touched: TouchedPlaces,
     /// The record of the last tick.
-    last: Option<TickRecord>,
+    last: Option<RigTick<Status>>,
     /// Is called with every tick.
     observer: Option<Observer>,
 }
 
 /// Is called with a tick.
-type Observer = Box<dyn FnMut(&TickRecord)>;
+type Observer = Box<dyn FnMut(&RigTick<Status>)>;
 
 impl<'a> PointerStream<'a> {
     pub(crate) fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
@@ -50,7 +50,7 @@ impl<'a> PointerStream<'a> {
 
     /// Calls `observer` with every tick.
     #[must_use]
-    pub(crate) fn observed(self, observer: impl FnMut(&TickRecord) + 'static) -> Self {
+    pub(crate) fn observed(self, observer: impl FnMut(&RigTick<Status>) + 'static) -> Self {
         Self { observer: Some(Box::new(observer)), ..self }
     }
 
@@ -71,7 +71,7 @@ impl<'a> PointerStream<'a> {
 
     /// The board's state and latched fault after the last tick.
     pub(crate) fn state(&self) -> (State, Option<Fault>) {
-        let Some(TickRecord { status, .. }) = self.last else { return (State::Disarmed, None) };
+        let Some(RigTick { status, .. }) = self.last else { return (State::Disarmed, None) };
         let state = status.telemetry.state;
         (state, status.fault.map(|(fault, _)| fault).filter(|_| state == State::Faulted))
     }
@@ -83,7 +83,7 @@ impl<'a> PointerStream<'a> {
     }
 
     /// Passes one tick.
-    pub(crate) fn step(&mut self) -> TickRecord {
+    pub(crate) fn step(&mut self) -> RigTick<Status> {
         let tick_hz = f64::from(self.rig.tick_hz());
         let finger = self.pointer.at(self.rig.tick() as f64);
         let world = self.world_mut();

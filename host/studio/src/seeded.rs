@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use frixel_hil_sim::{BoardMemory, RigConfig, TickRecord, WorldConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig, RigTick, Status, WorldConfig};
 use frixel_layers::Header;
 
 use crate::host::{connect, load, stream_mut};
@@ -70,7 +70,7 @@ impl Hash {
         Self(Self::OFFSET_BASIS)
     }
 
-    fn add(&mut self, TickRecord { status, felt, .. }: &TickRecord) {
+    fn add(&mut self, RigTick { status, felt, .. }: &RigTick<Status>) {
         self.add_word(felt.friction_n.to_bits());
         self.add_word(felt.electrode_v.to_bits());
         self.add_word(u64::from(status.telemetry.dac_code.cast_unsigned()));

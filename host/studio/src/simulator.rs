@@ -205,7 +205,7 @@ mod tests {
             let stream = stream_mut(&mut simulator.host);
             let reports = (0..40_000).filter(|_| {
                 stream.step();
-                stream.world_mut().touch_report().is_some()
+                stream.world_mut().touch().is_some()
             });
             let reports = reports.count();
             assert!(expected.contains(&reports), "{touch:?}: {reports} reports in a second");

@@ -8,11 +8,11 @@ use std::thread;
 use frixel_control::Drive;
 use frixel_exchange::{BOARD, STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
 
+use super::POLL_PERIOD;
 use super::serial::Serial;
-use super::{LinkRecord, POLL_PERIOD};
 use crate::emulated::EmulatorError;
 use crate::emulated::memory::Memory;
-use crate::{World, WorldFault};
+use crate::{BoardView, RigTick, World, WorldFault};
 
 /// Requests from the board's owner to the world's thread.
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ pub(super) struct Follower {
     memory: Memory,
     serial: Serial,
     world: World,
-    records: Sender<LinkRecord>,
+    records: Sender<RigTick>,
     /// Number of drives that have been processed.
     seen: u32,
     /// Number of touch reports that have been written.
@@ -53,7 +53,7 @@ impl Follower {
         memory: Memory,
         serial: Serial,
         world: World,
-        records: Sender<LinkRecord>,
+        records: Sender<RigTick>,
         flags: Arc<ControlFlags>,
     ) -> Self {
         Self { memory, serial, world, records, seen: 0, reports: 0, broken: Vec::new(), flags }
@@ -118,7 +118,7 @@ impl Follower {
     fn tick(&mut self, tick: u32, drive: Drive) -> Result<(), EmulatorError> {
         let felt = self.world.apply(drive);
         // Cannot fail: `LinkBoard` joins this thread before it drops the receiver.
-        let _ = self.records.send(LinkRecord { tick, world_tick: self.world.tick(), drive, felt });
+        let _ = self.records.send(RigTick { tick: self.world.tick(), drive, felt, status: BoardView::Tick(tick) });
         match self.world.touch() {
             Some(touch) => self.report(StampedTouch { tick: tick.wrapping_add(1), touch }),
             None => Ok(()),

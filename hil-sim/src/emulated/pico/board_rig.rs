@@ -6,7 +6,7 @@ use frixel_control::Board;
 
 use super::PicoRig;
 use crate::emulated::{EmulatorError, Image};
-use crate::{BoardRig, BoardView, RigError, RigFault, RigTick, World};
+use crate::{BoardRig, RigError, RigFault, RigTick, World};
 
 const NAME: &str = "the emulated Pico";
 /// Time until the board is there, and its arm switch counts as held or as let go.
@@ -39,8 +39,7 @@ impl PicoBoardRig {
         // A welded switch stays closed, whatever the person does.
         let is_open = self.switch_open_until.is_some() && !self.rig.world().is_switch_welded();
         self.rig.broken.arm_switch = is_open.then_some(false);
-        let record = self.rig.step().map_err(|error| ended(&error))?;
-        Ok(RigTick { tick: self.tick(), drive: record.drive, felt: record.felt, board: BoardView::None })
+        self.rig.step().map_err(|error| ended(&error))
     }
 }
 

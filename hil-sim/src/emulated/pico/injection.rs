@@ -32,11 +32,6 @@ impl PicoRig {
         self.process.request(Request::StopCrystal, &[]).map(drop)
     }
 
-    /// Stops the state machine of the beat: no tick begins any more, and the main loop goes on.
-    pub fn stop_beat(&mut self) -> Result<(), EmulatorError> {
-        self.process.request(Request::StopPio, &[0]).map(drop)
-    }
-
     /// Stops the state machine of the one-shot: it holds what it drives.
     pub fn stop_one_shot(&mut self) -> Result<(), EmulatorError> {
         self.process.request(Request::StopPio, &[1]).map(drop)

@@ -202,8 +202,8 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     refused.upload(&upload, &mut to_the_end).unwrap();
     refused.commit(upload.scene_crc32() + 1).unwrap_err();
     refused.arm().unwrap();
-    for mut device in [armed, uploaded, refused] {
-        let silence = silence_of(&mut device);
+    for device in [&mut armed, &mut uploaded, &mut refused] {
+        let silence = silence_of(device);
         assert!(silence <= Duration::from_millis(6), "{silence:?}");
     }
 }

@@ -33,6 +33,12 @@ pub(crate) enum Fate {
 /// Decides what becomes of a frame, by its number from zero and its bytes.
 pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate + Send>;
 
+/// The refusal with which a command is answered that the board does not get, if any.
+type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal> + Send>;
+
+/// Changes what the board says.
+type Change = Box<dyn Fn(&mut Payload) + Send>;
+
 /// A link over the line, which pings as every link without a thread does.
 pub(crate) type VirtualLink = PollingLink<VirtualLine>;
 
@@ -64,9 +70,9 @@ pub(crate) struct VirtualLine {
     /// Longest time without a good frame since the first hello.
     pub(crate) longest_silence: Duration,
     /// The refusal with which a command is answered that the board does not get. A ping takes its place on the line.
-    pub(crate) refuse: Option<Box<dyn FnMut(&Command) -> Option<Refusal> + Send>>,
+    pub(crate) refuse: Option<Refuse>,
     /// Changes what the board says.
-    says: Option<Box<dyn Fn(&mut Payload) + Send>>,
+    says: Option<Change>,
     /// Arrives in front of the board's first frame.
     pub(crate) garbage: Vec<u8>,
     refused: BTreeMap<u16, Refusal>,

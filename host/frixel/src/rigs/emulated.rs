@@ -5,8 +5,8 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use frixel_driver::{DEFAULT_BAUD, Link as _, LinkClosed, PortError, SerialLink};
-use frixel_hil_sim::emulated::{BOARD, EmulatorError, InjectedFault, LinkBoard, LinkRecord};
-use frixel_hil_sim::{Board, BoardRig, BoardView, RigError, RigFault, RigTick};
+use frixel_hil_sim::emulated::{BOARD, EmulatorError, InjectedFault, LinkBoard};
+use frixel_hil_sim::{Board, BoardRig, RigError, RigFault, RigTick};
 
 const NAME: &str = "the emulated board";
 /// Wall time between two readings of the board's clock.
@@ -129,8 +129,8 @@ impl BoardRig for EmulatedRig<'_> {
         let before = received.len();
         loop {
             let has_arrived = self.follow().map_err(|error| ended(&error))?;
-            for LinkRecord { tick, world_tick, drive, felt } in self.board.records() {
-                watch(&RigTick { tick: world_tick, drive, felt, board: BoardView::Tick(tick) });
+            for tick in self.board.records() {
+                watch(&tick);
             }
             // At its end the caller may have a ping to send, and the board waits for it.
             if self.ticks.get() >= until_tick || received.len() > before {

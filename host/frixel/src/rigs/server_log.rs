@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use frixel_felt::recorder::{Observation, Recorder};
-use frixel_hil_sim::{Rig, TickRecord};
+use frixel_hil_sim::{Rig, RigTick, Status};
 use frixel_lab::calibration::ForceSensor;
 use frixel_wire::fault::State;
 
@@ -59,7 +59,7 @@ impl ServerLog {
     }
 
     /// Records one tick of `rig`.
-    pub(super) fn take(&mut self, record: &TickRecord, rig: &Rig) -> Result<()> {
+    pub(super) fn take(&mut self, record: &RigTick<Status>, rig: &Rig) -> Result<()> {
         let (frames, _) = rig.frame_counts();
         if frames != self.frames {
             self.frames = frames;

@@ -1,10 +1,9 @@
 //! A stream, from the host's samples to the finger.
 
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Device, PollingLink, StreamSettings};
+use frixel_driver::{Device, PollingLink, StreamSettings, to_the_end};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_play::Recorded as _;
@@ -35,7 +34,7 @@ fn play(program: &Program) -> Vec<FeltRow> {
     let mut stream = RigStream::new(rig);
     *stream.recorder_mut() = recorder;
     let mut device = Device::connect(PollingLink::new(stream)).unwrap();
-    frixel_play::start(&mut device, program, &mut |_| ControlFlow::Continue(())).unwrap();
+    frixel_play::start(&mut device, program, &mut to_the_end).unwrap();
     device.start_stream(StreamSettings::new(SAMPLE_HZ)).unwrap();
     let sample = |number: u32| {
         let turns = WAVE_HZ * f64::from(number) / f64::from(SAMPLE_HZ);

@@ -1,9 +1,8 @@
 //! The host of a scenario: a player over the line, which does what the scenario says when it says so.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, PollingLink};
+use frixel_driver::{Device, DeviceError, PollingLink, to_the_end};
 use frixel_play::{PlayError, Player, load};
 use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -170,7 +169,7 @@ fn perform_with(
     scene: &str,
     program: &dyn Fn(&str) -> Option<Program>,
 ) -> Result<(), CommandFailure> {
-    let goes_on = &mut |_| ControlFlow::Continue(());
+    let goes_on = &mut to_the_end;
     match action {
         Action::Play => {
             let Some(program) = program(scene) else { return Ok(()) };

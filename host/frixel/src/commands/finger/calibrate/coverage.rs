@@ -8,13 +8,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::collections::BTreeMap;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use clap::Parser;
-use frixel_driver::{Device, PollingLink};
+use frixel_driver::{Device, PollingLink, to_the_end};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{
     BoardMemory, BoardView, FingertipConfig, Person, Point, Rig, RigConfig, RigTick, Stroke, TouchConfig,
@@ -102,14 +102,15 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
         tick += 1;
         if (ticks - measured..ticks).contains(&tick) {
             sum_n += record.felt.electric_friction_n / measured as f64;
-            let BoardView::Status(status) = &record.board else { panic!("the simulator sees its board") };
-            volts += f64::from(status.telemetry.voltage_v_rms) / measured as f64;
+            if let BoardView::Status(status) = &record.status {
+                volts += f64::from(status.telemetry.voltage_v_rms) / measured as f64;
+            }
         }
     };
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, ticks, 40).unwrap();
     let line = RigStream::new(rig).observed(observe);
     let mut player = Player::recording(Device::connect(PollingLink::new(line)).unwrap(), recorder);
-    player.start(program, 0, &mut |_| ControlFlow::Continue(())).unwrap();
+    player.start(program, 0, &mut to_the_end).unwrap();
     while player.recorder_mut().ticks_left() > 0 {
         player.step(Duration::MAX).unwrap();
     }
